@@ -52,7 +52,7 @@ use doors::Doors;
 use guards::Guards;
 use hazards::Spikes;
 use mechanisms::Mechanisms;
-use player::{FRICTION, Player, RUN, STILL, WALK};
+use player::{Player, RUN, STILL, WALK};
 use show::Sprites;
 use tools::{Missiles, Smoke, Supplies};
 
@@ -66,6 +66,7 @@ pub use guards::{Alarm, GuardView, Mood};
 pub use health::{Flash, FlashKind, Health};
 pub use intent::{Intent, Intents};
 pub use look::Look;
+pub(crate) use player::FRICTION;
 pub use report::Outcome;
 pub use rules::Rules;
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};

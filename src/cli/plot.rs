@@ -17,16 +17,17 @@ pub(super) struct Page {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) marks: Vec<Mark>,
+    /// What is drawn, in text, for programs and for readers who do not see. It may be empty.
+    pub(super) description: String,
 }
 
 /// A mark on a page.
 pub(super) enum Mark {
     /// A straight line.
     Line { from: (f64, f64), to: (f64, f64), color: PlotColor },
-    /// A point.
-    Dot { at: (f64, f64), color: PlotColor },
-    /// Text that starts, is centered, or ends at a point. It has no character that is special in
-    /// XML.
+    /// A point with a white edge, so that a smaller one before it is seen.
+    Dot { at: (f64, f64), radius: f64, color: PlotColor },
+    /// Text that starts, is centered, or ends at a point.
     Text { at: (f64, f64), align: Align, text: String },
 }
 
@@ -39,6 +40,9 @@ pub(super) enum PlotColor {
     Blue,
     Green,
     Gray,
+    Purple,
+    Red,
+    Teal,
 }
 
 impl PlotColor {
@@ -49,6 +53,9 @@ impl PlotColor {
             Self::Blue => Rgb::new(0x30, 0x60, 0xa0),
             Self::Green => Rgb::new(0x2a, 0x80, 0x50),
             Self::Gray => Rgb::new(0x70, 0x70, 0x70),
+            Self::Purple => Rgb::new(0x90, 0x40, 0xa0),
+            Self::Red => Rgb::new(0xc0, 0x30, 0x40),
+            Self::Teal => Rgb::new(0x10, 0x90, 0x98),
         }
     }
 }

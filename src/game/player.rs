@@ -12,7 +12,8 @@ use super::tally::Counts;
 use super::tools::Supplies;
 use super::warnings::Warnings;
 use crate::world::{KeyId, World};
-pub(super) use motion::{FRICTION, JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+pub(crate) use motion::FRICTION;
+pub(super) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
 /// A player.
 #[derive(Clone, Debug, PartialEq)]

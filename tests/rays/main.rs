@@ -6,6 +6,7 @@ mod cast;
 mod casters;
 mod exact;
 mod filters;
+mod large_maps;
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,79 +1,47 @@
-//! The report as one JSON object: methods, filters, sets and motions.
+//! The report as one JSON object: the run, and the tables.
 
 use std::io::{self, Write};
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value as Json, json};
 
-use crate::lab::accuracy::{Errors, FilterErrors, Report};
+use super::run::Run;
+use super::text::heading;
+use crate::lab::accuracy::{Row, Table, Timing, Value};
 
-pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    let methods: Vec<Value> = report
-        .rows
-        .iter()
-        .map(|row| {
-            json!({
-                "method": row.method,
-                "nanoseconds": {
-                    "median": row.timing.median,
-                    "lower_quartile": row.timing.lower_quartile,
-                    "upper_quartile": row.timing.upper_quartile,
-                },
-                "errors": errors(&row.errors),
-                "wrong_pixels": { "160x90": row.wrong_pixels[0], "400x120": row.wrong_pixels[1] },
-                "front": row.is_on_front,
-            })
-        })
-        .collect();
-    let filters: Vec<Value> = report
-        .filters
-        .iter()
-        .map(|row| {
-            let [small, large] = row.errors.map(filter_errors);
-            json!({ "filter": row.name, "pictures": { "160x90": small, "400x120": large } })
-        })
-        .collect();
-    let sets: Vec<Value> = report
-        .sets
-        .iter()
-        .map(|set| {
-            let by_method = set.errors.iter().map(|(method, all)| (method.clone(), errors(all)));
-            json!({ "set": set.name, "methods": by_method.collect::<serde_json::Map<_, _>>() })
-        })
-        .collect();
-    let motions: Vec<Value> = report
-        .motions
-        .iter()
-        .map(|motion| {
-            json!({
-                "integrator": motion.integrator.name(),
-                "rate": motion.case.rate,
-                "step": motion.case.step,
-                "steps": motion.case.steps,
-                "velocity": motion.case.velocity,
-                "target": motion.case.target,
-                "velocity_error": motion.velocity_error,
-                "place_error": motion.place_error,
-                "nanoseconds": motion.nanoseconds,
-            })
-        })
-        .collect();
-    let report =
-        json!({ "methods": methods, "filters": filters, "sets": sets, "motions": motions });
-    serde_json::to_writer_pretty(&mut *output, &report)?;
+pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+    let run: Map<String, Json> =
+        run.parts().into_iter().map(|(name, value)| (name.to_owned(), value.into())).collect();
+    let tables: Map<String, Json> =
+        tables.iter().map(|table| (table.name.to_owned(), object(table))).collect();
+    serde_json::to_writer_pretty(&mut *output, &json!({ "run": run, "tables": tables }))?;
     output.write_all(b"\n")
 }
 
-fn errors(errors: &Errors) -> Value {
-    json!({
-        "rays": errors.rays,
-        "wrong": errors.wrong,
-        "worst_distance": errors.worst_distance,
-        "mean_distance": errors.mean_distance,
-        "worst_texel": errors.worst_texel,
-        "mean_texel": errors.mean_texel,
-    })
+fn object(table: &Table) -> Json {
+    let rows: Vec<Json> = table.rows.iter().map(|row| fields(table, row)).collect();
+    json!({ "title": table.title, "rows": rows })
 }
 
-fn filter_errors(errors: FilterErrors) -> Value {
-    json!({ "mean": errors.mean, "worst": errors.worst, "shimmer": errors.shimmer })
+/// The keys and the figures of `row` by their headings.
+fn fields(table: &Table, row: &Row) -> Json {
+    let keys = table.keys.iter().zip(&row.keys).filter(|(heading, _)| !heading.is_empty());
+    let keys = keys.map(|(heading, key)| ((*heading).to_owned(), Json::from(key.as_str())));
+    let figures = table.columns.iter().zip(&row.values);
+    let figures = figures.map(|(column, value)| (heading(column), figure(*value)));
+    keys.chain(figures).collect::<Map<String, Json>>().into()
+}
+
+fn figure(value: Value) -> Json {
+    match value {
+        Value::None => Json::Null,
+        Value::Count(count) => count.into(),
+        // There is no infinity in JSON.
+        Value::Share(number) | Value::Number(number) if !number.is_finite() => "inf".into(),
+        Value::Share(number) | Value::Number(number) => number.into(),
+        Value::Time(Timing { median, lower_quartile, upper_quartile }) => json!({
+            "median": median,
+            "lower_quartile": lower_quartile,
+            "upper_quartile": upper_quartile,
+        }),
+    }
 }

@@ -1,170 +1,127 @@
-//! A plot of error over run time, both logarithmic, as an image or in characters.
+//! Work-precision diagrams of the report: an error over a cost, both logarithmic.
+//!
+//! Each diagram of a table is a row of panels, one for each problem. In a panel, a method is a line
+//! of points, joined in the order of its parameter; bars are the quartiles of times. Dots of later
+//! methods are smaller, so that none hides another. The description of the file has the whole report
+//! as CSV, so that a plot holds what the tables hold.
 
-mod text;
+mod panel;
 
 use std::io::{self, Write};
 
-use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
-use crate::lab::accuracy::Report;
+use super::csv;
+use super::run::Run;
+use super::text::heading;
+use crate::cli::plot::{self, Align, Mark, Page, PlotColor};
+use crate::lab::accuracy::{Diagram, Table};
+use panel::Panel;
 
-/// Writes the plot in characters.
-pub(super) fn write_text(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    text::write(&Plot::of(report), output)
+/// Writes the plots as an SVG file.
+pub(super) fn write_svg(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+    plot::write_svg(&page(run, tables), output)
 }
 
-/// Writes the plot as an SVG file.
-pub(super) fn write_svg(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    plot::write_svg(&Plot::of(report).page(), output)
+/// Writes the plots as a PNG file.
+pub(super) fn write_png(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+    plot::write_png(&page(run, tables), output)
 }
 
-/// Writes the plot as a PNG file.
-pub(super) fn write_png(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    plot::write_png(&Plot::of(report).page(), output)
-}
+/// The width and the height of a panel with its margins.
+const PANEL: (f64, f64) = (400.0, 300.0);
+/// The number of panels beside each other.
+const COLUMNS: usize = 3;
+/// The distance between lines of text.
+const LINE: f64 = 18.0;
+const MARGIN: f64 = 20.0;
+/// The width of a character.
+const CHARACTER: f64 = 8.0;
 
-/// The width and the height of the page.
-const PAGE: (f64, f64) = (960.0, 600.0);
-/// The edges of the plot area.
-const LEFT: f64 = 90.0;
-const RIGHT: f64 = 930.0;
-const TOP: f64 = 50.0;
-const BOTTOM: f64 = 540.0;
-/// The colour of the methods on the Pareto front, and of the line between them.
-const FRONT: PlotColor = PlotColor::Orange;
-const OTHERS: PlotColor = PlotColor::Blue;
+/// The colours of methods, in the order of the table.
+const COLORS: [PlotColor; 7] = [
+    PlotColor::Orange,
+    PlotColor::Blue,
+    PlotColor::Teal,
+    PlotColor::Green,
+    PlotColor::Purple,
+    PlotColor::Red,
+    PlotColor::Gray,
+];
 
-/// A scatter plot of methods by time and error.
-struct Plot {
-    points: Vec<Point>,
-    /// Nanoseconds for each ray.
-    time: Axis,
-    /// The root mean square of the relative error of the distance.
-    error: Axis,
-}
-
-struct Point {
-    label: String,
-    time: f64,
-    error: f64,
-    is_on_front: bool,
-}
-
-/// The bounding box of a label or a dot.
-#[derive(Clone, Copy)]
-struct BoundingBox {
-    left: f64,
-    right: f64,
-    middle: f64,
-}
-
-impl BoundingBox {
-    /// The size of a character, in pixels.
-    const CHARACTER: (f64, f64) = (8.0, 11.0);
-
-    fn of_dot((x, y): (f64, f64)) -> Self {
-        Self { left: x - 5.0, right: x + 5.0, middle: y }
-    }
-
-    /// The candidate positions for the label of a dot, best first.
-    fn beside((x, y): (f64, f64), label: &str) -> [Self; 6] {
-        const GAP: f64 = 9.0;
-        let width = Self::CHARACTER.0 * label.chars().count() as f64;
-        let (right, left, line) = (x + GAP, x - GAP - width, 14.0);
-        [
-            (right, y),
-            (left, y),
-            (right, y - line),
-            (right, y + line),
-            (left, y - line),
-            (left, y + line),
-        ]
-        .map(|(left, middle)| Self { left, right: left + width, middle })
-    }
-
-    fn overlaps(&self, other: &Self) -> bool {
-        self.left < other.right
-            && other.left < self.right
-            && (self.middle - other.middle).abs() < Self::CHARACTER.1
-    }
-}
-
-impl Plot {
-    fn of(report: &Report) -> Self {
-        /// The position of methods without any error: below the rounding of a double.
-        const LEAST_ERROR: f64 = 1e-18;
-        let points: Vec<Point> = report
-            .rows
-            .iter()
-            .map(|row| Point {
-                label: row.method.clone(),
-                time: row.timing.median.max(0.1),
-                error: row.errors.mean_distance.max(LEAST_ERROR),
-                is_on_front: row.is_on_front,
-            })
-            .collect();
-        let time = Axis::around(points.iter().map(|point| point.time));
-        let error = Axis::around(points.iter().map(|point| point.error));
-        Self { points, time, error }
-    }
-
-    fn place(&self, time: f64, error: f64) -> (f64, f64) {
-        let x = LEFT + self.time.share(time) * (RIGHT - LEFT);
-        let y = BOTTOM - self.error.share(error) * (BOTTOM - TOP);
-        (x, y)
-    }
-
-    fn page(&self) -> Page {
-        let mut marks = self.axes();
-        marks.extend(self.front());
-        let dots = || self.points.iter().map(|point| self.place(point.time, point.error));
-        marks.extend(self.points.iter().zip(dots()).map(|(point, at)| Mark::Dot {
-            at,
-            color: if point.is_on_front { FRONT } else { OTHERS },
-        }));
-        let mut taken: Vec<BoundingBox> = dots().map(BoundingBox::of_dot).collect();
-        for (point, dot) in self.points.iter().zip(dots()) {
-            let places = BoundingBox::beside(dot, &point.label);
-            let is_free =
-                |candidate: &&BoundingBox| !taken.iter().any(|other| candidate.overlaps(other));
-            let label = *places.iter().find(is_free).unwrap_or(&places[0]);
-            taken.push(label);
-            let at = (label.left, label.middle + 4.0);
-            marks.push(Mark::Text { at, align: Align::Start, text: point.label.clone() });
+fn page(run: &Run, tables: &[Table]) -> Page {
+    let width = PANEL.0 * COLUMNS as f64;
+    let mut marks = Vec::new();
+    let mut y = MARGIN;
+    for table in tables.iter().filter(|table| !table.diagrams.is_empty()) {
+        y = put_heading(table, y, &mut marks);
+        for diagram in &table.diagrams {
+            y = put_diagram(table, diagram, y, &mut marks);
         }
-        Page { width: PAGE.0, height: PAGE.1, marks }
     }
+    for (name, value) in run.parts() {
+        y += LINE;
+        let text = format!("{name}: {value}");
+        marks.push(Mark::Text { at: (MARGIN, y), align: Align::Start, text });
+    }
+    Page { width, height: y + MARGIN, marks, description: csv::text(run, tables) }
+}
 
-    fn axes(&self) -> Vec<Mark> {
-        const MOST_TICKS: usize = 9;
-        let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
-        let line = |from, to| Mark::Line { from, to, color: PlotColor::Pale };
-        let mut marks = vec![
-            text((LEFT, 28.0), Align::Start, "relative error of the distance (rms) over time"),
-            text((RIGHT, 582.0), Align::End, "nanoseconds a ray"),
-        ];
-        for power in self.time.powers(MOST_TICKS) {
-            let (x, _) = self.place(10_f64.powi(power), 1.0);
-            marks.push(line((x, TOP), (x, BOTTOM)));
-            marks.push(text((x, BOTTOM + 20.0), Align::Middle, &format!("1e{power}")));
-        }
-        for power in self.error.powers(MOST_TICKS) {
-            let (_, y) = self.place(1.0, 10_f64.powi(power));
-            marks.push(line((LEFT, y), (RIGHT, y)));
-            marks.push(text((LEFT - 10.0, y + 4.0), Align::End, &format!("1e{power}")));
-        }
-        marks
+/// The title of a table and the legend of its methods. Returns the position below.
+fn put_heading(table: &Table, mut y: f64, marks: &mut Vec<Mark>) -> f64 {
+    let text = format!("{}: {}.", table.name, table.title);
+    marks.push(Mark::Text { at: (MARGIN, y), align: Align::Start, text });
+    y += LINE;
+    let mut x = MARGIN;
+    for (index, method) in methods(table).into_iter().enumerate() {
+        marks.push(Mark::Dot {
+            at: (x + 5.0, y - 4.0),
+            radius: radius(index),
+            color: color(index),
+        });
+        x += 2.0 * CHARACTER;
+        marks.push(Mark::Text { at: (x, y), align: Align::Start, text: method.to_owned() });
+        x += CHARACTER * (method.chars().count() + 2) as f64;
     }
+    y + LINE
+}
 
-    /// The line between the points of the front.
-    fn front(&self) -> Vec<Mark> {
-        let mut front: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|point| point.is_on_front)
-            .map(|point| self.place(point.time, point.error))
-            .collect();
-        front.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let pairs = front.windows(2);
-        pairs.map(|pair| Mark::Line { from: pair[0], to: pair[1], color: FRONT }).collect()
+/// The panels of a diagram that have points. Returns the position below.
+fn put_diagram(table: &Table, diagram: &Diagram, mut y: f64, marks: &mut Vec<Mark>) -> f64 {
+    let panels: Vec<Panel> = table
+        .problems()
+        .into_iter()
+        .filter_map(|problem| Panel::new(table, diagram, problem))
+        .collect();
+    for row in panels.chunks(COLUMNS) {
+        for (column, panel) in row.iter().enumerate() {
+            marks.extend(panel.marks((PANEL.0 * column as f64, y)));
+        }
+        y += PANEL.1;
     }
+    y
+}
+
+/// The methods of `table`, in order.
+fn methods(table: &Table) -> Vec<&str> {
+    let mut methods: Vec<&str> = Vec::new();
+    for row in &table.rows {
+        if !methods.contains(&row.keys[1].as_str()) {
+            methods.push(&row.keys[1]);
+        }
+    }
+    methods
+}
+
+fn color(method: usize) -> PlotColor {
+    COLORS[method % COLORS.len()]
+}
+
+fn radius(method: usize) -> f64 {
+    const LARGEST: f64 = 8.0;
+    (LARGEST - method as f64).max(2.0)
+}
+
+/// What a diagram shows, as in `distance, relative over time, ns a ray`.
+fn title(table: &Table, diagram: &Diagram) -> String {
+    let [across, up] = diagram.columns.map(|index| heading(&table.columns[index]));
+    format!("{up} over {across}")
 }

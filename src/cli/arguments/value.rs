@@ -113,11 +113,7 @@ pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     help: "How textures are looked up: averaged where they are far (mip), or as raw texels (nearest)",
     default: "mip",
     choices: &["mip", "nearest"],
-    read: Parser::Optional(|text| match text {
-        "mip" => Some(Filter::Mip),
-        "nearest" => Some(Filter::Nearest),
-        _ => None,
-    }),
+    read: Parser::Optional(|text| Filter::ALL.into_iter().find(|filter| filter.name() == text)),
     repeats: false,
 };
 

@@ -47,7 +47,7 @@ fn page(report: &Report) -> Page {
     let width = PLOT.0 * plots.len() as f64;
     let marks =
         plots.iter().enumerate().flat_map(|(index, plot)| plot.marks(PLOT.0 * index as f64));
-    Page { width, height: PLOT.1, marks: marks.collect() }
+    Page { width, height: PLOT.1, marks: marks.collect(), description: String::new() }
 }
 
 fn drawing(report: &Report) -> Plot {
@@ -143,7 +143,7 @@ impl Plot {
             let places = || line.points.iter().map(|point| (x(point.0), y(point.1)));
             let segments = places().zip(places().skip(1));
             marks.extend(segments.map(|(from, to)| Mark::Line { from, to, color: line.color }));
-            marks.extend(places().map(|at| Mark::Dot { at, color: line.color }));
+            marks.extend(places().map(|at| Mark::Dot { at, radius: 5.0, color: line.color }));
         }
         let ends = self.lines.iter().filter_map(|line| Some((y(line.points.last()?.1), line)));
         marks.extend(names(ends.collect(), right + 10.0));

@@ -11,7 +11,6 @@ use crate::color::Rgb;
 const BACKGROUND: Rgb = Rgb::WHITE;
 const FOREGROUND: Rgb = Rgb::new(0x20, 0x20, 0x20);
 const GLYPH_SIDE: i32 = 8;
-const DOT_RADIUS: i32 = 5;
 
 pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
     let mut bitmap = Bitmap::blank(page);
@@ -21,6 +20,9 @@ pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<
     let mut encoder = Encoder::new(output, bitmap.width as u32, bitmap.height as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
+    if !page.description.is_empty() {
+        encoder.add_itxt_chunk("Description".to_owned(), page.description.clone())?;
+    }
     let bytes: Vec<u8> = bitmap.pixels.iter().flat_map(|pixel| pixel.channels()).collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&bytes)?;
@@ -42,7 +44,7 @@ impl Bitmap {
     fn put(&mut self, mark: &Mark) {
         match mark {
             Mark::Line { from, to, color } => self.line(*from, *to, *color),
-            Mark::Dot { at, color } => self.dot(*at, color.rgb()),
+            Mark::Dot { at, radius, color } => self.dot(*at, *radius, color.rgb()),
             Mark::Text { at, align, text } => self.text(*at, *align, text),
         }
     }
@@ -66,11 +68,15 @@ impl Bitmap {
         }
     }
 
-    fn dot(&mut self, at: (f64, f64), color: Rgb) {
-        let around = -DOT_RADIUS..=DOT_RADIUS;
+    fn dot(&mut self, at: (f64, f64), radius: f64, color: Rgb) {
+        let radius = radius as i32;
+        let around = -radius - 1..=radius + 1;
         for (dx, dy) in around.clone().flat_map(|dx| around.clone().map(move |dy| (dx, dy))) {
-            if dx * dx + dy * dy <= DOT_RADIUS * DOT_RADIUS {
+            let square = dx * dx + dy * dy;
+            if square <= radius * radius {
                 self.set(at.0 as i32 + dx, at.1 as i32 + dy, color);
+            } else if square <= (radius + 1) * (radius + 1) {
+                self.set(at.0 as i32 + dx, at.1 as i32 + dy, BACKGROUND);
             }
         }
     }

@@ -5,12 +5,15 @@ use std::io::{self, Write};
 use super::{Align, Mark, Page, PlotColor};
 
 pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
-    let Page { width, height, marks } = page;
+    let Page { width, height, marks, description } = page;
     writeln!(
         output,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"monospace\" font-size=\"13\">"
     )?;
+    if !description.is_empty() {
+        writeln!(output, "<desc>{}</desc>", escaped(description))?;
+    }
     writeln!(output, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>")?;
     marks.iter().try_for_each(|mark| write_mark(mark, output))?;
     writeln!(output, "</svg>")
@@ -28,11 +31,11 @@ fn write_mark(mark: &Mark, output: &mut impl Write) -> io::Result<()> {
                 from.0, from.1, to.0, to.1
             )
         }
-        Mark::Dot { at, color } => {
+        Mark::Dot { at, radius, color } => {
             let rgb = color.rgb();
             writeln!(
                 output,
-                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{rgb}\"/>",
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius}\" fill=\"{rgb}\" stroke=\"#ffffff\"/>",
                 at.0, at.1
             )
         }
@@ -44,9 +47,16 @@ fn write_mark(mark: &Mark, output: &mut impl Write) -> io::Result<()> {
             };
             writeln!(
                 output,
-                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{text}</text>",
-                at.0, at.1
+                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
+                at.0,
+                at.1,
+                escaped(text)
             )
         }
     }
+}
+
+/// `text` without the characters that are special in XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -25,7 +25,7 @@ pub(in crate::game) const WALK: f64 = 3.0;
 pub(in crate::game) const RUN: f64 = 5.5;
 
 /// How fast the player reaches that speed, per second.
-pub(in crate::game) const FRICTION: f64 = 12.0;
+pub(crate) const FRICTION: f64 = 12.0;
 
 /// The height of a step that the player climbs or descends by walking, in cells.
 pub(in crate::game) const STEP_HEIGHT: f64 = 0.35;

@@ -1,179 +1,178 @@
-//! Damped motion: three integrators, and the error of each.
+//! Damped motion: five integrators, and the error of each.
 //!
-//! A velocity v approaches a target w by dv/dt = rate · (w − v). The reference is the analytic
-//! solution, with the exponential computed from its series in rational arithmetic. The closed form
-//! of the game shares nothing with it, and is one of the three.
+//! A velocity v approaches a target w by dv/dt = rate · (w − v), from rest to [`SPEED`]. Each
+//! integrator moves for [`SECONDS`] by steps of several lengths, and is compared with the analytic
+//! solution after 1, 2, 4, 8 and so on steps and after the last. The errors are the largest of
+//! these, relative to the speed and to the way at it: at the end alone, a motion that has come to
+//! rest would show no error. The solution is computed in [fixed point](super::fixed_point) of 512 bits, from the
+//! very doubles that the integrators take, and subtracted before anything is rounded.
+//!
+//! A method of order p has an error that falls by the factor 10^p where steps are a tenth as long.
+//! An explicit method is unstable where rate · step is above its limit.
+
+mod integrator;
+mod truth;
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use num_bigint::BigInt;
+pub use integrator::Integrator;
 
-use crate::numeric::damped_motion::approach;
+use super::table::{Column, Diagram, Row, Table, Value};
+use super::timing::time_in_rounds;
+use integrator::Motion;
+use truth::Truth;
 
-/// A method to integrate the motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Integrator {
-    /// The exact solution over each step, as in the game.
-    ClosedForm,
-    /// Explicit Euler: `x += v·dt; v += rate·(w − v)·dt`, with all values from before the step.
-    Explicit,
-    /// Semi-implicit Euler: first `v`, with the rate after the step, and then `x` with the new `v`.
-    SemiImplicit,
-}
+/// The time of a motion, in seconds.
+const SECONDS: f64 = 10.0;
+/// The target, in cells per second: that of a player who walks.
+const SPEED: f64 = 3.0;
+/// The lengths of steps, in seconds.
+const STEPS: [f64; 6] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
+/// The rates, per second, from soft to stiff.
+const RATES: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
-impl Integrator {
-    /// All integrators.
-    pub const ALL: [Self; 3] = [Self::ClosedForm, Self::Explicit, Self::SemiImplicit];
-
-    /// The name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ClosedForm => "closed form",
-            Self::Explicit => "explicit Euler",
-            Self::SemiImplicit => "semi-implicit Euler",
-        }
-    }
-
-    /// The velocity and the position after a step of `dt` seconds.
-    fn step(self, case: &MotionCase, (velocity, place): (f64, f64)) -> (f64, f64) {
-        let MotionCase { rate, step, target, .. } = *case;
-        match self {
-            Self::ClosedForm => {
-                let glide = approach(velocity, target, rate, step);
-                (glide.velocity, place + glide.displacement)
-            }
-            Self::Explicit => {
-                (velocity + rate * (target - velocity) * step, place + velocity * step)
-            }
-            Self::SemiImplicit => {
-                let velocity = (velocity + rate * target * step) / (1.0 + rate * step);
-                (velocity, place + velocity * step)
-            }
-        }
-    }
-}
-
-/// A motion from position 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionCase {
-    /// The friction, per second.
-    pub rate: f64,
-    /// The length of a step in seconds.
-    pub step: f64,
-    /// The number of steps.
-    pub steps: u32,
-    /// The initial velocity, in cells per second.
-    pub velocity: f64,
-    /// The velocity that is approached.
-    pub target: f64,
-}
-
-/// The errors of one integrator in one case.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionResult {
-    /// The integrator.
-    pub integrator: Integrator,
-    /// The motion.
-    pub case: MotionCase,
-    /// The error of the final velocity, as a fraction of the largest speed.
-    pub velocity_error: f64,
-    /// The error of the final position, as a fraction of the distance covered at the largest speed.
-    pub place_error: f64,
-    /// Nanoseconds for each step, the median of several runs.
-    pub nanoseconds: f64,
-}
-
-/// Cases from soft to stiff: friction from 1e-3 to 1e6 per second, steps from 1e-9 to 1e3 seconds,
-/// and speeds up to 1e6 cells per second.
-pub(super) fn motion_cases() -> Vec<MotionCase> {
-    let case =
-        |rate, step, steps, velocity, target| MotionCase { rate, step, steps, velocity, target };
-    vec![
-        case(12.0, 1.0 / 60.0, 60, 0.0, 3.0),
-        case(12.0, 1e-9, 1000, 0.0, 3.0),
-        case(1e-3, 1.0 / 60.0, 600, 1e6, 0.0),
-        case(1e-3, 1e3, 10, 1e6, 0.0),
-        case(12.0, 0.25, 20, 5.5, -5.5),
-        case(1e3, 1.0 / 60.0, 60, 0.0, 1e6),
-        case(1e6, 1.0 / 60.0, 60, 0.0, 3.0),
-        case(1e6, 1e3, 10, -1e6, 1e6),
-    ]
-}
-
-/// The errors of every integrator in every case.
-pub fn compare_motions() -> Vec<MotionResult> {
-    let cases = motion_cases();
-    let pairs = cases.iter().flat_map(|case| Integrator::ALL.map(|integrator| (integrator, *case)));
-    pairs.map(|(integrator, case)| run(integrator, case)).collect()
-}
-
-fn run(integrator: Integrator, case: MotionCase) -> MotionResult {
-    const RUNS: usize = 9;
-    let mut state = (0.0, 0.0);
-    let mut times: Vec<f64> = (0..RUNS)
-        .map(|_| {
-            let start = Instant::now();
-            let moved = (0..case.steps)
-                .fold((case.velocity, 0.0), |state, _| integrator.step(black_box(&case), state));
-            state = black_box(moved);
-            start.elapsed().as_secs_f64() * 1e9 / f64::from(case.steps)
+/// The errors of each integrator at the player's `friction` and at other rates, with the step of a
+/// game with `steps_per_second` and with other steps. Each is timed in `rounds` rounds.
+pub(super) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Table {
+    let mut steps = STEPS.to_vec();
+    steps.push(1.0 / steps_per_second);
+    steps.sort_by(f64::total_cmp);
+    steps.dedup();
+    let mut rates = vec![friction];
+    rates.extend(RATES.iter().filter(|&&rate| rate != friction));
+    let cases: Vec<(Integrator, Motion)> = rates
+        .iter()
+        .flat_map(|&rate| Integrator::ALL.map(|integrator| (integrator, rate)))
+        .flat_map(|(integrator, rate)| {
+            steps.iter().map(move |&step| (integrator, Motion { rate, step, target: SPEED }))
         })
         .collect();
-    times.sort_by(f64::total_cmp);
-    let (velocity, place) = truth(&case);
-    let fastest = case.velocity.abs().max(case.target.abs());
-    let duration = case.step * f64::from(case.steps);
-    let share = |error: f64| if error.is_finite() { error.abs() } else { f64::INFINITY };
-    MotionResult {
-        integrator,
-        case,
-        velocity_error: share((state.0 - velocity) / fastest),
-        place_error: share((state.1 - place) / (fastest * duration)),
-        nanoseconds: times[RUNS / 2],
+    let times = time_in_rounds(cases.len(), rounds, |index| nanoseconds(cases[index]));
+    let rows = cases.iter().zip(times).map(|(&(integrator, motion), time)| {
+        let [velocity, place] = errors(integrator, &motion).map(Value::Number);
+        let keys = [rate_name(motion.rate), integrator.name().to_owned(), step_name(motion.step)];
+        let steps = count(motion.step);
+        let work = Value::Count(steps * integrator.evaluations());
+        let stiffness = Value::Number(motion.rate * motion.step);
+        Row { keys, values: vec![Value::Count(steps), work, stiffness, velocity, place, time] }
+    });
+    Table {
+        name: "motion",
+        title: "Ten seconds of a motion that friction damps, compared with the analytic solution",
+        keys: ["friction, per s", "integrator", "step, s"],
+        columns: vec![
+            Column::new("steps", ""),
+            Column::new("evaluations", ""),
+            Column::new("rate × step", ""),
+            Column::new("velocity, worst", "relative"),
+            Column::new("place, worst", "relative"),
+            Column::new("time", "ns a step"),
+        ],
+        rows: rows.collect(),
+        diagrams: vec![Diagram { columns: [1, 4], range: [f64::EPSILON / 2.0, 10.0] }],
     }
 }
 
-/// The final velocity and position, accurate to the last few digits of a double.
-fn truth(case: &MotionCase) -> (f64, f64) {
-    let duration = case.step * f64::from(case.steps);
-    let exponent = case.rate * duration;
-    let remains = exponential_of_minus(exponent);
-    let velocity = case.target + (case.velocity - case.target) * remains;
-    // (1 − e^−x) / x, from its own series where the difference would cancel.
-    let coasting = if exponent < 1e-3 {
-        let factorials = [1.0, 2.0, 6.0, 24.0, 120.0, 720.0];
-        factorials.iter().rev().fold(0.0, |sum, factorial| 1.0 / factorial - sum * exponent)
+/// The order and the limit of stability of each integrator.
+pub(super) fn orders() -> Table {
+    let rows = Integrator::ALL.map(|integrator| {
+        let [velocity, place] =
+            slopes(integrator).map(|slope| slope.map_or(Value::None, Value::Number));
+        let limit = Value::Number(integrator.limit_of_stability());
+        let keys = [String::new(), integrator.name().to_owned(), String::new()];
+        Row { keys, values: vec![velocity, place, limit] }
+    });
+    Table {
+        name: "orders",
+        title: "The slope of the error over the step at a rate of 1, and the largest stable rate × step",
+        keys: ["", "integrator", ""],
+        columns: vec![
+            Column::new("slope, velocity", ""),
+            Column::new("slope, place", ""),
+            Column::new("stable up to", ""),
+        ],
+        rows: rows.into(),
+        diagrams: Vec::new(),
+    }
+}
+
+/// The number of steps of this length in the time of a motion.
+fn count(step: f64) -> u64 {
+    (SECONDS / step).round().max(1.0) as u64
+}
+
+fn rate_name(rate: f64) -> String {
+    if rate >= 1e3 { format!("{rate:e}") } else { rate.to_string() }
+}
+
+fn step_name(step: f64) -> String {
+    let per_second = (1.0 / step).round();
+    if step < 1.0 && 1.0 / per_second == step && STEPS.iter().all(|&other| other != step) {
+        format!("1/{per_second}")
     } else {
-        (1.0 - remains) / exponent
-    };
-    let place = case.target * duration + (case.velocity - case.target) * duration * coasting;
-    (velocity, place)
+        step.to_string()
+    }
 }
 
-/// e to the power of `-x`, for `x ≥ 0`, from the series of e^(x/2^k) in fixed point.
-fn exponential_of_minus(x: f64) -> f64 {
-    const BITS: u32 = 256;
-    const HALVINGS: u32 = 40;
-    const TERMS: u32 = 24;
-    if x > 700.0 {
-        return 0.0;
+/// The largest errors of velocity and place along the way, relative.
+fn errors(integrator: Integrator, motion: &Motion) -> [f64; 2] {
+    let last = count(motion.step);
+    let mut state = (0.0, 0.0);
+    let mut errors = [0.0_f64; 2];
+    for step in 1..=last {
+        state = integrator.step(motion, state);
+        if step.is_power_of_two() || step == last {
+            let [velocity, place] = Truth::new(motion, step).errors(state);
+            let way = SPEED * motion.step * step as f64;
+            for (worst, error) in errors.iter_mut().zip([velocity / SPEED, place / way]) {
+                *worst = if error.is_finite() { worst.max(error) } else { f64::INFINITY };
+            }
+        }
     }
-    let one = BigInt::from(1) << BITS;
-    // x has 53 bits, so that x · 2^80 is an integer, or the remainder is below 2^-80.
-    let scaled = BigInt::from((x * 2_f64.powi(80)) as u128) << (BITS - 80) >> HALVINGS;
-    let mut sum = one.clone();
-    let mut term = one.clone();
-    for count in 1..=TERMS {
-        term = ((term * &scaled) >> BITS) / count;
-        sum += &term;
+    errors
+}
+
+/// The time of a step: that of whole motions, one after the other, with many steps in all.
+fn nanoseconds((integrator, motion): (Integrator, Motion)) -> f64 {
+    const MANY: u64 = 20_000;
+    let steps = count(motion.step).min(MANY);
+    let motions = MANY.div_ceil(steps);
+    let start = Instant::now();
+    for _ in 0..motions {
+        let motion = black_box(motion);
+        let end = (0..steps).fold((0.0, 0.0), |state, _| integrator.step(&motion, state));
+        black_box(end);
     }
-    for _ in 0..HALVINGS {
-        sum = (&sum * &sum) >> BITS;
-    }
-    let quotient = (BigInt::from(1) << (2 * BITS)) / sum;
-    let digits = u64::try_from(quotient >> (BITS - 63)).unwrap_or(u64::MAX);
-    digits as f64 / 2_f64.powi(63)
+    start.elapsed().as_secs_f64() * 1e9 / (motions * steps) as f64
+}
+
+/// The slopes of the errors of velocity and place over the step in logarithms, by least squares, at
+/// the rate 1; `None` where there are fewer than two errors between those of rounding and those of
+/// steps that are too long.
+fn slopes(integrator: Integrator) -> [Option<f64>; 2] {
+    const LINEAR: std::ops::Range<f64> = 1e-12..0.1;
+    const SLOPE_STEPS: [f64; 6] = [0.2, 0.1, 0.05, 0.02, 0.01, 0.005];
+    let points = SLOPE_STEPS
+        .map(|step| (step, errors(integrator, &Motion { rate: 1.0, step, target: SPEED })));
+    [0, 1].map(|which| {
+        let points: Vec<(f64, f64)> = points
+            .iter()
+            .filter(|(_, errors)| LINEAR.contains(&errors[which]))
+            .map(|(step, errors)| (libm::log(*step), libm::log(errors[which])))
+            .collect();
+        (points.len() > 1).then(|| slope(&points))
+    })
+}
+
+/// The slope of the line of least squares through at least two points.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let count = points.len() as f64;
+    let mean = |value: fn(&(f64, f64)) -> f64| points.iter().map(value).sum::<f64>() / count;
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let covariance: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    let variance: f64 = points.iter().map(|point| (point.0 - x).powi(2)).sum();
+    covariance / variance
 }
 
 #[cfg(test)]
@@ -181,24 +180,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_series_is_the_exponential() {
-        for x in [0.0, 1e-9, 0.5, 1.0, 12.0, 40.0] {
-            let series = exponential_of_minus(x);
-            assert!((series - libm::exp(-x)).abs() <= 1e-18 + 4e-16 * series, "{x}");
+    fn the_closed_form_is_exact_but_for_rounding() {
+        for row in motions(12.0, 60.0, 0).rows {
+            let [Value::Number(velocity), Value::Number(place)] = row.values[3..5] else {
+                panic!()
+            };
+            if row.keys[1] == "closed form" {
+                assert!(velocity < 1e-11 && place < 1e-11, "{row:?}");
+            }
         }
     }
 
     #[test]
-    fn the_closed_form_is_right_in_every_case_and_the_others_are_not() {
-        for result in compare_motions() {
-            let MotionResult { integrator, case, velocity_error, place_error, .. } = result;
-            if integrator == Integrator::ClosedForm {
-                assert!(velocity_error < 1e-12 && place_error < 1e-12, "{result:?}");
-            }
-            let is_stiff = case.rate * case.step > 2.0;
-            if integrator == Integrator::Explicit && is_stiff {
-                assert!(velocity_error > 1.0, "{result:?}");
+    fn slopes_are_the_orders() {
+        for (integrator, order) in Integrator::ALL.into_iter().zip([1.0, 2.0, 4.0, 1.0]) {
+            for slope in slopes(integrator) {
+                assert!((slope.unwrap() - order).abs() < 0.2, "{integrator:?}: {slope:?}");
             }
         }
+        assert_eq!(slopes(Integrator::ClosedForm), [None; 2]);
+    }
+
+    #[test]
+    fn the_step_of_the_game_is_among_the_steps() {
+        let table = motions(12.0, 60.0, 0);
+        assert!(table.rows.iter().any(|row| row.keys[0] == "12" && row.keys[2] == "1/60"));
+        assert_eq!(table.problems().len(), 5);
+        assert_eq!(motions(1.0, 10.0, 0).problems().len(), 4);
     }
 }

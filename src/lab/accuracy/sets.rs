@@ -6,7 +6,7 @@ mod lengths;
 mod ordinary;
 mod origins;
 
-pub use ordinary::ordinary;
+pub use ordinary::{ordinary, plain};
 
 use glam::DVec2;
 

@@ -18,6 +18,18 @@ pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
         .into()
 }
 
+/// A plain of 4096 × 4096 cells with a tenth of `count` rays: a wall around it, and a pillar in every
+/// sixty-fourth column of every sixty-fourth row.
+pub fn plain(seed: u64, count: usize) -> Set {
+    const SIDE: u32 = 4096;
+    let is_edge = |index: u32| index == 0 || index == SIDE - 1;
+    let grid = made(SIDE, SIDE, |column, row| {
+        is_edge(column) || is_edge(row) || (column % 64 == 32 && row % 64 == 32)
+    });
+    let rays = rays_from_floor(&grid, count.div_ceil(10), &mut SplitMix64::new(seed));
+    Set { name: "plain-4096", grid, rays }
+}
+
 fn rays_from_floor(grid: &Grid, count: usize, random: &mut SplitMix64) -> Vec<Ray> {
     let rays = std::iter::repeat_with(|| random_ray(grid, random));
     let is_on_floor = |ray: &Ray| {
