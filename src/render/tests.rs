@@ -91,6 +91,25 @@ proptest! {
     }
 }
 
+/// Under the sky, walls and sprites of other heights show above a wall, a door and a pillar of height 1.
+#[test]
+fn what_is_higher_than_a_level_wall_shows_above_it() {
+    let map = "ceiling = 'sky'\ngrid = '''\n#########\n#...w..T#\n#@..####T\n#...+..T#\n#...####T\n\
+               #...o..T#\n#########\n'''\n[tiles]\n'#'.wall = 'brick'\n'w'.wall = 'stone'\n'+'.door = 'oak'\n\
+               'o'.pillar = 'marble'\n'T' = { wall = 'metal', height = 3 }\n[things]\n'@'.start = 0\n";
+    let world = map::parse_str(map).unwrap();
+    let size = FrameSize::new(60, 40).unwrap();
+    for degrees in [-40.0, -20.0, 0.0, 15.0, 30.0, 45.0] {
+        let camera = Camera::new(
+            (1.4, 3.3).into(),
+            Heading::from_degrees(degrees).unwrap(),
+            FieldOfView::default(),
+        );
+        let [planned, portals] = both(&world, &camera.unwrap(), Filter::Mip, size);
+        assert!(planned == portals, "{degrees}°");
+    }
+}
+
 /// Whether `point` is on a line between two cells, so that its cell is ambiguous.
 fn is_on_a_line(point: DVec2) -> bool {
     (point - point.round()).abs().min_element() < 1e-9

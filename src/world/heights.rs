@@ -86,6 +86,15 @@ impl Tile {
         inside.into_iter().chain([above])
     }
 
+    /// The height above which there is nothing: the top of all that is solid or stands here.
+    pub(crate) fn top(&self) -> f64 {
+        let solid = self.gaps().next_back().map_or(f64::INFINITY, |gap| gap.bottom);
+        match self.kind {
+            TileKind::Open | TileKind::Wall(_) | TileKind::Mirror(_) => solid,
+            _ => solid.max(self.top_of_what_stands()),
+        }
+    }
+
     /// The height up to which a door, glass, a mask or a shape reaches here.
     pub fn top_of_what_stands(&self) -> f64 {
         let Heights { floor, ceiling, .. } = self.heights;

@@ -1,18 +1,21 @@
 //! Portal starts: the part of a column that the flat way leaves to the portal way.
 //!
 //! That is the part behind the first line into a cell that is not level. The flat way fills floor
-//! and ceiling up to that line, as before a wall, and the things and see-through faces there.
+//! and ceiling up to that line, as before a wall, and the things and see-through faces there. Under the
+//! sky, what is higher than a level wall shows above it, so that such a wall is left to the portal way, too.
 
 use crate::cast::Hit;
 use crate::visibility::portal::PortalStart;
 use crate::visibility::{Column, DrawList, Scene};
-use crate::world::{Ceiling, Cell, Tile, TileId, TileKind, World};
+use crate::world::{Ceiling, Cell, Heights, Tile, TileId, TileKind, World};
 
 /// The starts of the portal way in the columns of a scene.
 #[derive(Clone, Copy)]
 pub(crate) struct PortalStarts<'a> {
     world: &'a World,
     overhead: Overhead,
+    /// Whether nothing shows above a level wall.
+    walls_hide_all: bool,
 }
 
 /// The kinds of ceiling in cells with a level floor.
@@ -33,18 +36,31 @@ impl<'a> PortalStarts<'a> {
             (true, true) => Overhead::Sky,
             (true, false) => Overhead::Both,
         };
-        Self { world, overhead }
+        let is_higher = |tile: &Tile| tile.top() > Heights::LEVEL_WALL.floor();
+        let walls_hide_all =
+            overhead == Overhead::Ceiling || !world.tiles().iter().any(is_higher);
+        Self { world, overhead, walls_hide_all }
     }
 
     /// The start in `column`; `None` if the flat way fills all of it.
     pub(crate) fn of(self, column: &Column) -> Option<PortalStart> {
-        let hit = column.hit.filter(|hit| !is_level(self.world, hit.cell))?;
+        let hit = column.hit.filter(|hit| self.leave(hit.cell))?;
+        // A ray hits a door or a shape within a cell.
+        let is_at_line = |tile: &Tile| !tile.is_level() || matches!(tile.kind, TileKind::Wall(_));
+        if !tile_of(self.world, hit.cell).is_some_and(is_at_line) {
+            return Some(PortalStart::Camera);
+        }
         Some(match self.overhead {
             Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
             Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
             // The part behind the first line may show above a ceiling, in the rows of the sky.
             Overhead::Both => PortalStart::Camera,
         })
+    }
+
+    /// Whether the flat way leaves what is behind the border of `cell`, in which a ray ends.
+    fn leave(self, cell: Cell) -> bool {
+        !(self.walls_hide_all && tile_of(self.world, cell).is_some_and(Tile::is_level))
     }
 
     /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
@@ -57,8 +73,7 @@ impl<'a> PortalStarts<'a> {
 pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let DrawList { columns, flat_columns, is_flat, .. } = list;
     let starts = PortalStarts::new(scene.world);
-    let is_left =
-        |column: &Column| column.hit.as_ref().is_some_and(|hit| !is_level(scene.world, hit.cell));
+    let is_left = |column: &Column| column.hit.as_ref().is_some_and(|hit| starts.leave(hit.cell));
     let cell = |column: &Column| column.hit.map(|hit| hit.cell);
     // Mostly, many neighbouring columns show the same cell.
     let mut cells = columns.chunk_by(|one, other| cell(one) == cell(other));
@@ -78,8 +93,8 @@ pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     }));
 }
 
-/// Whether the tile of `cell` is level.
-fn is_level(world: &World, cell: Cell) -> bool {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.is_some_and(|TileId(index)| world.tiles()[usize::from(index)].is_level())
+/// The tile of `cell`.
+fn tile_of(world: &World, cell: Cell) -> Option<&Tile> {
+    let TileId(index) = world.grid().tile(cell.column.into(), cell.row.into())?;
+    Some(&world.tiles()[usize::from(index)])
 }
