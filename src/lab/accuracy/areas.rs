@@ -22,7 +22,7 @@ use std::time::Instant;
 use ratatui::layout::Size;
 
 use super::pictures::cameras;
-use super::table::{Column, Diagram, Row, Table};
+use super::table::{Column, Diagram, Row, Table, Value};
 use super::timing::time_in_rounds;
 use crate::color::palette::ColorDepth;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
@@ -101,7 +101,8 @@ pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
                 format!("{}x{}", window.width, window.height),
             ];
             let mut values = differences.values();
-            values.push(time);
+            let order = order(&rows, &keys, &values);
+            values.extend([order, time]);
             rows.push(Row { keys, values });
         }
     }
@@ -121,15 +122,33 @@ pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
             Column::new("crawl", "of 255"),
             Column::new("crawl at edges", "of 255"),
             Column::new("crawl of textures", "of 255"),
+            Column::new("order", ""),
             Column::new("time", "µs a frame"),
         ],
         rows,
         diagrams: vec![
-            Diagram { columns: [10, 1], range: RANGE },
-            Diagram { columns: [10, 7], range: RANGE },
+            Diagram { columns: [11, 1], range: RANGE },
+            Diagram { columns: [11, 7], range: RANGE },
         ],
     }
 }
+
+/// The order of convergence from the next smaller window with the same display and filter: the power of the
+/// width of a pixel with which the mean error falls.
+fn order(smaller: &[Row], keys: &[String; 3], values: &[Value]) -> Value {
+    let width = |keys: &[String; 3]| keys[2].split('x').next()?.parse::<f64>().ok();
+    let order = || {
+        let before = smaller.iter().rfind(|row| row.keys[..2] == keys[..2])?;
+        let error = |values: &[Value]| values[MEAN_ERROR].number();
+        let fall = error(&before.values)? / error(values)?;
+        let growth = width(keys)? / width(&before.keys)?;
+        Some(fall.ln() / growth.ln())
+    };
+    order().filter(|order| order.is_finite()).map_or(Value::None, Value::Number)
+}
+
+/// The column of the mean error.
+const MEAN_ERROR: usize = 1;
 
 /// The cameras of a way that begins at `first`.
 fn way(first: Camera) -> Vec<Camera> {

@@ -63,28 +63,44 @@ fn rays(grid: &Grid, seed: u64) -> Vec<Ray> {
 struct Met {
     cell: Cell,
     t: Fixed,
+    /// Whether it is the end of a wall, on the border of its cell: the ray may pass in the next cell.
+    is_end: bool,
 }
 
-/// The nearest of several places, all of them where two are equally near: a ray through the end of
-/// one wall on another meets both.
-fn nearest(mut places: Vec<Met>) -> Vec<Met> {
-    places.sort_by(|one, other| one.t.cmp(&other.t));
-    let equal = places.iter().take_while(|met| met.t == places[0].t).count();
-    places.truncate(equal);
-    places
+/// What a ray may hit.
+struct Truth {
+    /// All places up to the first that is no end. There are several where a ray through the end of one wall
+    /// meets another.
+    places: Vec<Met>,
+    /// Whether it may hit nothing.
+    may_escape: bool,
+}
+
+impl Truth {
+    fn new(mut places: Vec<Met>) -> Self {
+        places.sort_by(|one, other| one.t.cmp(&other.t));
+        let certain = places.iter().position(|met| !met.is_end);
+        if let Some(certain) = certain {
+            let equal = places[certain..].iter().take_while(|met| met.t == places[certain].t);
+            let count = certain + equal.count();
+            places.truncate(count);
+        }
+        Self { places, may_escape: certain.is_none() }
+    }
 }
 
 /// The feature of these rays in `world` with these truths.
-fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Vec<Met>]) -> Feature {
+fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Truth]) -> Feature {
     let mut errors = Vec::new();
     let mut wrong = 0;
     for (ray, truth) in rays.iter().zip(truths) {
-        match (truth.first(), cast(&world, ray)) {
-            (None, None) => {}
-            (Some(first), Some(hit)) if truth.iter().any(|met| met.cell == hit.cell) => {
-                errors.push(first.t.relative_error(hit.t));
-            }
-            _ => wrong += 1,
+        let Some(hit) = cast(&world, ray) else {
+            wrong += usize::from(!truth.may_escape);
+            continue;
+        };
+        match truth.places.iter().find(|met| met.cell == hit.cell) {
+            Some(met) => errors.push(met.t.relative_error(hit.t)),
+            None => wrong += 1,
         }
     }
     let cases = rays.len();
@@ -109,17 +125,16 @@ fn shapes(name: &'static str, world: World, seed: u64) -> Feature {
             _ => None,
         })
         .collect();
-    let truths: Vec<Vec<Met>> = rays
+    let truths: Vec<Truth> = rays
         .iter()
         .map(|ray| {
             let meetings = outlines.iter().filter_map(|&(cell, outline)| {
-                let t = match outline {
-                    Outline::Line(line) => meet_line(ray, cell, line)?,
-                    Outline::Pillar(radius) => meet_pillar(ray, cell, radius.cells())?,
-                };
-                Some(Met { cell, t })
+                match outline {
+                    Outline::Line(line) => meet_line(ray, cell, line),
+                    Outline::Pillar(radius) => meet_pillar(ray, cell, radius.cells()),
+                }
             });
-            nearest(meetings.collect())
+            Truth::new(meetings.collect())
         })
         .collect();
     compared(name, world, rays, &truths)
@@ -138,7 +153,7 @@ fn fixed(vector: DVec2) -> [Fixed; 2] {
 }
 
 /// By Cramer's rule.
-fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Fixed> {
+fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Met> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let ([start_x, start_y], [extent_x, extent_y]) =
         (fixed(line.start(cell)), fixed(line.stretch()));
@@ -150,11 +165,12 @@ fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Fixed> {
     let t = &(&(&x * &extent_y) - &(&y * &extent_x)) / &determinant;
     let along = &(&(&x * &dy) - &(&y * &dx)) / &determinant;
     let is_beside = along.is_negative() || along > Fixed::new(1.0);
-    (!t.is_negative() && !is_beside).then_some(t)
+    let is_end = along.is_zero() || along == Fixed::new(1.0);
+    (!t.is_negative() && !is_beside).then_some(Met { cell, t, is_end })
 }
 
 /// By the quadratic formula.
-fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Fixed> {
+fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Met> {
     let ([x, y], [dx, dy]) = (fixed(ray.origin()), fixed(ray.direction()));
     let [center_x, center_y] = fixed(cell.center());
     let (x, y, radius) = (&x - &center_x, &y - &center_y, Fixed::new(radius));
@@ -163,7 +179,10 @@ fn meet_pillar(ray: &Ray, cell: Cell, radius: f64) -> Option<Fixed> {
     let c = &(&(&x * &x) + &(&y * &y)) - &(&radius * &radius);
     let discriminant = &(&b * &b) - &(&a * &c);
     let is_met = !discriminant.is_negative() && !c.is_negative() && b.is_negative();
-    is_met.then(|| &(&-&b - &discriminant.square_root()) / &a)
+    is_met.then(|| {
+        let t = &(&-&b - &discriminant.square_root()) / &a;
+        Met { cell, t, is_end: false }
+    })
 }
 
 /// A room in which doors are open by different parts.
@@ -192,11 +211,11 @@ fn doors(seed: u64) -> Feature {
         !walls.is_solid(cell.x as i64, cell.y as i64)
     };
     let rays: Vec<Ray> = rays(world.grid(), seed).into_iter().filter(is_open).collect();
-    let truths: Vec<Vec<Met>> = rays
+    let truths: Vec<Truth> = rays
         .iter()
         .map(|ray| {
             let met = leaves.iter().filter_map(|leaf| meet_leaf(ray, leaf));
-            nearest(met.chain(meet_wall(&walls, ray)).collect())
+            Truth::new(met.chain(meet_wall(&walls, ray)).collect())
         })
         .collect();
     compared("doors ajar", world, rays, &truths)
@@ -215,7 +234,7 @@ fn meet_leaf(ray: &Ray, &(cell, side, part): &(Cell, Side, f64)) -> Option<Met> 
     let t = &(&Fixed::new(line) - &across.0) / &across.1;
     let place = &along.0 + &(&t * &along.1);
     let is_within = place >= Fixed::new(start) && place <= Fixed::new(start + (1.0 - part));
-    (!t.is_negative() && is_within).then_some(Met { cell, t })
+    (!t.is_negative() && is_within).then_some(Met { cell, t, is_end: false })
 }
 
 fn meet_wall(walls: &Grid, ray: &Ray) -> Option<Met> {
@@ -226,5 +245,5 @@ fn meet_wall(walls: &Grid, ray: &Ray) -> Option<Met> {
     };
     let line = f64::from(index) + if direction > 0.0 { 0.0 } else { 1.0 };
     let t = &(&Fixed::new(line) - &Fixed::new(origin)) / &Fixed::new(direction);
-    Some(Met { cell: truth.cell, t })
+    Some(Met { cell: truth.cell, t, is_end: false })
 }

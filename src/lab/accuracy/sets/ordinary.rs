@@ -23,9 +23,11 @@ pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
 pub fn plain(seed: u64, count: usize) -> Set {
     const SIDE: u32 = 4096;
     let is_edge = |index: u32| index == 0 || index == SIDE - 1;
-    let grid = made(SIDE, SIDE, |column, row| {
+    let mut grid = made(SIDE, SIDE, |column, row| {
         is_edge(column) || is_edge(row) || (column % 64 == 32 && row % 64 == 32)
     });
+    // As a world has it.
+    grid.clear(|_| false);
     let rays = rays_from_floor(&grid, count.div_ceil(10), &mut SplitMix64::new(seed));
     Set { name: "plain-4096", grid, rays }
 }
