@@ -14,11 +14,11 @@ mod baseline;
 mod gallery;
 
 use baseline::Baseline;
-use gallery::{Drawing, name_of, scenes, sizes};
+use gallery::{Drawing, flat, name_of, scenes, sizes};
 
 fn frames(criterion: &mut Criterion) {
     let scenes = scenes();
-    let flat = &scenes[0];
+    let (world, camera) = flat(&scenes[0]);
     for size in sizes() {
         let mut group = criterion.benchmark_group(name_of(size));
         group.throughput(Throughput::Elements(u64::from(size.width.get() * size.height.get())));
@@ -27,7 +27,7 @@ fn frames(criterion: &mut Criterion) {
         let mut baseline = Baseline::new(size);
         group.bench_function("flat, before", |bencher| {
             bencher.iter(|| {
-                baseline.render(&flat.world, black_box(&flat.camera));
+                baseline.render(world, black_box(&camera));
                 black_box(baseline.pixels());
             });
         });

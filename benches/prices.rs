@@ -16,7 +16,7 @@ mod baseline;
 mod gallery;
 
 use baseline::Baseline;
-use gallery::{Drawing, Scene, name_of, scenes, sizes};
+use gallery::{Drawing, Scene, flat, name_of, scenes, sizes};
 
 /// The number of turns.
 const TURNS: usize = 101;
@@ -56,11 +56,11 @@ fn main() {
 /// Nanoseconds for a frame of the flat scene by the baseline, and for a frame of each scene.
 fn turn(scenes: &[Scene], size: FrameSize) -> Vec<f64> {
     let frames = PIXELS_IN_A_TURN.div_ceil(size.width.get() * size.height.get());
-    let flat = &scenes[0];
+    let (world, camera) = flat(&scenes[0]);
     let mut baseline = Baseline::new(size);
     let mut drawing = Drawing::new(size);
     let mut times = vec![time(frames, || {
-        baseline.render(&flat.world, black_box(&flat.camera));
+        baseline.render(world, black_box(&camera));
         black_box(baseline.pixels());
     })];
     times.extend(scenes.iter().map(|scene| {

@@ -1,7 +1,8 @@
 //! The measured scenes: the maps of the gallery, as seen from their starts.
 
 use cellcaster::map::{self, Level};
-use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable};
+use cellcaster::space;
 use cellcaster::world::{Camera, FieldOfView, World};
 
 /// The map with which all others are compared.
@@ -18,11 +19,10 @@ pub(crate) fn name_of(size: FrameSize) -> String {
     format!("{}x{}", size.width, size.height)
 }
 
-/// A map of the gallery, and the view from its start.
+/// A map of the gallery.
 pub(crate) struct Scene {
     pub(crate) name: String,
-    pub(crate) world: World,
-    pub(crate) camera: Camera,
+    pub(crate) level: Level,
 }
 
 /// All maps of the gallery by name, the flat one first.
@@ -30,13 +30,10 @@ pub(crate) fn scenes() -> Vec<Scene> {
     let files = std::fs::read_dir("maps/gallery").expect("the benches run in the package's folder");
     let paths = files.map(|file| file.expect("the gallery can be read").path());
     let mut scenes: Vec<Scene> = paths
-        .filter_map(|path| {
+        .map(|path| {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let level = map::load_level(&path).unwrap_or_else(|faults| panic!("{faults}"));
-            // Maps of bodies have their own bench.
-            let Level::Grid(world) = level else { return None };
-            let camera = world.start_camera(FieldOfView::default());
-            Some(Scene { name, world: *world, camera })
+            Scene { name, level }
         })
         .collect();
     scenes.sort_by(|one, other| {
@@ -45,21 +42,41 @@ pub(crate) fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// A renderer and its frame.
+/// The grid of the flat map, and its start, for the baseline.
+pub(crate) fn flat(scene: &Scene) -> (&World, Camera) {
+    let Level::Grid(world) = &scene.level else { panic!("{} is a grid", scene.name) };
+    (world, world.start_camera(FieldOfView::default()))
+}
+
+/// A frame of one size, drawn by the renderers of grids and of bodies.
 pub(crate) struct Drawing {
-    renderer: Renderer,
+    of_grids: <World as Renderable>::Renderer,
+    of_bodies: <space::Scene as Renderable>::Renderer,
     frame: Frame,
 }
 
 impl Drawing {
     /// For pictures of this size, on square pixels.
     pub(crate) fn new(size: FrameSize) -> Self {
-        Self { renderer: Renderer::new(), frame: Frame::new(size, PixelAspect::SQUARE) }
+        Self {
+            of_grids: Default::default(),
+            of_bodies: Default::default(),
+            frame: Frame::new(size, PixelAspect::SQUARE),
+        }
     }
 
-    /// Draws `scene`.
+    /// Draws the view from the start of `scene`.
     pub(crate) fn draw(&mut self, scene: &Scene) -> &Frame {
-        self.renderer.render(&scene.world, &scene.camera, &mut self.frame);
-        &self.frame
+        let Self { of_grids, of_bodies, frame } = self;
+        match &scene.level {
+            Level::Grid(world) => draw(&**world, of_grids, frame),
+            Level::Space(bodies) => draw(bodies, of_bodies, frame),
+        }
+        frame
     }
+}
+
+fn draw<S: Renderable>(scene: &S, renderer: &mut S::Renderer, frame: &mut Frame) {
+    let camera = scene.start_camera(FieldOfView::default());
+    scene.render(&camera, Options::default(), renderer, frame);
 }

@@ -105,6 +105,17 @@ fn documents_are_formatted() {
 }
 
 #[test]
+fn the_price_list_has_every_map_of_the_gallery() {
+    let list = fs::read_to_string("docs/prices.md").unwrap();
+    for map in fs::read_dir("maps/gallery").unwrap() {
+        let path = map.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let row = format!("| {name} | ");
+        assert!(list.contains(&row), "{name}: write the table anew by the bench `prices`");
+    }
+}
+
+#[test]
 fn the_changelog_has_a_section_for_this_version() {
     let changelog = include_str!("../../CHANGELOG.md");
     let version = env!("CARGO_PKG_VERSION");

@@ -49,12 +49,14 @@ fn share(share: f64) -> String {
     }
 }
 
-/// A number with three digits; zero only if it is zero.
+/// A number with at least two digits; zero only if it is zero.
 fn number(number: f64) -> String {
     if number == 0.0 {
         "0".to_owned()
     } else if number >= f64::MAX {
         "inf".to_owned()
+    } else if (1000.0..100_000.0).contains(&number) {
+        format!("{number:.0}")
     } else if (0.01..1000.0).contains(&number) {
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -78,10 +80,12 @@ mod tests {
             Value::Number(4.7e-17),
             Value::Number(0.25),
             Value::Number(12.0),
+            Value::Number(59_951.2),
+            Value::Number(1e5),
             Value::Number(f64::INFINITY),
             Value::None,
         ];
         let texts = figures.map(figure).join(" | ");
-        assert_eq!(texts, "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | 0.25 | 12 | inf | –");
+        assert_eq!(texts, "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | 0.25 | 12 | 59951 | 1.0e5 | inf | –");
     }
 }
