@@ -75,7 +75,8 @@ fn every_format_holds_every_figure() {
     assert_eq!(lines.len() - 1 - of_run, figures);
     assert_eq!(of_run, 4);
     // A comma within quotes separates nothing.
-    let columns = |line: &&str| line.split('"').step_by(2).flat_map(|part| part.matches(',')).count();
+    let columns =
+        |line: &&str| line.split('"').step_by(2).flat_map(|part| part.matches(',')).count();
     let figures_only = lines.iter().filter(|line| !line.starts_with("run,")).map(columns);
     assert_eq!(figures_only.collect::<BTreeSet<usize>>().len(), 1);
     for format in [&table, &markdown] {

@@ -26,10 +26,10 @@ pub(super) fn write_png(run: &Run, tables: &[Table], output: &mut impl Write) ->
     plot::write_png(&page(run, tables), output)
 }
 
-/// The width and the height of a panel with its margins.
-const PANEL: (f64, f64) = (400.0, 300.0);
-/// The number of panels beside each other.
-const COLUMNS: usize = 3;
+/// The width of the page.
+const WIDTH: f64 = 1200.0;
+/// The height of a panel with its margins.
+const PANEL_HEIGHT: f64 = 300.0;
 /// The distance between lines of text.
 const LINE: f64 = 18.0;
 const MARGIN: f64 = 20.0;
@@ -48,7 +48,6 @@ const COLORS: [PlotColor; 7] = [
 ];
 
 fn page(run: &Run, tables: &[Table]) -> Page {
-    let width = PANEL.0 * COLUMNS as f64;
     let mut marks = Vec::new();
     let mut y = MARGIN;
     for table in tables.iter().filter(|table| !table.diagrams.is_empty()) {
@@ -62,7 +61,7 @@ fn page(run: &Run, tables: &[Table]) -> Page {
         let text = format!("{name}: {value}");
         marks.push(Mark::Text { at: (MARGIN, y), align: Align::Start, text });
     }
-    Page { width, height: y + MARGIN, marks, description: csv::text(run, tables) }
+    Page { width: WIDTH, height: y + MARGIN, marks, description: csv::text(run, tables) }
 }
 
 /// The title of a table and the legend of its methods. Returns the position below.
@@ -91,11 +90,14 @@ fn put_diagram(table: &Table, diagram: &Diagram, mut y: f64, marks: &mut Vec<Mar
         .into_iter()
         .filter_map(|problem| Panel::new(table, diagram, problem))
         .collect();
-    for row in panels.chunks(COLUMNS) {
+    // Two rows of two are easier to compare than one of three and one more.
+    let columns = if panels.len() == 4 { 2 } else { 3 };
+    let width = WIDTH / columns as f64;
+    for row in panels.chunks(columns) {
         for (column, panel) in row.iter().enumerate() {
-            marks.extend(panel.marks((PANEL.0 * column as f64, y)));
+            marks.extend(panel.marks((width * column as f64, y), width));
         }
-        y += PANEL.1;
+        y += PANEL_HEIGHT;
     }
     y
 }

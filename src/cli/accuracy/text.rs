@@ -86,6 +86,9 @@ mod tests {
             Value::None,
         ];
         let texts = figures.map(figure).join(" | ");
-        assert_eq!(texts, "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | 0.25 | 12 | 59951 | 1.0e5 | inf | –");
+        assert_eq!(
+            texts,
+            "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | 0.25 | 12 | 59951 | 1.0e5 | inf | –"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use font8x8::{BASIC_FONTS, UnicodeFonts};
+use font8x8::{BASIC_FONTS, LATIN_FONTS, UnicodeFonts};
 use png::{BitDepth, ColorType, Encoder};
 
 use super::{Align, Mark, Page, PlotColor};
@@ -91,8 +91,8 @@ impl Bitmap {
             };
         let top = at.1 as i32 - GLYPH_SIDE;
         for (index, character) in (0..).zip(text.chars()) {
-            let rows = BASIC_FONTS.get(character).unwrap_or_default();
-            for (row, dots) in (0..).zip(rows) {
+            let rows = BASIC_FONTS.get(character).or_else(|| LATIN_FONTS.get(character));
+            for (row, dots) in (0..).zip(rows.unwrap_or_default()) {
                 for column in (0..GLYPH_SIDE).filter(|column| dots >> column & 1 == 1) {
                     self.set(left + GLYPH_SIDE * index + column, top + row, FOREGROUND);
                 }

@@ -37,8 +37,7 @@ impl<'a> PortalStarts<'a> {
             (true, false) => Overhead::Both,
         };
         let is_higher = |tile: &Tile| tile.top() > Heights::LEVEL_WALL.floor();
-        let walls_hide_all =
-            overhead == Overhead::Ceiling || !world.tiles().iter().any(is_higher);
+        let walls_hide_all = overhead == Overhead::Ceiling || !world.tiles().iter().any(is_higher);
         Self { world, overhead, walls_hide_all }
     }
 

@@ -1,13 +1,13 @@
 //! A panel: the diagram of one problem.
 
-use super::{CHARACTER, LINE, PANEL, color, methods, radius, title};
+use super::{CHARACTER, LINE, PANEL_HEIGHT, color, methods, radius, title};
 use crate::cli::plot::{Align, Axis, Mark, PlotColor};
 use crate::lab::accuracy::{Diagram, Table, Value};
 
 /// The margins of a panel.
 const LEFT: f64 = 70.0;
 const RIGHT: f64 = 15.0;
-const TOP: f64 = 45.0;
+const TOP: f64 = 52.0;
 const BOTTOM: f64 = 40.0;
 /// The greatest number of labelled powers of ten.
 const MOST_TICKS: usize = 6;
@@ -53,12 +53,12 @@ impl Panel {
     }
 
     /// The marks of the panel with its top left corner at `corner`.
-    pub(super) fn marks(&self, corner: (f64, f64)) -> Vec<Mark> {
-        let mut marks = self.axes(corner);
+    pub(super) fn marks(&self, corner: (f64, f64), width: f64) -> Vec<Mark> {
+        let mut marks = self.axes(corner, width);
         let at = |cost: f64, error: f64| {
-            let x = corner.0 + LEFT + self.cost.share(cost) * (PANEL.0 - LEFT - RIGHT);
-            let y =
-                corner.1 + PANEL.1 - BOTTOM - self.error.share(error) * (PANEL.1 - TOP - BOTTOM);
+            let x = corner.0 + LEFT + self.cost.share(cost) * (width - LEFT - RIGHT);
+            let height = PANEL_HEIGHT - TOP - BOTTOM;
+            let y = corner.1 + TOP + (1.0 - self.error.share(error)) * height;
             (x, y)
         };
         for pair in self.points.windows(2).filter(|pair| pair[0].method == pair[1].method) {
@@ -76,23 +76,22 @@ impl Panel {
                 color: color(point.method),
             });
         }
-        let right = corner.0 + PANEL.0;
         marks.extend(labels(
             self.points.iter().map(|point| (at(point.cost, point.error), point.parameter.as_str())),
-            right,
+            (corner.0 + width, corner.1 + TOP),
         ));
         marks
     }
 
     /// The title, the grid and its labels.
-    fn axes(&self, corner: (f64, f64)) -> Vec<Mark> {
-        let (left, right) = (corner.0 + LEFT, corner.0 + PANEL.0 - RIGHT);
-        let (top, bottom) = (corner.1 + TOP, corner.1 + PANEL.1 - BOTTOM);
+    fn axes(&self, corner: (f64, f64), width: f64) -> Vec<Mark> {
+        let (left, right) = (corner.0 + LEFT, corner.0 + width - RIGHT);
+        let (top, bottom) = (corner.1 + TOP, corner.1 + PANEL_HEIGHT - BOTTOM);
         let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
         let line = |from, to| Mark::Line { from, to, color: PlotColor::Pale };
         let mut marks = vec![
-            text((left, top - LINE - 8.0), Align::Start, &self.problem),
-            text((left, top - 8.0), Align::Start, &self.title),
+            text((left, top - LINE - 14.0), Align::Start, &self.problem),
+            text((left, top - 14.0), Align::Start, &self.title),
         ];
         for power in self.cost.powers(MOST_TICKS) {
             let x = left + self.cost.share(10_f64.powi(power)) * (right - left);
@@ -108,10 +107,11 @@ impl Panel {
     }
 }
 
-/// The labels of points where they overlap neither dots nor each other; the others are left out.
+/// The labels of points where they overlap neither dots nor each other, left of `right` and below `top`; the
+/// others are left out.
 fn labels<'a>(
     points: impl Iterator<Item = ((f64, f64), &'a str)> + Clone,
-    right: f64,
+    (right, top): (f64, f64),
 ) -> Vec<Mark> {
     const HEIGHT: f64 = 12.0;
     const GAP: f64 = 9.0;
@@ -131,6 +131,7 @@ fn labels<'a>(
         let is_free = |candidate: &Extent| {
             let others = taken.iter().enumerate();
             candidate.1 < right
+                && candidate.2 >= top
                 && others
                     .into_iter()
                     .all(|(index, other)| index == own || !overlap(candidate, other))

@@ -128,11 +128,9 @@ fn shapes(name: &'static str, world: World, seed: u64) -> Feature {
     let truths: Vec<Truth> = rays
         .iter()
         .map(|ray| {
-            let meetings = outlines.iter().filter_map(|&(cell, outline)| {
-                match outline {
-                    Outline::Line(line) => meet_line(ray, cell, line),
-                    Outline::Pillar(radius) => meet_pillar(ray, cell, radius.cells()),
-                }
+            let meetings = outlines.iter().filter_map(|&(cell, outline)| match outline {
+                Outline::Line(line) => meet_line(ray, cell, line),
+                Outline::Pillar(radius) => meet_pillar(ray, cell, radius.cells()),
             });
             Truth::new(meetings.collect())
         })
