@@ -93,7 +93,7 @@ mod unix {
         child.kill()?;
         child.wait()?;
         let [frames, bytes] = [0, 1].map(|index| (now[index] - before[index]) as f64);
-        let processor = (usage.processor - used.processor).as_secs_f64();
+        let processor = usage.processor.saturating_sub(used.processor).as_secs_f64();
         let per_second = |count: f64| count / seconds.as_secs_f64();
         println!(
             "frames     {:.1} a second, of {:.0} bytes",

@@ -175,7 +175,7 @@ impl World {
     /// The number of mip levels of textures and sprites made so far. Those of built-in ones are made when they are
     /// first read.
     pub fn mip_levels_made(&self) -> usize {
-        let pictures = self.sprites.iter().flat_map(|sprite| sprite.pictures());
+        let pictures = self.sprites.iter().flat_map(Sprite::pictures);
         self.textures.iter().chain(pictures).map(Texture::levels_made).sum()
     }
 

@@ -1,7 +1,7 @@
 //! The measured scenes: the maps of the gallery, as seen from their starts.
 
 use cellcaster::map::{self, Level};
-use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable};
+use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
 use cellcaster::space;
 use cellcaster::world::{Camera, FieldOfView, World};
 
@@ -50,8 +50,8 @@ pub(crate) fn flat(scene: &Scene) -> (&World, Camera) {
 
 /// A frame of one size, drawn by the renderers of grids and of bodies.
 pub(crate) struct Drawing {
-    of_grids: <World as Renderable>::Renderer,
-    of_bodies: <space::Scene as Renderable>::Renderer,
+    of_grids: Renderer,
+    of_bodies: space::Renderer,
     frame: Frame,
 }
 
@@ -59,8 +59,8 @@ impl Drawing {
     /// For pictures of this size, on square pixels.
     pub(crate) fn new(size: FrameSize) -> Self {
         Self {
-            of_grids: Default::default(),
-            of_bodies: Default::default(),
+            of_grids: Renderer::default(),
+            of_bodies: space::Renderer::default(),
             frame: Frame::new(size, PixelAspect::SQUARE),
         }
     }

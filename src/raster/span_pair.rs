@@ -15,8 +15,10 @@ use crate::world::{Light, Paint, Pattern};
 /// The drawing of a frame's span pairs.
 #[derive(Default)]
 pub(super) struct SpanPairs<'a> {
-    /// `None` before the first pair; `Some(None)` if the planes have no textures of one size.
-    textures: Option<Option<TexturePair<'a>>>,
+    /// Whether there was a pair.
+    is_begun: bool,
+    /// The textures of the planes, if they have textures of one size.
+    textures: Option<TexturePair<'a>>,
 }
 
 /// Two textures of one size on planes in one light.
@@ -45,8 +47,11 @@ impl<'a> SpanPairs<'a> {
         pair: &SpanPair<'_>,
         target: &mut Target<'_, S>,
     ) {
-        let textures = self.textures.get_or_insert_with(|| TexturePair::new(scene, pair.planes));
-        let drawn = textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
+        if !self.is_begun {
+            self.is_begun = true;
+            self.textures = TexturePair::new(scene, pair.planes);
+        }
+        let drawn = self.textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
             for span in pair.spans() {
                 span::draw(scene, &span, target);

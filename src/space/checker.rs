@@ -10,6 +10,9 @@
 //! Several rays for each pixel were refused: near the horizon a pixel covers hundreds of squares,
 //! and any number of samples still shimmers there.
 
+#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 use glam::DVec3;
 
 use super::lanes::{LANES, Lanes, Vectors, are_finite, floor, floor_of_small, greatest, least};
@@ -78,7 +81,9 @@ fn multiply_by_means_along(places: &Lanes, widths: &Lanes, products: &mut Lanes)
             products[lane] *= mean_along(places[lane], widths[lane]);
         }
     } else if let Some(mean) = mean_of_all(ends, width) {
-        products.iter_mut().for_each(|product| *product *= mean);
+        for product in products {
+            *product *= mean;
+        }
     } else {
         for lane in 0..LANES {
             products[lane] *= mean_of_small(places[lane], widths[lane]);

@@ -4,6 +4,8 @@
 //! calculate several lanes each. This is why the functions here select instead of branching, and round by
 //! addition: the oldest x86-64 processors have no instruction to round a double.
 
+#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
+
 use glam::DVec3;
 
 /// The number of lanes. With 8, what is done once for all lanes costs more; with 32, the unused lanes at
@@ -40,7 +42,9 @@ impl Vectors {
     /// Divides each lane by `divisor`.
     pub(super) fn divide(&mut self, divisor: f64) {
         for components in [&mut self.x, &mut self.y, &mut self.z] {
-            components.iter_mut().for_each(|component| *component /= divisor);
+            for component in components {
+                *component /= divisor;
+            }
         }
     }
 

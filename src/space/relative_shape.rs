@@ -5,6 +5,9 @@
 //! computed with compensated sums. The roots of the quadratic equation are taken without
 //! cancellation. Neither a planet under the eye nor a grain of sand on it loses digits.
 
+#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 use glam::{BVec3, DVec3};
 
 use super::body::{Block, Plane, Shape, Sphere};

@@ -3,6 +3,8 @@
 //! The rays of a row are tested against one body after the other. The components of directions and the
 //! hits are in arrays of their own, so that a test of neighbouring rays is one loop without branches.
 
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 use std::ops::Range;
 
 use glam::DVec3;
@@ -143,12 +145,11 @@ impl Row {
         let Stretch { directions, t } = stretch;
         let count = columns.len();
         let distances = &self.t[columns.clone()];
-        match distances.try_into() {
-            Ok(distances) => *t = distances,
-            Err(_) => {
-                t[..count].copy_from_slice(distances);
-                t[count..].fill(distances[count - 1]);
-            }
+        if let Ok(distances) = distances.try_into() {
+            *t = distances;
+        } else {
+            t[..count].copy_from_slice(distances);
+            t[count..].fill(distances[count - 1]);
         }
         let lanes = columns.start..columns.start + LANES;
         let [x, y, z] = [&self.x, &self.y, &self.z].map(|it| &it[lanes.clone()]);

@@ -1,5 +1,7 @@
 //! Shading: the colours of neighbouring pixels that show the same body, or the sky.
 
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 use glam::DVec3;
 
 use super::body::SolidTexture;
@@ -147,8 +149,8 @@ impl<'a> Shader<'a> {
         if is_level || self.scene.fog.is_none() {
             let clearness = clearness(t[0]);
             light.fog = [256 - rounded(WHOLE * clearness); LANES];
-            for lane in 0..LANES {
-                light.own[lane] = rounded(WHOLE * brightness[lane] * clearness);
+            for (own, brightness) in light.own.iter_mut().zip(&*brightness) {
+                *own = rounded(WHOLE * brightness * clearness);
             }
         } else {
             for lane in 0..LANES {
@@ -175,7 +177,9 @@ impl<'a> Shader<'a> {
         }
         checker::find_means(below, widths, shares);
         // The cube at the origin is +1, its neighbours −1.
-        shares.iter_mut().for_each(|share| *share = (1.0 - *share) / 2.0);
+        for share in shares {
+            *share = (1.0 - *share) / 2.0;
+        }
     }
 }
 

@@ -11,10 +11,13 @@
 //! layout. A grid perpendicular to the light, as in the light buffer of Haines and Greenberg
 //! (1986), was refused: a few huge bodies would fill all its cells.
 
+#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
+#![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
+
 use glam::DVec3;
 
 use super::body::{Body, Shape};
-use super::lanes::{LANES, Lanes, Vectors, greatest};
+use super::lanes::{Lanes, Vectors, greatest};
 use super::light::Sun;
 use super::relative_shape::RelativeBlock;
 
@@ -242,8 +245,8 @@ fn darken_behind(
 
 #[inline(always)]
 fn darken_if(brightness: &mut Lanes, ambient: f64, is_dark: impl Fn(usize) -> bool) {
-    for lane in 0..LANES {
-        brightness[lane] = if is_dark(lane) { ambient } else { brightness[lane] };
+    for (lane, brightness) in brightness.iter_mut().enumerate() {
+        *brightness = if is_dark(lane) { ambient } else { *brightness };
     }
 }
 
@@ -253,6 +256,7 @@ mod tests {
 
     use super::*;
     use crate::color::Rgb;
+    use crate::space::lanes::LANES;
     use crate::space::{Block, Fraction, SolidTexture, Sphere};
 
     /// Points on a coarse grid, so that bodies share surfaces.

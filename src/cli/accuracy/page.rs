@@ -56,9 +56,10 @@ fn replaced(page: &str, run: &Run, table: &Table) -> Option<String> {
     // Writing to memory cannot fail.
     let _ = markdown::write_table(table, &mut block);
     let block = String::from_utf8_lossy(&block);
-    let plot = match table.diagrams.is_empty() {
-        true => String::new(),
-        false => format!("\n![{}]({})\n", table.title, plot_of(table)),
+    let plot = if table.diagrams.is_empty() {
+        String::new()
+    } else {
+        format!("\n![{}]({})\n", table.title, plot_of(table))
     };
     let sentence = run.sentence();
     Some(format!("{before}{begin}\n{plot}\n{block}\n{sentence}\n\n{END}{after}"))

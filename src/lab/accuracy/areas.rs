@@ -91,7 +91,9 @@ pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
             let mut picture = Window::new(window, display.glyphs, display.depth, filter);
             picture.show(world, &starts[0]);
             let start = Instant::now();
-            starts.iter().for_each(|camera| picture.show(world, camera));
+            for camera in &starts {
+                picture.show(world, camera);
+            }
             start.elapsed().as_secs_f64() * 1e6 / starts.len() as f64
         });
         for (((display, filter), differences), time) in shown.iter().zip(&all).zip(times) {

@@ -3,7 +3,7 @@
 //! Every part of the report is a [`Table`] with the same shape, so that each format writes all
 //! tables by the same code and leaves none out. A row has three keys: the problem, the method, and
 //! the method's parameter. A [`Diagram`] names two columns: it has a panel for each problem, and a
-//! line for each method, joined through the parameter, as the work-precision diagrams of SciML have
+//! line for each method, joined through the parameter, as the work-precision diagrams of `SciML` have
 //! (<https://docs.sciml.ai/SciMLBenchmarksOutput>). A structure for each part was refused: each of
 //! five formats needed code for each of them, and CSV and the plots had left most of them out.
 

@@ -164,7 +164,7 @@ impl<'a> Gap<'a> {
     /// columns; `None` if it is behind the camera.
     fn column_of(&self, point: DVec2) -> Option<f64> {
         let place = self.projection.place(point);
-        (place.depth > 0.0).then(|| place.column - 0.5 - self.first as f64)
+        (place.depth > 0.0).then_some(place.column - 0.5 - self.first as f64)
     }
 
     /// The first column whose centre is not before `position`; one after the second ray for all further

@@ -57,7 +57,9 @@ fn feature(name: &'static str, fidelity: Fidelity, world: &World) -> Feature {
     let world = world.clone();
     let work = move || {
         let mut writer = self::writer(fidelity);
-        cameras.iter().for_each(|camera| show(&world, camera, &mut view, &mut writer));
+        for camera in &cameras {
+            show(&world, camera, &mut view, &mut writer);
+        }
     };
     let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
     Feature { name, figure: "colour of half a cell", unit: "ΔE", cases, wrong, errors, work }

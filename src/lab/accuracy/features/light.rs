@@ -49,8 +49,9 @@ impl TextureFiles for Files {
         let mut encoder = png::Encoder::new(&mut bytes, SIDE, SIDE);
         encoder.set_color(png::ColorType::Grayscale);
         let places = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
-        let texels: Vec<u8> =
-            places.map(|(x, y)| if (x / square + y / square) % 2 == 0 { 0 } else { 255 }).collect();
+        let texels: Vec<u8> = places
+            .map(|(x, y)| if (x / square + y / square).is_multiple_of(2) { 0 } else { 255 })
+            .collect();
         let written =
             encoder.write_header().and_then(|mut writer| writer.write_image_data(&texels));
         written.expect("writing to memory does not fail");
@@ -78,13 +79,13 @@ fn frame() -> Frame {
     Frame::new(size, PixelAspect::SQUARE)
 }
 
-fn drawing(world: World, cameras: Vec<Camera>) -> Option<Box<dyn FnMut()>> {
+fn drawing(world: World, cameras: Vec<Camera>) -> Box<dyn FnMut()> {
     let (mut renderer, mut frame) = (Renderer::new(), frame());
-    Some(Box::new(move || {
+    Box::new(move || {
         for camera in &cameras {
             renderer.render(&world, black_box(camera), &mut frame);
         }
-    }))
+    })
 }
 
 /// The error of one channel of walls and floors: the definition in real numbers is
@@ -114,7 +115,7 @@ fn lit(name: &'static str, channel: usize, fog: Option<Fog>) -> Feature {
             errors.push((f64::from(frame.pixel(x, y).channels()[channel]) - expected).abs());
         }
     }
-    let work = drawing(world, cameras);
+    let work = Some(drawing(world, cameras));
     let cases = errors.len();
     Feature { name, figure: "channel of a pixel", unit: "of 255", cases, wrong: 0, errors, work }
 }
@@ -169,7 +170,7 @@ fn mip_levels() -> Feature {
     }
     let cases = errors.len();
     let [world, ..] = worlds;
-    let work = drawing(world, cameras);
+    let work = Some(drawing(world, cameras));
     Feature {
         name: "mip choice",
         figure: "level of a pixel of a wall",

@@ -5,6 +5,7 @@
 //! with them. A mirror is compared with a copy of the room behind it, built in reverse. A sprite is a
 //! rectangle on the plane through its place that faces the camera.
 
+use std::fmt::Write as _;
 use std::hint::black_box;
 
 use glam::{DVec2, DVec3};
@@ -135,8 +136,10 @@ fn heights(seed: u64) -> Feature {
     text += &HEIGHTS.join("\n");
     text += "\n'''\n[tiles]\n'#' = { wall = '#6060a0' }\n";
     for (character, height, top, side) in &TILES[1..4] {
-        text += &format!(
-            "{character} = {{ floor = '#{top:06x}', floor_height = {height}, riser = '#{side:06x}' }}\n"
+        // Writing to a string cannot fail.
+        _ = writeln!(
+            text,
+            "{character} = {{ floor = '#{top:06x}', floor_height = {height}, riser = '#{side:06x}' }}"
         );
     }
     text += "[things]\n'@' = { start = 0 }\n";
