@@ -5,6 +5,8 @@
 //! points east, y south and z up, and lengths are in cells. Looking up turns the camera: without
 //! columns, this costs no more than a level view.
 //!
+//! Rays are traced in `lanes` of sixteen pixels of a row, all by the same instructions without branches.
+//!
 //! A surface is lit by its angle to the sun, unless another body is in between: see `shadows`. A
 //! checker pattern shows its mean over the area of a pixel: see `checker`.
 //!
