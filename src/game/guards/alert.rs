@@ -101,7 +101,8 @@ impl Guard {
 
     /// Follows the marks of a trail, one after the other.
     pub(super) fn track(&mut self, context: &mut Context, target: usize, mark: u64, lost: u16) {
-        let trail = &context.trails[target];
+        // The trails of the last players go with them.
+        let Some(trail) = context.trails.get(target) else { return self.give_up(context) };
         let mark = mark.max(trail.first());
         let Some(cell) = trail.cell(mark) else { return self.stop_tracking(lost, context.stride) };
         let newer = trail.cell(mark + 1).is_some();

@@ -54,6 +54,19 @@ fn a_guard_opens_doors_on_the_way_and_a_hound_does_not() {
 }
 
 #[test]
+fn a_hound_gives_up_the_trail_of_a_player_who_has_left() {
+    let hound = r#""H" = { guard = "hound", heading = 180 }"#;
+    let mut scene = Scene::new("##########\n#@......H#\n##########", hound);
+    let gone = Target { position: DVec2::new(6.5, 1.5), visibility: 0, ..scene.target };
+    scene.target.is_alive = false;
+    scene.guards.step(&scene.world, &[scene.target, gone], &[], &[]);
+    scene.guards.list[0].state = State::Tracking { target: 1, mark: 0, lost: 0 };
+    scene.guards.forget_player(1);
+    scene.step(&[]);
+    assert_eq!(scene.mood(0), Mood::Returning);
+}
+
+#[test]
 fn a_hound_follows_the_trail_around_a_corner_and_stops_at_a_door() {
     let mut scene = Scene::new(
         "##########\n#@...H...#\n#.########\n#...+....#\n##########",
