@@ -34,10 +34,12 @@ mod player;
 mod report;
 mod rest;
 mod rules;
+mod scratch;
 mod script;
 mod show;
 mod sound;
 mod stance;
+pub(crate) mod stored;
 mod tally;
 mod tools;
 mod turn;
@@ -71,6 +73,7 @@ pub use report::Outcome;
 pub use rules::Rules;
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
+pub use stored::{RULES_VERSION, Unrestorable};
 pub use tally::{Rank, Share, Tally};
 
 /// The duration of a step, in seconds.

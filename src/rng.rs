@@ -19,6 +19,11 @@ impl SplitMix64 {
         Self { state: seed }
     }
 
+    /// The seed of a generator that goes on as this one does.
+    pub(crate) const fn state(&self) -> u64 {
+        self.state
+    }
+
     /// The next 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(INCREMENT);

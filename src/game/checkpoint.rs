@@ -21,6 +21,23 @@ pub(super) struct Checkpoint {
     cell: Option<Cell>,
 }
 
+impl Checkpoint {
+    /// The game at the checkpoint in `cell`.
+    pub(super) fn new(game: Option<Arc<Game>>, cell: Option<Cell>) -> Self {
+        Self { game, cell }
+    }
+
+    /// The game from which a dead player goes on.
+    pub(super) fn game(&self) -> Option<&Game> {
+        self.game.as_deref()
+    }
+
+    /// The cell of the checkpoint; `None` for the start.
+    pub(super) fn cell(&self) -> Option<Cell> {
+        self.cell
+    }
+}
+
 impl Game {
     /// The game with its start as the first checkpoint.
     #[must_use]

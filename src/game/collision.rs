@@ -13,6 +13,7 @@ mod sweep;
 
 use glam::DVec2;
 
+use crate::game::stored::stored;
 use crate::world::{Cell, Outline};
 pub(super) use place::{Place, Stature};
 use sweep::{Path, first_contact};
@@ -68,6 +69,8 @@ pub(super) struct Body {
     pub(super) position: DVec2,
     pub(super) velocity: DVec2,
 }
+
+stored! { struct Body { position, velocity } }
 
 /// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
 /// of its velocity that points into what it touches.

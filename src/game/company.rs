@@ -20,6 +20,7 @@ mod keys;
 mod members;
 mod seen;
 mod step;
+mod stored;
 mod strike;
 mod view;
 

@@ -12,6 +12,7 @@
 use glam::DVec2;
 
 use crate::cast::{Ray, Walk};
+use crate::game::stored::{Unrestorable, check, stored};
 use crate::generate::Shift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
@@ -28,6 +29,8 @@ pub(super) struct Doors {
     moving: Vec<MovingDoor>,
 }
 
+stored! { struct Doors { moving } }
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct MovingDoor {
     cell: Cell,
@@ -35,6 +38,8 @@ struct MovingDoor {
     /// Whether a switch keeps it open.
     is_held: bool,
 }
+
+stored! { struct MovingDoor { cell, phase, is_held } }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -45,6 +50,8 @@ enum Phase {
     /// The number of steps from closed.
     Closing(u32),
 }
+
+stored! { enum Phase { 0: Opening(steps), 1: Open(steps), 2: Closing(steps) } }
 
 impl Doors {
     /// Opens the door in `cell`, unless it is opening already.
@@ -116,6 +123,23 @@ impl Doors {
             Phase::Opening(_) | Phase::Closing(_) => 0,
         });
         quiet.min()
+    }
+
+    /// Opens the doors of `world`, in which all are closed, as far as they are open.
+    ///
+    /// # Errors
+    /// If that are no doors of `world`.
+    pub(super) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
+        for (index, door) in self.moving.iter().enumerate() {
+            let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
+            let is_possible = match door.phase {
+                Phase::Opening(steps) | Phase::Closing(steps) => steps < TRAVEL,
+                Phase::Open(left) => left <= STAY,
+            };
+            check(is_new && is_possible && world.door(door.cell).is_some(), "a door")?;
+            world.set_opening(door.cell, door.phase.opening());
+        }
+        Ok(())
     }
 
     /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].

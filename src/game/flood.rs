@@ -10,6 +10,7 @@
 //! clear those of the last one.
 
 mod buckets;
+mod stored;
 
 use crate::world::Cell;
 use buckets::Buckets;
@@ -42,8 +43,9 @@ pub(super) trait Costs {
     fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool;
 }
 
-/// A search.
-#[derive(Clone, Debug, PartialEq, Default)]
+/// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
+/// the searches before.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Flood {
     /// The north-west cell, and the columns and rows.
     first: (u32, u32),
@@ -115,13 +117,13 @@ impl Flood {
             let Some(to) = self.neighbor(cell, side * 2) else { continue };
             if let Some(cost) = costs.straight(cell, to) {
                 *open = true;
-                self.offer(to, self.distance + cost.min(MOST_COST));
+                self.offer(to, self.distance.saturating_add(cost.min(MOST_COST)));
             }
         }
         for side in 0..4 {
             let beside = [is_open[side], is_open[(side + 1) % 4]];
             let Some(to) = self.neighbor(cell, side * 2 + 1) else { continue };
-            let distance = self.distance + DIAGONAL;
+            let distance = self.distance.saturating_add(DIAGONAL);
             let is_farther = self.known(to).is_some_and(|known| known <= distance);
             if !is_farther && costs.has_diagonal(cell, to, beside) {
                 self.offer(to, distance);
@@ -139,8 +141,7 @@ impl Flood {
     }
 
     fn known(&self, cell: Cell) -> Option<u16> {
-        let entry = self.cells[self.place(cell)?];
-        (entry >> 16 == u32::from(self.search)).then_some(entry as u16)
+        self.known_at(self.place(cell)?)
     }
 
     fn neighbor(&self, cell: Cell, side: usize) -> Option<Cell> {

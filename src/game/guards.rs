@@ -26,12 +26,14 @@ mod shifted;
 mod sight;
 mod sprites;
 mod state;
+mod stored;
 mod terrain;
 mod trail;
 mod view;
 mod ways;
 
 use super::rules::Rules;
+use super::scratch::Scratch;
 use super::sound::{Sound, SoundField, Source};
 use crate::rng::hash;
 use crate::world::{GuardKind, SpriteId, World};
@@ -67,7 +69,7 @@ pub(crate) struct Guards {
     ways: Ways,
     air: SoundField,
     trails: Vec<Trail>,
-    others: Vec<Other>,
+    others: Scratch<Vec<Other>>,
     acts: Vec<Act>,
     /// The sounds that guards have made in the last step.
     spoken: Vec<Sound>,
@@ -95,7 +97,7 @@ impl Guards {
             ways: Ways::default(),
             air: SoundField::default(),
             trails: Vec::new(),
-            others: Vec::new(),
+            others: Scratch::default(),
             acts: Vec::new(),
             spoken: Vec::new(),
             woken: Vec::new(),

@@ -1,5 +1,6 @@
 //! Health: what hurts takes points, and a player without points is dead.
 
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
 use crate::world::{GuardKind, Heading};
 
 /// How many points of health a player has.
@@ -20,6 +21,8 @@ pub struct Flash {
     pub left: u16,
 }
 
+stored! { struct Flash { kind, left } }
+
 /// Why the edge of the picture flashes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FlashKind {
@@ -32,6 +35,8 @@ pub enum FlashKind {
     /// The player has found something.
     Gain,
 }
+
+stored! { enum FlashKind { 0: Hurt { bearing }, 1: Gain } }
 
 /// What takes health.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +59,8 @@ pub(super) enum Cause {
     Water,
     Fall,
 }
+
+stored! { enum Cause { 0: Guard(kind), 1: Bolt, 2: Spikes, 3: Water, 4: Fall } }
 
 /// The duration of a flash in steps.
 const HURT_STEPS: u16 = 24;
@@ -87,6 +94,18 @@ impl Health {
     /// Whether points are missing.
     pub(super) fn is_hurt(self) -> bool {
         self.points < self.most
+    }
+}
+
+impl Stored for Health {
+    fn write(&self, out: &mut Writer) {
+        let Self { points, most: _ } = self;
+        points.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let points = input.number_to(Self::MOST.into())? as u8;
+        Ok(Self { points, most: Self::MOST })
     }
 }
 

@@ -4,6 +4,7 @@
 use std::fmt;
 
 use super::look::Look;
+use super::stored::{Reader, Stored, Unrestorable, Writer};
 
 /// One action that the player may want.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -196,6 +197,19 @@ impl Intents {
     /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
     pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
+    }
+}
+
+impl Stored for Intents {
+    fn write(&self, out: &mut Writer) {
+        let Self { bits, look } = self;
+        bits.write(out);
+        look.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let bits = input.number_to((1 << Intent::ALL.len()) - 1)? as u32;
+        Ok(Self { bits, look: Stored::read(input)? })
     }
 }
 

@@ -5,6 +5,7 @@
 //! Converting an angle into a time of turning was refused: a step turns by 2.3°, which is coarser
 //! than a hand can aim.
 
+use crate::game::stored::stored;
 use std::fmt;
 
 /// The angles by which the player turns and tilts in one step.
@@ -15,6 +16,8 @@ pub struct Look {
     /// Upwards, in hundredths of a degree: the horizon in a grid, the eye in a scene of bodies.
     pub tilt: i16,
 }
+
+stored! { struct Look { turn, tilt } }
 
 /// The names of both in files.
 pub(super) const TURN: &str = "turn";

@@ -9,6 +9,7 @@
 
 mod handles;
 mod moving_cell;
+mod stored;
 
 use super::Game;
 use super::company::{MOST_PLAYERS, playing_mut};
@@ -16,6 +17,7 @@ use super::noise::reach;
 use super::player::Motion;
 use super::sound::SoundKind;
 use super::tally::Share;
+use crate::game::stored::stored;
 use crate::world::{
     Cell, Driver, MovingTile, SwitchId, ThingKind, TileEffect, TileId, TileKind, World,
 };
@@ -43,12 +45,16 @@ struct Switch {
     is_on: bool,
 }
 
+stored! { part of Switch { is_turned, is_on } level {} }
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Plate {
     cell: Cell,
     switch: SwitchId,
     is_down: bool,
 }
+
+stored! { part of Plate { is_down } level { cell, switch } }
 
 impl Mechanisms {
     /// The mechanisms of `world`, at rest.

@@ -1,5 +1,7 @@
 //! Messages to the player, shown for some time.
 
+use crate::game::stored::stored;
+
 /// The duration of a message in steps: 3 seconds.
 const DURATION: u64 = 180;
 
@@ -9,6 +11,8 @@ pub(super) struct Notice {
     text: String,
     steps_left: u64,
 }
+
+stored! { struct Notice { text, steps_left } }
 
 impl Notice {
     /// Shows `text` from now on.

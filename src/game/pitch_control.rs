@@ -5,6 +5,7 @@
 
 use super::STEP;
 use super::intent::{Intent, Intents};
+use crate::game::stored::stored;
 use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::world::Pitch;
 
@@ -25,6 +26,8 @@ pub(super) struct PitchControl {
     speed: f64,
     returns: bool,
 }
+
+stored! { struct PitchControl { pitch, speed, returns } }
 
 impl PitchControl {
     /// The pitch after one step.

@@ -8,12 +8,16 @@ use super::health::{Cause, Flash, Health};
 use super::intent::Intents;
 use super::notice::Notice;
 use super::sound::Hearing;
+use super::stored::{Unrestorable, check, stored};
 use super::tally::Counts;
 use super::tools::Supplies;
 use super::warnings::Warnings;
 use crate::world::{KeyId, World};
 pub(crate) use motion::FRICTION;
 pub(super) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+
+/// More than a player ever counts: it grows for years before it overflows.
+const MOST_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +50,13 @@ pub(super) struct Player {
     pub(super) counts: Counts,
 }
 
+stored! {
+    struct Player {
+        motion, health, supplies, keys, treasure, has_light, strike_wait, pressed, fell_from, stride,
+        in_water, last_thrust, warnings, hearing, flash, notice, killed_by, counts,
+    }
+}
+
 impl Player {
     /// A player at the start of `world`, with these supplies.
     pub(super) fn new(world: &World, supplies: Supplies) -> Self {
@@ -70,6 +81,18 @@ impl Player {
             killed_by: None,
             counts: Counts::default(),
         }
+    }
+
+    /// Refuses a state in which a step after the step `now` could fail.
+    pub(super) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+        let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
+        check(self.keys.iter().all(has_key), "a key")?;
+        let Counts { alarms, deaths, stunned } = self.counts;
+        let counts = [alarms, deaths, stunned, self.in_water];
+        check(counts.iter().all(|&count| count < MOST_COUNT), "a count")?;
+        self.motion.check(world)?;
+        self.warnings.check(now)?;
+        self.hearing.check()
     }
 
     /// The same player at another place.

@@ -35,6 +35,18 @@ impl Sprites {
         }
     }
 
+    /// Whether there is a sprite for a guest.
+    pub(super) fn has_player(self) -> bool {
+        self.player.is_some()
+    }
+
+    /// Adds the sprite for a guest to `world`, if it is not there yet.
+    pub(super) fn add_player(&mut self, world: &mut World) {
+        if self.player.is_none() {
+            self.player = builtin::named("player").map(|sprite| world.add_sprite(sprite));
+        }
+    }
+
     fn missile(&self, missile: &Missile) -> Option<Figure> {
         let sprite = match missile.kind {
             MissileKind::Pebble => self.pebble,
@@ -86,11 +98,8 @@ impl Game {
     /// figure has the sprite of a player, which no other figure has.
     #[cfg(feature = "terminal")]
     pub(crate) fn show_guest(&mut self, guest: impl FnOnce(SpriteId) -> Option<Figure>) {
-        let player = &mut self.sprites.player;
-        if player.is_none() {
-            *player = builtin::named("player").map(|sprite| self.world.add_sprite(sprite));
-        }
-        let Some(sprite) = *player else { return };
+        self.sprites.add_player(&mut self.world);
+        let Some(sprite) = self.sprites.player else { return };
         let own = self.world.figures().iter().filter(|figure| figure.sprite != sprite);
         let all: Vec<Figure> = own.copied().chain(guest(sprite)).collect();
         self.world.set_figures(all.into_iter());
@@ -139,7 +148,8 @@ impl Game {
         self.figure_revision += 1;
     }
 
-    fn show_lamps(&mut self) {
+    /// Shows lamps where they are now.
+    pub(super) fn show_lamps(&mut self) {
         let lit = playing(&self.player, self.members.as_deref());
         let lit = lit.filter(|(_, player)| player.has_light);
         let of_players = lit.map(|(_, player)| (player.motion.cell(), lamp()));

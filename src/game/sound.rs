@@ -7,6 +7,7 @@
 mod field;
 mod hearing;
 
+use crate::game::stored::stored;
 use crate::world::Cell;
 pub(crate) use field::{SoundField, half_cells};
 pub use hearing::Heard;
@@ -25,6 +26,8 @@ pub struct Sound {
     pub by: Source,
 }
 
+stored! { struct Sound { kind, cell, reach, by } }
+
 impl Sound {
     /// The largest reach that has an effect, in cells.
     pub const FARTHEST: u8 = 24;
@@ -40,6 +43,8 @@ pub enum Source {
     /// Something that nobody does at that moment, such as a thrown pebble that lands.
     Object,
 }
+
+stored! { enum Source { 0: Player(index), 1: Guard(index), 2: Object } }
 
 /// A kind of sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -86,4 +91,12 @@ pub enum SoundKind {
     Shot,
     /// A blow that meets nothing.
     Swing,
+}
+
+stored! {
+    enum SoundKind {
+        0: Walking, 1: Running, 2: Landing, 3: Splash, 4: Door, 5: Mechanism, 6: Spikes, 7: Knock,
+        8: Crash, 9: Blow, 10: Cry, 11: Fall, 12: Wonder, 13: GiveUp, 14: Shout, 15: Bell, 16: Bark,
+        17: Windup, 18: Draw, 19: Shot, 20: Swing,
+    }
 }

@@ -4,6 +4,7 @@
 //! The body, which collides with ceilings, moves with the feet.
 
 use super::STEP;
+use super::stored::{Unrestorable, check, stored};
 use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
@@ -30,7 +31,14 @@ pub(super) struct Stance {
     lag: f64,
 }
 
+stored! { struct Stance { ducking, lag } }
+
 impl Stance {
+    /// Refuses a body that is neither standing, ducking nor between.
+    pub(super) fn check(self) -> Result<(), Unrestorable> {
+        check((0.0..=1.0).contains(&self.ducking), "a stance")
+    }
+
     /// The height of the body, in cells.
     pub(super) fn height(self) -> f64 {
         STANDING + (DUCKING - STANDING) * self.ducking

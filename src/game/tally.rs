@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Game, STEPS_PER_SECOND};
+use crate::game::stored::stored;
 use crate::world::ThingKind;
 
 /// A part of a whole.
@@ -100,6 +101,8 @@ pub(super) struct Counts {
     pub(super) deaths: u32,
     pub(super) stunned: u32,
 }
+
+stored! { struct Counts { alarms, deaths, stunned } }
 
 impl Game {
     /// The worth of the treasure found, by all players together, and of all in the level.

@@ -11,6 +11,7 @@ use super::company::playing;
 use super::intent::{Intent, Intents};
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
+use super::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Camera, GuardKind, Supply};
 pub(super) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
 pub(super) use smoke::{Puff, Smoke};
@@ -66,6 +67,19 @@ impl Supplies {
         let has_one = *count > 0;
         *count -= u8::from(has_one);
         has_one
+    }
+}
+
+impl Stored for Supplies {
+    fn write(&self, out: &mut Writer) {
+        let Self(counts) = self;
+        counts.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let counts: [u8; Supply::ALL.len()] = Stored::read(input)?;
+        check(counts.iter().all(|&count| count <= Self::MOST), "the number of a tool")?;
+        Ok(Self(counts))
     }
 }
 

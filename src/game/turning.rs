@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use super::STEP;
 use super::intent::{Intent, Intents};
+use super::stored::{Unrestorable, check, stored};
 use crate::numeric::damped_motion::{DampedMotion, approach};
 
 /// Radians per second.
@@ -42,6 +43,8 @@ pub(super) struct Turning {
     wanted: Intents,
 }
 
+stored! { struct Turning { speed, fine, about, wanted } }
+
 impl Turning {
     /// The state after one step, and the angle of that step in radians, clockwise.
     #[must_use]
@@ -52,6 +55,13 @@ impl Turning {
         let speed = if velocity.abs() < STILL { 0.0 } else { velocity };
         let (turning, angle) = Self { speed, ..self }.wanting(intents).after_an_exact_step();
         (turning, displacement + angle)
+    }
+
+    /// Refuses more exact turns than may wait.
+    pub(super) fn check(self) -> Result<(), Unrestorable> {
+        let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
+            && self.about <= ABOUT_STEPS * MOST_WAITING;
+        check(is_possible, "a turn")
     }
 
     fn wanting(self, intents: Intents) -> Self {

@@ -9,6 +9,8 @@
 //! kill a player whom they had not struck before. Sparing the player each time was refused, too: a
 //! player who faced a wall could not be killed.
 
+use super::stored::{Unrestorable, check, stored};
+
 /// The steps after a warning in which the guard does not kill: 3 seconds.
 pub(super) const GRACE: u16 = 180;
 /// The steps after a blow in which the guard is remembered: 10 seconds.
@@ -20,6 +22,8 @@ pub(super) struct Warnings {
     list: Vec<Warning>,
 }
 
+stored! { struct Warnings { list } }
+
 /// A guard of whom a player has been warned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Warning {
@@ -29,6 +33,8 @@ struct Warning {
     since: u64,
     last: u64,
 }
+
+stored! { struct Warning { guard, since, last } }
 
 impl Warnings {
     /// Records a blow of `guard` in the step `now` that would kill from outside the view. Returns the
@@ -44,6 +50,11 @@ impl Warnings {
         let left = GRACE.checked_sub(passed).filter(|&left| left > 0)?;
         warning.last = now;
         Some(left)
+    }
+
+    /// Refuses warnings after the step `now`.
+    pub(super) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+        check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }
 
     /// Forgets all guards.

@@ -54,6 +54,17 @@ impl Heading {
         }
     }
 
+    /// The quarter turns, and the radians beside them.
+    pub(crate) fn parts(self) -> (u8, f64) {
+        (self.quarter_turns, self.beside)
+    }
+
+    /// The heading with these [`parts`](Self::parts); `None` if no heading has them.
+    pub(crate) fn from_parts(quarter_turns: u8, beside: f64) -> Option<Self> {
+        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
+        is_one.then_some(Self { quarter_turns, beside })
+    }
+
     /// The unit vector in this direction.
     pub fn direction(self) -> DVec2 {
         let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));

@@ -5,6 +5,8 @@ use super::{Company, MOST_PLAYERS};
 use crate::game::checksum::{word_of, words_of_player};
 use crate::game::guards::Target;
 use crate::game::player::Player;
+use crate::game::scratch::Scratch;
+use crate::game::stored::stored;
 use crate::game::{Game, Intents};
 use crate::rng::hash;
 use crate::world::sprite::builtin::PlayerColor;
@@ -27,8 +29,8 @@ pub(in crate::game) struct Members {
     /// The blows of the last step: who has struck whom.
     pub(super) blows: Vec<(usize, usize)>,
     /// The memory for what guards perceive, for the positions of those in the way, and for figures.
-    pub(in crate::game) targets: Vec<Target>,
-    pub(super) in_the_way: Vec<glam::DVec2>,
+    pub(in crate::game) targets: Scratch<Vec<Target>>,
+    pub(super) in_the_way: Scratch<Vec<glam::DVec2>>,
     pub(super) figures: Vec<Figure>,
 }
 
@@ -55,6 +57,13 @@ pub(super) struct Member {
     pub(super) swing: u16,
     pub(super) walked: f64,
     pub(super) track: Track,
+}
+
+stored! {
+    struct Member {
+        player, color, is_playing, has_won, intents, seen, joined, ended, checkpoint, stunned, spared,
+        swing, walked, track,
+    }
 }
 
 impl Member {

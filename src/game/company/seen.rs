@@ -7,6 +7,7 @@ use crate::game::Game;
 use crate::game::checksum::words_of;
 use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, RADIUS};
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
 use crate::rng::hash;
 use crate::world::World;
 
@@ -19,6 +20,17 @@ const TOUCH: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(super) struct Track([Option<Stand>; STEPS]);
 
+impl Stored for Track {
+    fn write(&self, out: &mut Writer) {
+        let Self(stands) = self;
+        stands.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        Ok(Self(Stored::read(input)?))
+    }
+}
+
 /// Where a player was in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stand {
@@ -28,6 +40,8 @@ pub(super) struct Stand {
     feet: f64,
     head: f64,
 }
+
+stored! { struct Stand { position, facing, feet, head } }
 
 impl Track {
     /// Records where a player stands at the end of the step `now`; `None` if they do not play.

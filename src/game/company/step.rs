@@ -5,6 +5,7 @@ use super::seen::Track;
 use super::{Company, Input, PlayerId};
 use crate::game::checkpoint::Checkpoint;
 use crate::game::player::Player;
+use crate::game::scratch::Scratch;
 use crate::game::tools::Supplies;
 use crate::game::{Game, Intent, Intents, Rules};
 use crate::world::sprite::builtin::{self, PlayerColor};
@@ -28,8 +29,8 @@ impl Game {
             keys,
             sprites,
             blows: Vec::new(),
-            targets: Vec::new(),
-            in_the_way: Vec::new(),
+            targets: Scratch::default(),
+            in_the_way: Scratch::default(),
             figures: Vec::new(),
         }));
         game
@@ -148,7 +149,7 @@ impl Game {
         for (index, member) in members.each_mut() {
             let input = inputs.iter().rfind(|input| input.player.index() == index);
             member.intents = input.map_or_else(Intents::new, |input| input.intents);
-            member.seen = input.map_or(now, |input| input.seen);
+            member.seen = input.map_or(now, |input| input.seen.min(now));
             if member.stunned > 0 {
                 member.intents = Intents::new().with_look(member.intents.look());
             }

@@ -4,6 +4,8 @@
 //! once. A vector for each bucket was refused: every one of them grows for itself, so that guards
 //! who had walked for a minute still allocated memory.
 
+use std::iter::successors;
+
 use crate::world::Cell;
 
 /// The cells for which a search reserves memory when it first begins.
@@ -11,8 +13,8 @@ const RESERVED: usize = 512;
 /// The end of a list.
 const NONE: u32 = u32::MAX;
 
-/// That many buckets.
-#[derive(Clone, Debug, PartialEq)]
+/// That many buckets. Those with the same cells in the same order are equal.
+#[derive(Clone, Debug)]
 pub(super) struct Buckets<const COUNT: usize> {
     entries: Vec<Entry>,
     /// The last entry of each bucket.
@@ -23,7 +25,7 @@ pub(super) struct Buckets<const COUNT: usize> {
     count: usize,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Entry {
     cell: Cell,
     /// The entry below it in its bucket.
@@ -41,6 +43,19 @@ impl<const COUNT: usize> Buckets<COUNT> {
     /// Whether all buckets are empty.
     pub(super) fn is_empty(&self) -> bool {
         self.count == 0
+    }
+
+    /// The cells in a bucket, in the order in which they were put in.
+    pub(super) fn cells(&self, bucket: usize) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.downwards(bucket).collect();
+        cells.reverse();
+        cells
+    }
+
+    fn downwards(&self, bucket: usize) -> impl Iterator<Item = Cell> {
+        let entry = |place: u32| self.entries.get(place as usize);
+        let entries = successors(entry(self.tops[bucket]), move |above| entry(above.below));
+        entries.map(|entry| entry.cell)
     }
 
     /// Puts a cell into a bucket.
@@ -67,6 +82,13 @@ impl<const COUNT: usize> Buckets<COUNT> {
         (entry.below, self.free) = (self.free, top);
         self.count -= 1;
         Some(entry.cell)
+    }
+}
+
+impl<const COUNT: usize> PartialEq for Buckets<COUNT> {
+    fn eq(&self, other: &Self) -> bool {
+        self.count == other.count
+            && (0..COUNT).all(|bucket| self.downwards(bucket).eq(other.downwards(bucket)))
     }
 }
 

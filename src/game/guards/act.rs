@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::game::sound::Sound;
+use crate::game::stored::stored;
 use crate::world::Cell;
 
 /// What guards can perceive of a player.
@@ -58,4 +59,14 @@ pub(crate) enum Act {
     Bolt { by: usize, from: DVec2, height: f64, direction: DVec2, slope: f64, points: u8 },
     /// Begins to follow a player while nobody did: one more alarm.
     Raised,
+}
+
+stored! {
+    enum Act {
+        0: Hurt { target, by, from, points },
+        1: Open(cell),
+        2: Sound(sound),
+        3: Bolt { by, from, height, direction, slope, points },
+        4: Raised,
+    }
 }

@@ -10,6 +10,7 @@ use super::state::{Phase, Quarry, State};
 use super::terrain::Gait;
 use super::view::GuardView;
 use crate::game::sound::SoundKind;
+use crate::game::stored::stored;
 use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Duty, GuardKind, GuardPost, Heading, World};
 
@@ -61,6 +62,14 @@ pub(super) struct Guard {
     /// The distance walked, in paces.
     paces: f64,
     pub(super) random: SplitMix64,
+}
+
+stored! {
+    part of Guard {
+        mover, state, awareness, quarry, is_wary, stop, errand, pause, glance, rest, stagger, blind,
+        baffled, is_unsettled, route, wanted, look, paces, random,
+    }
+    level { kind, post, post_heading, duty }
 }
 
 impl Guard {
@@ -234,6 +243,11 @@ impl Guard {
             State::Wondering { .. } | State::Chasing { .. } => 3,
             _ => 0,
         }
+    }
+
+    /// Whether the distance walked, in paces, is at least 0 and below `most`.
+    pub(super) fn has_paces_below(&self, most: f64) -> bool {
+        (0.0..most).contains(&self.paces)
     }
 
     /// Numbers that together are the state.

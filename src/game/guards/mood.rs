@@ -1,5 +1,7 @@
 //! What guards are doing, as others see it.
 
+use crate::game::stored::stored;
+
 /// What a guard is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Mood {
@@ -32,6 +34,8 @@ pub enum Alarm {
     /// Somebody follows the player.
     Raised,
 }
+
+stored! { enum Alarm { 0: Calm, 1: Wary, 2: Raised } }
 
 impl Mood {
     /// The alarm of a level in which a guard has this mood, and all others are on duty.

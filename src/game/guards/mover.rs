@@ -11,6 +11,7 @@ use crate::game::STEP;
 use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, slide};
 use crate::game::fall::Flight;
 use crate::game::player::STEP_HEIGHT;
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
 use crate::world::{Cell, Heading, Outline, World};
 
 /// The radius of all guards, in cells.
@@ -31,6 +32,21 @@ pub(super) struct Mover {
     pub(super) heading: Heading,
     /// The unit vector of the heading.
     pub(super) facing: DVec2,
+}
+
+impl Stored for Mover {
+    fn write(&self, out: &mut Writer) {
+        let Self { body, feet, rising, heading, facing: _ } = self;
+        body.write(out);
+        (*feet, *rising).write(out);
+        heading.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let (body, (feet, rising)) = (Stored::read(input)?, Stored::read(input)?);
+        let heading: Heading = Stored::read(input)?;
+        Ok(Self { body, feet, rising, heading, facing: heading.direction() })
+    }
 }
 
 impl Mover {

@@ -10,6 +10,7 @@ use super::act::Act;
 use super::context::Context;
 use super::guard::Guard;
 use super::ways::Way;
+use crate::game::stored::stored;
 use crate::world::{Cell, TileKind};
 
 /// Nearer than this to the middle of a cell, a guard is there, in cells.
@@ -43,12 +44,21 @@ pub(super) struct Route {
     care: u16,
 }
 
+stored! { struct Route { goal, point, from, fresh, still, care } }
+
 /// How a walk goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Progress {
     There,
     OnTheWay,
     Impossible,
+}
+
+impl Route {
+    /// Whether the guard has not stood still for longer than a guard does.
+    pub(super) fn is_possible(&self) -> bool {
+        self.still <= STUCK
+    }
 }
 
 impl Guard {

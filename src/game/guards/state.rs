@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Mood;
+use crate::game::stored::stored;
 use crate::world::Cell;
 
 /// What a guard is doing. Times are in steps.
@@ -44,6 +45,20 @@ pub(super) enum State {
     Returning,
 }
 
+stored! {
+    enum State {
+        0: Asleep,
+        1: OnDuty,
+        2: Wondering { about, looks, goes, hurries, wakes },
+        3: Searching { around, next, left },
+        4: Tracking { target, mark, lost },
+        5: Chasing { fright },
+        6: Attacking { phase, left },
+        7: Down { left },
+        8: Returning,
+    }
+}
+
 /// The parts of a blow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
@@ -55,6 +70,8 @@ pub(super) enum Phase {
     Recovery,
 }
 
+stored! { enum Phase { 0: Windup, 1: Strike { has_hit }, 2: Recovery } }
+
 /// What a guard knows about the player whom they look for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quarry {
@@ -65,6 +82,8 @@ pub(super) struct Quarry {
     /// The steps since then.
     pub(super) unseen: u16,
 }
+
+stored! { struct Quarry { target, position, unseen } }
 
 impl State {
     pub(super) fn mood(self) -> Mood {

@@ -7,6 +7,7 @@
 
 use crate::game::flood::{Costs, DIAGONAL, STRAIGHT};
 use crate::game::player::STEP_HEIGHT;
+use crate::game::stored::stored;
 use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
 
 /// The highest step down, in cells.
@@ -49,6 +50,8 @@ pub(super) struct Gait {
     pub(super) opens_doors: bool,
     pub(super) height: f64,
 }
+
+stored! { struct Gait { opens_doors, height } }
 
 impl Terrain {
     pub(super) fn new(world: &World) -> Self {

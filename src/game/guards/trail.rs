@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::Target;
+use crate::game::stored::{Unrestorable, check, stored};
 use crate::world::{Cell, TileEffect, World};
 
 /// The steps for which a cell smells: 20 seconds.
@@ -18,11 +19,15 @@ pub(super) struct Trail {
     first: u64,
 }
 
+stored! { struct Trail { marks, first } }
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
     cell: Cell,
     left_at: u64,
 }
+
+stored! { struct Mark { cell, left_at } }
 
 impl Trail {
     /// Records where a player is in the step `now`.
@@ -68,6 +73,12 @@ impl Trail {
     /// The number of the oldest mark that there still is.
     pub(super) fn first(&self) -> u64 {
         self.first
+    }
+
+    /// Refuses more marks than are remembered, and marks after the step `now`.
+    pub(super) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+        let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
+        check(are_past && self.marks.len() <= MOST, "a trail")
     }
 
     /// Forgets the cells, as when the whole map has changed.

@@ -11,6 +11,7 @@
 
 use super::terrain::{Backwards, Gait, Terrain, cost_between};
 use crate::game::flood::{Flood, neighbor};
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Cell, World};
 
 /// The number of cells that all searches together find in one step.
@@ -31,6 +32,22 @@ pub(super) struct Ways {
     cells_left: usize,
 }
 
+impl Stored for Ways {
+    fn write(&self, out: &mut Writer) {
+        let Self { fields, now, cells_left } = self;
+        now.write(out);
+        cells_left.write(out);
+        fields.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let (now, cells_left) = (Stored::read(input)?, Stored::read(input)?);
+        let fields: Vec<Field> = input.list(MOST_FIELDS)?;
+        check(fields.iter().all(|it| it.begun <= now && it.used <= now), "the time of a search")?;
+        Ok(Self { fields, now, cells_left })
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 struct Field {
     goal: Cell,
@@ -38,6 +55,24 @@ struct Field {
     flood: Flood,
     begun: u64,
     used: u64,
+}
+
+impl Stored for Field {
+    fn write(&self, out: &mut Writer) {
+        let Self { goal, gait, flood, begun, used } = self;
+        goal.write(out);
+        gait.write(out);
+        begun.write(out);
+        used.write(out);
+        flood.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let goal = Stored::read(input)?;
+        let (gait, begun, used) =
+            (Stored::read(input)?, Stored::read(input)?, Stored::read(input)?);
+        Ok(Self { goal, gait, begun, used, flood: Flood::read(goal, input)? })
+    }
 }
 
 /// The answer to the question for a way.
@@ -157,7 +192,7 @@ impl Field {
         let neighbors = (0..8).filter_map(|side| neighbor(from, side));
         let nearer = neighbors.filter_map(|cell| {
             let there = self.flood.distance(cell).filter(|&there| there < distance)?;
-            Some((there + cost_between(from, cell), cell))
+            Some((there.saturating_add(cost_between(from, cell)), cell))
         });
         let possible = nearer.filter(|&(_, cell)| costs.leads(from, cell));
         Some(possible.min_by_key(|&(distance, _)| distance)?.1)

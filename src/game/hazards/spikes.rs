@@ -4,6 +4,7 @@
 
 use crate::game::noise::reach;
 use crate::game::sound::{Sound, SoundKind, Source};
+use crate::game::stored::{Reader, StoredPart, Unrestorable, Writer, stored};
 use crate::world::sprite::builtin::SpikesFrame;
 use crate::world::{Cell, Rhythm, ThingKind, World};
 
@@ -20,6 +21,17 @@ pub(in crate::game) struct Spikes {
     each: Vec<Spike>,
 }
 
+impl StoredPart for Spikes {
+    fn write(&self, out: &mut Writer) {
+        let Self { each } = self;
+        out.parts(each);
+    }
+
+    fn read_over(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
+        input.parts(&mut self.each)
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Spike {
     cell: Cell,
@@ -28,6 +40,8 @@ struct Spike {
     phase: Phase,
 }
 
+stored! { part of Spike { phase } level { cell, rhythm } }
+
 /// The position of spikes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
@@ -35,6 +49,8 @@ enum Phase {
     Rising,
     Out,
 }
+
+stored! { enum Phase { 0: In, 1: Rising, 2: Out } }
 
 impl Spikes {
     /// The spikes of `world`, which show that they are in.

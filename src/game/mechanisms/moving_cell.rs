@@ -1,6 +1,7 @@
 //! A cell whose tile moves: how far it is, and what comes next.
 
 use crate::game::STEPS_PER_SECOND;
+use crate::game::stored::stored;
 use crate::world::{Cell, Driver, MovingTile, TileId, World};
 
 /// The steps before a floor falls on which somebody has stepped, and those in which it falls.
@@ -22,6 +23,8 @@ pub(super) struct MovingCell {
     /// Whether somebody was in the way of its last step, and no tile has moved since.
     is_blocked: bool,
 }
+
+stored! { part of MovingCell { progress, cracks, is_driven, is_blocked } level { cell, tile } }
 
 /// What a moving cell does in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,6 +114,11 @@ impl MovingCell {
         }
         let state = Some(after.shown(world)).filter(|&state| state != self.shown(world));
         (after != self).then_some(Step { after, state })
+    }
+
+    /// Whether it has not gone beyond its last state.
+    pub(super) fn is_possible(&self, world: &World) -> bool {
+        self.cracks <= CRACKS && self.progress <= steps(self.moving_tile(world), world)
     }
 
     /// Its state as a number.

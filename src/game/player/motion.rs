@@ -10,6 +10,7 @@ use crate::game::fall::{Flight, GRAVITY, Room};
 use crate::game::intent::{Intent, Intents};
 use crate::game::pitch_control::PitchControl;
 use crate::game::stance::Stance;
+use crate::game::stored::stored;
 use crate::game::turning::Turning;
 use crate::generate::Shift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
@@ -50,6 +51,8 @@ pub(in crate::game) struct Motion {
     heading: Heading,
     turning: Turning,
 }
+
+stored! { struct Motion { body, feet, rising, stance, pitch_control, wanted_to_jump, heading, turning } }
 
 impl Motion {
     /// Standing still at the start.

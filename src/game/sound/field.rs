@@ -5,6 +5,7 @@
 
 use super::Sound;
 use crate::game::flood::{Costs, Flood, STRAIGHT};
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
 use crate::world::{Cell, Tile, TileId, TileKind, World};
 
 /// The additional cost of a closed door or of glass, in half cells.
@@ -44,6 +45,24 @@ impl SoundField {
     /// Forgets the distances.
     pub(crate) fn forget(&mut self) {
         self.center = None;
+    }
+}
+
+impl Stored for SoundField {
+    fn write(&self, out: &mut Writer) {
+        let Self { center, flood, begun } = self;
+        center.write(out);
+        // Without a centre, nothing is known.
+        if center.is_some() {
+            begun.write(out);
+            flood.write(out);
+        }
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let Some(center) = Stored::read(input)? else { return Ok(Self::default()) };
+        let begun = Stored::read(input)?;
+        Ok(Self { center: Some(center), begun, flood: Flood::read(center, input)? })
     }
 }
 

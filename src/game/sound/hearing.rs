@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::field::half_cells;
 use super::{Sound, SoundField, SoundKind, Source};
+use crate::game::stored::{Unrestorable, check, stored};
 use crate::world::{Cell, Heading, World};
 
 /// The steps for which a sound is shown.
@@ -24,6 +25,8 @@ pub struct Heard {
     pub left: u16,
 }
 
+stored! { struct Heard { bearing, strength, kind, left } }
+
 /// The ears of a player: what was heard in the last steps.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Hearing {
@@ -33,6 +36,8 @@ pub(crate) struct Hearing {
     sounds: Vec<Sound>,
     steps: u64,
 }
+
+stored! { struct Hearing { field, heard, sounds, steps } }
 
 impl Hearing {
     /// The sounds that were heard in the last steps, the newest last.
@@ -60,6 +65,15 @@ impl Hearing {
             }
         }
         has_faded || has_heard
+    }
+
+    /// Refuses what cannot be heard.
+    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+        let is_audible = |heard: &Heard| {
+            (1..=3).contains(&heard.strength) && (1..=DURATION).contains(&heard.left)
+        };
+        let is_known = self.sounds.len() == self.heard.len() && self.heard.len() <= MOST;
+        check(is_known && self.heard.iter().all(is_audible), "what a player hears")
     }
 
     /// The number of steps in which no sound fades away; `None` if there is none.

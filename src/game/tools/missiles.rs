@@ -11,6 +11,7 @@ use crate::game::collision::{Place, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
+use crate::game::stored::{Unrestorable, check, stored};
 use crate::generate::Shift;
 use crate::world::{Cell, World};
 
@@ -30,6 +31,8 @@ pub(in crate::game) struct Missiles {
     flying: Vec<Missile>,
 }
 
+stored! { struct Missiles { flying } }
+
 /// Something that flies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::game) struct Missile {
@@ -43,6 +46,8 @@ pub(in crate::game) struct Missile {
     rising: f64,
     steps: u16,
 }
+
+stored! { struct Missile { kind, position, height, velocity, rising, steps } }
 
 /// A kind of missile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +65,8 @@ pub(in crate::game) enum MissileKind {
         by: usize,
     },
 }
+
+stored! { enum MissileKind { 0: Pebble, 1: Dart { by }, 2: Flask, 3: Bolt { points, from, by } } }
 
 /// A missile that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,6 +221,11 @@ impl Missiles {
             !is_over
         });
         landed
+    }
+
+    /// Refuses those that have flown for too long.
+    pub(in crate::game) fn check(&self) -> Result<(), Unrestorable> {
+        check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
     }
 
     /// The same missiles in a window that has moved.

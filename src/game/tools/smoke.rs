@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::game::guards::Cloud;
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check, stored};
 use crate::generate::Shift;
 
 /// The radius of a cloud in cells, and the steps for which it stays.
@@ -35,6 +36,27 @@ pub(in crate::game) struct Smoke {
 struct Life {
     height: f64,
     left: u16,
+}
+
+stored! { struct Life { height, left } }
+
+impl Stored for Smoke {
+    fn write(&self, out: &mut Writer) {
+        let Self { clouds, lives } = self;
+        lives.write(out);
+        // All clouds have one radius.
+        for &Cloud { position, radius: _ } in clouds {
+            position.write(out);
+        }
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        let lives: Vec<Life> = Stored::read(input)?;
+        check(lives.iter().all(|life| (1..=STEPS).contains(&life.left)), "a cloud")?;
+        let cloud = |_: &Life| Ok(Cloud { position: Stored::read(input)?, radius: RADIUS });
+        let clouds = lives.iter().map(cloud).collect::<Result<_, _>>()?;
+        Ok(Self { clouds, lives })
+    }
 }
 
 /// A part of a cloud, as it is shown.

@@ -175,7 +175,8 @@ impl World {
         }
     }
 
-    fn make_room_for_light(&mut self) {
+    /// Reserves memory for lamplight, if there is none yet.
+    pub(crate) fn make_room_for_light(&mut self) {
         if self.lamplight.is_dark() {
             self.lamplight.begin(&self.grid);
             self.light_varies = true;

@@ -3,9 +3,17 @@
 use glam::DVec2;
 
 use super::{Body, Motion, RADIUS, STEP_HEIGHT, slide};
+use crate::game::stored::{Unrestorable, check_on_map};
 use crate::world::{Cell, World};
 
 impl Motion {
+    /// Refuses a place outside of `world`, and a stance and turns that are none.
+    pub(in crate::game) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        check_on_map(world, self.body.position)?;
+        self.stance.check()?;
+        self.turning.check()
+    }
+
     /// Lifted or lowered, with the floor, to that height of the feet.
     #[must_use]
     pub(in crate::game) fn carried_to(self, feet: f64) -> Self {

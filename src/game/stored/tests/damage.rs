@@ -1,0 +1,72 @@
+//! Bytes that are no stored game, or one that nobody has played.
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// A start, and the bytes of a game with three players after some steps.
+fn stored(text: &str, seed: u64, steps: usize) -> (Game, Vec<u8>) {
+    let world = crate::map::parse_str(text).unwrap();
+    let rules = Rules { difficulty: Difficulty::Normal, seed };
+    let start = Game::for_company(world, rules, Company::default());
+    let (mut game, mut crowd) = (start.clone(), Crowd::new(Vec::new(), 3, SplitMix64::new(seed)));
+    (0..steps).for_each(|_| crowd.step(&mut [&mut game]));
+    (start, game.stored().unwrap())
+}
+
+/// Plays on for that many steps, if the bytes are a game; draws what its players see.
+fn play_on(start: &Game, bytes: &[u8], steps: usize) -> Result<(), Unrestorable> {
+    let mut game = start.clone().restored(bytes)?;
+    let mut crowd = Crowd::new(Vec::new(), 4, SplitMix64::new(1));
+    for _ in 0..steps {
+        crowd.step(&mut [&mut game]);
+        game.checksum();
+        for id in game.players() {
+            let view = game.seen_by(id).unwrap();
+            view.camera(crate::world::FieldOfView::default());
+            _ = (view.tally(), view.note(), view.keys().count(), view.others_on_map().count());
+        }
+    }
+    game.stored().unwrap();
+    Ok(())
+}
+
+#[test]
+fn every_part_of_the_bytes_is_refused() {
+    let (start, bytes) = stored(EVERYTHING, 3, 900);
+    for length in 0..bytes.len() {
+        let refused = start.clone().restored(&bytes[..length]);
+        assert!(refused.is_err(), "{length} of {} bytes", bytes.len());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn damaged_bytes_are_refused_or_a_game(
+        seed in 0..8_u64,
+        flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..4),
+    ) {
+        let (start, mut bytes) = stored(EVERYTHING, seed, 300 + 100 * seed as usize);
+        let first = first_line("game").len() + 8;
+        for (index, bit) in flips {
+            let place = first + index.index(bytes.len() - first);
+            bytes[place] ^= 1 << bit;
+        }
+        _ = play_on(&start, &bytes, 600);
+    }
+
+    #[test]
+    fn replaced_bytes_are_refused_or_a_game(
+        seed in 0..8_u64,
+        place: prop::sample::Index,
+        new in prop::collection::vec(any::<u8>(), 1..9),
+    ) {
+        let (start, mut bytes) = stored(EVERYTHING, seed, 300 + 100 * seed as usize);
+        let first = first_line("game").len() + 8;
+        let place = first + place.index(bytes.len() - first - new.len());
+        bytes[place..place + new.len()].copy_from_slice(&new);
+        _ = play_on(&start, &bytes, 600);
+    }
+}
