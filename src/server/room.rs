@@ -10,6 +10,7 @@
 //! delay everybody's step.
 
 mod catalog;
+mod checkpoint;
 mod entry;
 mod header;
 mod log;
@@ -67,12 +68,20 @@ impl Room {
     /// The room at the start of the round that `header` describes. `None` if the catalog has no such
     /// level.
     pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
+        let mut room = Self::without_members(catalog, header)?;
+        let header = Arc::clone(&room.header);
+        header.members.iter().for_each(|seat| room.seat(seat));
+        Some(room)
+    }
+
+    /// The room before anybody is in it.
+    fn without_members(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
         let world = catalog.world(&header.level)?.as_ref().clone();
         let rules =
             Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
         let game = Game::for_company(header.mode.prepared(world), rules, header.mode.company());
         let round_seed = rng::hash(header.seed, [u64::from(header.round)]);
-        let mut room = Self {
+        Some(Self {
             catalog: Arc::clone(catalog),
             game: Arc::new(game),
             round: Round::new(header.mode, round_seed),
@@ -86,13 +95,10 @@ impl Room {
             inputs: Vec::new(),
             standings: Arc::from([]),
             header: Arc::new(header),
-        };
-        let header = Arc::clone(&room.header);
-        header.members.iter().for_each(|seat| room.seat(seat));
-        Some(room)
+        })
     }
 
-    /// The header of the next round: the checkpoint after which the log of this one is not needed.
+    /// The header of the next round, after which the log of this one is not needed.
     pub(crate) fn next_header(&self) -> Header {
         let level = &self.header.level;
         let moves_on = self.header.mode.moves_on() && !self.standings.is_empty();
@@ -183,8 +189,10 @@ impl Room {
             Deed::Join { color, name } => self.join(id, *color, name),
             Deed::Leave => self.leave(id),
             Deed::Want { seen, intents } => {
+                // Nobody has seen a step that is yet to come.
+                let seen = (*seen).min(self.game.steps());
                 if let Some(member) = self.member_mut(id) {
-                    (member.seen, member.intents) = (*seen, *intents);
+                    (member.seen, member.intents) = (seen, *intents);
                 }
             }
             Deed::Again => {
@@ -242,15 +250,6 @@ impl Room {
             standings: Arc::clone(&self.standings),
             said: self.said.iter().cloned().collect(),
         }
-    }
-
-    /// A number that differs, almost certainly, between rooms in different states.
-    pub(crate) fn checksum(&self) -> u64 {
-        let members = self.members.iter().flat_map(|member| {
-            let role = self.round.role(member.id) as u64;
-            [u64::from(member.id.0), role, u64::from(member.points)]
-        });
-        rng::hash(self.step, [self.game.checksum()].into_iter().chain(members))
     }
 
     fn join(&mut self, id: MemberId, color: PlayerColor, name: &Line) {

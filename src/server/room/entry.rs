@@ -17,12 +17,23 @@
 
 use std::fmt;
 
+use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
 use crate::game::{Intents, PlayerColor};
 use crate::server::line::Line;
 
 /// The number of a member in a room. It is not used again after they leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct MemberId(pub(in crate::server) u32);
+
+impl Stored for MemberId {
+    fn write(&self, out: &mut Writer) {
+        self.0.write(out);
+    }
+
+    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
+        Ok(Self(Stored::read(input)?))
+    }
+}
 
 impl fmt::Display for MemberId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -80,6 +91,8 @@ pub(crate) enum Emote {
     /// Calls the others here.
     Here,
 }
+
+stored! { enum Emote { 0: Wave, 1: Yes, 2: No, 3: Laugh, 4: Help, 5: Here } }
 
 impl Emote {
     /// All of them, in the order of their keys.

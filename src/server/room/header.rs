@@ -1,4 +1,4 @@
-//! The state of a room at the start of a round: its checkpoint.
+//! The state of a room at the start of a round.
 //!
 //! ```text
 //! cellcaster-room 1

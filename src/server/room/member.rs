@@ -1,6 +1,7 @@
 //! Members of a room.
 
 use super::entry::MemberId;
+use crate::game::stored::stored;
 use crate::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
@@ -22,6 +23,8 @@ pub(crate) struct Member {
     /// The step of the game in the picture that the member saw last.
     pub(super) seen: u64,
 }
+
+stored! { struct Member { id, name, color, player, points, intents, acted, seen } }
 
 impl Member {
     /// What the member wants in the step that begins. The angles of it count in no other step.

@@ -21,6 +21,7 @@ use self::together::Together;
 use super::entry::MemberId;
 use super::member::Member;
 use super::mode::Mode;
+use crate::game::stored::{Unrestorable, check, stored};
 use crate::game::{Game, Outcome, PlayerId};
 use crate::rng::SplitMix64;
 
@@ -40,6 +41,10 @@ pub(crate) enum Phase {
     Playing { ends: u64 },
     /// The standings are shown until `ends`.
     Over { ends: u64 },
+}
+
+stored! {
+    enum Phase { 0: Waiting, 1: Countdown { ends }, 2: Playing { ends }, 3: Over { ends } }
 }
 
 /// What a member is in a round.
@@ -63,6 +68,8 @@ pub(crate) struct Standing {
     /// What counts in the mode, in steps: the time to the exit, as "it", or hidden.
     pub(crate) steps: u64,
 }
+
+stored! { struct Standing { member, points, steps } }
 
 /// What a mode sees of its room.
 #[derive(Clone, Copy)]
@@ -108,6 +115,8 @@ pub(super) struct Round {
     standings: Vec<Standing>,
 }
 
+stored! { part of Round { phase, play, chance, standings } level { mode } }
+
 /// What a mode remembers of a round.
 #[derive(Clone, Debug, PartialEq)]
 enum Play {
@@ -117,6 +126,8 @@ enum Play {
     Tag(Tag),
     Hide(Hide),
 }
+
+stored! { enum Play { 0: Roam, 1: Together(it), 2: Race(it), 3: Tag(it), 4: Hide(it) } }
 
 impl Round {
     pub(super) fn new(mode: Mode, seed: u64) -> Self {
@@ -129,6 +140,18 @@ impl Round {
         };
         let chance = SplitMix64::new(seed);
         Self { mode, phase: Phase::Waiting, play, chance, standings: Vec::new() }
+    }
+
+    /// Refuses what another mode remembers, and what begins after `step`.
+    pub(super) fn check(&self, step: u64) -> Result<(), Unrestorable> {
+        let is_possible = match (&self.play, self.mode) {
+            (Play::Roam, Mode::Roam) | (Play::Together(_), Mode::Together) => true,
+            (Play::Race(race), Mode::Race | Mode::Alone) => race.begins_until(step),
+            (Play::Tag(tag), Mode::Tag) => tag.begins_until(step),
+            (Play::Hide(hide), Mode::Hide) => hide.begins_until(step),
+            _ => false,
+        };
+        check(is_possible, "what is played")
     }
 
     pub(super) fn phase(&self) -> Phase {

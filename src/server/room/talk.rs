@@ -5,7 +5,7 @@ use crate::game::PlayerColor;
 use crate::server::line::Line;
 
 /// How many lines a room remembers.
-const SAID: usize = 8;
+pub(super) const SAID: usize = 8;
 
 impl Room {
     pub(super) fn say(&mut self, id: MemberId, text: String) {

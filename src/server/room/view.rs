@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::entry::{Emote, MemberId};
 use super::header::Header;
 use super::round::{Phase, Role, Standing};
+use crate::game::stored::stored;
 use crate::game::{Game, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
@@ -53,6 +54,8 @@ pub(crate) struct Said {
     pub(crate) by: Option<(Line, PlayerColor)>,
     pub(crate) text: String,
 }
+
+stored! { struct Said { number, by, text } }
 
 impl RoomView {
     /// A member.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Field, Role, Score};
+use crate::game::stored::stored;
 use crate::rng::SplitMix64;
 use crate::server::room::entry::MemberId;
 
@@ -18,6 +19,8 @@ pub(super) struct Hide {
     since: Option<u64>,
 }
 
+stored! { struct Hide { seekers, since } }
+
 impl Hide {
     /// Chooses the first seekers.
     pub(super) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
@@ -27,6 +30,10 @@ impl Hide {
             let chosen = ids.remove(chance.below(ids.len()));
             self.seekers.insert(chosen, None);
         }
+    }
+
+    pub(super) fn begins_until(&self, step: u64) -> bool {
+        self.since.is_none_or(|since| since <= step)
     }
 
     pub(super) fn role(&self, member: MemberId) -> Role {

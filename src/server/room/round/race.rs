@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Field, Role, SECOND, Score};
+use crate::game::stored::stored;
 use crate::server::room::entry::MemberId;
 
 /// How long the others may go on after the first has arrived.
@@ -16,9 +17,15 @@ pub(super) struct Race {
     arrived: BTreeMap<MemberId, u64>,
 }
 
+stored! { struct Race { begun, arrived } }
+
 impl Race {
     pub(super) fn begin(&mut self, step: u64) {
         self.begun = step;
+    }
+
+    pub(super) fn begins_until(&self, step: u64) -> bool {
+        self.begun <= step
     }
 
     pub(super) fn role(&self, member: MemberId) -> Role {

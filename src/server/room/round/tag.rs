@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Field, Role, SECOND, Score};
+use crate::game::stored::stored;
 use crate::rng::SplitMix64;
 use crate::server::room::entry::MemberId;
 
@@ -23,12 +24,18 @@ pub(super) struct Tag {
     times: BTreeMap<MemberId, u64>,
 }
 
+stored! { struct Tag { it, since, before, times } }
+
 impl Tag {
     /// Chooses the first "it".
     pub(super) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
         let ids: Vec<MemberId> = field.ids().collect();
         self.it = ids.get(chance.below(ids.len())).copied();
         self.since = field.step;
+    }
+
+    pub(super) fn begins_until(&self, step: u64) -> bool {
+        self.since <= step
     }
 
     pub(super) fn role(&self, member: MemberId) -> Role {

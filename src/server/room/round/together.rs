@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Field, Role, SECOND, Score};
+use crate::game::stored::stored;
 use crate::server::room::entry::MemberId;
 
 /// How long the others may go on after the first is out.
@@ -14,6 +15,8 @@ pub(super) struct Together {
     out: BTreeSet<MemberId>,
     first_out: Option<u64>,
 }
+
+stored! { struct Together { out, first_out } }
 
 impl Together {
     pub(super) fn role(&self, member: MemberId) -> Role {
