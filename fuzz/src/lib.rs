@@ -3,6 +3,8 @@
 //! Each target is a function `run` of bytes that returns for every input, or panics where something is
 //! wrong. libFuzzer calls it from `fuzz_targets`, and the test `corpus` with the inputs of `corpus`.
 
+#[cfg(fuzzing)]
+pub mod checkpoint;
 pub mod decoder;
 pub mod encoder;
 pub mod maps;

@@ -19,6 +19,12 @@ fn replay(name: &str, target: fn(&[u8])) {
     }
 }
 
+#[cfg(fuzzing)]
+#[test]
+fn checkpoint() {
+    replay("checkpoint", cellcaster_fuzz::checkpoint::run);
+}
+
 #[test]
 fn decoder() {
     replay("decoder", cellcaster_fuzz::decoder::run);

@@ -1,9 +1,12 @@
 //! A room and the sessions of its visitors without connections and tasks, for a fuzz target outside of the
 //! crate. It is compiled with `--cfg fuzzing` only.
 
+mod resumed;
+
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
+pub use self::resumed::{CHECKPOINTS, checkpoint, resume};
 use super::line::Line;
 use super::room::{
     CHAT_COLUMNS, Catalog, Deed, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue, Recorded,

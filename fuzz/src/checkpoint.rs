@@ -1,0 +1,55 @@
+//! Checkpoints of rooms: such as a host has made, with changed bytes, or made of nothing else.
+//!
+//! Whatever the bytes are, they are refused with a sentence, or a room is restored from them that has a
+//! checkpoint itself and is played on for 600 steps.
+
+use cellcaster::server::fuzzing::{CHECKPOINTS, checkpoint, resume};
+
+use crate::bytes::Bytes;
+
+/// The steps of a restored room.
+const STEPS: usize = 600;
+const MOST_CHANGES: usize = 24;
+
+/// Changes a checkpoint, whose number is the first byte, or takes the bytes after its first line as they
+/// are.
+pub fn run(data: &[u8]) {
+    let mut choices = Bytes::new(data);
+    let number = usize::from(choices.byte());
+    let made = checkpoint(number % CHECKPOINTS);
+    let bytes = if number < CHECKPOINTS {
+        changed(made.to_vec(), &mut choices)
+    } else {
+        let line = made.iter().position(|&byte| byte == b'\n').expect("it has a first line");
+        [&made[..=line], choices.take(data.len())].concat()
+    };
+    if let Err(sentence) = resume(&bytes, data.len() as u64, STEPS) {
+        assert!(!sentence.is_empty() && !sentence.contains(char::is_control), "{sentence:?}");
+    }
+    if data.len() == 1 && number < CHECKPOINTS {
+        assert_eq!(resume(made, 0, STEPS), Ok(()), "nothing is changed");
+    }
+}
+
+/// Sets, flips, inserts and removes bytes.
+fn changed(mut bytes: Vec<u8>, choices: &mut Bytes) -> Vec<u8> {
+    for _ in 0..MOST_CHANGES {
+        if choices.is_empty() || bytes.is_empty() {
+            break;
+        }
+        let kind = choices.below(5);
+        let place = choices.double_word() as usize % bytes.len();
+        match kind {
+            0 => bytes[place] = choices.byte(),
+            1 => bytes[place] ^= 1 << choices.below(8),
+            2 => bytes.insert(place, choices.byte()),
+            3 => _ = bytes.remove(place),
+            _ => {
+                let count = choices.below(9).min(bytes.len() - place);
+                let new = choices.take(count);
+                bytes[place..place + new.len()].copy_from_slice(new);
+            }
+        }
+    }
+    bytes
+}
