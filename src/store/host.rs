@@ -24,6 +24,7 @@ mod failure;
 mod memory;
 mod name;
 mod score;
+mod sql;
 mod sqlite;
 mod time;
 mod verify;

@@ -1,13 +1,11 @@
-//! Results in the file.
+//! Results in a database.
 
-use rusqlite::{Connection, OptionalExtension, Result, Row, params};
-
-use super::accounts::{name, seconds, time};
+use super::{Row, Statements, values};
 use crate::game::{Rank, Share, Tally};
 use crate::store::host::score::with_run;
 use crate::store::host::{
-    AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, UnixTime, VerifiedDescent,
-    VerifiedLevel,
+    AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, StoreFailure, UnixTime,
+    VerifiedDescent, VerifiedLevel,
 };
 use crate::store::{Best, Improved, Reached};
 use crate::world::Difficulty;
@@ -17,43 +15,46 @@ const BEST: &str = "steps, treasure, treasure_total, secrets, secrets_total, ala
                     stunned, rank";
 
 pub(super) fn record(
-    connection: &Connection,
+    database: &dyn Statements,
     account: AccountId,
     run: &VerifiedLevel,
     now: UnixTime,
-) -> Result<Improved> {
+) -> Result<Improved, StoreFailure> {
     let board = run.board();
     let (level, difficulty) = (board.level(), board.difficulty().name());
     let sql =
         format!("SELECT {BEST} FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3");
-    let of_board = (account.0, level, difficulty);
-    let known = connection.query_row(&sql, of_board, |row| best(row, 0)).optional()?;
-    let (best, improved) = with_run(known, run);
+    let known = database.row(&sql, values![account, level, difficulty])?;
+    let (best, improved) = with_run(known.map(|row| best(&row, 0)).transpose()?, run);
     if improved.time {
-        write(connection, account, run, best, now)?;
+        write(database, account, run, best, now)?;
     } else if improved.rank {
         let sql =
             "UPDATE results SET rank = ?4 WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
-        connection.execute(sql, (account.0, level, difficulty, best.rank.name()))?;
+        database.execute(sql, values![account, level, difficulty, best.rank.name()])?;
     }
     Ok(improved)
 }
 
 fn write(
-    connection: &Connection,
+    database: &dyn Statements,
     account: AccountId,
     run: &VerifiedLevel,
     best: Best,
     now: UnixTime,
-) -> Result<()> {
+) -> Result<(), StoreFailure> {
     let Best { tally: Tally { steps, treasure, secrets, alarms, deaths, stunned }, rank } = best;
     let sql = format!(
-        "INSERT OR REPLACE INTO results \
-         (account, level, difficulty, {BEST}, verified_at, script) \
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14)"
+        "INSERT INTO results (account, level, difficulty, {BEST}, verified_at, script) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14) \
+         ON CONFLICT (account, level, difficulty) DO UPDATE SET steps = excluded.steps, \
+         treasure = excluded.treasure, treasure_total = excluded.treasure_total, \
+         secrets = excluded.secrets, secrets_total = excluded.secrets_total, \
+         alarms = excluded.alarms, deaths = excluded.deaths, stunned = excluded.stunned, \
+         rank = excluded.rank, verified_at = excluded.verified_at, script = excluded.script"
     );
-    let values = params![
-        account.0,
+    let values = values![
+        account,
         run.board().level(),
         run.board().difficulty().name(),
         steps as i64,
@@ -65,34 +66,35 @@ fn write(
         deaths,
         stunned,
         rank.name(),
-        seconds(now),
+        now,
         run.script(),
     ];
-    connection.execute(&sql, values).map(|_| ())
+    database.execute(&sql, values).map(|_| ())
 }
 
 pub(super) fn begin_daily(
-    connection: &Connection,
+    database: &dyn Statements,
     account: AccountId,
     day: Day,
     now: UnixTime,
-) -> Result<Option<DailyTry>> {
+) -> Result<Option<DailyTry>, StoreFailure> {
     let sql = "INSERT INTO dailies \
                (account, day, floors, treasure, steps, begun_at, verified_at, script) \
-               VALUES (?1, ?2, 0, 0, 0, ?3, ?3, '') ON CONFLICT DO NOTHING";
-    let count = connection.execute(sql, (account.0, day.number(), seconds(now)))?;
+               VALUES (?1, ?2, 0, 0, 0, ?3, ?3, '') ON CONFLICT (account, day) DO NOTHING";
+    let count = database.execute(sql, values![account, day.number(), now])?;
     Ok((count > 0).then_some(DailyTry { account, day }))
 }
 
 pub(super) fn record_daily(
-    connection: &Connection,
+    database: &dyn Statements,
     daily: &DailyTry,
     run: &VerifiedDescent,
     now: UnixTime,
-) -> Result<bool> {
-    let (account, day) = (daily.account.0, daily.day.number());
+) -> Result<bool, StoreFailure> {
+    let (account, day) = (daily.account, daily.day.number());
     let sql = "SELECT floors, treasure, steps FROM dailies WHERE account = ?1 AND day = ?2";
-    let known = connection.query_row(sql, (account, day), |row| reached(row, 0)).optional()?;
+    let known = database.row(sql, values![account, day])?;
+    let known = known.map(|row| reached(&row, 0)).transpose()?;
     let of_day = run.day() == Some(daily.day);
     if !known.is_some_and(|known| of_day && known < run.reached()) {
         return Ok(false);
@@ -100,75 +102,73 @@ pub(super) fn record_daily(
     let Reached { floors, treasure, steps } = run.reached();
     let sql = "UPDATE dailies SET floors = ?3, treasure = ?4, steps = ?5, verified_at = ?6, \
                script = ?7 WHERE account = ?1 AND day = ?2";
-    let values = (account, day, floors, treasure, steps as i64, seconds(now), run.script());
-    connection.execute(sql, values)?;
+    let values = values![account, day, floors, treasure, steps as i64, now, run.script()];
+    database.execute(sql, values)?;
     Ok(true)
 }
 
 pub(super) fn bests(
-    connection: &Connection,
+    database: &dyn Statements,
     account: AccountId,
-) -> Result<Vec<(LevelBoard, Best)>> {
+) -> Result<Vec<(LevelBoard, Best)>, StoreFailure> {
     let sql = format!("SELECT level, difficulty, {BEST} FROM results WHERE account = ?1");
-    let mut statement = connection.prepare(&sql)?;
-    let rows = statement.query_map([account.0], |row| Ok((board(row)?, best(row, 2)?)))?;
-    let rows = rows.collect::<Result<Vec<_>>>()?.into_iter();
-    let mut bests: Vec<_> = rows.filter_map(|(board, best)| Some((board?, best))).collect();
+    let rows = database.rows(&sql, values![account])?;
+    let bests = rows.iter().map(|row| Ok((board(row)?, best(row, 2)?)));
+    let bests = bests.collect::<Result<Vec<_>, StoreFailure>>()?.into_iter();
+    let mut bests: Vec<_> = bests.filter_map(|(board, best)| Some((board?, best))).collect();
     bests.sort_by(|(one, _), (other, _)| one.cmp(other));
     Ok(bests)
 }
 
-pub(super) fn level_boards(connection: &Connection) -> Result<Vec<LevelBoard>> {
-    let mut statement = connection.prepare("SELECT DISTINCT level, difficulty FROM results")?;
-    let known = statement.query_map([], board)?.collect::<Result<Vec<_>>>()?;
+pub(super) fn level_boards(database: &dyn Statements) -> Result<Vec<LevelBoard>, StoreFailure> {
+    let rows = database.rows("SELECT DISTINCT level, difficulty FROM results", &[])?;
+    let known = rows.iter().map(board).collect::<Result<Vec<_>, _>>()?;
     let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
     boards.sort();
     Ok(boards)
 }
 
 pub(super) fn level_scores(
-    connection: &Connection,
+    database: &dyn Statements,
     board: &LevelBoard,
     most: usize,
-) -> Result<Vec<LevelScore>> {
+) -> Result<Vec<LevelScore>, StoreFailure> {
     let sql = format!(
         "SELECT account, name, verified_at, {BEST} FROM results JOIN accounts ON id = account \
          WHERE level = ?1 AND difficulty = ?2 ORDER BY steps, verified_at, account LIMIT ?3"
     );
-    let mut statement = connection.prepare(&sql)?;
-    let values = (board.level(), board.difficulty().name(), limit(most));
-    let scores = statement.query_map(values, |row| {
+    let values = values![board.level(), board.difficulty().name(), limit(most)];
+    let score = |row: &Row| {
         let Best { tally, rank } = best(row, 3)?;
-        let (account, name) = (AccountId(row.get(0)?), name(row, 1)?);
-        Ok(LevelScore { account, name, tally, rank, verified_at: time(row, 2)? })
-    })?;
-    scores.collect()
+        let (account, name, verified_at) = (row.get(0)?, row.get(1)?, row.get(2)?);
+        Ok(LevelScore { account, name, tally, rank, verified_at })
+    };
+    database.rows(&sql, values)?.iter().map(score).collect()
 }
 
 pub(super) fn daily_scores(
-    connection: &Connection,
+    database: &dyn Statements,
     day: Day,
     most: usize,
-) -> Result<Vec<DailyScore>> {
+) -> Result<Vec<DailyScore>, StoreFailure> {
     let sql = "SELECT account, name, verified_at, floors, treasure, steps \
                FROM dailies JOIN accounts ON id = account WHERE day = ?1 AND floors > 0 \
                ORDER BY floors DESC, treasure DESC, steps, verified_at, account LIMIT ?2";
-    let mut statement = connection.prepare(sql)?;
-    let scores = statement.query_map((day.number(), limit(most)), |row| {
-        let (account, name) = (AccountId(row.get(0)?), name(row, 1)?);
-        Ok(DailyScore { account, name, reached: reached(row, 3)?, verified_at: time(row, 2)? })
-    })?;
-    scores.collect()
+    let score = |row: &Row| {
+        let (account, name, verified_at) = (row.get(0)?, row.get(1)?, row.get(2)?);
+        Ok(DailyScore { account, name, reached: reached(row, 3)?, verified_at })
+    };
+    database.rows(sql, values![day.number(), limit(most)])?.iter().map(score).collect()
 }
 
 pub(super) fn script(
-    connection: &Connection,
+    database: &dyn Statements,
     account: AccountId,
     board: &LevelBoard,
-) -> Result<Option<String>> {
+) -> Result<Option<String>, StoreFailure> {
     let sql = "SELECT script FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
-    let values = (account.0, board.level(), board.difficulty().name());
-    connection.query_row(sql, values, |row| row.get(0)).optional()
+    let values = values![account, board.level(), board.difficulty().name()];
+    database.row(sql, values)?.map(|row| row.get(0)).transpose()
 }
 
 fn limit(most: usize) -> i64 {
@@ -176,18 +176,18 @@ fn limit(most: usize) -> i64 {
 }
 
 /// The board in the first two columns; `None` if there is none of that name any more.
-fn board(row: &Row<'_>) -> Result<Option<LevelBoard>> {
+fn board(row: &Row) -> Result<Option<LevelBoard>, StoreFailure> {
     let (level, difficulty): (String, String) = (row.get(0)?, row.get(1)?);
     Ok(Difficulty::named(&difficulty).and_then(|difficulty| LevelBoard::new(&level, difficulty)))
 }
 
 /// The result in the columns [`BEST`] from `first` on.
-fn best(row: &Row<'_>, first: usize) -> Result<Best> {
-    let share = |column: usize| -> Result<Share> {
+fn best(row: &Row, first: usize) -> Result<Best, StoreFailure> {
+    let share = |column: usize| -> Result<Share, StoreFailure> {
         Ok(Share { found: row.get(column)?, total: row.get(column + 1)? })
     };
     let tally = Tally {
-        steps: steps(row, first)?,
+        steps: row.get(first)?,
         treasure: share(first + 1)?,
         secrets: share(first + 3)?,
         alarms: row.get(first + 5)?,
@@ -198,11 +198,7 @@ fn best(row: &Row<'_>, first: usize) -> Result<Best> {
     Ok(Best { tally, rank: Rank::named(&rank).unwrap_or(Rank::Burglar) })
 }
 
-fn reached(row: &Row<'_>, first: usize) -> Result<Reached> {
+fn reached(row: &Row, first: usize) -> Result<Reached, StoreFailure> {
     let (floors, treasure) = (row.get(first)?, row.get(first + 1)?);
-    Ok(Reached { floors, treasure, steps: steps(row, first + 2)? })
-}
-
-fn steps(row: &Row<'_>, column: usize) -> Result<u64> {
-    Ok(row.get::<_, i64>(column)?.max(0) as u64)
+    Ok(Reached { floors, treasure, steps: row.get(first + 2)? })
 }
