@@ -1,7 +1,8 @@
 //! The store of a host: accounts, their names and settings, bans, and results.
 //!
-//! [`HostStore`] is the interface. [`SqliteStore`] keeps everything in one file, `host.db`, and
-//! [`MemoryStore`] in memory, for tests. Both pass the same tests.
+//! [`HostStore`] is the interface. [`SqliteStore`] keeps everything in one file, `host.db`, `PostgresStore`
+//! (feature `cluster`) in a PostgreSQL database that several hosts share, and [`MemoryStore`] in memory, for
+//! tests. All pass the same tests.
 //!
 //! Rules:
 //!
@@ -11,7 +12,7 @@
 //!   changed after [`RENAME_WAIT`]. The name before is held for the account for [`NAME_HELD`].
 //! - **A result is a [`VerifiedRun`]:** one that [`verify`] has replayed. For each account, level and
 //!   difficulty the fastest run is kept with its script, beside the highest rank.
-//! - **Methods block** for as long as the disk does. Callers use a worker thread. A method that has
+//! - **Methods block** for as long as the disk or the network does. Callers use a worker thread. A method that has
 //!   returned `Ok` is on the disk.
 //! - **Time is an argument.** A store has no clock.
 //!
@@ -23,6 +24,8 @@ mod ban;
 mod failure;
 mod memory;
 mod name;
+#[cfg(feature = "cluster")]
+mod postgres;
 mod score;
 mod sql;
 mod sqlite;
@@ -34,6 +37,8 @@ pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{Refusal, StoreFailure};
 pub use memory::MemoryStore;
 pub use name::{Name, NameFault, printable};
+#[cfg(feature = "cluster")]
+pub use postgres::PostgresStore;
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
 pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};

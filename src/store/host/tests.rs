@@ -1,7 +1,12 @@
-//! What every store does, and that both do the same.
+//! What every store does, and that all do the same.
 
 mod alike;
 mod file;
+#[cfg(all(unix, feature = "cluster-tests"))]
+mod postgres;
+#[cfg(all(unix, feature = "cluster-tests"))]
+#[path = "../../../tests/support/postgres_server.rs"]
+mod postgres_server;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -31,12 +36,14 @@ impl Drop for Folder {
 }
 
 /// Runs a test with a store of each kind.
-fn with_both(test: impl Fn(&mut dyn HostStore)) {
+fn with_each(test: impl Fn(&mut dyn HostStore)) {
     test(&mut MemoryStore::default());
     let folder = Folder::new();
     let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
     assert_eq!(sentence, None);
     test(&mut store);
+    #[cfg(all(unix, feature = "cluster-tests"))]
+    test(&mut PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap());
 }
 
 const DAY: u64 = 24 * 60 * 60;
@@ -77,7 +84,7 @@ fn descent(seed: u64, floors: u32, treasure: u32) -> VerifiedDescent {
 
 #[test]
 fn a_key_is_an_account() {
-    with_both(|store| {
+    with_each(|store| {
         assert_eq!(store.account(&key(1)).unwrap(), None);
         let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
         let bob = store.create_account(&key(2), &name("Bob"), at(1)).unwrap();
@@ -94,7 +101,7 @@ fn a_key_is_an_account() {
 
 #[test]
 fn a_name_is_of_one_account() {
-    with_both(|store| {
+    with_each(|store| {
         store.create_account(&key(1), &name("Bill"), at(0)).unwrap();
         for other in ["Bill", "bILL", "BiIl", "bi11"] {
             let refused = store.create_account(&key(2), &name(other), at(0));
@@ -106,7 +113,7 @@ fn a_name_is_of_one_account() {
 
 #[test]
 fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
-    with_both(|store| {
+    with_each(|store| {
         let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
         let next = at(7);
         let early = store.rename(ada.id, &name("Eve"), UnixTime::new(next.seconds() - 1));
@@ -129,7 +136,7 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
 
 #[test]
 fn settings_are_kept_by_account() {
-    with_both(|store| {
+    with_each(|store| {
         let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
         assert_eq!(store.settings(ada).unwrap(), AccountSettings::default());
         let preferences = Preferences {
@@ -158,7 +165,7 @@ fn a_ban_applies_until_it_ends() {
         by: "O'Hara".to_owned(),
         made_at: at(0),
     };
-    with_both(|store| {
+    with_each(|store| {
         let range = || BanTarget::Addresses(AddressPrefix::parse("192.0.2.0/24").unwrap());
         let bans = [
             ban(BanTarget::Key(key(1)), None),
@@ -192,7 +199,7 @@ fn a_ban_applies_until_it_ends() {
 
 #[test]
 fn boards_have_the_best_run_of_each_account() {
-    with_both(|store| {
+    with_each(|store| {
         let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
             store.create_account(&key(number), &name(text), at(0)).unwrap().id
         });
@@ -236,7 +243,7 @@ fn boards_have_the_best_run_of_each_account() {
 #[test]
 fn the_first_try_of_a_day_counts() {
     let day = Day::parse("2026-11-22").unwrap();
-    with_both(|store| {
+    with_each(|store| {
         let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
             store.create_account(&key(number), &name(text), at(0)).unwrap().id
         });

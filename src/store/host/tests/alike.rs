@@ -1,4 +1,4 @@
-//! Both stores answer alike, whatever is asked of them.
+//! All stores answer alike, whatever is asked of them.
 
 use std::fmt::Write;
 
@@ -107,22 +107,38 @@ fn shown(store: &mut dyn HostStore, now: UnixTime) -> String {
     shown + &DAYS.map(|number| format!("{:?}", store.daily_scores(day(number), 2))).concat()
 }
 
+fn answers_as_memory_does(
+    store: &mut dyn HostStore,
+    calls: &[(u64, Call)],
+) -> Result<(), TestCaseError> {
+    let (mut memory, mut day) = (MemoryStore::default(), 0);
+    for (days, call) in calls {
+        day += days;
+        let answers = [answer(store, call, at(day)), answer(&mut memory, call, at(day))];
+        prop_assert_eq!(&answers[0], &answers[1], "{:?}", call);
+    }
+    prop_assert_eq!(shown(store, at(day)), shown(&mut memory, at(day)));
+    Ok(())
+}
+
+#[cfg(all(unix, feature = "cluster-tests"))]
+proptest! {
+    // Each has tables of its own.
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn a_database_answers_as_memory_does(calls in calls()) {
+        let address = postgres_server::PostgresServer::shared().address();
+        answers_as_memory_does(&mut PostgresStore::open(&address).unwrap(), &calls)?;
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn both_stores_answer_alike(calls in calls()) {
-        let (mut file, mut memory) = (SqliteStore::in_memory(), MemoryStore::default());
-        let mut day = 0;
-        for (days, call) in &calls {
-            day += days;
-            let answers = [
-                answer(&mut file, call, at(day)),
-                answer(&mut memory, call, at(day)),
-            ];
-            prop_assert_eq!(&answers[0], &answers[1], "{:?}", call);
-        }
-        prop_assert_eq!(shown(&mut file, at(day)), shown(&mut memory, at(day)));
+    fn a_file_answers_as_memory_does(calls in calls()) {
+        answers_as_memory_does(&mut SqliteStore::in_memory(), &calls)?;
     }
 
     #[test]

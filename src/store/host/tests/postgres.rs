@@ -1,0 +1,187 @@
+//! A database that several hosts share: its tables, and hosts that change the same.
+
+mod faults;
+
+use std::sync::Barrier;
+use std::thread;
+
+use super::postgres_server::PostgresServer;
+use super::*;
+
+fn open(address: &str) -> PostgresStore {
+    PostgresStore::open(address).unwrap()
+}
+
+/// The name of the schema of an address.
+fn place(address: &str) -> &str {
+    address.rsplit_once("%3D").unwrap().1
+}
+
+/// Runs `act` in several hosts at once, with a store each, and returns their answers.
+fn at_once<T: Send>(
+    address: &str,
+    hosts: u8,
+    act: impl Fn(u8, &mut PostgresStore) -> T + Sync,
+) -> Vec<T> {
+    let barrier = Barrier::new(hosts.into());
+    thread::scope(|scope| {
+        let threads: Vec<_> = (1..=hosts)
+            .map(|number| {
+                let (act, barrier) = (&act, &barrier);
+                scope.spawn(move || {
+                    let mut store = open(address);
+                    barrier.wait();
+                    act(number, &mut store)
+                })
+            })
+            .collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    })
+}
+
+#[test]
+fn hosts_that_start_at_once_make_the_tables_once() {
+    let server = PostgresServer::shared();
+    for _ in 0..4 {
+        let address = server.address();
+        assert!(PostgresStore::open_to_read(&address).unwrap().is_none());
+        at_once(&address, 6, |_, _| ());
+        let sql = format!("SELECT version FROM {}.cellcaster", place(&address));
+        let version: usize = server.sql(&sql).trim().parse().unwrap();
+        assert!(version > 0);
+    }
+}
+
+#[test]
+fn what_one_host_keeps_another_one_shows() {
+    let address = PostgresServer::shared().address();
+    let (mut one, mut other) = (open(&address), open(&address));
+    let ada = one.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    one.record(ada.id, &run("cellar", 9, Rank::Ghost), at(0)).unwrap();
+    assert_eq!(other.account(&key(1)).unwrap(), Some(ada.clone()));
+    assert_eq!(other.level_scores(&board("cellar"), 9).unwrap()[0].name, ada.name);
+    drop((one, other));
+    let mut reader = PostgresStore::open_to_read(&address).unwrap().unwrap();
+    assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));
+    let refused = reader.create_account(&key(2), &name("Bob"), at(0));
+    assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
+    assert!(reader.note_visit(AccountId(1), at(1)).is_err());
+}
+
+#[test]
+fn of_hosts_that_create_a_name_at_once_one_does() {
+    let address = PostgresServer::shared().address();
+    for round in 0..12_u8 {
+        let text = format!("Bill-{round}");
+        // They look alike.
+        let names =
+            [text.clone(), text.to_lowercase(), text.replace('B', "b"), text.replace("ll", "Il")];
+        let answers = at_once(&address, 4, |host, store| {
+            let name = name(&names[usize::from(host) - 1]);
+            store.create_account(&key(round * 8 + host), &name, at(0))
+        });
+        assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
+        let refused = answers.iter().filter(|answer| **answer == Err(Refusal::NameTaken));
+        assert_eq!(refused.count(), 3, "{answers:?}");
+    }
+}
+
+#[test]
+fn of_hosts_that_create_the_account_of_a_key_at_once_one_does() {
+    let address = PostgresServer::shared().address();
+    for round in 0..12_u8 {
+        let answers = at_once(&address, 4, |host, store| {
+            store.create_account(&key(round), &name(&format!("n-{round}-{host}")), at(0))
+        });
+        assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
+        let refused = answers.iter().filter(|answer| **answer == Err(Refusal::KeyKnown));
+        assert_eq!(refused.count(), 3, "{answers:?}");
+    }
+}
+
+#[test]
+fn of_accounts_that_take_a_name_at_once_one_has_it() {
+    let address = PostgresServer::shared().address();
+    let mut store = open(&address);
+    let accounts: Vec<_> = (1..=4_u8)
+        .map(|number| {
+            store.create_account(&key(number), &name(&format!("n-{number}")), at(0)).unwrap().id
+        })
+        .collect();
+    for round in 1..=8_u8 {
+        let (wanted, now) = (format!("Eve-{round}"), at(u64::from(round) * 7));
+        let answers = at_once(&address, 4, |host, store| {
+            store.rename(accounts[usize::from(host) - 1], &name(&wanted), now)
+        });
+        let winners: Vec<_> = answers.iter().flatten().collect();
+        assert_eq!(winners.len(), 1, "{answers:?}");
+        assert_eq!(store.account_named(&name(&wanted)).unwrap().as_ref(), Some(winners[0]));
+        let taken = answers.iter().filter(|answer| **answer == Err(Refusal::NameTaken));
+        assert_eq!(taken.count(), 3, "{answers:?}");
+    }
+}
+
+#[test]
+fn results_that_come_at_once_leave_the_best() {
+    let address = PostgresServer::shared().address();
+    let ada = open(&address).create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
+    at_once(&address, 4, |host, store| {
+        for round in 0..10_u64 {
+            let steps = 1000 - round * 10 - u64::from(host);
+            store.record(ada, &run("cellar", steps, Rank::Thief), at(0)).unwrap();
+        }
+    });
+    let scores = open(&address).level_scores(&board("cellar"), 9).unwrap();
+    assert_eq!(scores.iter().map(|it| it.tally.steps).collect::<Vec<_>>(), [1000 - 90 - 4]);
+    let script = open(&address).script(ada, &board("cellar")).unwrap();
+    assert_eq!(script.as_deref(), Some(run("cellar", 906, Rank::Thief).script()));
+}
+
+#[test]
+fn the_first_try_of_a_day_counts_on_all_hosts() {
+    let address = PostgresServer::shared().address();
+    let ada = open(&address).create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
+    for number in 20_261_101..=20_261_110 {
+        let day = Day::from_number(number).unwrap();
+        let tries = at_once(&address, 4, |_, store| store.begin_daily(ada, day, at(0)).unwrap());
+        assert_eq!(tries.iter().flatten().count(), 1, "{tries:?}");
+    }
+}
+
+#[test]
+fn databases_of_others_are_left_alone() {
+    let server = PostgresServer::shared();
+    let refused = |address: &str| {
+        let sentence = PostgresStore::open(address).unwrap_err().to_string();
+        let to_read = PostgresStore::open_to_read(address).unwrap_err().to_string();
+        assert_eq!((to_read.as_str(), sentence.lines().count()), (sentence.as_str(), 1));
+        sentence
+    };
+    let newer = server.address();
+    open(&newer).create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    server.sql(&format!("UPDATE {}.cellcaster SET version = 99", place(&newer)));
+    assert!(refused(&newer).contains("has version 99, which a newer Cellcaster wrote"));
+    let accounts = format!("SELECT count(*) FROM {}.accounts", place(&newer));
+    assert_eq!(server.sql(&accounts).trim(), "1");
+    let other = server.address();
+    server.sql(&format!("CREATE TABLE {}.accounts (id BIGINT)", place(&other)));
+    assert!(refused(&other).contains("belongs to another program"));
+    server.sql("CREATE DATABASE latin ENCODING 'LATIN1' TEMPLATE template0 LOCALE 'C'");
+    let latin = newer.replace("/postgres?", "/latin?");
+    assert!(refused(&latin).contains("encoding UTF8"));
+}
+
+#[test]
+fn an_older_database_is_renewed_by_a_host_and_not_by_a_reader() {
+    let server = PostgresServer::shared();
+    let address = server.address();
+    server.sql(&format!(
+        "SET search_path TO {}; CREATE TABLE cellcaster (version BIGINT NOT NULL); \
+         INSERT INTO cellcaster VALUES (0)",
+        place(&address)
+    ));
+    let sentence = PostgresStore::open_to_read(&address).unwrap_err().to_string();
+    assert!(sentence.contains("older version 0: start a host once"), "{sentence}");
+    open(&address);
+    assert!(PostgresStore::open_to_read(&address).unwrap().is_some());
+}

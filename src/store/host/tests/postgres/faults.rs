@@ -1,0 +1,134 @@
+//! A server that ends, stops, or drops a connection.
+
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use super::*;
+
+/// The most time of a call, with what a machine under load adds.
+const MOST: Duration = Duration::from_secs(8);
+
+/// Asks until the store answers again.
+fn until_it_answers(store: &mut PostgresStore) {
+    let start = Instant::now();
+    while let Err(failure) = store.level_boards() {
+        assert!(start.elapsed() < Duration::from_secs(30), "{failure}");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn what_was_acknowledged_survives_a_crash_amid_writes() {
+    let server = PostgresServer::start();
+    let address = server.address();
+    let mut store = open(&address);
+    let mut acknowledged = Vec::new();
+    for round in 0..3_u8 {
+        let (sender, receiver) = mpsc::channel();
+        thread::scope(|scope| {
+            let writer = scope.spawn(|| {
+                let sender = sender;
+                for number in 0..=250_u8 {
+                    let key = AccountKey::new([round, number].repeat(16).try_into().unwrap());
+                    let name = name(&format!("n-{round}-{number}-x"));
+                    match store.create_account(&key, &name, at(0)) {
+                        Ok(account) => _ = sender.send(account),
+                        Err(failure) => return Some(failure),
+                    }
+                }
+                None
+            });
+            // Amid them: after some, while others are under way.
+            for _ in 0..20 {
+                acknowledged.push(receiver.recv().unwrap());
+            }
+            server.crash();
+            let failure = writer.join().unwrap();
+            assert!(matches!(failure, Some(Refusal::Failed(_))), "{failure:?}");
+            acknowledged.extend(receiver);
+        });
+        server.restart();
+        until_it_answers(&mut store);
+        for account in &acknowledged {
+            assert_eq!(store.account(&account.key).unwrap().as_ref(), Some(account));
+        }
+    }
+    assert!(acknowledged.len() >= 60);
+}
+
+#[test]
+fn without_a_server_each_call_fails_at_once_and_later_none() {
+    let server = PostgresServer::start();
+    let address = server.address_over_tcp();
+    let mut store = open(&address);
+    let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    server.crash();
+    for _ in 0..3 {
+        let start = Instant::now();
+        let failure = store.account(&key(1)).unwrap_err().to_string();
+        assert!(failure.contains("can't be used") && failure.lines().count() == 1, "{failure}");
+        assert!(store.create_account(&key(2), &name("Bob"), at(0)).is_err());
+        assert!(start.elapsed() < MOST, "{:?}", start.elapsed());
+    }
+    assert!(PostgresStore::open(&address).is_err());
+    server.restart();
+    until_it_answers(&mut store);
+    assert_eq!(store.account(&key(1)).unwrap(), Some(ada));
+    store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
+}
+
+#[test]
+fn a_server_that_does_not_answer_holds_no_call_for_long() {
+    let server = PostgresServer::start();
+    let address = server.address_over_tcp();
+    let mut store = open(&address);
+    server.pause();
+    for _ in 0..2 {
+        let start = Instant::now();
+        let failure = store.note_visit(AccountId(1), at(1)).unwrap_err().to_string();
+        assert!(failure.ends_with("no answer in time"), "{failure}");
+        let changed = store.create_account(&key(1), &name("Ada"), at(0));
+        assert!(matches!(changed, Err(Refusal::Failed(_))), "{changed:?}");
+        assert!(start.elapsed() < 2 * MOST, "{:?}", start.elapsed());
+        thread::sleep(Duration::from_millis(1100));
+    }
+    server.resume();
+    until_it_answers(&mut store);
+    store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
+}
+
+#[test]
+fn a_connection_that_was_dropped_is_made_again_unnoticed() {
+    let server = PostgresServer::start();
+    let mut store = open(&server.address());
+    for number in 1..=4_u8 {
+        let drop_all = "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity \
+                        WHERE application_name = 'cellcaster'";
+        assert_eq!(server.sql(drop_all).trim(), "1");
+        if number % 2 == 0 {
+            assert_eq!(store.account(&key(9)).unwrap(), None);
+        } else {
+            store.create_account(&key(number), &name(&format!("n-{number}")), at(0)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_password_is_needed_and_never_shown() {
+    let server = PostgresServer::start();
+    server.sql("CREATE ROLE guarded LOGIN PASSWORD 'ge@heim'");
+    server.sql("CREATE SCHEMA AUTHORIZATION guarded");
+    let address = |password: &str| {
+        format!("postgres://guarded:{password}@127.0.0.1:{}/postgres", server.port())
+    };
+    let mut store = open(&address("ge%40heim"));
+    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    assert!(!format!("{store:?}").contains("heim"));
+    for password in ["geheim", "ge@heim", "", "ge%40heim%00"] {
+        let sentence = PostgresStore::open(&address(password)).unwrap_err().to_string();
+        assert!(!sentence.contains("heim") && sentence.lines().count() == 1, "{sentence}");
+    }
+    server.crash();
+    let sentence = store.account(&key(1)).unwrap_err().to_string();
+    assert!(sentence.contains("127.0.0.1") && !sentence.contains("heim"), "{sentence}");
+}

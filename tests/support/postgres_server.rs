@@ -1,0 +1,189 @@
+//! A PostgreSQL of a test's own, which ends with the test.
+//!
+//! The programs are those of Debian's package `postgresql`, or on the path. PostgreSQL refuses to run as root;
+//! for root, it runs as the user `postgres`.
+
+use std::fs;
+use std::net::TcpListener;
+use std::os::unix::fs::chown;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Long enough for a machine under load.
+const PATIENCE: Duration = Duration::from_secs(60);
+const USER: &str = "postgres";
+
+/// A server, its folder, and a process that ends and removes both when this one ends.
+pub(crate) struct PostgresServer {
+    folder: PathBuf,
+    port: u16,
+    /// It ends when its input does, so it is kept.
+    _watcher: Child,
+}
+
+impl PostgresServer {
+    /// The server of this process, for tests that do nothing to it. It does not wait for the disk.
+    pub(crate) fn shared() -> &'static Self {
+        static SHARED: OnceLock<PostgresServer> = OnceLock::new();
+        SHARED.get_or_init(|| Self::with("fsync = off"))
+    }
+
+    /// A server of a test's own.
+    pub(crate) fn start() -> Self {
+        Self::with("")
+    }
+
+    fn with(settings: &str) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir()
+            .join(format!("cellcaster-postgres-{}-{number}", std::process::id()));
+        fs::create_dir(&folder).unwrap();
+        if let Some((user, group)) = owner() {
+            chown(&folder, Some(user), Some(group)).unwrap();
+        }
+        let path = folder.display();
+        let script = format!(
+            "trap '' INT TERM HUP; read _; kill -9 $(head -n 1 {path}/data/postmaster.pid); sleep 1; \
+             rm -rf {path}"
+        );
+        let mut watcher = command("sh", &folder);
+        watcher.arg("-c").arg(script).stdin(Stdio::piped()).stdout(Stdio::null());
+        let _watcher = watcher.stderr(Stdio::null()).spawn().unwrap();
+        let data = folder.join("data");
+        let mut initdb = command("initdb", &folder);
+        run(initdb
+            .args(["-U", USER, "-A", "trust", "-E", "UTF8", "--locale=C", "--no-sync", "-D"])
+            .arg(&data));
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let configuration = format!(
+            "listen_addresses = '127.0.0.1'\nport = {port}\nunix_socket_directories = '{path}'\n\
+             max_connections = 60\n{settings}\n"
+        );
+        fs::write(data.join("postgresql.auto.conf"), configuration).unwrap();
+        let access = data.join("pg_hba.conf");
+        let trusting = fs::read_to_string(&access).unwrap();
+        fs::write(&access, format!("host all guarded 127.0.0.1/32 scram-sha-256\n{trusting}"))
+            .unwrap();
+        let server = Self { folder, port, _watcher };
+        server.restart();
+        server
+    }
+
+    /// The port at 127.0.0.1. The role `guarded` needs its password there.
+    pub(crate) fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// The address of an empty place in the server, over its socket.
+    pub(crate) fn address(&self) -> String {
+        let socket = self.folder.display().to_string().replace('/', "%2F");
+        let Self { port, .. } = self;
+        format!("postgres://{USER}@{socket}:{port}/postgres?{}", self.new_place())
+    }
+
+    /// The same over TCP.
+    pub(crate) fn address_over_tcp(&self) -> String {
+        let Self { port, .. } = self;
+        format!("postgres://{USER}@127.0.0.1:{port}/postgres?{}", self.new_place())
+    }
+
+    /// A new schema, as an option of an address.
+    fn new_place(&self) -> String {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("place_{}", COUNT.fetch_add(1, Ordering::Relaxed));
+        self.sql(&format!("CREATE SCHEMA {name}"));
+        format!("options=-c%20search_path%3D{name}")
+    }
+
+    /// What `psql` says to statements.
+    pub(crate) fn sql(&self, sql: &str) -> String {
+        let mut psql = command("psql", &self.folder);
+        psql.args(["-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1", "-U", USER, "-d", "postgres"]);
+        psql.arg("-h").arg(&self.folder).arg("-p").arg(self.port.to_string());
+        run(psql.arg("-c").arg(sql))
+    }
+
+    /// Kills all processes of the server, as a crash does.
+    pub(crate) fn crash(&self) {
+        self.signal("-KILL");
+        let postmaster = self.postmaster();
+        let start = Instant::now();
+        while Path::new("/proc").join(&postmaster).exists() {
+            assert!(start.elapsed() < PATIENCE, "the server does not end");
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Starts the server again, and waits until it answers.
+    pub(crate) fn restart(&self) {
+        let mut start = command("pg_ctl", &self.folder);
+        start.arg("start").arg("-w").args(["-t", &PATIENCE.as_secs().to_string()]);
+        start.arg("-D").arg(self.folder.join("data")).arg("-l").arg(self.folder.join("log"));
+        // Its output is also that of the server, which does not end.
+        let status = start.stdout(Stdio::null()).stderr(Stdio::null()).status();
+        assert!(status.unwrap().success(), "the server does not start");
+    }
+
+    /// Makes the server neither answer nor close its connections, until [`resume`](Self::resume).
+    pub(crate) fn pause(&self) {
+        self.signal("-STOP");
+    }
+
+    /// Ends a pause.
+    pub(crate) fn resume(&self) {
+        self.signal("-CONT");
+    }
+
+    /// Sends a signal to all processes of the server.
+    fn signal(&self, signal: &str) {
+        let postmaster = self.postmaster();
+        let children = format!("/proc/{postmaster}/task/{postmaster}/children");
+        let children = fs::read_to_string(children).unwrap_or_default();
+        let processes = [postmaster.as_str()].into_iter().chain(children.split_whitespace());
+        // One may have ended meanwhile.
+        _ = Command::new("kill").arg(signal).args(processes).stderr(Stdio::null()).status();
+    }
+
+    fn postmaster(&self) -> String {
+        let file = fs::read_to_string(self.folder.join("data/postmaster.pid")).unwrap();
+        file.lines().next().unwrap().to_owned()
+    }
+}
+
+/// The user and the group for a server that root starts.
+fn owner() -> Option<(u32, u32)> {
+    let id = |arguments: &[&str]| -> u32 {
+        run(Command::new("id").args(arguments)).trim().parse().unwrap()
+    };
+    (id(&["-u"]) == 0).then(|| (id(&["-u", USER]), id(&["-g", USER])))
+}
+
+/// A program of PostgreSQL or of the system, as the user that it runs as.
+fn command(program: &str, folder: &Path) -> Command {
+    let installed = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
+    let mut installed = installed.map(|version| version.path().join("bin").join(program));
+    let path = installed.find(|path| path.exists()).unwrap_or(program.into());
+    let mut command = match owner() {
+        None => Command::new(path),
+        Some(_) => {
+            let mut command = Command::new("setpriv");
+            command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]).arg(path);
+            command
+        }
+    };
+    command.current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+/// Runs a program that must succeed, and returns what it wrote.
+fn run(command: &mut Command) -> String {
+    let output = command.stderr(Stdio::piped()).output().expect("PostgreSQL is installed");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?} failed: {said}");
+    String::from_utf8(output.stdout).unwrap()
+}
