@@ -16,6 +16,8 @@ mod completions;
 mod config;
 mod data_folder;
 mod error;
+#[cfg(feature = "serve")]
+mod host_store;
 mod level;
 mod levels;
 mod manual;

@@ -10,8 +10,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::Error;
-use super::arguments::{Admin, AdminAction};
+use super::arguments::{Admin, AdminAction, Database};
 use super::data_folder::data_folder;
+use super::host_store;
 use crate::server::{AdminFailure, AdminReply, AdminRequest, RoomRow, Target, VisitorRow, ask};
 use table::{table, time};
 
@@ -20,11 +21,12 @@ pub(super) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let text = act(&folder, options.action)?;
+    let database = host_store::chosen(options.store, &folder);
+    let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 
-fn act(folder: &Path, action: AdminAction) -> Result<String, Error> {
+fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String, Error> {
     match action {
         AdminAction::Who => request(folder, &AdminRequest::Who),
         AdminAction::Rooms => request(folder, &AdminRequest::Rooms),
@@ -37,9 +39,11 @@ fn act(folder: &Path, action: AdminAction) -> Result<String, Error> {
             Ok(format!("the server ends; it waits for {}\n", visitors(count)))
         }
         AdminAction::Kick { target, reason } => kick(folder, target, reason),
-        AdminAction::Ban { target, time, reason } => bans::ban(folder, &target, time, &reason),
-        AdminAction::Unban { target } => bans::unban(folder, &target),
-        AdminAction::Bans => bans::list(folder),
+        AdminAction::Ban { target, time, reason } => {
+            bans::ban(folder, database, &target, time, &reason)
+        }
+        AdminAction::Unban { target } => bans::unban(database, &target),
+        AdminAction::Bans => bans::list(database),
     }
 }
 

@@ -12,6 +12,8 @@ mod bench;
 mod cast;
 mod check;
 mod config;
+#[cfg(feature = "serve")]
+mod database;
 mod generated;
 mod help;
 mod levels;
@@ -42,6 +44,8 @@ pub(super) use self::admin::{Admin, AdminAction};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
 pub(super) use self::config::Config;
+#[cfg(feature = "serve")]
+pub(super) use self::database::Database;
 pub(super) use self::generated::Generated;
 pub(super) use self::levels::{Levels, LevelsFormat};
 pub(super) use self::map::STANDARD_INPUT;

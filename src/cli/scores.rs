@@ -8,11 +8,10 @@ use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Scores, ScoresFormat};
 use super::data_folder::data_folder;
+use super::host_store::{self, failed};
 use super::{Error, verify};
 use crate::game::STEPS_PER_SECOND;
-use crate::store::host::{
-    DailyScore, Day, HostStore, LevelBoard, LevelScore, SqliteStore, StoreFailure,
-};
+use crate::store::host::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 
 /// The entries of a board that are listed.
 const MOST: usize = 100;
@@ -37,19 +36,16 @@ pub(super) fn run(options: &Scores) -> Result<(), Error> {
 }
 
 fn find(folder: &Path, options: &Scores) -> Result<Boards, Error> {
-    let failed = |failure: StoreFailure| Error::machine(failure.to_string());
-    let Some(mut store) = SqliteStore::open_to_read(folder).map_err(failed)? else {
-        let folder = folder.display().to_string().replace(char::is_control, "?");
-        return Err(Error::mistake(format!("there is no store of a host in {folder}")));
-    };
+    let database = host_store::chosen(options.store.clone(), folder);
+    let mut store = host_store::open_to_read(&database)?;
     match options.day {
         Some(day) => Ok(Boards::Day(day, store.daily_scores(day, MOST).map_err(failed)?)),
-        None => levels(&mut store, options).map(Boards::Levels).map_err(failed),
+        None => levels(&mut *store, options).map(Boards::Levels).map_err(failed),
     }
 }
 
 fn levels(
-    store: &mut SqliteStore,
+    store: &mut dyn HostStore,
     options: &Scores,
 ) -> Result<Vec<(LevelBoard, Vec<LevelScore>)>, StoreFailure> {
     let is_of =

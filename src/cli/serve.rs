@@ -15,12 +15,13 @@ use tokio::task::JoinSet;
 use super::Error;
 use super::arguments::Serve;
 use super::data_folder::data_folder;
+use super::host_store;
 #[cfg(unix)]
 use crate::server::{AdminSocket, Operator};
 use crate::server::{
     Config, GameHost, HostKey, LogFormat, Logging, Metrics, Server, Visitors, events, respond,
 };
-use crate::store::host::SqliteStore;
+use crate::store::host::HostStore;
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
@@ -31,8 +32,9 @@ pub(super) fn run(options: Serve) -> Result<(), Error> {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
+    let database = host_store::chosen(options.store, &folder);
     let (store, damage) =
-        SqliteStore::open(&folder).map_err(|failure| Error::mistake(failure.to_string()))?;
+        host_store::open(&database).map_err(|failure| Error::mistake(failure.to_string()))?;
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
@@ -49,7 +51,7 @@ async fn serve(
     key: HostKey,
     folder: &Path,
     format: LogFormat,
-    store: SqliteStore,
+    store: Box<dyn HostStore>,
 ) -> Result<(), Error> {
     let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
     let signals = Signals::catch().map_err(no_signals)?;
@@ -69,7 +71,7 @@ async fn serve(
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
-    let (store, maps) = (Box::new(store), configuration.maps());
+    let maps = configuration.maps();
     let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
     let host =
         GameHost::with_maps(server.config(), Arc::clone(&metrics), visitors.clone(), store, maps);

@@ -6,19 +6,22 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::table::{table, time as shown_time};
 use super::{Error, visitors};
+use crate::cli::arguments::Database;
+use crate::cli::host_store::{self, failed};
 use crate::server::{AdminFailure, AdminReply, AdminRequest, Target, ask};
-use crate::store::host::{Ban, BanTarget, HostStore, SqliteStore, StoreFailure, UnixTime};
+use crate::store::host::{Ban, BanTarget, HostStore, UnixTime};
 
 /// Bans, and ends the sessions to which the ban applies.
 pub(super) fn ban(
     folder: &Path,
+    database: &Database,
     target: &Target,
     time: Option<Duration>,
     reason: &str,
 ) -> Result<String, Error> {
-    let mut store = open(folder)?;
+    let mut store = open(database)?;
     let now = now();
-    let targets = targets(&mut store, target)?;
+    let targets = targets(&mut *store, target)?;
     for target in &targets {
         let ban = Ban {
             target: target.clone(),
@@ -41,10 +44,10 @@ pub(super) fn ban(
 }
 
 /// Ends the bans of a target.
-pub(super) fn unban(folder: &Path, target: &Target) -> Result<String, Error> {
-    let mut store = open(folder)?;
+pub(super) fn unban(database: &Database, target: &Target) -> Result<String, Error> {
+    let mut store = open(database)?;
     let mut ended = Vec::new();
-    for target in targets(&mut store, target)? {
+    for target in targets(&mut *store, target)? {
         if store.unban(&target).map_err(failed)? {
             ended.push(shown(&target));
         }
@@ -56,10 +59,8 @@ pub(super) fn unban(folder: &Path, target: &Target) -> Result<String, Error> {
 }
 
 /// The bans in force.
-pub(super) fn list(folder: &Path) -> Result<String, Error> {
-    let Some(mut store) = SqliteStore::open_to_read(folder).map_err(failed)? else {
-        return Err(no_store(folder));
-    };
+pub(super) fn list(database: &Database) -> Result<String, Error> {
+    let mut store = host_store::open_to_read(database)?;
     let now = now();
     let bans = store.bans(now).map_err(failed)?;
     if bans.is_empty() {
@@ -80,7 +81,7 @@ pub(super) fn list(folder: &Path) -> Result<String, Error> {
 }
 
 /// The target of a ban; for a name, also the key of the account that has it.
-fn targets(store: &mut SqliteStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
+fn targets(store: &mut dyn HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
     let target = target.to_ban().map_err(Error::mistake)?;
     let account = match &target {
         BanTarget::Name(name) => store.account_named(name).map_err(failed)?,
@@ -109,21 +110,10 @@ fn remove(folder: &Path, targets: &[BanTarget], reason: &str) -> Result<Option<u
     Ok(Some(removed))
 }
 
-fn open(folder: &Path) -> Result<SqliteStore, Error> {
-    if SqliteStore::open_to_read(folder).map_err(failed)?.is_none() {
-        return Err(no_store(folder));
-    }
-    SqliteStore::open(folder).map(|(store, _)| store).map_err(failed)
-}
-
-fn no_store(folder: &Path) -> Error {
-    let folder = folder.display().to_string().replace(char::is_control, "?");
-    Error::mistake(format!("there is no store of a host in {folder}"))
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "`map_err` passes a value")]
-fn failed(failure: StoreFailure) -> Error {
-    Error::machine(failure.to_string())
+/// The store, which is not made if there is none.
+fn open(database: &Database) -> Result<Box<dyn HostStore>, Error> {
+    host_store::open_to_read(database)?;
+    host_store::open(database).map(|(store, _)| store).map_err(failed)
 }
 
 /// Who bans: the user who calls, also through `sudo`.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{ArgAction, ArgMatches, ValueHint};
 
+use super::database::{Database, STORE};
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Error, Positional, Subcommand};
 use crate::server::Target;
@@ -15,6 +16,7 @@ use crate::store::host::{AccountKey, AddressPrefix};
 pub(in crate::cli) struct Admin {
     /// The data folder of the host; that of the program if `None`.
     pub(in crate::cli) data: Option<PathBuf>,
+    pub(in crate::cli) store: Option<Database>,
     pub(in crate::cli) action: AdminAction,
 }
 
@@ -56,7 +58,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
                cellcaster admin ban --address 203.0.113.0/24 --for 7d\n\
                cellcaster admin --data /var/lib/cellcaster bans",
     positionals: &[ACTION, WORD],
-    options: &[&DATA, &KEY, &ADDRESS, &FOR, &REASON],
+    options: &[&DATA, &STORE, &KEY, &ADDRESS, &FOR, &REASON],
     surplus: "takes an action and one name or text",
     missing: "admin takes one of who, rooms, kick, ban, unban, bans, say, drain, as in \"cellcaster admin who\"",
     read,
@@ -161,7 +163,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         reason: REASON.of(&mut matches),
     };
     let action = words.action()?;
-    Ok(Command::Admin(Admin { data: DATA.of(&mut matches), action }))
+    Ok(Command::Admin(Admin { data: DATA.of(&mut matches), store: STORE.of(&mut matches), action }))
 }
 
 /// The arguments of an action.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::database::{Database, STORE};
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Error, Subcommand};
 use crate::store::host::Day;
@@ -12,6 +13,7 @@ use crate::world::Difficulty;
 pub(in crate::cli) struct Scores {
     /// The folder of the host's store; that of the program if `None`.
     pub(in crate::cli) data: Option<PathBuf>,
+    pub(in crate::cli) store: Option<Database>,
     /// The level; all if `None`.
     pub(in crate::cli) level: Option<String>,
     /// The difficulty; all if `None`.
@@ -39,12 +41,13 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
                cellcaster scores --level cellar --difficulty hard\n\
                cellcaster scores --day 2026-11-22 --format json",
     positionals: &[],
-    options: &[&DATA, &LEVEL, &DIFFICULTY, &DAY, &FORMAT],
+    options: &[&DATA, &STORE, &LEVEL, &DIFFICULTY, &DAY, &FORMAT],
     surplus: "takes no map",
     missing: "",
     read: |mut matches| {
         let scores = Scores {
             data: DATA.of(&mut matches),
+            store: STORE.of(&mut matches),
             level: LEVEL.of(&mut matches),
             difficulty: DIFFICULTY.of(&mut matches),
             day: DAY.of(&mut matches),

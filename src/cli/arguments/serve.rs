@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 
+use super::database::{Database, STORE};
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Subcommand};
 use crate::server::LogFormat;
@@ -14,6 +15,7 @@ use crate::server::LogFormat;
 pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
+    pub(in crate::cli) store: Option<Database>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) maps: Option<PathBuf>,
     pub(in crate::cli) record_room: Option<PathBuf>,
@@ -31,7 +33,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &STORE, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -41,6 +43,7 @@ fn read(mut matches: ArgMatches) -> Serve {
     Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
+        store: STORE.of(&mut matches),
         config: CONFIG.of(&mut matches),
         maps: MAPS.of(&mut matches),
         record_room: RECORD_ROOM.of(&mut matches),

@@ -32,6 +32,12 @@ impl StoreFailure {
     pub(super) fn new(sentence: impl Into<String>) -> Self {
         Self(sentence.into())
     }
+
+    /// That of a program without PostgreSQL.
+    #[cfg(not(feature = "cluster"))]
+    pub(crate) fn no_postgres() -> Self {
+        Self::new("this Cellcaster can't use PostgreSQL: it was built without the feature cluster")
+    }
 }
 
 impl fmt::Display for StoreFailure {

@@ -1,0 +1,77 @@
+//! The store of a host: in a folder, or at an address.
+//!
+//! `--store` names it, or `$CELLCASTER_STORE`, or else it is in the folder for data. The variable keeps a
+//! password out of the list of processes.
+
+use std::env;
+use std::path::Path;
+
+use super::Error;
+use super::arguments::Database;
+#[cfg(feature = "cluster")]
+use crate::store::host::PostgresStore;
+use crate::store::host::{HostStore, SqliteStore, StoreFailure};
+
+/// The store that `option` names, or the environment, or else the one in `folder`.
+pub(super) fn chosen(option: Option<Database>, folder: &Path) -> Database {
+    let named = env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty()).map(Database::of);
+    option.or(named).unwrap_or_else(|| Database::Folder(folder.to_owned()))
+}
+
+/// Opens a store, which is made if there is none. Returns also a sentence if it was damaged.
+pub(super) fn open(
+    database: &Database,
+) -> Result<(Box<dyn HostStore>, Option<String>), StoreFailure> {
+    match database {
+        Database::Folder(folder) => {
+            let (store, sentence) = SqliteStore::open(folder)?;
+            Ok((Box::new(store), sentence))
+        }
+        Database::Address(address) => Ok((open_address(address)?, None)),
+    }
+}
+
+/// Opens a store that exists, to read from it.
+pub(super) fn open_to_read(database: &Database) -> Result<Box<dyn HostStore>, Error> {
+    let store: Option<Box<dyn HostStore>> = match database {
+        Database::Folder(folder) => {
+            SqliteStore::open_to_read(folder).map_err(failed)?.map(|store| Box::new(store) as _)
+        }
+        Database::Address(address) => open_address_to_read(address).map_err(failed)?,
+    };
+    store.ok_or_else(|| match database {
+        Database::Folder(folder) => {
+            let folder = folder.display().to_string().replace(char::is_control, "?");
+            Error::mistake(format!("there is no store of a host in {folder}"))
+        }
+        Database::Address(_) => {
+            Error::mistake("there is no store of a host in this database: start the host once")
+        }
+    })
+}
+
+/// The error of a store that exists.
+#[expect(clippy::needless_pass_by_value, reason = "`map_err` passes a value")]
+pub(super) fn failed(failure: StoreFailure) -> Error {
+    Error::machine(failure.to_string())
+}
+
+#[cfg(feature = "cluster")]
+fn open_address(address: &str) -> Result<Box<dyn HostStore>, StoreFailure> {
+    Ok(Box::new(PostgresStore::open(address)?))
+}
+
+#[cfg(feature = "cluster")]
+fn open_address_to_read(address: &str) -> Result<Option<Box<dyn HostStore>>, StoreFailure> {
+    Ok(PostgresStore::open_to_read(address)?.map(|store| Box::new(store) as _))
+}
+
+#[cfg(not(feature = "cluster"))]
+fn open_address<T>(_: &str) -> Result<T, StoreFailure> {
+    Err(StoreFailure::no_postgres())
+}
+
+#[cfg(not(feature = "cluster"))]
+fn open_address_to_read<T>(_: &str) -> Result<T, StoreFailure> {
+    Err(StoreFailure::no_postgres())
+}
