@@ -22,10 +22,12 @@
 mod account;
 mod ban;
 mod failure;
+mod lease;
 mod memory;
 mod name;
 #[cfg(feature = "cluster")]
 mod postgres;
+mod presence;
 mod score;
 mod sql;
 mod sqlite;
@@ -35,10 +37,12 @@ mod verify;
 pub use account::{Account, AccountId, AccountKey, AccountSettings};
 pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{Refusal, StoreFailure};
+pub use lease::{Lease, Leases, MemoryLeases};
 pub use memory::MemoryStore;
 pub use name::{Name, NameFault, printable};
 #[cfg(feature = "cluster")]
 pub use postgres::PostgresStore;
+pub use presence::{HostNotice, HostRow, MemoryPresence, Presence, Visit, VisitId, Visitor};
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
 pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};

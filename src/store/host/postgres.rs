@@ -4,7 +4,7 @@
 //!
 //! - **A change is on the server's disk when its method returns**, unless the server is told not to wait for
 //!   its disk (`fsync = off`).
-//! - **Transactions are serializable.** One that meets another is run again, after a random wait that doubles,
+//! - **Transactions are serializable**, but for those whose statements each do all by themselves. One that meets another is run again, after a random wait that doubles,
 //!   up to [`MOST_CONFLICTS`] times.
 //! - **Each call ends after [`PATIENCE`]**, whatever the server or the network does. The limit is kept on both
 //!   sides: by a timer here, and by `statement_timeout` there.
@@ -22,6 +22,8 @@
 //! its calls wait without limit for a server that has stopped without closing its connections.
 
 mod address;
+mod lease;
+mod presence;
 mod schema;
 mod session;
 mod value;
@@ -100,11 +102,22 @@ impl Database for PostgresDatabase {
 enum Kind {
     /// A statement by itself, which may as well run twice.
     Repeatable,
+    /// A transaction whose statements each see what others have kept until then.
+    Committed,
     /// A transaction as if there were no other.
     Serializable,
 }
 
 impl PostgresDatabase {
+    /// Runs a transaction whose statements each see what others have kept until then, and wait for those who
+    /// change the same row.
+    fn change_rows<T>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
+    ) -> Result<T, StoreFailure> {
+        self.run(Kind::Committed, act)
+    }
+
     fn run<T, E: From<StoreFailure>>(
         &mut self,
         kind: Kind,
@@ -117,7 +130,8 @@ impl PostgresDatabase {
             let call = self.link.call(left)?;
             let result = match kind {
                 Kind::Repeatable => act(&call),
-                Kind::Serializable => in_transaction(&call, &mut act),
+                Kind::Committed => in_transaction(&call, "READ COMMITTED", &mut act),
+                Kind::Serializable => in_transaction(&call, "SERIALIZABLE", &mut act),
             };
             let failure = match result {
                 Ok(value) => return Ok(value),
@@ -163,9 +177,10 @@ impl PostgresDatabase {
 
 fn in_transaction<T, E: From<StoreFailure>>(
     call: &Call<'_>,
+    isolation: &str,
     act: &mut impl FnMut(&dyn Statements) -> Result<T, E>,
 ) -> Result<T, E> {
-    call.batch("BEGIN ISOLATION LEVEL SERIALIZABLE")?;
+    call.batch(&format!("BEGIN ISOLATION LEVEL {isolation}"))?;
     let value = act(call)?;
     call.commit()?;
     Ok(value)

@@ -2,11 +2,13 @@
 
 mod alike;
 mod file;
+mod lease;
 #[cfg(all(unix, feature = "cluster-tests"))]
 mod postgres;
 #[cfg(all(unix, feature = "cluster-tests"))]
 #[path = "../../../tests/support/postgres_server.rs"]
 mod postgres_server;
+mod presence;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};

@@ -8,7 +8,7 @@ use crate::store::host::sql::{Statements, values};
 /// The lock under which tables are made, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST];
+pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND];
 
 /// As those of SQLite. A text is compared by its bytes, whatever the language of the database.
 const FIRST: &str = r#"
@@ -82,6 +82,35 @@ CREATE TABLE dailies (
     PRIMARY KEY (account, day)
 );
 CREATE INDEX dailies_of_day ON dailies (day);
+"#;
+
+/// What hosts tell each other.
+const SECOND: &str = r#"
+CREATE TABLE leases (
+    room TEXT COLLATE "C" NOT NULL PRIMARY KEY,
+    host TEXT,
+    epoch BIGINT NOT NULL,
+    time_ms BIGINT NOT NULL,
+    ends_at TIMESTAMPTZ NOT NULL
+);
+
+CREATE TABLE visits (
+    id BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+    host TEXT COLLATE "C" NOT NULL,
+    visitor TEXT COLLATE "C" NOT NULL,
+    began_at TIMESTAMPTZ NOT NULL,
+    ends_at TIMESTAMPTZ NOT NULL
+);
+CREATE INDEX visits_of_visitor ON visits (visitor);
+CREATE INDEX visits_of_host ON visits (host);
+
+CREATE TABLE hosts (
+    name TEXT COLLATE "C" NOT NULL PRIMARY KEY,
+    version TEXT NOT NULL,
+    address TEXT NOT NULL,
+    load BIGINT NOT NULL,
+    seen_at TIMESTAMPTZ NOT NULL
+);
 "#;
 
 /// What a database has.

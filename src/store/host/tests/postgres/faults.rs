@@ -124,7 +124,7 @@ fn a_password_is_needed_and_never_shown() {
     let mut store = open(&address("ge%40heim"));
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     assert!(!format!("{store:?}").contains("heim"));
-    for password in ["geheim", "ge@heim", "", "ge%40heim%00"] {
+    for password in ["geheim", "ge@heim", "", "ge%40heim1"] {
         let sentence = PostgresStore::open(&address(password)).unwrap_err().to_string();
         assert!(!sentence.contains("heim") && sentence.lines().count() == 1, "{sentence}");
     }

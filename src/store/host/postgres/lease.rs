@@ -1,0 +1,59 @@
+//! Leases in the database, each a row that stays.
+//!
+//! What takes a lease, renews it or ends it is one statement, which the database runs on the newest version of
+//! the row, so that it needs no serializable transaction and meets no other one. The time is `clock_timestamp()`, the database's own at that moment; `now()` is that at which a transaction began.
+
+use std::time::Duration;
+
+use super::PostgresStore;
+use crate::store::host::sql::{Database, Row, values};
+use crate::store::host::{Lease, Leases, StoreFailure};
+
+impl Leases for PostgresStore {
+    fn acquire(
+        &mut self,
+        room: &str,
+        host: &str,
+        time: Duration,
+    ) -> Result<Option<Lease>, StoreFailure> {
+        let sql = "INSERT INTO leases AS kept (room, host, epoch, time_ms, ends_at) VALUES \
+                   (?1, ?2, 1, ?3::bigint, clock_timestamp() + ?3::bigint * interval '1 millisecond') \
+                   ON CONFLICT (room) DO UPDATE SET host = excluded.host, epoch = kept.epoch + 1, \
+                   time_ms = excluded.time_ms, \
+                   ends_at = clock_timestamp() + excluded.time_ms * interval '1 millisecond' \
+                   WHERE kept.host IS NULL OR kept.ends_at <= clock_timestamp() \
+                   RETURNING room, host, epoch, time_ms";
+        let values = values![room, host, milliseconds(time)];
+        self.database.change_rows(|it| it.row(sql, values)?.as_ref().map(lease).transpose())
+    }
+
+    fn renew(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
+        let sql = "UPDATE leases SET ends_at = clock_timestamp() + time_ms * interval '1 millisecond' \
+                   WHERE room = ?1 AND host = ?2 AND epoch = ?3";
+        let values = values![lease.room(), lease.host(), lease.epoch() as i64];
+        self.database.once(|it| Ok(it.execute(sql, values)? > 0))
+    }
+
+    fn release(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
+        let sql = "UPDATE leases SET host = NULL WHERE room = ?1 AND host = ?2 AND epoch = ?3";
+        let values = values![lease.room(), lease.host(), lease.epoch() as i64];
+        self.database.change_rows(|it| Ok(it.execute(sql, values)? > 0))
+    }
+
+    fn holder(&mut self, room: &str) -> Result<Option<Lease>, StoreFailure> {
+        let sql = "SELECT room, host, epoch, time_ms FROM leases \
+                   WHERE room = ?1 AND host IS NOT NULL AND ends_at > clock_timestamp()";
+        self.database.once(|it| it.row(sql, values![room])?.as_ref().map(lease).transpose())
+    }
+}
+
+fn lease(row: &Row) -> Result<Lease, StoreFailure> {
+    let time = Duration::from_millis(row.get(3)?);
+    Ok(Lease { room: row.get(0)?, host: row.get(1)?, epoch: row.get(2)?, time })
+}
+
+/// A time in milliseconds, of at most a year.
+pub(super) fn milliseconds(time: Duration) -> i64 {
+    const LONGEST: Duration = Duration::from_secs(365 * 24 * 60 * 60);
+    time.min(LONGEST).as_millis() as i64
+}

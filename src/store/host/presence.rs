@@ -1,0 +1,138 @@
+//! Hosts of a cluster, and who is on each of them.
+//!
+//! Rules:
+//!
+//! - **A visit counts on all hosts**, so that a limit of visits by a key or by addresses holds for all hosts
+//!   together.
+//! - **A visit of a host that has ended without a word stops to count** when its time is over. A host renews all
+//!   of its visits at once. It may be late: then those that it renews count again, and for a while there may
+//!   be more than the limit.
+//! - **A host is there while it announces itself.**
+//! - **Time is that of the store**, as with [leases](super::Leases).
+//!
+//! A counter for each visitor was refused: what a host has counted when it is killed would be there for ever.
+
+mod memory;
+
+use std::fmt;
+use std::time::Duration;
+
+pub use memory::MemoryPresence;
+
+use super::{AccountKey, AddressPrefix, StoreFailure};
+
+/// By what the visits of somebody are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Visitor {
+    /// The account of a key.
+    Key(AccountKey),
+    /// The addresses of a network.
+    Addresses(AddressPrefix),
+}
+
+/// The number of a visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct VisitId(pub(super) i64);
+
+/// A visit that counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Visit {
+    /// Its number.
+    pub id: VisitId,
+    /// The host.
+    pub host: String,
+    /// Who is there.
+    pub visitor: Visitor,
+    /// How long already.
+    pub since: Duration,
+}
+
+/// What a host says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HostNotice {
+    /// Its name, which no other host of the cluster has.
+    pub name: String,
+    /// The version of its program.
+    pub version: String,
+    /// Where players reach it.
+    pub address: String,
+    /// Its visitors.
+    pub load: u32,
+}
+
+/// A host that is there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HostRow {
+    /// What it said last.
+    pub notice: HostNotice,
+    /// How long ago that was.
+    pub ago: Duration,
+}
+
+/// Where visits and hosts are kept.
+pub trait Presence: Send {
+    /// Begins a visit that counts for `time`; `None` if `most` of the visitor count already.
+    ///
+    /// # Errors
+    /// Where the store can't be asked; so for each method.
+    fn begin_visit(
+        &mut self,
+        host: &str,
+        visitor: &Visitor,
+        most: u32,
+        time: Duration,
+    ) -> Result<Option<VisitId>, StoreFailure>;
+
+    /// Makes all visits of a host count for `time` from now on, and returns their number.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn renew_visits(&mut self, host: &str, time: Duration) -> Result<u64, StoreFailure>;
+
+    /// Ends a visit.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure>;
+
+    /// Ends all visits of a host, which begins or ends, and returns their number.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn end_visits(&mut self, host: &str) -> Result<u64, StoreFailure>;
+
+    /// The visits that count, in the order in which they were begun.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn visits(&mut self) -> Result<Vec<Visit>, StoreFailure>;
+
+    /// Keeps what a host says of itself, in place of what it said before.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure>;
+
+    /// The hosts that have announced themselves in the last `time`, by name.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure>;
+}
+
+impl Visitor {
+    /// The visitor of a text that it was written as.
+    pub fn parse(text: &str) -> Option<Self> {
+        let of_key = AccountKey::parse(text).map(Self::Key);
+        of_key.or_else(|| AddressPrefix::parse(text).map(Self::Addresses))
+    }
+}
+
+impl fmt::Display for Visitor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => key.fmt(f),
+            Self::Addresses(prefix) => prefix.fmt(f),
+        }
+    }
+}
