@@ -11,6 +11,9 @@ mod ops;
 mod play;
 #[path = "../support/player.rs"]
 mod player;
+#[cfg(feature = "cluster-tests")]
+#[path = "../support/postgres_server.rs"]
+mod postgres_server;
 mod scores;
 mod soak;
 #[path = "../support/mod.rs"]

@@ -2,6 +2,7 @@
 //!
 //! The programs are those of Debian's package `postgresql`, or on the path. PostgreSQL refuses to run as root;
 //! for root, it runs as the user `postgres`.
+#![allow(dead_code, reason = "every test program uses its own share of this")]
 
 use std::fs;
 use std::net::TcpListener;

@@ -7,4 +7,6 @@ mod maps;
 mod metrics;
 mod results;
 mod running;
+#[cfg(feature = "cluster-tests")]
+mod shared_store;
 mod signals;
