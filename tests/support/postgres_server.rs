@@ -30,15 +30,30 @@ impl PostgresServer {
     /// The server of this process, for tests that do nothing to it. It does not wait for the disk.
     pub(crate) fn shared() -> &'static Self {
         static SHARED: OnceLock<PostgresServer> = OnceLock::new();
-        SHARED.get_or_init(|| Self::with("fsync = off"))
+        SHARED.get_or_init(|| Self::with("fsync = off", "", |_| {}))
     }
 
     /// A server of a test's own.
     pub(crate) fn start() -> Self {
-        Self::with("")
+        Self::with("", "", |_| {})
     }
 
-    fn with(settings: &str) -> Self {
+    /// A server of a test's own that takes encrypted connections alone, with a [certificate](Self::certificate)
+    /// of its own for 127.0.0.1.
+    pub(crate) fn start_encrypted() -> Self {
+        let access = "hostnossl all all 127.0.0.1/32 reject\n";
+        Self::with("ssl = on", access, |data| {
+            let mut openssl = command("openssl", data);
+            openssl.args(["req", "-x509", "-newkey", "ec", "-pkeyopt"]);
+            openssl.args(["ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]);
+            openssl.args(["-subj", "/CN=cellcaster", "-addext", "subjectAltName=IP:127.0.0.1"]);
+            openssl.args(["-addext", "basicConstraints=critical,CA:FALSE"]);
+            run(openssl.args(["-keyout", "server.key", "-out", "server.crt"]));
+        })
+    }
+
+    /// A server with more settings and rules of access, after something was done in its folder for data.
+    fn with(settings: &str, rules: &str, prepare: impl FnOnce(&Path)) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let folder = std::env::temp_dir()
@@ -68,8 +83,12 @@ impl PostgresServer {
         fs::write(data.join("postgresql.auto.conf"), configuration).unwrap();
         let access = data.join("pg_hba.conf");
         let trusting = fs::read_to_string(&access).unwrap();
-        fs::write(&access, format!("host all guarded 127.0.0.1/32 scram-sha-256\n{trusting}"))
-            .unwrap();
+        fs::write(
+            &access,
+            format!("{rules}host all guarded 127.0.0.1/32 scram-sha-256\n{trusting}"),
+        )
+        .unwrap();
+        prepare(&data);
         let server = Self { folder, port, _watcher };
         server.restart();
         server
@@ -99,6 +118,11 @@ impl PostgresServer {
         let name = format!("place_{}", COUNT.fetch_add(1, Ordering::Relaxed));
         self.sql(&format!("CREATE SCHEMA {name}"));
         format!("options=-c%20search_path%3D{name}")
+    }
+
+    /// The certificate of an encrypted server.
+    pub(crate) fn certificate(&self) -> PathBuf {
+        self.folder.join("data/server.crt")
     }
 
     /// What `psql` says to statements.

@@ -26,6 +26,7 @@ mod lease;
 mod presence;
 mod schema;
 mod session;
+mod tls;
 mod value;
 
 use std::fmt;
@@ -39,6 +40,8 @@ use super::sql::{Database, SqlStore, Statements};
 
 /// The most time that a call takes.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// The most time that the end of a failed transaction takes.
+const UNDO_PATIENCE: Duration = Duration::from_secs(1);
 /// The most time that making the tables takes, also while another host makes them.
 const SCHEMA_PATIENCE: Duration = Duration::from_secs(30);
 /// The time after a connection that could not be made in which none is tried.
@@ -168,7 +171,8 @@ impl PostgresDatabase {
         if kind == Kind::Repeatable {
             return;
         }
-        let is_undone = self.link.call(PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
+        let is_undone =
+            self.link.call(UNDO_PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
         if !is_undone {
             self.link.close();
         }

@@ -58,6 +58,25 @@ fn hosts_share_accounts_and_bans_and_outlive_their_database() {
 }
 
 #[test]
+fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
+    let (server, stranger) = (PostgresServer::start_encrypted(), PostgresServer::start_encrypted());
+    let store = server.address_over_tcp();
+    let asked = |store: &str, trusted: &PostgresServer| {
+        let mut command = cellcaster(&["scores", "--store", store]);
+        command.env("CELLCASTER_DATA", folder()).env("SSL_CERT_FILE", trusted.certificate());
+        String::from_utf8(command.output().unwrap().stderr).unwrap()
+    };
+    let encrypted = format!("{store}&sslmode=require");
+    let said = asked(&encrypted, &server);
+    assert!(said.contains("there is no store of a host in this database"), "{said}");
+    let said = asked(&encrypted, &stranger);
+    assert!(said.contains("certificate") && said.lines().count() == 1, "{said}");
+    // The server takes no other.
+    let said = asked(&store, &server);
+    assert!(said.contains("no encryption") && said.lines().count() == 1, "{said}");
+}
+
+#[test]
 fn a_store_that_is_not_there_is_told_in_a_sentence_without_its_password() {
     let store = "postgres://ada:geheim@127.0.0.1:1/games";
     for arguments in [&["serve"][..], &["scores"], &["admin", "bans"], &["admin", "ban", "ada"]] {

@@ -6,11 +6,14 @@ use tokio_postgres::Config;
 use tokio_postgres::config::{Host, SslMode};
 
 use super::PATIENCE;
+use super::tls::Tls;
 use crate::store::host::StoreFailure;
 
 /// How a database is reached.
 pub(super) struct Address {
     pub(super) config: Config,
+    /// `None` where the connection is not encrypted.
+    pub(super) tls: Option<Tls>,
     /// The server and the database, to name in sentences.
     pub(super) shown: String,
 }
@@ -24,11 +27,11 @@ impl Address {
         if [&host, &database].iter().any(|part| part.contains(['@', ':'])) {
             return Err(no_address());
         }
-        if config.get_ssl_mode() == SslMode::Require {
-            return Err(StoreFailure::new(
-                "sslmode=require is not supported: take a network of your own, a tunnel or a socket on \
-                 this machine, and sslmode=disable",
-            ));
+        let is_local = host.starts_with('/');
+        let is_encrypted = config.get_ssl_mode() == SslMode::Require && !is_local;
+        let tls = is_encrypted.then(Tls::of_system).transpose()?;
+        if tls.is_none() {
+            config.ssl_mode(SslMode::Disable);
         }
         if config.get_application_name().is_none() {
             config.application_name("cellcaster");
@@ -36,7 +39,7 @@ impl Address {
         config.connect_timeout(PATIENCE).tcp_user_timeout(PATIENCE);
         config.keepalives_idle(Duration::from_secs(30));
         let shown = format!("the database {database:?} at {host}");
-        Ok(Self { config, shown })
+        Ok(Self { config, tls, shown })
     }
 }
 
@@ -84,7 +87,6 @@ mod tests {
             "postgres://ada:ge@heim@host/games",
             "postgres://ada:ge@heim/heim@host/games",
             "postgres://ada:ge?heim=1@host/games?geheim=2",
-            "postgres://ada:geheim@host/games?sslmode=require",
             "postgres://ada:geheim@host/games?sslmode=geheim",
         ] {
             let Err(failure) = Address::parse(text) else { panic!("{text}") };

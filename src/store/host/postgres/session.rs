@@ -114,9 +114,16 @@ impl Link {
         };
         let (config, read) = (&self.address.config, if self.is_to_read { "on" } else { "off" });
         let connect = async {
-            let (client, connection) = config.connect(NoTls).await?;
-            // Its end is noticed by the next call.
-            tokio::spawn(connection);
+            // The end of the connection is noticed by the next call.
+            let client = if let Some(tls) = &self.address.tls {
+                let (client, connection) = config.connect(tls.clone()).await?;
+                tokio::spawn(connection);
+                client
+            } else {
+                let (client, connection) = config.connect(NoTls).await?;
+                tokio::spawn(connection);
+                client
+            };
             let patience = PATIENCE.as_millis();
             let settings = format!(
                 "{SETTINGS}; SET statement_timeout = {patience}; \
@@ -233,7 +240,7 @@ fn fault(error: &Error) -> Fault {
         &SqlState::UNIQUE_VIOLATION,
     ];
     // The connection is lost, or the server ends, begins, or is not one that takes changes any more.
-    const LOSSES: [&str; 2] = ["08", "57P"];
+    const LOSSES: [&str; 3] = ["08", "57P", "25006"];
     match error.code() {
         Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
         Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => {
