@@ -21,7 +21,8 @@ pub(super) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let database = host_store::chosen(options.store, &folder);
+    let database = host_store::named(options.store);
+    let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }

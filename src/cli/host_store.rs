@@ -4,7 +4,6 @@
 //! password out of the list of processes.
 
 use std::env;
-use std::path::Path;
 
 use super::Error;
 use super::arguments::Database;
@@ -12,10 +11,10 @@ use super::arguments::Database;
 use crate::store::host::PostgresStore;
 use crate::store::host::{HostStore, SqliteStore, StoreFailure};
 
-/// The store that `option` names, or the environment, or else the one in `folder`.
-pub(super) fn chosen(option: Option<Database>, folder: &Path) -> Database {
-    let named = env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty()).map(Database::of);
-    option.or(named).unwrap_or_else(|| Database::Folder(folder.to_owned()))
+/// The store that `option` names, or else the environment.
+pub(super) fn named(option: Option<Database>) -> Option<Database> {
+    let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
+    option.or_else(|| word().map(Database::of))
 }
 
 /// Opens a store, which is made if there is none. Returns also a sentence if it was damaged.

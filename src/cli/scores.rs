@@ -1,12 +1,11 @@
 //! `cellcaster scores`: the leaderboards of a host.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use super::arguments::{Scores, ScoresFormat};
+use super::arguments::{Database, Scores, ScoresFormat};
 use super::data_folder::data_folder;
 use super::host_store::{self, failed};
 use super::{Error, verify};
@@ -24,10 +23,11 @@ enum Boards {
 
 /// Writes the boards that `options` request.
 pub(super) fn run(options: &Scores) -> Result<(), Error> {
-    let folder = options.data.clone().or_else(data_folder).ok_or_else(|| {
+    let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
+    let database = host_store::named(options.store.clone()).or_else(folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let boards = find(&folder, options)?;
+    let boards = find(&database, options)?;
     let text = match options.format {
         ScoresFormat::Table => table(&boards),
         ScoresFormat::Json => format!("{}\n", object(&boards)),
@@ -35,9 +35,8 @@ pub(super) fn run(options: &Scores) -> Result<(), Error> {
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
 }
 
-fn find(folder: &Path, options: &Scores) -> Result<Boards, Error> {
-    let database = host_store::chosen(options.store.clone(), folder);
-    let mut store = host_store::open_to_read(&database)?;
+fn find(database: &Database, options: &Scores) -> Result<Boards, Error> {
+    let mut store = host_store::open_to_read(database)?;
     match options.day {
         Some(day) => Ok(Boards::Day(day, store.daily_scores(day, MOST).map_err(failed)?)),
         None => levels(&mut *store, options).map(Boards::Levels).map_err(failed),

@@ -13,7 +13,7 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
 use super::Error;
-use super::arguments::Serve;
+use super::arguments::{Database, Serve};
 use super::data_folder::data_folder;
 use super::host_store;
 #[cfg(unix)]
@@ -32,7 +32,8 @@ pub(super) fn run(options: Serve) -> Result<(), Error> {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::chosen(options.store, &folder);
+    let database = host_store::named(options.store);
+    let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let (store, damage) =
         host_store::open(&database).map_err(|failure| Error::mistake(failure.to_string()))?;
     if let Some(sentence) = damage {

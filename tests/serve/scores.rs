@@ -98,3 +98,36 @@ fn what_is_wrong_is_told_in_a_sentence() {
         assert!(sentence.contains(said) && sentence.lines().count() == 1, "{sentence}");
     }
 }
+
+#[cfg(not(feature = "cluster"))]
+#[test]
+fn without_the_feature_a_database_is_refused_in_a_sentence() {
+    let store = "postgres://ada:geheim@127.0.0.1/games";
+    for command in ["scores", "serve"] {
+        let mut command = cellcaster(&[command, "--store", store]);
+        let output = command.env("CELLCASTER_DATA", scratch("refused")).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && output.stdout.is_empty(), "{output:?}");
+        assert!(
+            error.contains("without the feature cluster") && error.lines().count() == 1,
+            "{error}"
+        );
+        assert!(!error.contains("geheim"), "{error}");
+    }
+}
+
+#[test]
+fn a_folder_can_be_named_as_the_store() {
+    let folder = scratch("named");
+    let _host = filled(&folder);
+    let elsewhere = scratch("unnamed");
+    let table = written(&folder, &[]);
+    assert_eq!(written(&elsewhere, &["--store", folder.to_str().unwrap()]), table);
+    let mut command = cellcaster(&["scores"]);
+    command.env("CELLCASTER_DATA", &elsewhere).env("CELLCASTER_STORE", &folder);
+    assert_eq!(String::from_utf8(command.output().unwrap().stdout).unwrap(), table);
+    let output = scores(&folder, &["--store", ""]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("--store takes a folder, or an address"), "{error}");
+}

@@ -15,7 +15,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Long enough for a machine under load.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 const USER: &str = "postgres";
 
 /// A server, its folder, and a process that ends and removes both when this one ends.
@@ -67,9 +67,9 @@ impl PostgresServer {
             "trap '' INT TERM HUP; read _; kill -9 $(head -n 1 {path}/data/postmaster.pid); sleep 1; \
              rm -rf {path}"
         );
-        let mut watcher = command("sh", &folder);
-        watcher.arg("-c").arg(script).stdin(Stdio::piped()).stdout(Stdio::null());
-        let _watcher = watcher.stderr(Stdio::null()).spawn().unwrap();
+        let mut watching = command("sh", &folder);
+        watching.arg("-c").arg(script).stdin(Stdio::piped()).stdout(Stdio::null());
+        let watcher = watching.stderr(Stdio::null()).spawn().unwrap();
         let data = folder.join("data");
         let mut initdb = command("initdb", &folder);
         run(initdb
@@ -89,7 +89,7 @@ impl PostgresServer {
         )
         .unwrap();
         prepare(&data);
-        let server = Self { folder, port, _watcher };
+        let server = Self { folder, port, _watcher: watcher };
         server.restart();
         server
     }
@@ -193,13 +193,12 @@ fn command(program: &str, folder: &Path) -> Command {
     let installed = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
     let mut installed = installed.map(|version| version.path().join("bin").join(program));
     let path = installed.find(|path| path.exists()).unwrap_or(program.into());
-    let mut command = match owner() {
-        None => Command::new(path),
-        Some(_) => {
-            let mut command = Command::new("setpriv");
-            command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]).arg(path);
-            command
-        }
+    let mut command = if owner().is_some() {
+        let mut command = Command::new("setpriv");
+        command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]).arg(path);
+        command
+    } else {
+        Command::new(path)
     };
     command.current_dir(folder).stdin(Stdio::null());
     command

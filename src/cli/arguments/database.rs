@@ -20,7 +20,7 @@ pub(super) const STORE: ValueOption<Database> = ValueOption {
     value: "URL|FOLDER",
     takes: "a folder, or an address such as postgres://user@host/database",
     help: "Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share \
-           [default: $CELLCASTER_STORE, or the folder of --data]",
+           [default: $CELLCASTER_STORE, or the folder for data]",
     default: "",
     choices: &[],
     read: Parser::Optional(|text| {

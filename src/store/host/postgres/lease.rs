@@ -54,6 +54,6 @@ fn lease(row: &Row) -> Result<Lease, StoreFailure> {
 
 /// A time in milliseconds, of at most a year.
 pub(super) fn milliseconds(time: Duration) -> i64 {
-    const LONGEST: Duration = Duration::from_secs(365 * 24 * 60 * 60);
+    const LONGEST: Duration = Duration::from_hours(365 * 24);
     time.min(LONGEST).as_millis() as i64
 }

@@ -88,7 +88,7 @@ impl Presence for MemoryPresence {
             id: *id,
             host: kept.host.clone(),
             visitor: kept.visitor,
-            since: self.now - kept.began,
+            since: self.now.saturating_sub(kept.began),
         };
         Ok(counting.map(visit).collect())
     }
@@ -99,10 +99,10 @@ impl Presence for MemoryPresence {
     }
 
     fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure> {
-        let rows = self
-            .hosts
-            .values()
-            .map(|(notice, at)| HostRow { notice: notice.clone(), ago: self.now - *at });
+        let rows = self.hosts.values().map(|(notice, at)| HostRow {
+            notice: notice.clone(),
+            ago: self.now.saturating_sub(*at),
+        });
         Ok(rows.filter(|row| row.ago < time).collect())
     }
 }

@@ -31,8 +31,7 @@ pub(super) fn named(
          ORDER BY name <> ?3, id LIMIT 1"
     );
     let keys = name.keys();
-    let keys = [keys.first(), keys.last()].map(|key| key.cloned());
-    let [first, last] = keys;
+    let [first, last] = [keys.first(), keys.last()].map(Option::<&String>::cloned);
     database.row(&sql, values![first, last, name.as_str()])?.as_ref().map(account).transpose()
 }
 

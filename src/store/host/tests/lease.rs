@@ -32,7 +32,7 @@ fn with_each(test: impl Fn(&mut dyn Timed)) {
 }
 
 /// Longer than any test asks for it.
-const LONG: Duration = Duration::from_secs(60);
+const LONG: Duration = Duration::from_mins(1);
 const SHORT: Duration = Duration::from_millis(200);
 
 #[test]

@@ -29,7 +29,7 @@ fn with_each(test: impl Fn(&mut dyn Timed)) {
     test(&mut PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap());
 }
 
-const LONG: Duration = Duration::from_secs(60);
+const LONG: Duration = Duration::from_mins(1);
 const SHORT: Duration = Duration::from_millis(200);
 
 fn ada() -> Visitor {
