@@ -127,7 +127,7 @@ impl PostgresDatabase {
         mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E> {
         let deadline = Instant::now() + PATIENCE;
-        let (mut conflicts, mut losses) = (0, 0);
+        let (mut conflicts, mut was_lost) = (0, false);
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             let call = self.link.call(left)?;
@@ -141,14 +141,11 @@ impl PostgresDatabase {
                 Err(failure) => failure,
             };
             match call.fault() {
-                Some(Fault::Lost { is_undone }) => {
+                Some(Fault::Lost) if !was_lost => {
                     self.link.close();
-                    losses += 1;
-                    if losses > 1 || !(is_undone || kind == Kind::Repeatable) {
-                        return Err(failure);
-                    }
+                    was_lost = true;
                 }
-                Some(Fault::Late) => {
+                Some(Fault::Lost | Fault::Unknown) => {
                     self.link.close();
                     return Err(failure);
                 }

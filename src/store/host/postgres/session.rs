@@ -52,13 +52,11 @@ pub(super) struct Call<'a> {
 /// Why a statement failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
-    /// The connection is lost.
-    Lost {
-        /// Whether what was changed is not kept. Else, nobody knows.
-        is_undone: bool,
-    },
-    /// The time was over, so that nobody knows what the connection is about.
-    Late,
+    /// The connection is lost, and what a transaction has changed is not kept.
+    Lost,
+    /// Nobody knows what the server has done: the time was over, or the connection was lost while a change was
+    /// kept.
+    Unknown,
     /// Another transaction came before this one, which can be run again.
     Conflict,
     /// The server does not do it.
@@ -171,13 +169,8 @@ impl Call<'_> {
     /// Keeps what a transaction has changed.
     pub(super) fn commit(&self) -> Result<(), StoreFailure> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
-            Some(fault @ (Fault::Lost { .. } | Fault::Late)) => {
-                let is_lost = matches!(fault, Fault::Lost { .. });
-                self.fault.set(Some(if is_lost {
-                    Fault::Lost { is_undone: false }
-                } else {
-                    fault
-                }));
+            Some(Fault::Lost | Fault::Unknown) => {
+                self.fault.set(Some(Fault::Unknown));
                 StoreFailure::new(format!("{failure}; the last change may be kept or not"))
             }
             _ => failure,
@@ -200,7 +193,7 @@ impl Call<'_> {
         let (fault, why) = match answered {
             Ok(Ok(value)) => return Ok(value),
             Ok(Err(error)) => (fault(&error), reason(&error)),
-            Err(_) => (Fault::Late, "no answer in time".to_owned()),
+            Err(_) => (Fault::Unknown, "no answer in time".to_owned()),
         };
         self.fault.set(Some(fault));
         Err(StoreFailure::new(format!("{} failed: {why}", self.shown)))
@@ -243,12 +236,10 @@ fn fault(error: &Error) -> Fault {
     const LOSSES: [&str; 3] = ["08", "57P", "25006"];
     match error.code() {
         Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
-        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => {
-            Fault::Lost { is_undone: true }
-        }
+        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => Fault::Lost,
         Some(_) => Fault::Refused,
         None if is_of_the_value(error) => Fault::Refused,
-        None => Fault::Lost { is_undone: true },
+        None => Fault::Lost,
     }
 }
 

@@ -1,6 +1,7 @@
 //! A database that several hosts share: its tables, and hosts that change the same.
 
 mod faults;
+mod proxy;
 
 use std::sync::Barrier;
 use std::thread;

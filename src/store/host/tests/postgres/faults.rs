@@ -3,6 +3,7 @@
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use super::proxy::{Cut, Proxy};
 use super::*;
 
 /// The most time of a call, with what a machine under load adds.
@@ -110,6 +111,41 @@ fn a_connection_that_was_dropped_is_made_again_unnoticed() {
         } else {
             store.create_account(&key(number), &name(&format!("n-{number}")), at(0)).unwrap();
         }
+    }
+}
+
+#[test]
+fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
+    let server = PostgresServer::shared();
+    let proxy = Proxy::before(server.port());
+    let mut store = open(&proxy.address(&server.address_over_tcp(), server.port()));
+    for (number, is_passed_on) in [(1_u8, true), (2, false), (3, true)] {
+        proxy.cut(Cut { at: "COMMIT", is_passed_on });
+        let name = name(&format!("n-{number}"));
+        let answer = store.create_account(&key(number), &name, at(0));
+        let Err(Refusal::Failed(failure)) = answer else { panic!("{answer:?}") };
+        assert!(failure.to_string().ends_with("the last change may be kept or not"), "{failure}");
+        assert!(proxy.has_cut());
+        // The server may still be about it.
+        thread::sleep(Duration::from_millis(600));
+        assert_eq!(store.account(&key(number)).unwrap().is_some(), is_passed_on);
+    }
+}
+
+#[test]
+fn a_change_that_is_not_kept_is_made_again() {
+    let server = PostgresServer::shared();
+    let address = server.address_over_tcp();
+    // The text of a statement goes over a connection once: each has one of its own.
+    for (number, text, is_passed_on) in
+        [(1_u8, "BEGIN", true), (2, "INSERT INTO accounts", true), (3, "INSERT INTO names", false)]
+    {
+        let proxy = Proxy::before(server.port());
+        let mut store = open(&proxy.address(&address, server.port()));
+        proxy.cut(Cut { at: text, is_passed_on });
+        let account = store.create_account(&key(number), &name(&format!("n-{number}")), at(0));
+        assert_eq!(store.account(&key(number)).unwrap(), Some(account.unwrap()));
+        assert!(proxy.has_cut());
     }
 }
 
