@@ -15,6 +15,7 @@ mod column_batch;
 mod direct_columns;
 mod lanes;
 mod masked;
+mod sampling;
 mod shaded_texels;
 mod sky;
 mod span;
@@ -26,6 +27,7 @@ mod texel_runs;
 mod translucent;
 mod wall_column;
 mod wall_level;
+mod wall_part;
 
 pub(crate) use band::Band;
 use column_batch::BatchMemory;
@@ -33,7 +35,8 @@ pub(crate) use sky::{SkyColumn, SkyView};
 pub(crate) use surface_buffer::SurfaceBuffer;
 pub(crate) use target::Target;
 
-use crate::visibility::{DrawList, Layer, Material, Scene, Span, SpanMemory, Stats};
+use crate::visibility::{DrawList, Filter, Layer, Material, Scene, Span, SpanMemory, Stats};
+use sampling::{Means, MipLevels, Sampling};
 use span_pair::SpanPairs;
 use translucent::Tints;
 
@@ -52,17 +55,33 @@ pub(crate) fn draw<S: Stats>(
     memory: &mut RasterMemory,
     target: &mut Target<'_, S>,
 ) {
+    match scene.plan.filter {
+        Filter::Mip | Filter::Nearest => {
+            draw_surfaces::<MipLevels, S>(scene, list, sky, memory, target);
+        }
+        Filter::Area => draw_surfaces::<Means, S>(scene, list, sky, memory, target),
+    }
+    draw_layers(scene, list, target);
+}
+
+/// Draws what is behind the layers of `list`.
+fn draw_surfaces<M: Sampling, S: Stats>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    sky: &SkyView<'_>,
+    memory: &mut RasterMemory,
+    target: &mut Target<'_, S>,
+) {
     let RasterMemory { spans, batch } = memory;
     let rows = target.rows();
-    let mut pairs = SpanPairs::default();
+    let mut pairs = SpanPairs::<M>::new();
     list.for_each_span(scene, &rows, spans, |span| match span {
         Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
-        Span::Plane(span) => span::draw(scene, &span, target),
+        Span::Plane(span) => span::draw::<M, S>(scene, &span, target),
         Span::Pair(pair) => pairs.draw(scene, &pair, target),
         Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
     });
-    wall_column::draw(scene, list, batch, target);
-    draw_layers(scene, list, target);
+    M::draw_walls(scene, list, batch, target);
 }
 
 /// Paints the layers of `list` in their order.

@@ -38,6 +38,7 @@ mod span_mapping;
 mod stats;
 mod texture_stepper;
 mod visible_cells;
+mod wall_part;
 
 pub(crate) use billboard::Billboard;
 #[cfg(feature = "tui")]
@@ -61,6 +62,7 @@ pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
 pub(crate) use texture_stepper::{TextureStepper, WallTexels};
+pub(crate) use wall_part::WallPart;
 
 use crate::cast::{Caster, ExactOnLevel};
 use flat::{FlatMemory, PortalStarts};

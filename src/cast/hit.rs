@@ -89,6 +89,18 @@ impl HitFace {
         Hit { cell, side, t, u: from_left(along, is_from_left) }
     }
 
+    /// The kind of line that it is on.
+    #[inline]
+    pub(crate) fn side(&self) -> Side {
+        self.side
+    }
+
+    /// Whether rays cross its line to the east or to the south.
+    #[inline]
+    pub(crate) fn is_ahead(&self) -> bool {
+        self.is_from_left == (self.side == Side::X)
+    }
+
     /// Whether it is the same face as `other`.
     #[inline]
     pub(crate) fn is(&self, other: &Self) -> bool {

@@ -60,6 +60,11 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.target.rows()
     }
 
+    /// The target, for pixels that no queued column has.
+    pub(super) fn target_mut(&mut self) -> &mut Target<'t, S> {
+        self.target
+    }
+
     /// Counts a column of `pixels` pixels in `paint`.
     #[inline]
     pub(super) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {

@@ -1,5 +1,6 @@
 //! Spans of floor and ceiling: inner loops for each kind of pattern and lighting.
 
+use super::sampling::Sampling;
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
@@ -8,17 +9,21 @@ use crate::visibility::{
     Faded, FullyLit, Lighting, PlaneSpan, Scene, SpanMapping, Stats, TexelPlaces,
 };
 use crate::world::texture::{MipLevel, MipLevelByShifts};
-use crate::world::{Paint, Pattern};
+use crate::world::{Paint, Pattern, Texture};
 
 /// Draws `span`.
-pub(super) fn draw<S: Stats>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_, S>) {
+pub(super) fn draw<M: Sampling, S: Stats>(
+    scene: Scene<'_>,
+    span: &PlaneSpan<'_>,
+    target: &mut Target<'_, S>,
+) {
     match Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance) {
-        None => draw_lit(scene, span, FullyLit, target),
-        Some(faded) => draw_lit(scene, span, faded, target),
+        None => draw_lit::<M, _, _>(scene, span, FullyLit, target),
+        Some(faded) => draw_lit::<M, _, _>(scene, span, faded, target),
     }
 }
 
-fn draw_lit<L: Lighting, S: Stats>(
+fn draw_lit<M: Sampling, L: Lighting, S: Stats>(
     scene: Scene<'_>,
     span: &PlaneSpan<'_>,
     lighting: L,
@@ -35,7 +40,7 @@ fn draw_lit<L: Lighting, S: Stats>(
             let color = lighting.apply(mean_of_two(one, other));
             target.span_mut(pass, row, columns.clone()).fill(color);
         }
-        Pattern::Plain(paint) => match sampler.sample(paint) {
+        Pattern::Plain(paint) => match sampler.sample::<M>(paint) {
             Sample::Color(color) => {
                 target.span_mut(pass, row, columns.clone()).fill(lighting.apply(color));
             }
@@ -47,10 +52,22 @@ fn draw_lit<L: Lighting, S: Stats>(
             }
         },
         Pattern::Checker(paints) => {
-            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |x, y| x ^ y, target);
+            draw_pieces(
+                span,
+                &paints.map(|it| sampler.sample::<M>(it)),
+                lighting,
+                |x, y| x ^ y,
+                target,
+            );
         }
         Pattern::Stripes(paints) => {
-            draw_pieces(span, &paints.map(|it| sampler.sample(it)), lighting, |_, y| y, target);
+            draw_pieces(
+                span,
+                &paints.map(|it| sampler.sample::<M>(it)),
+                lighting,
+                |_, y| y,
+                target,
+            );
         }
     }
 }
@@ -214,19 +231,25 @@ impl<'a> Sampler<'a> {
     }
 
     /// The sample of `paint` at the distance of the span.
-    fn sample(self, paint: Paint) -> Sample<'a> {
+    fn sample<M: Sampling>(self, paint: Paint) -> Sample<'a> {
         match paint {
             Paint::Color(color) => Sample::Color(color),
             Paint::Texture(id) => {
                 let texture = self.scene.world.texture(id);
-                Sample::Level(texture.level(self.lod(texture.area())))
+                Sample::Level(M::level_on_plane(texture, self.lod_of::<M>(texture)))
             }
         }
     }
 
+    /// The level of detail of `texture`, which is a repeat.
+    #[inline]
+    pub(super) fn lod_of<M: Sampling>(self, texture: &Texture) -> M::Lod {
+        M::lod_on_plane(self.scene, texture, self.mapping, self.per_cell)
+    }
+
     /// The level of detail of a pattern with `texels` texels in a repeat.
     #[inline]
-    pub(super) fn lod(self, texels: f64) -> usize {
+    fn lod(self, texels: f64) -> usize {
         let area = self.mapping.pixel_area * self.per_cell * self.per_cell;
         self.scene.plan.filter.lod(area * texels)
     }

@@ -4,6 +4,7 @@
 //! What all pairs of a frame share, such as these textures, is found once for the frame: in small pictures,
 //! a span has a dozen pixels, and finding it for each span took as long as drawing.
 
+use super::sampling::Sampling;
 use super::span::{self, AT_ONCE, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
@@ -13,33 +14,37 @@ use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
 /// The drawing of a frame's span pairs.
-#[derive(Default)]
-pub(super) struct SpanPairs<'a> {
+pub(super) struct SpanPairs<'a, M: Sampling> {
     /// Whether there was a pair.
     is_begun: bool,
     /// The textures of the planes, if they have textures of one size.
-    textures: Option<TexturePair<'a>>,
+    textures: Option<TexturePair<'a, M>>,
 }
 
 /// Two textures of one size on planes in one light.
-struct TexturePair<'a> {
+struct TexturePair<'a, M: Sampling> {
     textures: [&'a Texture; 2],
     /// The number of repeats of the textures in a cell.
     per_cell: f64,
     light: Light,
     /// The levels of the pair before.
-    levels: Option<LevelPair<'a>>,
+    levels: Option<LevelPair<'a, M>>,
 }
 
 /// Two mip levels of one size.
 #[derive(Clone, Copy)]
-struct LevelPair<'a> {
-    lod: usize,
+struct LevelPair<'a, M: Sampling> {
+    lod: M::Lod,
     upper: MipLevelByShifts<'a>,
     lower: &'a [Rgb],
 }
 
-impl<'a> SpanPairs<'a> {
+impl<'a, M: Sampling> SpanPairs<'a, M> {
+    /// The drawing before the first pair.
+    pub(super) fn new() -> Self {
+        Self { is_begun: false, textures: None }
+    }
+
     /// Draws `pair`, whose planes are those of the pairs before.
     pub(super) fn draw<S: Stats>(
         &mut self,
@@ -54,13 +59,13 @@ impl<'a> SpanPairs<'a> {
         let drawn = self.textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
             for span in pair.spans() {
-                span::draw(scene, &span, target);
+                span::draw::<M, S>(scene, &span, target);
             }
         }
     }
 }
 
-impl<'a> TexturePair<'a> {
+impl<'a, M: Sampling> TexturePair<'a, M> {
     fn new(scene: Scene<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
         let [upper, lower] = planes;
         let (scale, light) = (upper.covering.scale, upper.light);
@@ -85,7 +90,7 @@ impl<'a> TexturePair<'a> {
         if Faded::of_plane(self.light, scene.world.fog(), mapping.distance).is_some() {
             return None;
         }
-        let lod = Sampler { scene, mapping, per_cell }.lod(self.textures[0].area());
+        let lod = Sampler { scene, mapping, per_cell }.lod_of::<M>(self.textures[0]);
         let levels = match self.levels {
             Some(levels) if levels.lod == lod => levels,
             _ => *self.levels.insert(LevelPair::new(self.textures, lod)?),
@@ -95,30 +100,30 @@ impl<'a> TexturePair<'a> {
             return None;
         }
         match levels.lower.len() {
-            16384 => draw_texels::<_, 16384>(levels, places, pair, target),
-            4096 => draw_texels::<_, 4096>(levels, places, pair, target),
-            1024 => draw_texels::<_, 1024>(levels, places, pair, target),
-            256 => draw_texels::<_, 256>(levels, places, pair, target),
-            64 => draw_texels::<_, 64>(levels, places, pair, target),
-            16 => draw_texels::<_, 16>(levels, places, pair, target),
-            4 => draw_texels::<_, 4>(levels, places, pair, target),
-            1 => draw_texels::<_, 1>(levels, places, pair, target),
+            16384 => draw_texels::<_, _, 16384>(levels, places, pair, target),
+            4096 => draw_texels::<_, _, 4096>(levels, places, pair, target),
+            1024 => draw_texels::<_, _, 1024>(levels, places, pair, target),
+            256 => draw_texels::<_, _, 256>(levels, places, pair, target),
+            64 => draw_texels::<_, _, 64>(levels, places, pair, target),
+            16 => draw_texels::<_, _, 16>(levels, places, pair, target),
+            4 => draw_texels::<_, _, 4>(levels, places, pair, target),
+            1 => draw_texels::<_, _, 1>(levels, places, pair, target),
             _ => None,
         }
     }
 }
 
-impl<'a> LevelPair<'a> {
+impl<'a, M: Sampling> LevelPair<'a, M> {
     /// The levels of two `textures` of one size; `None` if their texels are not found by shifts.
-    fn new(textures: [&'a Texture; 2], lod: usize) -> Option<Self> {
-        let [upper, lower] = textures.map(|texture| texture.level(lod).by_shifts());
+    fn new(textures: [&'a Texture; 2], lod: M::Lod) -> Option<Self> {
+        let [upper, lower] = textures.map(|texture| M::level_on_plane(texture, lod).by_shifts());
         Some(Self { lod, upper: upper?, lower: lower?.texels() })
     }
 }
 
 /// Draws `pair` in `levels` with `N` texels.
-fn draw_texels<S: Stats, const N: usize>(
-    levels: LevelPair<'_>,
+fn draw_texels<M: Sampling, S: Stats, const N: usize>(
+    levels: LevelPair<'_, M>,
     places: TexelPlaces,
     pair: &SpanPair<'_>,
     target: &mut Target<'_, S>,

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::column_batch::{BatchMemory, ColumnBatch};
 use super::direct_columns;
+use super::sampling::Sampling;
 use super::target::Target;
 use super::wall_level::WallLevel;
 use crate::cast::Side;
@@ -17,7 +18,7 @@ use crate::visibility::{
 use crate::world::{Light, Paint};
 
 /// Draws all wall columns of `list`.
-pub(super) fn draw<S: Stats>(
+pub(super) fn draw<M: Sampling, S: Stats>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,
@@ -26,14 +27,32 @@ pub(super) fn draw<S: Stats>(
     let are_direct = direct_columns::are_for(scene, target.band_mut());
     if scene.plan.walls.faded || scene.world.has_shapes() {
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        draw_lit(scene, list, true, ColumnBatch::new(memory, target, are_direct), lighting);
+        draw_lit::<M, _, _>(
+            scene,
+            list,
+            true,
+            ColumnBatch::new(memory, target, are_direct),
+            lighting,
+        );
     } else {
-        let lighting = |wall: &WallColumn| match wall.facing {
-            Facing::Side(side) => SideLit(side),
-            // Only shapes have such a normal, and this scene has none.
-            Facing::Normal(_) => SideLit(Side::X),
-        };
-        draw_lit(scene, list, false, ColumnBatch::new(memory, target, are_direct), lighting);
+        let lighting = |wall: &WallColumn| SideLit(side_of(wall));
+        draw_lit::<M, _, _>(
+            scene,
+            list,
+            false,
+            ColumnBatch::new(memory, target, are_direct),
+            lighting,
+        );
+    }
+}
+
+/// The side that `wall` is, in a scene without shapes.
+#[inline]
+pub(super) fn side_of(wall: &WallColumn) -> Side {
+    match wall.facing {
+        Facing::Side(side) => side,
+        // Only shapes have such a normal.
+        Facing::Normal(_) => Side::X,
     }
 }
 
@@ -46,7 +65,7 @@ pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64
     }
 }
 
-fn draw_lit<'a, L: Lighting, S: Stats>(
+fn draw_lit<'a, M: Sampling, L: Lighting, S: Stats>(
     scene: Scene<'a>,
     list: &DrawList,
     is_lit: bool,
@@ -54,21 +73,27 @@ fn draw_lit<'a, L: Lighting, S: Stats>(
     lighting: impl Fn(&WallColumn) -> L,
 ) {
     let rows = batch.rows();
-    let mut queue = Queue { scene, batch, lighting, latest: None };
+    let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
     list.for_each_wall_column(scene, &rows, is_lit, &mut queue);
     queue.batch.draw();
 }
 
 /// Queues wall columns in a lighting that depends on each column.
-struct Queue<'m, 't, 'a, L, S, F> {
+struct Queue<'m, 't, 'a, M: Sampling, L, S, F> {
     scene: Scene<'a>,
     batch: ColumnBatch<'m, 't, 'a, L, S>,
     lighting: F,
     /// The level of the column before.
-    latest: Option<WallLevel<'a>>,
+    latest: Option<WallLevel<'a, M>>,
 }
 
-impl<L: Lighting, S: Stats, F: Fn(&WallColumn) -> L> WallSink for Queue<'_, '_, '_, L, S, F> {
+impl<M, L, S, F> WallSink for Queue<'_, '_, '_, M, L, S, F>
+where
+    M: Sampling,
+    L: Lighting,
+    S: Stats,
+    F: Fn(&WallColumn) -> L,
+{
     #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]
     #[inline(always)]
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>) {

@@ -11,6 +11,7 @@ use super::flat::{self, PlaneRow};
 use super::portal;
 use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
+use super::wall_part::WallPart;
 use super::{Billboard, Column, Facing, Scene, SpanMapping, Surface};
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
@@ -25,6 +26,11 @@ pub(crate) struct DrawList {
     pub(super) is_flat: bool,
     /// The columns as the flat way sees them, if the portal way filled some; else empty.
     pub(super) flat_columns: Vec<Column>,
+    /// The columns around which planes are drawn, if walls are blended over what is behind them: with the rows
+    /// that walls cover as a whole; else empty.
+    pub(super) opaque_columns: Vec<Column>,
+    /// The walls of these columns, from left to right.
+    pub(super) parts: Vec<WallPart>,
     /// The rows of floor, ceiling and sky that the portal way found.
     pub(crate) runs: ColumnRuns,
     /// The wall columns that the portal way found, those of a column of pixels together.
@@ -184,6 +190,8 @@ impl DrawList {
         self.columns.clear();
         self.is_flat = false;
         self.flat_columns.clear();
+        self.opaque_columns.clear();
+        self.parts.clear();
         self.runs.clear();
         self.walls.clear();
         self.see_through.clear();
@@ -227,7 +235,7 @@ impl DrawList {
         if self.is_flat {
             flat::for_each_span(
                 scene,
-                self.flat_columns(),
+                self.drawn_columns(),
                 rows,
                 &mut memory.plane_rows,
                 &mut emit,
@@ -246,10 +254,26 @@ impl DrawList {
         is_lit: bool,
         sink: &mut impl WallSink,
     ) {
-        if self.is_flat {
+        if self.is_flat && self.opaque_columns.is_empty() {
             flat::for_each_wall_column(scene, self.flat_columns(), rows, is_lit, sink);
         }
         portal::for_each_wall_column(&self.walls, rows, sink);
+    }
+
+    /// Passes every part of a wall to `draw`, from left to right, with the wall column in its middle: the walls of
+    /// the flat way, if they are blended over what is behind them. The light is computed only if `is_lit`.
+    pub(crate) fn for_each_wall_part<'l>(
+        &'l self,
+        scene: Scene<'_>,
+        is_lit: bool,
+        draw: impl FnMut(&'l WallPart, &WallColumn),
+    ) {
+        flat::for_each_wall_part(scene, &self.parts, is_lit, draw);
+    }
+
+    /// The columns around which the flat way draws planes.
+    fn drawn_columns(&self) -> &[Column] {
+        if self.opaque_columns.is_empty() { self.flat_columns() } else { &self.opaque_columns }
     }
 
     /// The columns as the flat way sees them.

@@ -1,6 +1,6 @@
-//! The filter: the mip level from which a pixel is drawn.
+//! The filter: how a pixel is computed from the surfaces that it covers.
 
-/// How a texture is sampled if a pixel covers many texels.
+/// How a pixel is computed from the surfaces that it covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
     /// From the mip level whose texels are about as large as the pixel: far walls and floors do not
@@ -9,17 +9,25 @@ pub enum Filter {
     Mip,
     /// From the texture itself, at the pixel's centre: far surfaces shimmer.
     Nearest,
+    /// By area: from the mean of the texture over the pixel's width and height on the surface, with walls
+    /// blended over what is behind them by the share of the pixel that they cover.
+    ///
+    /// Walls of level scenes are blended. The borders of tiles and of pieces of a pattern, things, masks, glass, doors,
+    /// the sides of pillars and diagonals, and columns that show other heights have hard edges as by
+    /// [`Filter::Mip`].
+    Area,
 }
 
 impl Filter {
     /// All filters, the default first.
-    pub const ALL: [Self; 2] = [Self::Mip, Self::Nearest];
+    pub const ALL: [Self; 3] = [Self::Mip, Self::Nearest, Self::Area];
 
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mip => "mip",
             Self::Nearest => "nearest",
+            Self::Area => "area",
         }
     }
 
@@ -27,12 +35,13 @@ impl Filter {
     ///
     /// A texel of each level covers four of the level before. A long and narrow pixel counts by its
     /// area: by its longer side, walls seen at an angle would blur along their sharp direction; by
-    /// its shorter side, they would shimmer.
+    /// its shorter side, they would shimmer. [`Filter::Area`] samples by it what it has no
+    /// [means](crate::world::texture::AreaLod) for: masks, things and the sky.
     pub(crate) fn lod(self, area: f64) -> usize {
         match self {
             // The nearest power of four. The exponent of a double is exact on every machine.
-            Self::Mip if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
-            Self::Mip | Self::Nearest => 0,
+            Self::Mip | Self::Area if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
+            Self::Mip | Self::Nearest | Self::Area => 0,
         }
     }
 }

@@ -6,6 +6,7 @@
 mod ceilings;
 mod fan;
 mod layers;
+mod parts;
 mod planes;
 mod portal_starts;
 mod wall;
@@ -14,14 +15,14 @@ use glam::DVec2;
 
 use super::column::Column;
 use super::ray_counter::RayCounter;
-use super::{DrawList, Projection, Scene, Stats};
+use super::{DrawList, Filter, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 use fan::Fan;
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
 pub(super) use portal_starts::PortalStarts;
-pub(super) use wall::for_each_wall_column;
+pub(super) use wall::{for_each_wall_column, for_each_wall_part};
 
 /// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and the starts of the
 /// columns that are left to the portal way.
@@ -44,6 +45,9 @@ pub(super) fn find_columns<C: Caster, S: Stats>(
     }
     if scene.world.level_grid().is_some() {
         portal_starts::leave_to_portals(scene, list);
+    }
+    if scene.plan.filter == Filter::Area && list.is_flat {
+        parts::find(scene, list);
     }
 }
 
@@ -121,6 +125,12 @@ fn column_of(grid: &Grid, projection: &Projection, ray: &Ray, hit: Option<Hit>) 
     Column { hit, distance, rows: projection.wall_rows(distance) }
 }
 
+/// The place of `point` in the picture, in columns from its left edge; `None` if it is behind the camera.
+fn place_of(projection: &Projection, point: DVec2) -> Option<f64> {
+    let place = projection.place(point);
+    (place.depth > 0.0).then_some(place.column)
+}
+
 /// The distance along `ray` to the edge of the map; 0 if the ray is off the map and never enters
 /// it.
 fn distance_to_edge(grid: &Grid, ray: &Ray) -> f64 {
@@ -147,7 +157,7 @@ mod tests {
     use super::*;
     use crate::cast::Exact;
     use crate::map;
-    use crate::visibility::{Filter, FramePlan, FrameSize, PixelAspect};
+    use crate::visibility::{FramePlan, FrameSize, PixelAspect};
     use crate::world::{Camera, FieldOfView, Heading};
 
     const SIDE: usize = 12;

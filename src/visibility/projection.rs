@@ -4,6 +4,8 @@
 //! tan(fov/2)`, and vertically that divided by the pixel aspect. Rows and columns are sampled at
 //! the centres of pixels.
 
+mod areas;
+
 use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
@@ -12,6 +14,7 @@ use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels, ce
 use super::{FrameSize, PixelAspect, SpanMapping};
 use crate::cast::Ray;
 use crate::world::{Camera, Heights};
+pub(crate) use areas::FaceEnds;
 
 /// The mapping from the world to the pixels of one frame.
 #[derive(Clone, Debug)]

@@ -9,6 +9,7 @@
 //! them is. So a level begins without what it does not show, and rays without any. Making all of them with
 //! the world was refused: nine tenths of the instructions of a first frame were theirs.
 
+mod area_levels;
 pub mod builtin;
 mod mip_level;
 mod picture;
@@ -18,6 +19,8 @@ use std::num::NonZeroU32;
 use std::sync::OnceLock;
 
 use crate::color::Rgb;
+use area_levels::AreaLevels;
+pub(crate) use area_levels::{AreaLod, Repeat};
 pub use mip_level::MipLevel;
 pub(crate) use mip_level::MipLevelByShifts;
 use picture::{Picture, Source};
@@ -33,6 +36,8 @@ pub struct Texture {
     source: Source,
     /// The mip levels after the picture itself, down to one texel.
     smaller: OnceLock<Vec<MipLevel>>,
+    /// Its means over boxes; most textures are never asked for them.
+    means: OnceLock<Box<AreaLevels>>,
 }
 
 impl Texture {
@@ -72,7 +77,8 @@ impl Texture {
 
     fn new(width: NonZeroU32, height: NonZeroU32, has_alpha: bool, source: Source) -> Self {
         let area = f64::from(width.get()) * f64::from(height.get());
-        Self { width, height, area, has_alpha, source, smaller: OnceLock::new() }
+        let (smaller, means) = (OnceLock::new(), OnceLock::new());
+        Self { width, height, area, has_alpha, source, smaller, means }
     }
 
     /// The width in texels.
@@ -128,6 +134,16 @@ impl Texture {
         }
         let smaller = self.smaller.get_or_init(|| mip_level::smaller(picture));
         smaller.get(lod - 1).or(smaller.last()).unwrap_or(picture)
+    }
+
+    /// The means of the texture over boxes of the extent `lod`.
+    #[inline]
+    pub(crate) fn area_level(&self, lod: AreaLod, repeat: Repeat) -> &MipLevel {
+        let picture = &self.source.picture().level;
+        if lod == AreaLod::TEXTURE {
+            return picture;
+        }
+        self.means.get_or_init(|| Box::new(AreaLevels::new(picture))).level(picture, lod, repeat)
     }
 
     /// The height in texels of that mip level, which is not made for it.

@@ -6,6 +6,7 @@
 //! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
 //! time than reading the rows of the wall in every column.
 
+mod ground;
 mod stretches;
 
 use std::ops::Range;
@@ -14,10 +15,10 @@ use glam::DVec2;
 
 use crate::color::Rgb;
 use crate::visibility::{
-    CeilingLoop, Column, DrawnPlane, Faded, Lighting, Pass, PlaneLoop, Scene, SkyLoop, Span,
-    SpanPair,
+    CeilingLoop, Column, DrawnPlane, Faded, Filter, Lighting, Pass, PlaneLoop, Scene, SkyLoop,
+    Span, SpanPair,
 };
-use crate::world::{Ceiling, Cell, Covering, Light, TileId};
+use crate::world::{Ceiling, Covering, Light, TileId};
 pub(crate) use stretches::PlaneRow;
 use stretches::for_each_stretch;
 
@@ -102,8 +103,14 @@ impl Plane<'_> {
                     emit(Span::Plane(row.span(columns, plane)));
                 });
             }
+            PlaneLoop::Tiles if self.scene.plan.filter == Filter::Area => {
+                self.for_each_visible(rows, memory, |row, columns| {
+                    let ground_at = |corner, x| self.ground_before_walls(corner, (row.row, x));
+                    self.cut_by_tile(row, columns, ground_at, emit);
+                });
+            }
             PlaneLoop::Tiles => self.for_each_visible(rows, memory, |row, columns| {
-                self.cut_by_tile(row, columns, emit);
+                self.cut_by_tile(row, columns, |corner, _| self.ground_in(corner), emit);
             }),
         }
     }
@@ -134,12 +141,19 @@ impl Plane<'_> {
         for_each_stretch(self.columns, visible, memory, row_at, emit);
     }
 
-    /// Emits a span for each stretch of one tile and light in `columns` of `row`.
-    fn cut_by_tile(&self, row: &PlaneRow, columns: Range<usize>, emit: &mut impl FnMut(Span<'_>)) {
+    /// Emits a span for each stretch of one tile and light in `columns` of `row`. `ground_at` gives both for a
+    /// north-west corner of a cell and the first column that shows it.
+    fn cut_by_tile(
+        &self,
+        row: &PlaneRow,
+        columns: Range<usize>,
+        ground_at: impl Fn(DVec2, usize) -> Option<(TileId, Light)>,
+        emit: &mut impl FnMut(Span<'_>),
+    ) {
         let Scene { world, projection, .. } = self.scene;
         let cells = row.mapping.just_before(projection.origin()).cells(columns);
         let mut grounds =
-            cells.map(|(corner, columns)| (self.ground_in(corner), columns)).peekable();
+            cells.map(|(corner, columns)| (ground_at(corner, columns.start), columns)).peekable();
         while let Some((ground, mut columns)) = grounds.next() {
             while let Some((_, more)) = grounds.next_if(|&(next, _)| next == ground) {
                 columns.end = more.end;
@@ -175,17 +189,6 @@ impl Plane<'_> {
             (PlaneKind::Ceiling, Ceiling::Covered(covering)) => Some(covering),
             (PlaneKind::Ceiling, Ceiling::Sky) => None,
         }
-    }
-
-    /// The tile of the cell with this north-west corner, and the light that lamps add to it; `None`
-    /// off the map.
-    fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
-        let world = self.scene.world;
-        // Casts saturate, and convert NaN to 0.
-        let is_a_place = corner.is_finite();
-        let (column, row) = (corner.x as i64, corner.y as i64);
-        let tile = is_a_place.then(|| world.grid().tile(column, row)).flatten()?;
-        Some((tile, world.lamplight_in(Cell { column: column as u32, row: row as u32 })))
     }
 
     fn fogged(&self, color: Rgb, row: u32) -> Rgb {

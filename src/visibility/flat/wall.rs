@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::cast::{Hit, Side};
 use crate::visibility::facing::cell_before;
-use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallSink};
+use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
 /// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right. The light
@@ -48,6 +48,42 @@ pub(crate) fn for_each_wall_column(
             extent: Extent::Level,
         };
         sink.take(&wall, shown);
+    }
+}
+
+/// Passes each of `parts` to `draw`, with the wall column in its middle. The light is computed only if
+/// `is_lit`.
+#[inline]
+pub(crate) fn for_each_wall_part<'l>(
+    scene: Scene<'_>,
+    parts: &'l [WallPart],
+    is_lit: bool,
+    mut draw: impl FnMut(&'l WallPart, &WallColumn),
+) {
+    let mut latest: Option<(Face<'_>, Paint)> = None;
+    for part in parts {
+        let (x, hit) = (part.column, &part.hit);
+        let (face, paint) = match &mut latest {
+            Some(latest) if latest.0.is_of(hit) => &*latest,
+            latest => {
+                let face = Face::new(scene, x, hit, is_lit);
+                latest.insert((face, face.paint(scene, x, hit)))
+            }
+        };
+        let direction = scene.projection.direction_at(part.middle);
+        let facing = face.facing(scene, direction, hit);
+        let wall = WallColumn {
+            column: x,
+            rows: part.rows.clone(),
+            facing,
+            slope: facing.slope(direction),
+            t: hit.t,
+            u: hit.u,
+            paint: *paint,
+            light: if is_lit { face.light.at(hit.u) } else { Light::FULL },
+            extent: Extent::Level,
+        };
+        draw(part, &wall);
     }
 }
 

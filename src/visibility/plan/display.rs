@@ -105,6 +105,7 @@ impl fmt::Display for Filter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Mip => "mip: far texels are averaged",
+            Self::Area => "area: texels are averaged over each pixel, and walls have smooth ends",
             Self::Nearest => "nearest: every texel is one of the texture's own",
         })
     }

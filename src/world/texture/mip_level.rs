@@ -72,6 +72,11 @@ impl MipLevel {
         (self.texels[index], self.alpha.get(index).copied().unwrap_or(u8::MAX))
     }
 
+    /// The colours of all texels, column by column.
+    pub(super) fn texels(&self) -> &[Rgb] {
+        &self.texels
+    }
+
     pub(super) fn has_alpha(&self) -> bool {
         !self.alpha.is_empty()
     }

@@ -1,0 +1,139 @@
+//! Sampling: the level of a texture from which a surface is drawn.
+//!
+//! A frame has one [`Filter`](crate::visibility::Filter), and the loops are compiled for each kind of
+//! level, so that one has no code of the other.
+
+use std::fmt;
+
+use super::column_batch::BatchMemory;
+use super::target::Target;
+use super::{wall_column, wall_part};
+use crate::visibility::{DrawList, Scene, SpanMapping, Stats};
+use crate::world::Texture;
+use crate::world::texture::{AreaLod, MipLevel, Repeat};
+
+/// A kind of levels.
+pub(super) trait Sampling: Copy {
+    /// What distinguishes the levels of a texture.
+    type Lod: Copy + PartialEq + fmt::Debug;
+
+    /// Draws all walls of `list`.
+    fn draw_walls<S: Stats>(
+        scene: Scene<'_>,
+        list: &DrawList,
+        memory: &mut BatchMemory,
+        target: &mut Target<'_, S>,
+    );
+
+    /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
+    /// `t`.
+    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> Self::Lod;
+
+    /// The level of detail of a plane with `per_cell` repeats in a cell.
+    fn lod_on_plane(
+        scene: Scene<'_>,
+        texture: &Texture,
+        mapping: &SpanMapping,
+        per_cell: f64,
+    ) -> Self::Lod;
+
+    /// The level of `texture` on a face.
+    fn level_on_face(texture: &Texture, lod: Self::Lod) -> &MipLevel;
+
+    /// The level of `texture` on a plane.
+    fn level_on_plane(texture: &Texture, lod: Self::Lod) -> &MipLevel;
+}
+
+/// Mip levels, by the area of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct MipLevels;
+
+/// Means over boxes, by the width and the height of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Means;
+
+impl Sampling for MipLevels {
+    type Lod = usize;
+
+    #[inline]
+    fn draw_walls<S: Stats>(
+        scene: Scene<'_>,
+        list: &DrawList,
+        memory: &mut BatchMemory,
+        target: &mut Target<'_, S>,
+    ) {
+        wall_column::draw::<Self, S>(scene, list, memory, target);
+    }
+
+    #[inline]
+    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> usize {
+        scene.lod_on_face(texture, t, slope)
+    }
+
+    #[inline]
+    fn lod_on_plane(
+        scene: Scene<'_>,
+        texture: &Texture,
+        mapping: &SpanMapping,
+        per_cell: f64,
+    ) -> usize {
+        let area = mapping.pixel_area * per_cell * per_cell;
+        scene.plan.filter.lod(area * texture.area())
+    }
+
+    #[inline]
+    fn level_on_face(texture: &Texture, lod: usize) -> &MipLevel {
+        texture.level(lod)
+    }
+
+    #[inline]
+    fn level_on_plane(texture: &Texture, lod: usize) -> &MipLevel {
+        texture.level(lod)
+    }
+}
+
+impl Sampling for Means {
+    type Lod = AreaLod;
+
+    fn draw_walls<S: Stats>(
+        scene: Scene<'_>,
+        list: &DrawList,
+        memory: &mut BatchMemory,
+        target: &mut Target<'_, S>,
+    ) {
+        wall_part::draw::<Self, S>(scene, list, memory, target);
+        wall_column::draw::<Self, S>(scene, list, memory, target);
+    }
+
+    #[inline]
+    fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> AreaLod {
+        let extent = scene.projection.pixel_extent_on_wall(t, slope);
+        let across = extent.x * f64::from(texture.width());
+        let down = extent.y * f64::from(texture.height());
+        AreaLod::of_squares(across * across, down * down)
+    }
+
+    fn lod_on_plane(
+        _: Scene<'_>,
+        texture: &Texture,
+        mapping: &SpanMapping,
+        per_cell: f64,
+    ) -> AreaLod {
+        let squares = mapping.squares_of_extent() * (per_cell * per_cell);
+        let square = |side: u32| f64::from(side) * f64::from(side);
+        AreaLod::of_squares(
+            squares.x * square(texture.width()),
+            squares.y * square(texture.height()),
+        )
+    }
+
+    #[inline]
+    fn level_on_face(texture: &Texture, lod: AreaLod) -> &MipLevel {
+        texture.area_level(lod, Repeat::Across)
+    }
+
+    #[inline]
+    fn level_on_plane(texture: &Texture, lod: AreaLod) -> &MipLevel {
+        texture.area_level(lod, Repeat::Both)
+    }
+}
