@@ -69,7 +69,7 @@ impl Old {
         format: &Format,
         choices: &mut Bytes,
     ) {
-        let filter = choices.pick(&[Filter::Mip, Filter::Nearest]);
+        let filter = choices.pick(&[Filter::Mip, Filter::Nearest, Filter::Area]);
         let seconds = f64::from(choices.byte()) / 16.0;
         let keeps_surfaces = choices.flag();
         let prepare = |renderer: &mut Renderer, threads: usize| {

@@ -109,10 +109,11 @@ pub(super) const GLYPHS: ValueOption<GlyphMode> = ValueOption {
 pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     name: "filter",
     value: "FILTER",
-    takes: "mip or nearest",
-    help: "How textures are looked up: averaged where they are far (mip), or as raw texels (nearest)",
+    takes: "mip, nearest or area",
+    help: "How pixels are computed: from textures averaged where they are far (mip), from raw texels \
+           (nearest), or from all that they cover, with smooth edges (area)",
     default: "mip",
-    choices: &["mip", "nearest"],
+    choices: &["mip", "nearest", "area"],
     read: Parser::Optional(|text| Filter::ALL.into_iter().find(|filter| filter.name() == text)),
     repeats: false,
 };
