@@ -1,6 +1,7 @@
 //! Pictures: golden frames, every pixel compared with an independent tracer, and the costs of
 //! frames.
 
+mod areas;
 mod costs;
 mod doors;
 mod exact_pictures;

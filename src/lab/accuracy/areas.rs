@@ -15,6 +15,8 @@
 
 mod cells;
 mod differences;
+#[cfg(test)]
+mod gains;
 mod truth;
 
 use std::time::Instant;
