@@ -13,12 +13,13 @@ use std::path::Path;
 
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map::{self, Level, builtin};
-use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
+use cellcaster::render::{Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
 use cellcaster::world::{FieldOfView, Heading, World};
 
-const CASES: [Case; 12] = [
+const CASES: [Case; 13] = [
     Case { name: "rooms-80x48", work: Work::Frames("rooms", 80, 48) },
     Case { name: "rooms-160x90", work: Work::Frames("rooms", 160, 90) },
+    Case { name: "area-160x90", work: Work::FramesByArea("rooms", 160, 90) },
     Case { name: "rooms-320x200", work: Work::Frames("rooms", 320, 200) },
     Case { name: "rooms-1920x1080", work: Work::Frames("rooms", 1920, 1080) },
     Case { name: "lamps-160x90", work: Work::Frames("lamps", 160, 90) },
@@ -40,6 +41,8 @@ struct Case {
 enum Work {
     /// Frames of this map and this size, in all directions from the start.
     Frames(&'static str, u32, u32),
+    /// The same by the filter by area.
+    FramesByArea(&'static str, u32, u32),
     /// Steps of the game on this level, in which the player runs in circles.
     Steps(&'static str),
     /// A played script in a window of this size: from intents to bytes.
@@ -91,13 +94,19 @@ fn main() {
     let case =
         CASES.iter().find(|case| case.name == name).expect("this case is among those listed");
     match case.work {
+        Work::FramesByArea(map, width, height) => {
+            let size = FrameSize::new(width, height).expect("a picture has pixels");
+            if let Level::Grid(world) = level(map) {
+                draw_world(&world, size, Filter::Area);
+            }
+        }
         Work::Frames(map, width, height) => {
             let size = FrameSize::new(width, height).expect("a picture has pixels");
             match level(map) {
-                Level::Grid(world) => draw_world(&world, size),
+                Level::Grid(world) => draw_world(&world, size, Filter::Mip),
                 Level::Space(scene) => {
                     let camera = scene.start_camera(FieldOfView::default());
-                    draw(&scene, size, Default::default(), |_| camera);
+                    draw(&scene, size, Default::default(), Options::default(), |_| camera);
                 }
             }
         }
@@ -123,11 +132,12 @@ fn level(map: &str) -> Level {
         .expect("a map of the gallery is sound")
 }
 
-fn draw_world(world: &World, size: FrameSize) {
+fn draw_world(world: &World, size: FrameSize, filter: Filter) {
     let mut renderer = Renderer::new();
     renderer.set_threads(NonZero::<usize>::MIN);
     let start = world.start_camera(FieldOfView::default());
-    draw(world, size, renderer, |frame| {
+    let options = Options { filter, ..Options::default() };
+    draw(world, size, renderer, options, |frame| {
         let degrees = start.heading.degrees() + 360.0 / f64::from(FRAMES) * f64::from(frame);
         let heading = Heading::from_degrees(degrees).expect("it is finite");
         let mut camera = start;
@@ -140,13 +150,14 @@ fn draw<R: Renderable>(
     scene: &R,
     size: FrameSize,
     mut renderer: R::Renderer,
+    options: Options,
     camera: impl Fn(u32) -> R::Camera,
 ) {
     let mut frame = Frame::new(size, PixelAspect::SQUARE);
     let cameras: Vec<R::Camera> = (0..FRAMES).map(camera).collect();
     let mut draw_all = || {
         for camera in &cameras {
-            scene.render(black_box(camera), Options::default(), &mut renderer, &mut frame);
+            scene.render(black_box(camera), options, &mut renderer, &mut frame);
         }
     };
     draw_all();
