@@ -64,7 +64,7 @@ fn join(client: TcpStream, server: u16, cut: &Mutex<Option<Cut>>) {
 
 /// Passes packets on until the connection is cut or ends.
 fn pass_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Option<Cut>>) {
-    let mut packet = [0; 1 << 16];
+    let mut packet = [0; 1 << 13];
     while let Ok(count @ 1..) = client.read(&mut packet) {
         let packet = &packet[..count];
         let has = |at: &str| packet.windows(at.len()).any(|part| part == at.as_bytes());
