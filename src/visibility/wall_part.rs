@@ -71,7 +71,7 @@ impl SlopedEdge {
         const LEVEL: f64 = 1e-6;
         let bottom = f64::from(row) + 1.0;
         let [left, right] = self.ends.map(|end| bottom - end);
-        let middle = f64::midpoint(left, right);
+        let middle = 0.5 * (left + right);
         if left >= 0.0 && right >= 0.0 && left <= 1.0 && right <= 1.0 {
             return middle;
         }

@@ -11,6 +11,8 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::place_of;
 use crate::cast::{Hit, HitFace, Side};
 use crate::visibility::projection::FaceEnds;
@@ -36,7 +38,7 @@ pub(crate) fn find(scene: Scene<'_>, list: &mut DrawList) {
     while let Some((columns, face)) = next {
         next = faces.next();
         let end = first + columns.len();
-        let after = next.and_then(|(_, next)| Border::new(projection, end, (face?, next?)));
+        let after = next.and_then(|(_, next)| Border::new(scene, end, (face?, next?)));
         let borders = [before, after];
         let run = Run { projection, rows, ground, first, columns, face, borders };
         run.find(&mut drawn[first..end], &mut parts);
@@ -212,7 +214,7 @@ impl Run<'_> {
 impl Border {
     /// The border between two faces, of which the second one begins in column `x`; `None` if both look the same
     /// there.
-    fn new(projection: &Projection, x: usize, (left, right): (Face, Face)) -> Option<Self> {
+    fn new(scene: Scene<'_>, x: usize, (left, right): (Face, Face)) -> Option<Self> {
         let [one, other] = [left.hit, right.hit];
         let is_one_line = one.side == other.side
             && match one.side {
@@ -224,10 +226,48 @@ impl Border {
         }
         // The ray on the border is in the middle between the two columns.
         let [of_left, of_right] = [left, right].map(|face| face.ends.rows_at(x as f64));
-        let end = if of_left > of_right { left.side.right_end() } else { right.side.left_end() };
-        let place = place_of(projection, end)?;
-        let (least, most) = (x as f64 - 0.5, x as f64 + 0.5);
-        Some(Self { place: place.max(least).min(most), left, right })
+        let between = (x as f64 - 0.5, x as f64 + 0.5);
+        let place = if of_left > of_right {
+            left.end_of_wall(scene, left.side.right_end(), between)
+        } else {
+            right.end_of_wall(scene, right.side.left_end(), between)
+        };
+        Some(Self { place: place?.max(between.0).min(between.1), left, right })
+    }
+}
+
+impl Face {
+    /// The place of the end of the wall in the picture, which is at `end` or, where the wall goes on in the next
+    /// cells, further on, if that is still between two places.
+    fn end_of_wall(
+        self,
+        scene: Scene<'_>,
+        mut end: DVec2,
+        (least, most): (f64, f64),
+    ) -> Option<f64> {
+        let grid = scene.world.grid();
+        let (left, right) = (self.side.left_end(), self.side.right_end());
+        let step = if end == left { left - right } else { right - left };
+        let back = if self.side.is_ahead() { -1.0 } else { 1.0 };
+        let before = match self.hit.side {
+            Side::X => DVec2::new(back, 0.0),
+            Side::Y => DVec2::new(0.0, back),
+        };
+        let Cell { column, row } = self.hit.cell;
+        let mut cell = DVec2::new(f64::from(column), f64::from(row));
+        let mut place = place_of(scene.projection, end)?;
+        while least < place && place < most {
+            cell += step;
+            let in_front = cell + before;
+            let goes_on = grid.tile(cell.x as i64, cell.y as i64) == Some(self.tile)
+                && !grid.is_solid(in_front.x as i64, in_front.y as i64);
+            if !goes_on {
+                break;
+            }
+            end += step;
+            place = place_of(scene.projection, end)?;
+        }
+        Some(place)
     }
 }
 
