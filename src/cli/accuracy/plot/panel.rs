@@ -35,7 +35,7 @@ impl Panel {
     pub(super) fn new(table: &Table, diagram: &Diagram, problem: &str) -> Option<Self> {
         let methods = methods(table);
         let rows = table.rows.iter().filter(|row| row.keys[0] == problem);
-        let points: Vec<Point> = rows
+        let mut points: Vec<Point> = rows
             .filter_map(|row| {
                 let (cost, error) = diagram.point(row)?;
                 let quartiles = match row.values[diagram.columns[0]] {
@@ -46,6 +46,8 @@ impl Panel {
                 Some(Point { method, parameter: row.keys[2].clone(), cost, quartiles, error })
             })
             .collect();
+        // Lines join the points of a method, which a table may list by parameter.
+        points.sort_by_key(|point| point.method);
         let cost = Axis::around(points.iter().map(|point| point.cost));
         let error = Axis::around(points.iter().map(|point| point.error));
         let (problem, title) = (problem.to_owned(), title(table, diagram));
