@@ -106,8 +106,8 @@ fn without_the_feature_a_database_is_refused_in_a_sentence() {
     for command in ["scores", "serve"] {
         let mut command = cellcaster(&[command, "--store", store]);
         let output = command.env("CELLCASTER_DATA", scratch("refused")).output().unwrap();
-        let error = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && output.stdout.is_empty(), "{output:?}");
+        let error = String::from_utf8(output.stderr).unwrap();
         assert!(
             error.contains("without the feature cluster") && error.lines().count() == 1,
             "{error}"
