@@ -19,6 +19,8 @@
 
 mod admin;
 mod admission;
+#[cfg(feature = "cluster")]
+mod cluster;
 mod config;
 mod driver;
 #[cfg(fuzzing)]
@@ -48,6 +50,8 @@ mod visitors;
 pub use self::admin::{AdminFailure, AdminSocket, ask};
 pub use self::admin::{AdminReply, AdminRequest, Operator, RoomRow, Target, VisitorRow};
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
+#[cfg(feature = "cluster")]
+pub use self::cluster::Cluster;
 pub use self::config::{Config, LiveConfig, StandingRoom};
 pub use self::driver::GameHost;
 pub use self::host_key::{HostKey, HostKeyError};

@@ -1,5 +1,6 @@
 //! `cellcaster serve`: the SSH server.
 
+mod cluster;
 mod configuration;
 mod signals;
 
@@ -26,34 +27,42 @@ use configuration::Configuration;
 use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
-pub(super) fn run(options: Serve) -> Result<(), Error> {
+pub(super) fn run(mut options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(&options)?;
-    let folder = options.data.or_else(data_folder).ok_or_else(|| {
+    let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::named(options.store);
+    let database = host_store::named(options.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
+    let place = cluster::place(&options, &database)?;
     let (store, damage) =
         host_store::open(&database).map_err(|failure| Error::mistake(failure.to_string()))?;
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
-    let ended = runtime.block_on(serve(configuration, config, key, &folder, options.log, store));
+    let parts = Parts { config, key, folder: &folder, format: options.log, store, place };
+    let ended = runtime.block_on(serve(configuration, parts));
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
     ended
 }
 
-async fn serve(
-    configuration: Configuration,
+/// What a server is made of.
+struct Parts<'a> {
     config: Config,
     key: HostKey,
-    folder: &Path,
+    /// For data.
+    folder: &'a Path,
     format: LogFormat,
     store: Box<dyn HostStore>,
-) -> Result<(), Error> {
+    /// In a cluster.
+    place: Option<cluster::Place>,
+}
+
+async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
+    let Parts { config, key, folder, format, store, place } = parts;
     let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
     let signals = Signals::catch().map_err(no_signals)?;
     let hangups = Hangups::catch().map_err(no_signals)?;
@@ -74,8 +83,17 @@ async fn serve(
 
     let maps = configuration.maps();
     let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
-    let host =
-        GameHost::with_maps(server.config(), Arc::clone(&metrics), visitors.clone(), store, maps);
+    let (live, seen) = (server.config(), visitors.clone());
+    #[cfg(not(feature = "cluster"))]
+    let (host, _) = (GameHost::with_maps(live, Arc::clone(&metrics), seen, store, maps), place);
+    #[cfg(feature = "cluster")]
+    let host = match place {
+        None => GameHost::with_maps(live, Arc::clone(&metrics), seen, store, maps),
+        Some(place) => {
+            let cluster = place.take(address).await?;
+            GameHost::in_cluster(live, Arc::clone(&metrics), seen, store, maps, cluster)
+        }
+    };
     let host = host.map_err(|error| no_thread(&error))?;
     // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
     let text = invitation(address, &fingerprint);

@@ -10,6 +10,7 @@
 
 mod account;
 mod errands;
+mod follow;
 mod results;
 #[cfg(test)]
 mod simulated;
@@ -22,14 +23,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use tokio::sync::watch;
 use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
+use self::follow::follow;
 #[cfg(test)]
 pub(super) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
+#[cfg(feature = "cluster")]
+use super::cluster::{Cluster, SharedRooms};
 use super::ghost::KeptRuns;
 use super::governor::Governor;
 use super::line::Line;
@@ -37,9 +40,7 @@ use super::load::Load;
 use super::room::Catalog;
 use super::rooms::{Logs, RoomLimits, Rooms};
 use super::summary::RoomSummary;
-use super::{
-    Config, Departure, Host, HostMaps, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors,
-};
+use super::{Departure, Host, HostMaps, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
 use crate::store::host::{HostStore, UnixTime};
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
@@ -59,6 +60,8 @@ struct Parts {
     store: StoreWorker,
     /// Of all chance in rooms.
     seed: u64,
+    #[cfg(feature = "cluster")]
+    cluster: Option<Cluster>,
 }
 
 /// What the drivers have in common.
@@ -69,6 +72,9 @@ struct Shared {
     visitors: Visitors,
     begun: Instant,
     rooms: Rooms,
+    /// In a cluster, the ways into rooms.
+    #[cfg(feature = "cluster")]
+    cluster: Option<SharedRooms>,
     store: StoreWorker,
     /// The runs of boards that walk along. Only the thread of the store uses them.
     runs: Arc<Mutex<KeptRuns>>,
@@ -108,7 +114,34 @@ impl GameHost {
         store: Box<dyn HostStore>,
         maps: &HostMaps,
     ) -> io::Result<Self> {
-        Ok(Self::of(Parts {
+        Ok(Self::of(Self::parts(live, metrics, visitors, store, maps)?))
+    }
+
+    /// As [`GameHost::with_maps`], with the rooms of a cluster.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    #[cfg(feature = "cluster")]
+    pub fn in_cluster(
+        live: LiveConfig,
+        metrics: Arc<Metrics>,
+        visitors: Visitors,
+        store: Box<dyn HostStore>,
+        maps: &HostMaps,
+        cluster: Cluster,
+    ) -> io::Result<Self> {
+        let parts = Self::parts(live, metrics, visitors, store, maps)?;
+        Ok(Self::of(Parts { cluster: Some(cluster), ..parts }))
+    }
+
+    fn parts(
+        live: LiveConfig,
+        metrics: Arc<Metrics>,
+        visitors: Visitors,
+        store: Box<dyn HostStore>,
+        maps: &HostMaps,
+    ) -> io::Result<Parts> {
+        Ok(Parts {
             visitors,
             catalog: Catalog::with(maps),
             logs: Logs::recorded(live.get().recordings.clone()),
@@ -118,19 +151,33 @@ impl GameHost {
             seed: getrandom::u64().unwrap_or_default(),
             metrics,
             live,
-        }))
+            #[cfg(feature = "cluster")]
+            cluster: None,
+        })
     }
 
     fn of(parts: Parts) -> Self {
-        let Parts { live, metrics, visitors, catalog, logs, load, store, seed } = parts;
+        #[cfg(feature = "cluster")]
+        let cluster = parts.cluster;
+        let Parts { live, metrics, visitors, catalog, logs, load, store, seed, .. } = parts;
         let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
+        #[cfg(feature = "cluster")]
+        let (limits, standing) = match &cluster {
+            Some(_) => (RoomLimits { standing: Vec::new(), ..limits.clone() }, limits.standing),
+            None => (limits, Vec::new()),
+        };
         let rooms = Rooms::new(limits, Arc::new(catalog), logs, Arc::clone(&load), seed);
+        #[cfg(feature = "cluster")]
+        let shared_rooms = cluster
+            .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
         let shared = Arc::new(Shared {
             config: live,
             metrics,
             visitors,
             begun: Instant::now(),
             rooms,
+            #[cfg(feature = "cluster")]
+            cluster: shared_rooms,
             store,
             runs: Arc::default(),
             names: NamesInUse::default(),
@@ -138,14 +185,22 @@ impl GameHost {
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
-        tokio::spawn(follow(shared.config.subscribe(), shared.rooms.clone()));
+        tokio::spawn(follow(shared.config.subscribe(), shared.limited()));
         Self { shared }
     }
 
     /// Ends the rooms after the last session, so that their recordings are whole.
     pub fn ending(&self) -> impl Future<Output = ()> + use<> {
         let rooms = self.shared.rooms.clone();
-        async move { rooms.end().await }
+        #[cfg(feature = "cluster")]
+        let shared_rooms = self.shared.cluster.clone();
+        async move {
+            #[cfg(feature = "cluster")]
+            if let Some(shared) = shared_rooms {
+                shared.end().await;
+            }
+            rooms.end().await;
+        }
     }
 
     /// Lists the rooms, for an operator.
@@ -218,14 +273,6 @@ async fn govern(shared: std::sync::Weak<Shared>) {
         let most = shared.config.get().frames_per_second;
         let sample = shared.load.sample(GOVERNED);
         shared.load.set_frame_time(governor.decide(sample, most));
-    }
-}
-
-/// Tells the rooms what the host allows, whenever the configuration is read again.
-async fn follow(mut config: watch::Receiver<Arc<Config>>, rooms: Rooms) {
-    while config.changed().await.is_ok() {
-        let limits = RoomLimits::of(&config.borrow_and_update());
-        rooms.set_limits(limits);
     }
 }
 

@@ -27,6 +27,10 @@ pub struct Metrics {
     pub watchers: Gauge,
     /// Entries of the logs of all rooms.
     pub entries: Counter,
+    /// Checksums of rooms that were the same on another host.
+    pub checks_equal: Counter,
+    /// Checksums of rooms that differed from those of another host, which is a bug.
+    pub checks_different: Counter,
     /// How late the steps of rooms are.
     pub step_lateness: Histogram,
     /// The time in which a frame is drawn and encoded.

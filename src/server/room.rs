@@ -157,6 +157,12 @@ impl Room {
         Some((member.id, member.player?, member.acted))
     }
 
+    /// The members with their colours.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn colors(&self) -> impl Iterator<Item = (MemberId, PlayerColor)> {
+        self.members.iter().map(|member| (member.id, member.color))
+    }
+
     /// The number of members.
     pub(crate) fn len(&self) -> usize {
         self.members.len()

@@ -10,6 +10,8 @@ mod ending;
 mod place;
 mod recording;
 mod refusal;
+#[cfg(feature = "cluster")]
+mod shared;
 mod standing;
 #[cfg(test)]
 mod tests;
@@ -71,6 +73,9 @@ struct Directory {
     load: Arc<Load>,
     open: Mutex<OpenRooms>,
     summaries: watch::Sender<Arc<[RoomSummary]>>,
+    /// The rooms that this host shares with others.
+    #[cfg(feature = "cluster")]
+    shared: Mutex<Vec<RoomSummary>>,
 }
 
 #[derive(Debug)]
@@ -114,7 +119,16 @@ impl Rooms {
         let open = Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() });
         let summaries = watch::Sender::new(Arc::from([]));
         let limits = Mutex::new(limits);
-        let rooms = Self(Arc::new(Directory { limits, catalog, logs, load, open, summaries }));
+        let rooms = Self(Arc::new(Directory {
+            limits,
+            catalog,
+            logs,
+            load,
+            open,
+            summaries,
+            #[cfg(feature = "cluster")]
+            shared: Mutex::default(),
+        }));
         rooms.open_standing();
         rooms
     }
@@ -253,7 +267,10 @@ impl Rooms {
         };
         // Under the lock, so that an older list never replaces a newer one.
         locked(&self.0.open, |open| {
-            let summaries: Arc<[RoomSummary]> = open.rooms.values().map(summary).collect();
+            let rooms = open.rooms.values().map(summary);
+            #[cfg(feature = "cluster")]
+            let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
+            let summaries: Arc<[RoomSummary]> = rooms.collect();
             let metrics = self.0.load.metrics();
             metrics.rooms.set(summaries.len() as i64);
             metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());

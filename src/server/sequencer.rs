@@ -26,6 +26,8 @@ use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until};
 
 pub(crate) use self::inbox::{DeedRefusal, Inbox, JoinRefusal};
+#[cfg(feature = "cluster")]
+pub(crate) use self::round_log::Changes;
 pub(crate) use self::round_log::{FinishedRun, RoundLog};
 pub(crate) use self::shown::{Shown, State};
 use super::load::Load;
@@ -35,7 +37,7 @@ use crate::game::STEPS_PER_SECOND;
 /// The most steps that follow at once after a delay.
 pub(crate) const MOST_CAUGHT_UP: u32 = 6;
 /// What members read after a fault.
-const FAULT: &str = "The room has ended because of a fault of this server.";
+pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
 
 /// What a room and its members share.
 #[derive(Debug)]
@@ -144,7 +146,7 @@ impl Sequencer {
     fn step(&mut self, on_change: &mut impl FnMut(&Room)) {
         let Self { room, log, doorway, .. } = self;
         let changes = doorway.shown.replace(|| {
-            let changes = log.step(room, &doorway.inbox);
+            let changes = log.step(room, |pass| doorway.inbox.take(pass));
             (room.view(), changes)
         });
         self.load.metrics().entries.add(changes.entries);
@@ -158,7 +160,7 @@ impl Sequencer {
 }
 
 /// The message of a panic.
-fn message(panic: &(dyn Any + Send)) -> String {
+pub(crate) fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref().map(String::as_str));
     text.unwrap_or("a panic without a message").to_owned()

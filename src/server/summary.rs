@@ -11,6 +11,13 @@ use crate::world::Difficulty;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct RoomId(pub(crate) u32);
 
+impl RoomId {
+    /// The room as a place where somebody is.
+    pub(crate) fn place(self) -> String {
+        format!("room {self}")
+    }
+}
+
 impl fmt::Display for RoomId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)

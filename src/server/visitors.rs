@@ -114,6 +114,15 @@ impl Visitors {
         })
     }
 
+    /// Says a line to all visitors in a room.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn say_in(&self, room: &str, line: &str) {
+        self.with(|table| {
+            let is_there = |entry: &&Entry| entry.room.as_deref() == Some(room);
+            table.entries.values().filter(is_there).for_each(|entry| entry.inbox.say(line));
+        });
+    }
+
     /// Ends the sessions of all to whom a ban of `target` applies, with a sentence for them. Returns
     /// how many there are.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {

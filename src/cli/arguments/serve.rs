@@ -1,5 +1,7 @@
 //! The options of `serve`.
 
+use std::env;
+use std::fmt;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -16,11 +18,19 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) store: Option<Database>,
+    pub(in crate::cli) cluster: Option<ClusterAddress>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) maps: Option<PathBuf>,
     pub(in crate::cli) record_room: Option<PathBuf>,
     pub(in crate::cli) log: LogFormat,
 }
+
+/// The address of a cluster, which may have a password.
+#[derive(Clone)]
+pub(in crate::cli) struct ClusterAddress(
+    #[cfg_attr(not(feature = "cluster"), expect(dead_code, reason = "it is refused"))]
+    pub(in crate::cli) String,
+);
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     name: "serve",
@@ -33,7 +43,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &STORE, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &STORE, &CLUSTER, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -44,10 +54,34 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         store: STORE.of(&mut matches),
+        cluster: CLUSTER.of(&mut matches).or_else(ClusterAddress::of_environment),
         config: CONFIG.of(&mut matches),
         maps: MAPS.of(&mut matches),
         record_room: RECORD_ROOM.of(&mut matches),
         log: LOG.of(&mut matches).unwrap_or_default(),
+    }
+}
+
+impl ClusterAddress {
+    fn parse(text: &str) -> Option<Self> {
+        let is_address = |text: &str| {
+            let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
+            rest.is_some_and(|rest| !rest.is_empty())
+        };
+        text.split(',').all(is_address).then(|| Self(text.to_owned()))
+    }
+
+    /// What the environment names, which keeps a password out of the list of processes.
+    fn of_environment() -> Option<Self> {
+        let text = env::var("CELLCASTER_CLUSTER").ok()?;
+        (!text.is_empty()).then_some(Self(text))
+    }
+}
+
+impl fmt::Debug for ClusterAddress {
+    /// Without what may be secret.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ClusterAddress").finish_non_exhaustive()
     }
 }
 
@@ -65,6 +99,18 @@ const LISTEN: ValueOption<SocketAddr> = ValueOption {
 const DATA: FileOption = FileOption {
     name: "data",
     help: "The folder for data [default: cellcaster in the folder for data, or $CELLCASTER_DATA]",
+};
+
+const CLUSTER: ValueOption<ClusterAddress> = ValueOption {
+    name: "cluster",
+    value: "URL",
+    takes: "an address of NATS such as nats://host:4222, or several with commas between them",
+    help: "The NATS servers over which this host shares its rooms with others; the store must be a \
+           PostgreSQL database [default: $CELLCASTER_CLUSTER, or none]",
+    default: "",
+    choices: &[],
+    read: Parser::Optional(ClusterAddress::parse),
+    repeats: false,
 };
 
 const CONFIG: FileOption = FileOption {

@@ -13,6 +13,7 @@ use crate::server::room::Deed;
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::{DeedRefusal, FinishedRun};
 use crate::server::session::{Ask, News};
+use crate::server::summary::{RoomId, RoomWish};
 use crate::store::host::{Account, AccountSettings, Name};
 use crate::world::Difficulty;
 
@@ -21,6 +22,16 @@ pub(super) enum Reply {
     /// A name, with the account that has it now; `None` for a guest.
     Named(Name, Result<Option<Account>, String>),
     News(News),
+    /// A place in a room of the cluster.
+    #[cfg(feature = "cluster")]
+    Place(Result<Place, RoomRefusal>),
+}
+
+/// A way into a room.
+enum Way {
+    Watch(RoomId),
+    Enter(RoomId),
+    Open(RoomWish),
 }
 
 /// The most answers that wait for a session. Further ones are dropped, as those to a flood of wishes.
@@ -52,18 +63,9 @@ impl Visit {
                 let rooms = self.rooms.borrow_and_update().clone();
                 self.tell(News::Rooms(rooms));
             }
-            Ask::Enter { room, watches: true } => {
-                let place = self.shared.rooms.watch(room);
-                self.enter(place);
-            }
-            Ask::Enter { room, watches: false } => {
-                let place = self.named(|visit, name| visit.shared.rooms.enter(room, name));
-                self.enter(place);
-            }
-            Ask::Open(wish) => {
-                let place = self.named(|visit, name| visit.shared.rooms.open(&wish, name));
-                self.enter(place);
-            }
+            Ask::Enter { room, watches: true } => self.go(Way::Watch(room)),
+            Ask::Enter { room, watches: false } => self.go(Way::Enter(room)),
+            Ask::Open(wish) => self.go(Way::Open(wish)),
             Ask::Deed(deed) => self.act(deed),
             Ask::Leave => self.leave(),
             Ask::Board { level, difficulty } => self.show_board(level, difficulty),
@@ -78,6 +80,8 @@ impl Visit {
             Reply::News(news) => news,
             Reply::Named(name, Ok(account)) => self.take_name(name, account),
             Reply::Named(_, Err(sentence)) => News::Named(Err(sentence)),
+            #[cfg(feature = "cluster")]
+            Reply::Place(place) => return self.enter(place),
         };
         self.tell(news);
     }
@@ -141,21 +145,42 @@ impl Visit {
         News::Named(Ok(line))
     }
 
-    /// Acts with the visitor's name, without which nobody is in a room.
-    fn named(
-        &mut self,
-        act: impl FnOnce(&Self, &crate::server::line::Line) -> Result<Place, RoomRefusal>,
-    ) -> Result<Place, RoomRefusal> {
-        self.leave();
-        let name = self.name.as_ref().ok_or(RoomRefusal::Gone)?;
-        act(self, &account::line(name))
+    /// Goes into a room, as who has a name, without which nobody is a member.
+    fn go(&mut self, way: Way) {
+        if !matches!(way, Way::Watch(_)) {
+            self.leave();
+        }
+        let name = self.name.as_ref().map(account::line);
+        #[cfg(feature = "cluster")]
+        if let Some(rooms) = self.shared.cluster.clone() {
+            let replies = self.replies.clone();
+            tokio::spawn(async move {
+                let place = match (&way, &name) {
+                    (Way::Watch(room), _) => rooms.watch(*room).await,
+                    (Way::Enter(room), Some(name)) => rooms.enter(*room, name).await,
+                    (Way::Open(wish), Some(name)) => rooms.open(wish, name).await,
+                    (_, None) => Err(RoomRefusal::Gone),
+                };
+                // Who is gone meanwhile leaves by that.
+                _ = replies.send(Reply::Place(place)).await;
+            });
+            return;
+        }
+        let rooms = &self.shared.rooms;
+        let place = match (&way, &name) {
+            (Way::Watch(room), _) => rooms.watch(*room),
+            (Way::Enter(room), Some(name)) => rooms.enter(*room, name),
+            (Way::Open(wish), Some(name)) => rooms.open(wish, name),
+            (_, None) => Err(RoomRefusal::Gone),
+        };
+        self.enter(place);
     }
 
     fn enter(&mut self, place: Result<Place, RoomRefusal>) {
         match place {
             Ok(place) => {
                 self.in_lobby = false;
-                self.presence.set_room(Some(format!("room {}", place.room())));
+                self.presence.set_room(Some(place.room().place()));
                 let news = News::Entered { room: place.room(), member: place.member_id() };
                 self.place = Some(place);
                 self.tell(news);

@@ -57,6 +57,8 @@ impl Simulated {
             metrics,
             store: StoreWorker::simulated(setup.store, time),
             seed: setup.seed,
+            #[cfg(feature = "cluster")]
+            cluster: None,
         });
         Self { host }
     }

@@ -53,6 +53,10 @@ impl Text {
         self.gauge("members", "Members of all rooms.", metrics.members.get());
         self.gauge("watchers", "Visitors who watch a room.", metrics.watchers.get());
         self.counter("log_entries", "Entries of the logs of all rooms.", metrics.entries.get());
+        let name = "room_checks_total";
+        self.head(name, "counter", "Checksums of rooms, compared with those of other hosts.");
+        self.line(name, "{result=\"equal\"}", metrics.checks_equal.get());
+        self.line(name, "{result=\"different\"}", metrics.checks_different.get());
         let help = "How late the steps of rooms are.";
         self.histogram("step_lateness_seconds", help, &metrics.step_lateness);
     }

@@ -28,7 +28,10 @@ const SAID_COLUMNS: usize = CHAT_COLUMNS + NAME_COLUMNS;
 
 impl Room {
     /// The whole state.
-    #[cfg_attr(not(any(test, fuzzing)), expect(dead_code, reason = "hosts do not share rooms yet"))]
+    #[cfg_attr(
+        not(any(test, fuzzing, feature = "cluster")),
+        expect(dead_code, reason = "only hosts of a cluster share rooms")
+    )]
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.raw(first_line(KIND).as_bytes());
@@ -43,7 +46,10 @@ impl Room {
     /// # Errors
     /// A sentence: the bytes are of no room, of one of another version, or of one in a level that the
     /// catalog does not have; or they are damaged.
-    #[cfg_attr(not(any(test, fuzzing)), expect(dead_code, reason = "hosts do not share rooms yet"))]
+    #[cfg_attr(
+        not(any(test, fuzzing, feature = "cluster")),
+        expect(dead_code, reason = "only hosts of a cluster share rooms")
+    )]
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let sentence = |error: Unrestorable| error.to_string();
         let bytes = after_first_line(KIND, bytes).map_err(sentence)?;

@@ -25,12 +25,16 @@ enum Role {
     Watcher { watchers: Arc<AtomicUsize>, rooms: Rooms },
 }
 
+/// What a member reads who was removed.
+#[cfg(feature = "cluster")]
+const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
+
 impl Place {
-    pub(super) fn member(room: RoomId, member: MemberId, doorway: Arc<Doorway>) -> Self {
+    pub(in crate::server) fn member(room: RoomId, member: MemberId, doorway: Arc<Doorway>) -> Self {
         Self::new(room, Role::Member(member), doorway)
     }
 
-    pub(super) fn watcher(
+    pub(in crate::server) fn watcher(
         room: RoomId,
         doorway: Arc<Doorway>,
         watchers: Arc<AtomicUsize>,
@@ -64,7 +68,16 @@ impl Place {
 
     /// Why the room is closed, if it is: a sentence.
     pub(crate) fn closed(&self) -> Option<Arc<str>> {
-        self.state.borrow().closed.clone()
+        let closed = self.state.borrow().closed.clone();
+        #[cfg(feature = "cluster")]
+        let closed = closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()));
+        closed
+    }
+
+    /// Whether the member was removed from the room, which others have gone on with.
+    #[cfg(feature = "cluster")]
+    fn is_dismissed(&self) -> bool {
+        self.member_id().is_some_and(|member| !self.doorway.inbox.seated().contains(&member))
     }
 
     /// Waits until there is a newer snapshot than the last [`Place::view`], or the room is closed.

@@ -104,6 +104,28 @@ impl Inbox {
         Ok(id)
     }
 
+    /// Gives a seat to somebody who has joined elsewhere.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn admit(&self, id: MemberId, color: PlayerColor) {
+        locked(&self.waiting, |waiting| {
+            waiting.next = waiting.next.max(id.0.saturating_add(1));
+            let seat = Seat::new(id, color, waiting.steps);
+            waiting.seats.push(seat);
+        });
+    }
+
+    /// Takes a seat from somebody who is not in the room any more.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn dismiss(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| waiting.seats.retain(|seat| seat.id != id));
+    }
+
+    /// Those who have a seat.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn seated(&self) -> Vec<MemberId> {
+        locked(&self.waiting, |waiting| waiting.seats.iter().map(|seat| seat.id).collect())
+    }
+
     /// A member leaves. It is always accepted.
     pub(crate) fn leave(&self, id: MemberId) {
         locked(&self.waiting, |waiting| {
@@ -125,7 +147,7 @@ impl Inbox {
     }
 
     /// Whether nobody is in the room or on the way to it, and nobody is about to leave it.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         locked(&self.waiting, |waiting| waiting.seats.is_empty() && waiting.moves.is_empty())
     }
 
@@ -141,13 +163,13 @@ impl Inbox {
     }
 
     /// Nobody may join any more.
-    pub(super) fn close(&self) {
+    pub(crate) fn close(&self) {
         locked(&self.waiting, |waiting| waiting.is_closed = true);
         self.joined.notify_one();
     }
 
     /// Closes the room, unless somebody joins; returns whether it is closed.
-    pub(super) fn close_if_empty(&self) -> bool {
+    pub(crate) fn close_if_empty(&self) -> bool {
         locked(&self.waiting, |waiting| {
             waiting.is_closed |= waiting.seats.is_empty();
             waiting.is_closed
@@ -155,7 +177,7 @@ impl Inbox {
     }
 
     /// Keeps a run until its member takes it.
-    pub(super) fn finish(&self, run: FinishedRun) {
+    pub(crate) fn finish(&self, run: FinishedRun) {
         locked(&self.waiting, |waiting| waiting.finished = Some(run));
     }
 
@@ -165,7 +187,7 @@ impl Inbox {
     }
 
     /// Passes on what takes effect in the next step, in its order.
-    pub(super) fn take(&self, mut pass: impl FnMut(MemberId, Deed)) {
+    pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Deed)) {
         locked(&self.waiting, |waiting| {
             let steps = waiting.steps;
             waiting.moves.drain(..).for_each(|(id, deed)| pass(id, deed));

@@ -2,7 +2,6 @@
 
 use std::io;
 
-use super::inbox::Inbox;
 use crate::game::{self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch};
 use crate::server::room::{Deed, Entry, Log, MemberId, Mode, Room};
 
@@ -26,12 +25,12 @@ pub(crate) struct FinishedRun {
 
 /// What a step has changed.
 #[derive(Debug, Default)]
-pub(super) struct Changes {
+pub(crate) struct Changes {
     /// The entries that the step has.
-    pub(super) entries: u64,
+    pub(crate) entries: u64,
     /// Whether a lobby would show the room otherwise.
-    pub(super) summary: bool,
-    pub(super) finished: Option<FinishedRun>,
+    pub(crate) summary: bool,
+    pub(crate) finished: Option<FinishedRun>,
 }
 
 /// What a member who plays alone has wanted in the round so far.
@@ -53,9 +52,13 @@ impl RoundLog {
         log
     }
 
-    /// Takes a step: what the members want becomes entries, the entries change the room, and the room
+    /// Takes a step: what `take` passes on becomes entries, the entries change the room, and the room
     /// advances.
-    pub(super) fn step(&mut self, room: &mut Room, inbox: &Inbox) -> Changes {
+    pub(crate) fn step(
+        &mut self,
+        room: &mut Room,
+        take: impl FnOnce(&mut dyn FnMut(MemberId, Deed)),
+    ) -> Changes {
         let mut changes = Changes::default();
         if room.is_over() {
             room.begin_next();
@@ -63,7 +66,7 @@ impl RoundLog {
             changes.summary = true;
         }
         let step = room.step();
-        inbox.take(|member, deed| {
+        take(&mut |member, deed| {
             let result = self.log.append(Entry { step, member, deed });
             self.report(result);
         });
@@ -105,6 +108,16 @@ impl RoundLog {
             self.has_failed = true;
             tracing::error!(%error, "a recording of a room cannot be written");
         }
+    }
+}
+
+#[cfg(feature = "cluster")]
+impl Changes {
+    /// Adds what a later step has changed.
+    pub(crate) fn add(&mut self, later: Self) {
+        self.entries += later.entries;
+        self.summary |= later.summary;
+        self.finished = later.finished.or(self.finished.take());
     }
 }
 

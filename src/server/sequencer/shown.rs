@@ -44,7 +44,7 @@ impl Shown {
     }
 
     /// Replaces the snapshot by that of `step`.
-    pub(super) fn replace<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
+    pub(crate) fn replace<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
         let result = locked(&self.view, |shown| {
             *shown = None;
             let (view, result) = step();
@@ -56,7 +56,7 @@ impl Shown {
     }
 
     /// Tells all that the room is closed.
-    pub(super) fn close(&self, sentence: &str) {
+    pub(crate) fn close(&self, sentence: &str) {
         self.state.send_modify(|state| {
             state.closed.get_or_insert_with(|| sentence.into());
         });

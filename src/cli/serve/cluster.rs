@@ -1,0 +1,58 @@
+//! The place of the host in a cluster: what it needs, before anything runs.
+
+use super::{Database, Error, Serve};
+#[cfg(feature = "cluster")]
+use crate::server::Cluster;
+#[cfg(feature = "cluster")]
+use crate::store::host::PostgresStore;
+
+/// A place in a cluster that is still to be taken.
+#[cfg(feature = "cluster")]
+pub(super) struct Place {
+    address: String,
+    /// On a connection of their own, so that they wait for nothing else.
+    leases: PostgresStore,
+}
+
+/// There is none.
+#[cfg(not(feature = "cluster"))]
+pub(super) enum Place {}
+
+/// The place that `options` name. The store is that of all hosts.
+#[cfg(feature = "cluster")]
+pub(super) fn place(options: &Serve, store: &Database) -> Result<Option<Place>, Error> {
+    let Some(address) = &options.cluster else { return Ok(None) };
+    let Database::Address(store) = store else {
+        return Err(Error::mistake(
+            "a cluster needs a database that all hosts share: name it, as in \
+             \"--store postgres://USER@HOST/DATABASE\"",
+        ));
+    };
+    if options.record_room.is_some() {
+        return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
+    }
+    let leases =
+        PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()))?;
+    Ok(Some(Place { address: address.0.clone(), leases }))
+}
+
+/// None, since this program cannot be in a cluster.
+#[cfg(not(feature = "cluster"))]
+pub(super) fn place(options: &Serve, _: &Database) -> Result<Option<Place>, Error> {
+    match &options.cluster {
+        None => Ok(None),
+        Some(_) => Err(Error::mistake(
+            "this Cellcaster can't be in a cluster: it was built without the feature cluster",
+        )),
+    }
+}
+
+#[cfg(feature = "cluster")]
+impl Place {
+    /// Takes the place, under a name that no other host has.
+    pub(super) async fn take(self, address: std::net::SocketAddr) -> Result<Cluster, Error> {
+        let name = format!("{address} {:08x}", getrandom::u32().unwrap_or_default());
+        let cluster = Cluster::join(&self.address, Box::new(self.leases), name).await;
+        cluster.map_err(Error::mistake)
+    }
+}

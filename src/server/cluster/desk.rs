@@ -1,0 +1,85 @@
+//! The leases on a thread of their own, since their methods block.
+
+use std::io;
+use std::thread;
+
+use tokio::sync::{mpsc, oneshot};
+
+use crate::store::host::{Lease, Leases, StoreFailure};
+
+/// The time for which a host has a room without a word to the database.
+pub(super) const LEASE_TIME: std::time::Duration = std::time::Duration::from_secs(3);
+/// The most calls that wait.
+const MOST_CALLS: usize = 256;
+
+/// Where a host asks for leases. Clones are the same desk.
+#[derive(Clone)]
+pub(super) struct Desk {
+    calls: mpsc::Sender<Call>,
+}
+
+/// The answer to a call; an error if it was not accepted.
+pub(super) type Reply<T> = oneshot::Receiver<Result<T, StoreFailure>>;
+
+/// What is asked of the leases.
+pub(super) enum Call {
+    Acquire(String, oneshot::Sender<Result<Option<Lease>, StoreFailure>>),
+    Renew(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
+    Release(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
+}
+
+impl Desk {
+    /// A desk whose calls come out of the receiver.
+    pub(super) fn new() -> (Self, mpsc::Receiver<Call>) {
+        let (calls, queue) = mpsc::channel(MOST_CALLS);
+        (Self { calls }, queue)
+    }
+
+    /// The desk of a host with these leases.
+    pub(super) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
+        let (desk, mut queue) = Self::new();
+        thread::Builder::new().name("leases".to_owned()).spawn(move || {
+            while let Some(call) = queue.blocking_recv() {
+                call.run(&mut *leases, &host);
+            }
+        })?;
+        Ok(desk)
+    }
+
+    /// Asks for the lease of a room.
+    pub(super) fn acquire(&self, room: &str) -> Reply<Option<Lease>> {
+        let (reply, answer) = oneshot::channel();
+        self.call(Call::Acquire(room.to_owned(), reply));
+        answer
+    }
+
+    /// Renews a lease.
+    pub(super) fn renew(&self, lease: &Lease) -> Reply<bool> {
+        let (reply, answer) = oneshot::channel();
+        self.call(Call::Renew(lease.clone(), reply));
+        answer
+    }
+
+    /// Releases a lease.
+    pub(super) fn release(&self, lease: &Lease) -> Reply<bool> {
+        let (reply, answer) = oneshot::channel();
+        self.call(Call::Release(lease.clone(), reply));
+        answer
+    }
+
+    fn call(&self, call: Call) {
+        // What is not accepted is answered by its end.
+        _ = self.calls.try_send(call);
+    }
+}
+
+impl Call {
+    /// Does it, and answers.
+    pub(super) fn run(self, leases: &mut dyn Leases, host: &str) {
+        match self {
+            Self::Acquire(room, reply) => _ = reply.send(leases.acquire(&room, host, LEASE_TIME)),
+            Self::Renew(lease, reply) => _ = reply.send(leases.renew(&lease)),
+            Self::Release(lease, reply) => _ = reply.send(leases.release(&lease)),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Standing rooms of a cluster: each is made by the first host that has it in its configuration.
+
+use super::SharedRooms;
+use crate::rng;
+use crate::server::cluster::bus::{BusFault, Key};
+use crate::server::cluster::record::Record;
+use crate::server::locked;
+use crate::server::room::Header;
+use crate::server::summary::{RoomId, RoomWish};
+
+impl SharedRooms {
+    /// Makes those that are missing.
+    pub(super) async fn make_standing(&self) {
+        let standing = locked(&self.0.standing, |standing| standing.clone());
+        for (index, wish) in standing.iter().enumerate() {
+            let number = standing[..index].iter().filter(|other| *other == wish).count();
+            match self.header(wish) {
+                Some(header) => _ = self.make_standing_room(wish, number, header).await,
+                None => {
+                    tracing::error!(level = wish.level, "no standing room: there is no such level");
+                }
+            }
+        }
+    }
+
+    async fn make_standing_room(
+        &self,
+        wish: &RoomWish,
+        number: usize,
+        header: Header,
+    ) -> Result<(), BusFault> {
+        let bus = &self.0.company.bus;
+        let text = format!("{} {} {}", header.level, wish.mode.name(), wish.difficulty.name());
+        let hash = rng::hash(number as u64, text.bytes().map(u64::from));
+        let key = Key::Standing(format!("{hash:016x}"));
+        if bus.get(key.clone()).await?.is_none() {
+            let own = bus.number().await?;
+            match bus.create(key.clone(), own.to_string().into_bytes()).await {
+                // Another host was faster.
+                Ok(()) | Err(BusFault::Refused) => {}
+                Err(fault) => return Err(fault),
+            }
+        }
+        let kept = bus.get(key).await?.unwrap_or_default();
+        let kept = str::from_utf8(&kept).ok().and_then(|text| text.parse().ok());
+        let Some(id) = kept.map(RoomId) else { return Ok(()) };
+        if locked(&self.0.records, |records| records.contains_key(&id)) {
+            return Ok(());
+        }
+        bus.create(Key::Room(id), Record::new(header, true).to_bytes()).await
+    }
+}

@@ -1,0 +1,141 @@
+//! Messages of a room's log.
+//!
+//! A message is a line of numbers, and a line for each entry:
+//!
+//! ```text
+//! 1.1 3 18231 5400 2 5400 9f3ac1
+//! 0 want 7 5399 forward
+//! ```
+//!
+//! The line has the versions of the format and of the rules, the epoch of the sequencer, the number of the
+//! message before, the number
+//! of steps that the room has taken in all its rounds, and how many it takes now; then, once a second,
+//! after how many steps the room had which checksum. The step of an entry is counted from the first one of the
+//! message. A message without steps begins an epoch.
+//!
+//! Steps of the round were refused: a sequencer would have to know when the round ends before it does.
+
+use std::fmt::Write;
+
+use crate::game::RULES_VERSION;
+use crate::server::room::Entry;
+
+/// The version of the format.
+const FORMAT: u32 = 1;
+/// The most steps of a message.
+pub(super) const MOST_STEPS: u64 = 6;
+
+/// A message of a room's log.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Message {
+    /// The epoch of the sequencer.
+    pub(super) epoch: u64,
+    /// The number of the message before; 0 for none.
+    pub(super) last: u64,
+    /// The steps that the room has taken before.
+    pub(super) tick: u64,
+    /// The steps that it takes.
+    pub(super) steps: u64,
+    /// The checksum of the room after a number of steps.
+    pub(super) check: Option<Check>,
+    /// Their steps are counted from the first one of the message.
+    pub(super) entries: Vec<Entry>,
+}
+
+/// The checksum of a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Check {
+    /// The steps that the room has taken.
+    pub(super) tick: u64,
+    pub(super) sum: u64,
+}
+
+/// Why bytes are no message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unreadable {
+    /// They are of another version.
+    OtherVersion,
+    Damaged,
+}
+
+impl Message {
+    /// The message as bytes.
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let Self { epoch, last, tick, steps, check, entries } = self;
+        let mut text = format!("{} {epoch} {last} {tick} {steps}", version());
+        // Memory accepts every byte.
+        if let Some(Check { tick, sum }) = check {
+            _ = write!(text, " {tick} {sum:x}");
+        }
+        text.push('\n');
+        for entry in entries {
+            _ = writeln!(text, "{entry}");
+        }
+        text.into_bytes()
+    }
+
+    /// The message of those bytes.
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
+        let text = str::from_utf8(bytes).map_err(|_| Unreadable::Damaged)?;
+        let (head, rest) = text.split_once('\n').ok_or(Unreadable::Damaged)?;
+        let (found, numbers) = head.split_once(' ').ok_or(Unreadable::Damaged)?;
+        if found != version() {
+            return Err(Unreadable::OtherVersion);
+        }
+        Self::read(numbers, rest).ok_or(Unreadable::Damaged)
+    }
+
+    fn read(numbers: &str, entries: &str) -> Option<Self> {
+        let mut words = numbers.split(' ');
+        let mut number = || words.next()?.parse().ok();
+        let [epoch, last, tick, steps] = [number()?, number()?, number()?, number()?];
+        let check = match (words.next(), words.next(), words.next()) {
+            (None, ..) => None,
+            (Some(tick), Some(sum), None) => {
+                Some(Check { tick: tick.parse().ok()?, sum: u64::from_str_radix(sum, 16).ok()? })
+            }
+            _ => return None,
+        };
+        let entries: Vec<Entry> = entries.lines().map(Entry::parse).collect::<Option<_>>()?;
+        let is_possible = steps <= MOST_STEPS && entries.iter().all(|entry| entry.step < steps);
+        is_possible.then_some(Self { epoch, last, tick, steps, check, entries })
+    }
+}
+
+/// The versions of the format and of the rules.
+pub(super) fn version() -> String {
+    format!("{FORMAT}.{RULES_VERSION}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::server::room::{Deed, MemberId};
+
+    fn message(check: Option<Check>, entries: Vec<Entry>) -> Message {
+        Message { epoch: 3, last: 18_231, tick: 5_400, steps: 2, check, entries }
+    }
+
+    #[test]
+    fn what_is_written_reads_as_the_same() {
+        let leave = Entry { step: 1, member: MemberId(7), deed: Deed::Leave };
+        let check = Check { tick: 5_399, sum: u64::MAX };
+        for message in [message(None, Vec::new()), message(Some(check), vec![leave])] {
+            assert_eq!(Message::parse(&message.to_bytes()), Ok(message));
+        }
+        assert_eq!(message(None, Vec::new()).to_bytes().len(), 19);
+    }
+
+    #[test]
+    fn what_is_damaged_or_of_another_version_is_told() {
+        let text = |head: &str| Message::parse(format!("{head}\n").as_bytes());
+        let version = version();
+        for head in
+            ["3 1 1", "3 1 1 7", "3 1 1 2 9", "3 1 1 2 9 x", "3 1 1 2 9 a b", "3 1 1 2\n5 leave 1"]
+        {
+            assert_eq!(text(&format!("{version} {head}")), Err(Unreadable::Damaged), "{head}");
+        }
+        assert_eq!(text("0.1 3 1 1 2"), Err(Unreadable::OtherVersion));
+        assert_eq!(Message::parse(b"\xff"), Err(Unreadable::Damaged));
+    }
+}

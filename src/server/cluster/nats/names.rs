@@ -1,0 +1,24 @@
+//! Names of subjects, keys and the bucket.
+
+use crate::server::cluster::bus::Key;
+use crate::server::summary::RoomId;
+
+pub(super) const BUCKET: &str = "cellcaster";
+pub(super) const NUMBERS: &str = "cellcaster.number";
+pub(super) const ROOMS: &str = "room.";
+
+pub(super) fn log_of(room: RoomId) -> String {
+    format!("cellcaster.log.{room}")
+}
+
+pub(super) fn talk_of(room: RoomId) -> String {
+    format!("cellcaster.talk.{room}")
+}
+
+pub(super) fn name_of(key: &Key) -> String {
+    match key {
+        Key::Room(room) => format!("{ROOMS}{room}"),
+        Key::Checkpoint(room) => format!("checkpoint.{room}"),
+        Key::Standing(hash) => format!("standing.{hash}"),
+    }
+}

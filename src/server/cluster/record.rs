@@ -1,0 +1,142 @@
+//! Records of rooms: what every host knows of a room without having it.
+//!
+//! ```text
+//! 1.1 standing awake 17
+//! playing 5400
+//! museum
+//! name Mara
+//! cellcaster-room 1
+//! …
+//! ```
+//!
+//! The first line has the versions, whether the room is always there, whether a host runs it, and a number that
+//! grows while one does.
+//! The phase follows, the level, the names of the members, and the header with which the log begins.
+
+use std::sync::Arc;
+
+use super::message::version;
+use crate::server::line::Line;
+use crate::server::room::{Header, NAME_COLUMNS, Phase, Room};
+use crate::server::summary::{RoomId, RoomSummary};
+
+/// The record of a room.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Record {
+    /// Whether the room is always there.
+    pub(super) stands: bool,
+    /// Whether a host runs it.
+    pub(super) is_awake: bool,
+    /// It grows while a host runs the room.
+    pub(super) beat: u64,
+    phase: Phase,
+    names: Arc<[Line]>,
+    /// The level of the present round.
+    level: String,
+    /// That with which the log begins, as long as there is no checkpoint.
+    pub(super) header: Header,
+}
+
+impl Record {
+    /// That of a room that nobody has entered yet.
+    pub(super) fn new(header: Header, stands: bool) -> Self {
+        let (names, level) = (Arc::from([]), header.level.clone());
+        Self { stands, is_awake: !stands, beat: 0, phase: Phase::Waiting, names, level, header }
+    }
+
+    /// The next one, of the room as it is.
+    pub(super) fn next(self, room: &Room, is_awake: bool) -> Self {
+        let (phase, names) = (room.phase(), room.names().cloned().collect());
+        let level = room.header().level.clone();
+        Self { is_awake, beat: self.beat + 1, phase, names, level, ..self }
+    }
+
+    /// The room as lobbies show it, without those who watch.
+    pub(super) fn summary(&self, id: RoomId) -> RoomSummary {
+        RoomSummary {
+            id,
+            level: self.level.clone(),
+            mode: self.header.mode,
+            difficulty: self.header.difficulty,
+            phase: self.phase,
+            members: Arc::clone(&self.names),
+            watchers: 0,
+        }
+    }
+
+    /// The record as bytes.
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let stands = if self.stands { "standing" } else { "opened" };
+        let awake = if self.is_awake { "awake" } else { "asleep" };
+        let (phase, ends) = match self.phase {
+            Phase::Waiting => ("waiting", 0),
+            Phase::Countdown { ends } => ("countdown", ends),
+            Phase::Playing { ends } => ("playing", ends),
+            Phase::Over { ends } => ("over", ends),
+        };
+        let names: Vec<String> = self.names.iter().map(|name| format!("name {name}\n")).collect();
+        let names = names.concat();
+        let Self { beat, level, header, .. } = self;
+        format!("{} {stands} {awake} {beat}\n{phase} {ends}\n{level}\n{names}{header}", version())
+            .into_bytes()
+    }
+
+    /// The record of those bytes; `None` if they are none, or of another version.
+    pub(super) fn parse(bytes: &[u8]) -> Option<Self> {
+        let mut lines = str::from_utf8(bytes).ok()?.lines().peekable();
+        let words: Vec<&str> = lines.next()?.split(' ').collect();
+        let [found, stands, awake, beat] = words.try_into().ok()?;
+        (found == version()).then_some(())?;
+        let (phase, ends) = lines.next()?.split_once(' ')?;
+        let ends = ends.parse().ok()?;
+        let phase = match phase {
+            "waiting" => Phase::Waiting,
+            "countdown" => Phase::Countdown { ends },
+            "playing" => Phase::Playing { ends },
+            "over" => Phase::Over { ends },
+            _ => return None,
+        };
+        let level = lines.next()?.to_owned();
+        let mut names = Vec::new();
+        while let Some(line) = lines.next_if(|line| line.starts_with("name ")) {
+            names.push(Line::of(line.strip_prefix("name ")?, NAME_COLUMNS)?);
+        }
+        Some(Self {
+            stands: stands == "standing",
+            is_awake: awake == "awake",
+            beat: beat.parse().ok()?,
+            phase,
+            names: names.into(),
+            level,
+            header: Header::parse(lines)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::server::room::Mode;
+    use crate::world::Difficulty;
+
+    #[test]
+    fn what_is_written_reads_as_the_same() {
+        let header = Header::new("museum", Mode::Tag, Difficulty::Hard, 77);
+        let new = Record::new(header, true);
+        let names = ["Mara", "a b"].map(|name| Line::of(name, NAME_COLUMNS).unwrap());
+        let used = Record {
+            stands: false,
+            is_awake: true,
+            beat: 9,
+            phase: Phase::Playing { ends: 99 },
+            names: names.into(),
+            ..new.clone()
+        };
+        for record in [new, used] {
+            let bytes = record.to_bytes();
+            assert_eq!(Record::parse(&bytes), Some(record));
+            let other = [b"0.0".as_slice(), &bytes[version().len()..]].concat();
+            assert_eq!(Record::parse(&other), None);
+        }
+    }
+}

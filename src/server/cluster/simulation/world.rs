@@ -1,0 +1,170 @@
+//! What the hosts of a simulation have in common: logs, values, leases, and links with faults.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep};
+
+use super::super::bus::{Bus, Key};
+use super::super::desk::{Call, Desk};
+use super::bus::SimulatedBus;
+use crate::rng::SplitMix64;
+use crate::server::locked;
+use crate::server::summary::RoomId;
+use crate::store::host::MemoryLeases;
+
+pub(super) const PATIENCE: Duration = Duration::from_secs(1);
+/// The time from one look whether a fault is over to the next.
+pub(super) const LOOK: Duration = Duration::from_millis(10);
+
+/// What the hosts have in common, and what is wrong.
+#[derive(Clone)]
+pub(super) struct World(Arc<Mutex<Inner>>);
+
+pub(super) struct Inner {
+    pub(super) chance: SplitMix64,
+    /// All messages there ever were.
+    pub(super) logs: BTreeMap<RoomId, Vec<Kept>>,
+    /// The number before which messages of a room are dropped.
+    pub(super) dropped: BTreeMap<RoomId, u64>,
+    pub(super) messages: u64,
+    pub(super) rooms: u32,
+    pub(super) values: BTreeMap<Key, (u64, Option<Vec<u8>>)>,
+    pub(super) changes: Vec<(RoomId, Option<Vec<u8>>)>,
+    pub(super) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
+    leases: MemoryLeases,
+    asked_at: Instant,
+    links: Vec<Link>,
+}
+
+/// A message of a log.
+#[derive(Clone)]
+pub(super) struct Kept {
+    pub(super) number: u64,
+    pub(super) host: usize,
+    pub(super) bytes: Vec<u8>,
+    pub(super) at: Instant,
+}
+
+/// The links of a host.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Link {
+    /// Whether it reaches nobody on the bus.
+    pub(super) is_cut: bool,
+    /// Whether it does not reach the database.
+    pub(super) has_no_database: bool,
+    /// Whether the host stands still.
+    pub(super) is_frozen: bool,
+    /// The part of answers and of what is said that is lost: one in this many.
+    pub(super) loses_one_in: Option<usize>,
+    /// The longest delay.
+    pub(super) delay: u64,
+}
+
+impl World {
+    pub(super) fn new(seed: u64, hosts: usize) -> Self {
+        let good = Link { delay: 2, ..Link::default() };
+        Self(Arc::new(Mutex::new(Inner {
+            chance: SplitMix64::new(seed),
+            logs: BTreeMap::new(),
+            dropped: BTreeMap::new(),
+            messages: 0,
+            rooms: 0,
+            values: BTreeMap::new(),
+            changes: Vec::new(),
+            listeners: Vec::new(),
+            leases: MemoryLeases::default(),
+            asked_at: Instant::now(),
+            links: vec![good; hosts],
+        })))
+    }
+
+    pub(super) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
+        locked(&self.0, act)
+    }
+
+    pub(super) fn bus(&self, host: usize) -> Box<dyn Bus> {
+        Box::new(SimulatedBus::new(self.clone(), host))
+    }
+
+    /// The leases of a host, by the one clock of the database.
+    pub(super) fn desk(&self, host: usize) -> Desk {
+        let (desk, mut queue) = Desk::new();
+        let world = self.clone();
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                world.pass(host).await;
+                if world.link(host).has_no_database {
+                    sleep(PATIENCE).await;
+                    continue;
+                }
+                world.run(call, host);
+                world.pass(host).await;
+            }
+        });
+        desk
+    }
+
+    fn run(&self, call: Call, host: usize) {
+        self.with(|inner| {
+            let now = Instant::now();
+            inner.leases.pass(now - inner.asked_at);
+            inner.asked_at = now;
+            call.run(&mut inner.leases, &format!("host {host}"));
+        });
+    }
+
+    pub(super) fn link(&self, host: usize) -> Link {
+        self.with(|inner| inner.links[host])
+    }
+
+    pub(super) fn set(&self, host: usize, change: impl FnOnce(&mut Link)) {
+        self.with(|inner| change(&mut inner.links[host]));
+    }
+
+    /// All messages of a room's log that there ever were.
+    pub(super) fn log(&self, room: RoomId) -> Vec<Kept> {
+        self.with(|inner| inner.logs.get(&room).cloned().unwrap_or_default())
+    }
+
+    /// The first record of a room.
+    pub(super) fn first_record(&self, room: RoomId) -> Option<Vec<u8>> {
+        self.with(|inner| inner.changes.iter().find(|change| change.0 == room)?.1.clone())
+    }
+
+    /// A way through the network; a host that stands still does not go on.
+    pub(super) async fn pass(&self, host: usize) {
+        let delay = self.with(|inner| {
+            let longest = inner.links[host].delay;
+            inner.chance.below(longest as usize + 1)
+        });
+        sleep(Duration::from_millis(delay as u64)).await;
+        while self.link(host).is_frozen {
+            sleep(LOOK).await;
+        }
+    }
+
+    pub(super) fn is_lost(&self, host: usize) -> bool {
+        self.with(|inner| {
+            let link = inner.links[host];
+            link.is_cut || link.loses_one_in.is_some_and(|most| inner.chance.one_in(most))
+        })
+    }
+}
+
+impl Inner {
+    pub(super) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {
+        if let Key::Room(room) = key {
+            self.changes.push((room, value.clone()));
+        }
+        self.messages += 1;
+        self.values.insert(key, (self.messages, value));
+        self.messages
+    }
+
+    pub(super) fn revision(&self, key: &Key) -> u64 {
+        self.values.get(key).map_or(0, |value| value.0)
+    }
+}
