@@ -7,6 +7,9 @@ mod emulator;
 mod kept;
 #[path = "../support/looks.rs"]
 mod looks;
+#[cfg(feature = "cluster-tests")]
+#[path = "../support/nats_server.rs"]
+mod nats_server;
 mod ops;
 mod play;
 #[path = "../support/player.rs"]

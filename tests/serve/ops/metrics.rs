@@ -32,7 +32,7 @@ fn answer(port: u16, request: &[u8]) -> String {
     answer
 }
 
-fn scrape(port: u16) -> BTreeMap<String, f64> {
+pub(super) fn scrape(port: u16) -> BTreeMap<String, f64> {
     let answer = answer(port, b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
     let (head, body) = answer.split_once("\r\n\r\n").unwrap();
     assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");

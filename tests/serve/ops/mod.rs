@@ -1,6 +1,8 @@
 //! Running a host: its log, its metrics, its operator, its signals, its ends, and the files that start it.
 
 mod admin;
+#[cfg(feature = "cluster-tests")]
+mod cluster;
 mod documents;
 mod killed;
 mod maps;

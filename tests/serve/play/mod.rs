@@ -57,11 +57,16 @@ fn players_see_each_other_walk() {
     let [mara, jon] = ["mara", "jon"].map(|_| server.player(&[]));
     enter_room(&mara, "Mara");
     enter_room(&jon, "Jon");
+    see_each_other_walk(&mara, &jon);
+}
+
+/// Two who have come in, and look the same way.
+pub(crate) fn see_each_other_walk(mara: &Player, jon: &Player) {
     mara.wait_for("Jon comes in.");
     // What was said is shown for some seconds.
     let says = |emulator: &Emulator| emulator.text().contains("comes in.");
     mara.wait_until("forgot what was said", |emulator| !says(emulator));
-    // Both look the same way. He walks until she sees him, whose name is over his head.
+    // He walks until she sees him, whose name is over his head.
     jon.send(HOLD_FORWARD);
     mara.wait_for("Jon");
     jon.send(RELEASE_FORWARD);

@@ -1,0 +1,177 @@
+//! Three hosts over one NATS server and one PostgreSQL.
+
+use std::env;
+use std::net::TcpListener;
+use std::process::Output;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+
+use super::metrics::scrape;
+use super::running::Running;
+use crate::nats_server::NatsServer;
+use crate::play::{enter_room, see_each_other_walk};
+use crate::player::Player;
+use crate::postgres_server::PostgresServer;
+use crate::support::cellcaster;
+use crate::transport::folder;
+
+/// The longest time in which a room goes on after its host was killed.
+const TAKEOVER: Duration = Duration::from_secs(5);
+
+/// Hosts that share their rooms.
+struct Hosts {
+    /// Each with the port of its metrics.
+    running: Vec<(Running, u16)>,
+    nats: NatsServer,
+    postgres: PostgresServer,
+}
+
+impl Hosts {
+    fn start(count: usize) -> Self {
+        let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
+        let (bus, store) = (nats.address(), postgres.address());
+        let options = ["--store", store.as_str(), "--cluster", bus.as_str()];
+        let host = |_| {
+            let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+            let config = format!("[metrics]\nlisten = \"127.0.0.1:{port}\"\n");
+            (Running::start_with(&config, "text", &options), port)
+        };
+        Self { running: (0..count).map(host).collect(), nats, postgres }
+    }
+
+    /// A player on a host, who is in the first room.
+    fn player(&self, host: usize, name: &str) -> Player {
+        let player = self.running[host].0.visitor();
+        enter_room(&player, name);
+        player
+    }
+
+    fn figure(&self, host: usize, name: &str) -> f64 {
+        scrape(self.running[host].1)[&format!("cellcaster_{name}")]
+    }
+
+    /// Asserts that hosts have compared the states of rooms since, and found no difference.
+    fn assert_equal(&self, hosts: &[usize], least: f64) {
+        for &host in hosts {
+            assert_eq!(self.figure(host, "room_checks_total{result=\"different\"}"), 0.0);
+        }
+        let equal = |host: &usize| self.figure(*host, "room_checks_total{result=\"equal\"}");
+        let equal: Vec<f64> = hosts.iter().map(equal).collect();
+        // The sequencer's own host has nothing to compare with.
+        let compared = equal.iter().filter(|count| **count >= least).count();
+        assert!(compared >= hosts.len() - 1, "{equal:?}");
+    }
+}
+
+/// Says something that `other` reads, and returns the time that it takes.
+fn says(player: &Player, other: &Player, text: &str) -> Duration {
+    let start = Instant::now();
+    player.send(format!("/{text}\r"));
+    other.wait_for(text);
+    start.elapsed()
+}
+
+#[test]
+fn players_on_three_hosts_see_each_other_walk_and_their_rooms_stay_equal() {
+    let hosts = Hosts::start(3);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
+    see_each_other_walk(&mara, &jon);
+    let kim = hosts.player(2, "Kim");
+    mara.wait_for("Kim comes in.");
+    says(&kim, &jon, "here I am");
+    let seconds = env::var("CLUSTER_SECONDS").ok().and_then(|it| it.parse().ok()).unwrap_or(5);
+    let players = [&mara, &jon, &kim];
+    for second in 0..seconds {
+        players[second % 3].send("\x1b[119;1:1u\x1b[98;1:1u\x1b[98;1:3u");
+        thread::sleep(Duration::from_secs(1));
+        players[second % 3].send("\x1b[119;1:3u");
+    }
+    hosts.assert_equal(&[0, 1, 2], seconds as f64 * 0.6);
+    drop(kim);
+    jon.wait_for("Kim leaves.");
+}
+
+#[test]
+fn a_room_goes_on_when_its_host_is_killed() {
+    let hosts = Hosts::start(3);
+    let _mara = hosts.player(0, "Mara");
+    let (jon, kim) = (hosts.player(1, "Jon"), hosts.player(2, "Kim"));
+    jon.wait_for("Kim comes in.");
+    assert!(hosts.running[0].0.log().contains("this host has a room now"));
+    hosts.running[0].0.signal(Signal::KILL);
+    // What is said before somebody else has the room is lost.
+    let start = Instant::now();
+    while !kim.text().contains("anybody there") {
+        assert!(start.elapsed() < TAKEOVER, "{}", kim.text());
+        jon.send("/anybody there\r");
+        thread::sleep(Duration::from_millis(500));
+    }
+    let time = start.elapsed();
+    println!("the room goes on after {time:?}");
+    jon.wait_for("Mara leaves.");
+    says(&kim, &jon, "she is gone");
+    thread::sleep(Duration::from_secs(2));
+    hosts.assert_equal(&[1, 2], 1.0);
+}
+
+#[test]
+fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
+    let mut hosts = Hosts::start(2);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
+    mara.wait_for("Jon comes in.");
+    hosts.nats.kill();
+    for player in [&mara, &jon] {
+        player.wait_for("the game waits");
+    }
+    hosts.nats.restart();
+    for player in [&mara, &jon] {
+        player.wait_for("The game goes on.");
+    }
+    says(&jon, &mara, "that was long");
+
+    hosts.postgres.crash();
+    thread::sleep(Duration::from_secs(4));
+    let time = says(&mara, &jon, "no results now");
+    assert!(time < Duration::from_secs(1), "{time:?}");
+    hosts.postgres.restart();
+    thread::sleep(Duration::from_secs(2));
+    says(&jon, &mara, "and again");
+    hosts.assert_equal(&[0, 1], 1.0);
+}
+
+#[test]
+fn a_host_that_drains_leaves_its_rooms_to_the_others() {
+    let mut hosts = Hosts::start(2);
+    let _mara = hosts.player(0, "Mara");
+    let jon = hosts.player(1, "Jon");
+    hosts.running[0].0.signal(Signal::TERM);
+    hosts.running[0].0.signal(Signal::TERM);
+    assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
+    jon.wait_for("Mara leaves.");
+}
+
+#[test]
+fn what_a_cluster_needs_is_told() {
+    let serve = |options: &[&str]| -> Output {
+        let words = [&["serve", "--listen", "127.0.0.1:0"], options].concat();
+        cellcaster(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
+    };
+    let postgres = PostgresServer::shared().address();
+    let nobody = "nats://ada:geheim@127.0.0.1:1";
+    for (options, sentence) in [
+        (vec!["--cluster", nobody], "a cluster needs a database that all hosts share"),
+        (vec!["--cluster", nobody, "--store", &postgres], "NATS at 127.0.0.1:1"),
+        (vec!["--cluster", "localhost"], "an address of NATS"),
+        (
+            vec!["--cluster", nobody, "--store", &postgres, "--record-room", "x"],
+            "rooms of a cluster are not recorded",
+        ),
+    ] {
+        let output = serve(&options);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(sentence) && !error.contains("geheim"), "{error}");
+    }
+}

@@ -1,0 +1,75 @@
+//! A NATS server of a test's own, which ends with the test. The program is that of Debian's package
+//! `nats-server`.
+
+use std::fs;
+use std::net::{TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A server with a log on the disk, and a process that ends it when this one ends.
+pub(crate) struct NatsServer {
+    folder: PathBuf,
+    port: u16,
+    /// It ends when its input does, and the server with it.
+    watcher: Option<Child>,
+}
+
+impl NatsServer {
+    /// A server that answers.
+    pub(crate) fn start() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let folder =
+            std::env::temp_dir().join(format!("cellcaster-nats-{}-{number}", std::process::id()));
+        fs::create_dir(&folder).unwrap();
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut server = Self { folder, port, watcher: None };
+        server.restart();
+        server
+    }
+
+    /// The address.
+    pub(crate) fn address(&self) -> String {
+        format!("nats://127.0.0.1:{}", self.port)
+    }
+
+    /// Kills the server.
+    pub(crate) fn kill(&mut self) {
+        let Some(mut watcher) = self.watcher.take() else { return };
+        drop(watcher.stdin.take());
+        watcher.wait().unwrap();
+    }
+
+    /// Starts the server again with what it has kept, and waits until it answers.
+    pub(crate) fn restart(&mut self) {
+        let folder = self.folder.display();
+        let script = format!(
+            "nats-server -a 127.0.0.1 -p {} -js -sd {folder} >{folder}/log 2>&1 & \
+             read _; kill -9 $!; wait",
+            self.port
+        );
+        // The package puts it where the superuser looks.
+        let path = format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default());
+        let mut command = Command::new("sh");
+        command.arg("-c").arg(script).env("PATH", path).stdin(Stdio::piped());
+        let watcher = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        self.watcher = Some(watcher);
+        let start = Instant::now();
+        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+            assert!(start.elapsed() < PATIENCE, "nats-server is installed, and starts");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Drop for NatsServer {
+    fn drop(&mut self) {
+        self.kill();
+        _ = fs::remove_dir_all(&self.folder);
+    }
+}
