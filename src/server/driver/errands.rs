@@ -145,7 +145,7 @@ impl Visit {
         News::Named(Ok(line))
     }
 
-    /// Goes into a room, as who has a name, without which nobody is a member.
+    /// Enters a room. Only a visitor with a name can be a member.
     fn go(&mut self, way: Way) {
         if !matches!(way, Way::Watch(_)) {
             self.leave();
@@ -161,16 +161,16 @@ impl Visit {
                     (Way::Open(wish), Some(name)) => rooms.open(wish, name).await,
                     (_, None) => Err(RoomRefusal::Gone),
                 };
-                // Who is gone meanwhile leaves by that.
+                // A visitor who has gone leaves the room when the place is dropped.
                 _ = replies.send(Reply::Place(place)).await;
             });
             return;
         }
         let rooms = &self.shared.rooms;
-        let place = match (&way, &name) {
-            (Way::Watch(room), _) => rooms.watch(*room),
-            (Way::Enter(room), Some(name)) => rooms.enter(*room, name),
-            (Way::Open(wish), Some(name)) => rooms.open(wish, name),
+        let place = match (way, &name) {
+            (Way::Watch(room), _) => rooms.watch(room),
+            (Way::Enter(room), Some(name)) => rooms.enter(room, name),
+            (Way::Open(wish), Some(name)) => rooms.open(&wish, name),
             (_, None) => Err(RoomRefusal::Gone),
         };
         self.enter(place);
