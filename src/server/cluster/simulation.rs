@@ -46,7 +46,7 @@ const FAULTS: u64 = 12_000;
 /// The time without, after which nothing of them is left.
 const CALM: Duration = Duration::from_secs(25);
 /// The seeds of a usual run.
-const SEEDS: u64 = 120;
+const SEEDS: u64 = 60;
 
 /// A run.
 struct Run {
