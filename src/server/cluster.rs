@@ -1,34 +1,36 @@
 //! Clusters: several hosts whose players are in the same rooms.
 //!
-//! A room is a deterministic machine with an ordered log. Each host that has players in a room runs it, from
-//! the same log, and draws for its own players: drawing is what costs, a step of a room is nothing beside it. The
-//! log, and what else hosts keep together, is on a [`Bus`]; which of them writes the log is decided by a lease
-//! in the database.
+//! A room is a deterministic state machine with an ordered log (state machine replication, Schneider 1990). Each
+//! host that has players in a room keeps a [`Replica`](replica::Replica) of it and draws for its own players:
+//! drawing costs hundreds of times as much as a step of a room. The log and the list of rooms are on a [`Bus`];
+//! a lease in the database decides which host writes a log.
 //!
 //! # Rules
 //!
-//! - **One host writes a room's log**, its sequencer. Each message names the one before it, and the bus refuses
-//!   one that names another: whoever was replaced writes nothing, whatever they believe.
-//! - **An epoch has one sequencer.** It begins with a message, and messages of an older one change nothing.
+//! - **One host writes a room's log**, its sequencer. Each message names the number of the message before it,
+//!   and the bus refuses a message that names another. A sequencer that was replaced without noticing it cannot
+//!   write.
+//! - **An epoch has one sequencer.** An epoch begins with a message, and later messages of an older epoch change
+//!   nothing.
 //! - **All hosts apply the same messages**, and compare a checksum once a second.
-//! - **Any host takes any player.** A room that nobody is in runs nowhere.
-//! - **Rooms have the versions of the format and of the rules.** A host of other versions does not see them.
+//! - **Any host takes any player.** A room without members runs on no host.
+//! - **Rooms carry the versions of the format and of the rules.** A host of other versions does not list them.
 //!
-//! An election among the hosts was refused, as was a log of our own: the database and the bus do both, and
-//! are tested for it.
+//! An election among the hosts and a log of our own were refused: the database and the bus provide both, and are
+//! tested for it.
 
 mod bus;
-mod desk;
 mod directory;
-mod message;
+mod lease_worker;
+mod log_message;
 mod nats;
-mod office;
+mod peer_message;
 mod record;
 mod replica;
+mod room_state;
+mod sequencer;
 #[cfg(test)]
 mod simulation;
-mod station;
-mod talk;
 
 use std::fmt;
 use std::io;
@@ -37,11 +39,11 @@ use std::sync::{Arc, Mutex};
 use tokio::sync::watch;
 
 use self::bus::{Bus, Key};
-use self::desk::Desk;
 pub(super) use self::directory::SharedRooms;
+use self::lease_worker::LeaseWorker;
 use self::nats::NatsBus;
 use self::record::Record;
-use self::replica::Replica;
+use self::room_state::RoomState;
 use super::load::Load;
 use super::locked;
 use super::room::Catalog;
@@ -54,8 +56,8 @@ use crate::store::host::Leases;
 /// A place in a cluster, for one host.
 pub struct Cluster {
     bus: Box<dyn Bus>,
-    desk: Desk,
-    /// Of tokens and of the rooms that this host opens.
+    leases: LeaseWorker,
+    /// The seed of join tokens, and of the rooms that this host opens.
     seed: u64,
 }
 
@@ -71,11 +73,11 @@ impl Cluster {
         host: String,
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
-        // Before all that may fail: leases block when they are dropped, too.
-        let desk = Desk::start(leases, host).map_err(no_thread)?;
+        // Before anything that may fail: leases block when they are dropped, too.
+        let leases = LeaseWorker::start(leases, host).map_err(no_thread)?;
         let bus = Box::new(NatsBus::connect(address).await?);
         // Without random numbers from the system there would be no keys, either.
-        Ok(Self { bus, desk, seed: getrandom::u64().unwrap_or_default() })
+        Ok(Self { bus, leases, seed: getrandom::u64().unwrap_or_default() })
     }
 
     /// The rooms of the cluster, which lobbies see in `rooms`.
@@ -86,17 +88,17 @@ impl Cluster {
         load: Arc<Load>,
         visitors: Visitors,
     ) -> SharedRooms {
-        let Self { bus, desk, seed } = self;
-        let company = Company {
+        let Self { bus, leases, seed } = self;
+        let context = HostContext {
             bus,
-            desk,
+            leases,
             catalog: Arc::clone(rooms.catalog()),
             load,
             visitors,
             chance: Mutex::new(SplitMix64::new(seed)),
             ending: watch::Sender::new(false),
         };
-        SharedRooms::new(Arc::new(company), rooms.clone(), standing)
+        SharedRooms::new(Arc::new(context), rooms.clone(), standing)
     }
 }
 
@@ -106,10 +108,10 @@ impl fmt::Debug for Cluster {
     }
 }
 
-/// What the stations of a host have in common.
-struct Company {
+/// What the replicas of a host share.
+struct HostContext {
     bus: Box<dyn Bus>,
-    desk: Desk,
+    leases: LeaseWorker,
     catalog: Arc<Catalog>,
     load: Arc<Load>,
     visitors: Visitors,
@@ -118,32 +120,32 @@ struct Company {
     ending: watch::Sender<bool>,
 }
 
-impl Company {
+impl HostContext {
     /// A random number.
     fn chance(&self) -> u64 {
         locked(&self.chance, SplitMix64::bits)
     }
 
-    /// Says a line to those of this host who are in a room.
+    /// Shows a line to the members of a room who are on this host.
     fn tell(&self, id: RoomId, line: &str) {
         self.visitors.say_in(&id.place(), line);
     }
 
-    /// A room as its newest checkpoint has it, and its record.
-    async fn load_replica(&self, id: RoomId) -> Result<(Replica, Record), RoomRefusal> {
+    /// The state of a room in its newest checkpoint, and its record.
+    async fn load_state(&self, id: RoomId) -> Result<(RoomState, Record), RoomRefusal> {
         let record = self.bus.get(Key::Room(id)).await.map_err(|_| RoomRefusal::NotNow)?;
         let record = record.and_then(|bytes| Record::parse(&bytes)).ok_or(RoomRefusal::Gone)?;
         let bytes = self.bus.get(Key::Checkpoint(id)).await.map_err(|_| RoomRefusal::NotNow)?;
-        let replica = match bytes {
-            None => Replica::new(&self.catalog, record.header.clone()),
-            Some(bytes) => match Replica::restore(&self.catalog, &bytes) {
-                Ok(replica) => Some(replica),
+        let state = match bytes {
+            None => RoomState::new(&self.catalog, record.header.clone()),
+            Some(bytes) => match RoomState::restore(&self.catalog, &bytes) {
+                Ok(state) => Some(state),
                 Err(sentence) => {
                     tracing::error!(room = %id, "a checkpoint of a room: {sentence}");
                     None
                 }
             },
         };
-        Ok((replica.ok_or(RoomRefusal::NoLevel)?, record))
+        Ok((state.ok_or(RoomRefusal::NoLevel)?, record))
     }
 }

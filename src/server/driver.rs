@@ -9,8 +9,8 @@
 //! - A result counts when the store's thread has replayed its script.
 
 mod account;
-mod errands;
 mod follow;
+mod requests;
 mod results;
 #[cfg(test)]
 mod simulated;

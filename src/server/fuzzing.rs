@@ -9,10 +9,10 @@ use std::time::Duration;
 pub use self::resumed::{CHECKPOINTS, checkpoint, resume};
 use super::line::Line;
 use super::room::{
-    CHAT_COLUMNS, Catalog, Deed, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue, Recorded,
-    Room, replayed,
+    CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue,
+    Recorded, Room, replayed,
 };
-use super::session::{Ask, HostFacts, Identity, IdleLimits, News, Session};
+use super::session::{HostFacts, Identity, IdleLimits, News, Request, Session};
 use super::summary::{RoomId, RoomSummary};
 use crate::app::Configuration;
 use crate::game::PlayerColor;
@@ -183,11 +183,11 @@ impl Hall {
     /// Does what a session asks for.
     fn answer(&mut self, visitor: usize) {
         for _ in 0..8 {
-            let asks = self.visitors[visitor].session.asks();
-            if asks.is_empty() {
+            let requests = self.visitors[visitor].session.requests();
+            if requests.is_empty() {
                 return;
             }
-            for ask in asks {
+            for ask in requests {
                 if let Some(news) = self.grant(visitor, ask) {
                     self.visitors[visitor].session.tell(news, self.now);
                 }
@@ -195,51 +195,51 @@ impl Hall {
         }
     }
 
-    fn grant(&mut self, visitor: usize, ask: Ask) -> Option<News> {
+    fn grant(&mut self, visitor: usize, ask: Request) -> Option<News> {
         match ask {
-            Ask::Name(text) => {
+            Request::Name(text) => {
                 let line = Line::of(&text, NAME_COLUMNS).ok_or("Take another one.".to_owned());
                 if let Ok(line) = &line {
                     self.visitors[visitor].name = line.clone();
                 }
                 Some(News::Named(line))
             }
-            Ask::Rooms => Some(News::Rooms([self.summary()].into())),
-            Ask::Enter { watches: true, .. } => {
+            Request::Rooms => Some(News::Rooms([self.summary()].into())),
+            Request::Enter { watches: true, .. } => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
                 Some(News::Entered { room: ROOM, member: None })
             }
-            Ask::Enter { .. } | Ask::Open(_) if self.room.is_full() => {
+            Request::Enter { .. } | Request::Open(_) if self.room.is_full() => {
                 Some(News::Refused("The room is full.".to_owned()))
             }
-            Ask::Enter { .. } | Ask::Open(_) => {
+            Request::Enter { .. } | Request::Open(_) => {
                 self.leave(visitor);
                 let member = self.room.next_member();
                 let name = self.visitors[visitor].name.clone();
                 let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
-                self.apply(member, Deed::Join { color, name });
+                self.apply(member, Command::Join { color, name });
                 let Visitor { member: own, is_inside, .. } = &mut self.visitors[visitor];
                 (*own, *is_inside) = (Some(member), true);
                 Some(News::Entered { room: ROOM, member: Some(member) })
             }
-            Ask::Deed(deed) => {
+            Request::Command(command) => {
                 if let Some(member) = self.visitors[visitor].member {
-                    self.apply(member, deed);
+                    self.apply(member, command);
                 }
                 None
             }
-            Ask::Leave => {
+            Request::Leave => {
                 self.leave(visitor);
                 None
             }
-            Ask::Board { level, difficulty } => {
+            Request::Board { level, difficulty } => {
                 Some(News::Board { level, difficulty, rows: [].into() })
             }
-            Ask::Ghosts { level, difficulty } => {
+            Request::Ghosts { level, difficulty } => {
                 Some(News::Ghosts { level, difficulty, ghosts: [].into() })
             }
-            Ask::Save(settings) => {
+            Request::Save(settings) => {
                 assert!(settings.configuration.len() <= AccountSettings::MOST_BYTES);
                 let read = Configuration::parse(&settings.configuration, "settings");
                 assert!(read.is_ok(), "{}", settings.configuration);
@@ -252,13 +252,13 @@ impl Hall {
         let Visitor { member, is_inside, .. } = &mut self.visitors[visitor];
         *is_inside = false;
         if let Some(member) = member.take() {
-            self.apply(member, Deed::Leave);
+            self.apply(member, Command::Leave);
         }
     }
 
     /// Adds an entry to the log and applies it.
-    fn apply(&mut self, member: MemberId, deed: Deed) {
-        let entry = Entry { step: self.room.step(), member, deed };
+    fn apply(&mut self, member: MemberId, command: Command) {
+        let entry = Entry { step: self.room.step(), member, command };
         assert_eq!(Entry::parse(&entry.to_string()).as_ref(), Some(&entry), "as it is written");
         self.room.apply(&entry);
         self.log.append(entry).expect("it is in memory");

@@ -27,7 +27,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 pub(crate) use self::catalog::Catalog;
-pub(crate) use self::entry::{CHAT_COLUMNS, Deed, Emote, Entry, MemberId, NAME_COLUMNS};
+pub(crate) use self::entry::{CHAT_COLUMNS, Command, Emote, Entry, MemberId, NAME_COLUMNS};
 pub(crate) use self::header::{Header, Seat};
 #[cfg(test)]
 pub(crate) use self::log::parse as parse_log;
@@ -191,23 +191,23 @@ impl Room {
     /// Applies an entry. One of a member who is not there has no effect.
     pub(crate) fn apply(&mut self, entry: &Entry) {
         let id = entry.member;
-        match &entry.deed {
-            Deed::Join { color, name } => self.join(id, *color, name),
-            Deed::Leave => self.leave(id),
-            Deed::Want { seen, intents } => {
+        match &entry.command {
+            Command::Join { color, name } => self.join(id, *color, name),
+            Command::Leave => self.leave(id),
+            Command::Intents { seen, intents } => {
                 // Nobody has seen a step that is yet to come.
                 let seen = (*seen).min(self.game.steps());
                 if let Some(member) = self.member_mut(id) {
                     (member.seen, member.intents) = (seen, *intents);
                 }
             }
-            Deed::Again => {
+            Command::Again => {
                 if self.member_mut(id).is_some() && self.again.insert(id) {
                     self.say(id, "wishes to begin again".to_owned());
                 }
             }
-            Deed::Say(line) => self.say(id, line.as_str().to_owned()),
-            Deed::Emote(emote) => {
+            Command::Say(line) => self.say(id, line.as_str().to_owned()),
+            Command::Emote(emote) => {
                 self.emotes.retain(|(member, _, _)| *member != id);
                 self.emotes.push((id, *emote, self.step + EMOTE));
                 self.say(id, format!("({})", emote.text()));

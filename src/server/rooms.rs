@@ -32,7 +32,7 @@ use super::load::Load;
 use super::locked;
 use super::logging::events;
 use super::room::{Catalog, Header, Mode, Phase, Room};
-use super::sequencer::{Doorway, Inbox, RoundLog, Sequencer, Shown};
+use super::sequencer::{Inbox, RoomInterface, RoundLog, Sequencer, Shown};
 use super::summary::{RoomId, RoomSummary, RoomWish};
 use crate::rng::SplitMix64;
 
@@ -90,12 +90,12 @@ struct OpenRooms {
 struct NewRoom {
     id: RoomId,
     room: Room,
-    doorway: Arc<Doorway>,
+    interface: Arc<RoomInterface>,
 }
 
 #[derive(Debug)]
 struct OpenRoom {
-    doorway: Arc<Doorway>,
+    interface: Arc<RoomInterface>,
     /// Without the number of watchers.
     summary: RoomSummary,
     watchers: Arc<AtomicUsize>,
@@ -147,37 +147,37 @@ impl Rooms {
     pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
         let room = self.add(wish, false)?;
         // Before the room runs: one for a single member is closed as soon as nobody is in it.
-        let member = room.doorway.inbox.join(name).map_err(RoomRefusal::from)?;
-        let place = Place::member(room.id, member, Arc::clone(&room.doorway));
+        let member = room.interface.inbox.join(name).map_err(RoomRefusal::from)?;
+        let place = Place::member(room.id, member, Arc::clone(&room.interface));
         self.spawn(room);
         Ok(place)
     }
 
     /// Joins a room.
     pub(crate) fn enter(&self, id: RoomId, name: &Line) -> Result<Place, RoomRefusal> {
-        let doorway = locked(&self.0.open, |open| {
+        let interface = locked(&self.0.open, |open| {
             let room = open.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
             match room.summary.mode {
                 Mode::Alone => Err(RoomRefusal::Alone),
-                _ => Ok(Arc::clone(&room.doorway)),
+                _ => Ok(Arc::clone(&room.interface)),
             }
         })?;
-        let member = doorway.inbox.join(name).map_err(RoomRefusal::from)?;
-        Ok(Place::member(id, member, doorway))
+        let member = interface.inbox.join(name).map_err(RoomRefusal::from)?;
+        Ok(Place::member(id, member, interface))
     }
 
     /// Watches a room.
     pub(crate) fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
         let most = locked(&self.0.limits, |limits| limits.most_watchers);
-        let (doorway, watchers) = locked(&self.0.open, |open| {
+        let (interface, watchers) = locked(&self.0.open, |open| {
             let room = open.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
             if room.watchers.fetch_add(1, Ordering::AcqRel) >= most {
                 room.watchers.fetch_sub(1, Ordering::AcqRel);
                 return Err(RoomRefusal::Full);
             }
-            Ok((Arc::clone(&room.doorway), Arc::clone(&room.watchers)))
+            Ok((Arc::clone(&room.interface), Arc::clone(&room.watchers)))
         })?;
-        let place = Place::watcher(id, doorway, watchers, self.clone());
+        let place = Place::watcher(id, interface, watchers, self.clone());
         self.publish();
         Ok(place)
     }
@@ -198,13 +198,13 @@ impl Rooms {
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
         let header = Header::new(level, wish.mode, wish.difficulty, seed);
         let room = Room::new(catalog, header).ok_or(RoomRefusal::NoLevel)?;
-        let doorway = Arc::new(Doorway {
+        let interface = Arc::new(RoomInterface {
             inbox: Inbox::new(wish.mode, room.next_member()),
             shown: Shown::new(room.view()),
             closes_after: watch::Sender::new(closes_after),
         });
         let open_room = OpenRoom {
-            doorway: Arc::clone(&doorway),
+            interface: Arc::clone(&interface),
             summary: summary(id, &room),
             watchers: Arc::default(),
             stood_for: stands.then(|| wish.clone()),
@@ -214,19 +214,19 @@ impl Rooms {
             if is_allowed {
                 open.rooms.insert(id, open_room);
             }
-            is_allowed.then_some(NewRoom { id, room, doorway }).ok_or(RoomRefusal::TooMany)
+            is_allowed.then_some(NewRoom { id, room, interface }).ok_or(RoomRefusal::TooMany)
         })
     }
 
     /// Runs a room until it is closed.
     fn spawn(&self, new: NewRoom) {
-        let NewRoom { id, room, doorway } = new;
+        let NewRoom { id, room, interface } = new;
         let header = room.header();
         events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
         let log = RoundLog::new(self.0.logs.open(id), &room);
         let load = Arc::clone(&self.0.load);
-        let sequencer = Sequencer::new(room, log, doorway, load);
+        let sequencer = Sequencer::new(room, log, interface, load);
         let rooms = self.clone();
         tokio::spawn(async move {
             let ended = sequencer.run(|room| rooms.change(id, room)).await;

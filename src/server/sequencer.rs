@@ -1,11 +1,11 @@
-//! The sequencer of a room: it decides in which step what the members want takes effect.
+//! The sequencer of a room: it decides in which step each command of a member takes effect.
 //!
 //! # Rules
 //!
 //! - A room takes [`STEPS_PER_SECOND`] steps a second. If a step is late, at most [`MOST_CAUGHT_UP`]
 //!   follow at once; further ones are left out, so that the room's time slips.
-//! - All that changes the room is an entry of its [`Log`], which is applied from the log. What
-//!   members want too often is refused or delayed before it reaches the log, see [`Inbox`].
+//! - All that changes the room is an entry of its [`Log`], which is applied from the log. Commands
+//!   that come too often are refused or delayed before they reach the log, see [`Inbox`].
 //! - A room without members takes no steps and has no timer. After a while it is closed, if it is no
 //!   standing room.
 //! - A fault in a room, even a panic, ends this room with a sentence to its members, and no other.
@@ -25,7 +25,7 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until};
 
-pub(crate) use self::inbox::{DeedRefusal, Inbox, JoinRefusal};
+pub(crate) use self::inbox::{CommandRefusal, Inbox, JoinRefusal};
 #[cfg(feature = "cluster")]
 pub(crate) use self::round_log::Changes;
 pub(crate) use self::round_log::{FinishedRun, RoundLog};
@@ -39,12 +39,12 @@ pub(crate) const MOST_CAUGHT_UP: u32 = 6;
 /// What members read after a fault.
 pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
 
-/// What a room and its members share.
+/// The interface between a room and its members: commands in, snapshots out.
 #[derive(Debug)]
-pub(crate) struct Doorway {
-    /// What the members want.
+pub(crate) struct RoomInterface {
+    /// The commands of the members.
     pub(crate) inbox: Inbox,
-    /// What they see.
+    /// The newest snapshot.
     pub(crate) shown: Shown,
     /// The time without members after which the room is closed; `None` as long as it stands.
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
@@ -54,7 +54,7 @@ pub(crate) struct Doorway {
 pub(crate) struct Sequencer {
     room: Room,
     log: RoundLog,
-    doorway: Arc<Doorway>,
+    interface: Arc<RoomInterface>,
     load: Arc<Load>,
 }
 
@@ -67,8 +67,13 @@ enum Pause {
 }
 
 impl Sequencer {
-    pub(crate) fn new(room: Room, log: RoundLog, doorway: Arc<Doorway>, load: Arc<Load>) -> Self {
-        Self { room, log, doorway, load }
+    pub(crate) fn new(
+        room: Room,
+        log: RoundLog,
+        interface: Arc<RoomInterface>,
+        load: Arc<Load>,
+    ) -> Self {
+        Self { room, log, interface, load }
     }
 
     /// Runs the room until it is closed. `on_change` is called when a lobby would show it otherwise.
@@ -93,31 +98,31 @@ impl Sequencer {
             let caught =
                 catch_unwind(AssertUnwindSafe(|| self.catch_up(&mut next, &mut on_change)));
             if let Err(panic) = caught {
-                self.doorway.close(FAULT);
+                self.interface.close(FAULT);
                 return Err(message(&*panic));
             }
-            if self.doorway.inbox.is_closed() {
+            if self.interface.inbox.is_closed() {
                 return Ok(());
             }
         }
     }
 
     fn pause(&self, next: Instant) -> Pause {
-        let is_empty = self.room.len() == 0 && self.doorway.inbox.is_empty();
+        let is_empty = self.room.len() == 0 && self.interface.inbox.is_empty();
         if is_empty { Pause::Member } else { Pause::Until(next) }
     }
 
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
         self.log.flush();
-        let Doorway { inbox, shown, closes_after } = &*self.doorway;
+        let RoomInterface { inbox, shown, closes_after } = &*self.interface;
         let mut patience = closes_after.subscribe();
         loop {
             let wait = *patience.borrow_and_update();
             tokio::select! {
                 biased;
                 () = inbox.joined() => return !inbox.is_closed(),
-                // The sender is in the doorway.
+                // The sender is in the interface.
                 _ = patience.changed() => {}
                 () = sleep(wait.unwrap_or_default()), if wait.is_some() => {
                     if inbox.close_if_empty() {
@@ -144,14 +149,14 @@ impl Sequencer {
     }
 
     fn step(&mut self, on_change: &mut impl FnMut(&Room)) {
-        let Self { room, log, doorway, .. } = self;
-        let changes = doorway.shown.replace(|| {
-            let changes = log.step(room, |pass| doorway.inbox.take(pass));
+        let Self { room, log, interface, .. } = self;
+        let changes = interface.shown.replace(|| {
+            let changes = log.step(room, |pass| interface.inbox.take(pass));
             (room.view(), changes)
         });
         self.load.metrics().entries.add(changes.entries);
         if let Some(run) = changes.finished {
-            doorway.inbox.finish(run);
+            interface.inbox.finish(run);
         }
         if changes.summary {
             on_change(&self.room);
@@ -169,7 +174,7 @@ pub(crate) fn message(panic: &(dyn Any + Send)) -> String {
 /// The time of a step.
 pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
 
-impl Doorway {
+impl RoomInterface {
     /// Closes the room for all, with a sentence.
     pub(crate) fn close(&self, sentence: &str) {
         self.inbox.close();

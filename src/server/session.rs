@@ -1,11 +1,11 @@
 //! The session of a visitor: what they see, and what their keys do.
 //!
 //! A session has no connection, no clock and no room. The driver passes it what arrives and when,
-//! takes bytes and [wishes](Ask) from it, brings it [news](News), and shows it the newest
+//! takes bytes and [wishes](Request) from it, brings it [news](News), and shows it the newest
 //! [snapshot](RoomView) of the room. The order of calls:
 //!
 //! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell),
-//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`asks`](Session::asks) and [`output`](Session::output);
+//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and [`output`](Session::output);
 //! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
 //!
@@ -14,10 +14,10 @@
 //! nothing among others who do nothing costs no bytes.
 
 mod choice;
-mod commands;
 mod draw;
 mod ghosts;
 mod idle;
+mod intent_queue;
 mod keys;
 mod line_entry;
 mod look;
@@ -25,6 +25,7 @@ mod menus;
 mod news;
 mod pace;
 mod page;
+mod room_keys;
 mod settings;
 mod shown_steps;
 mod stay;
@@ -33,12 +34,11 @@ mod tell;
 #[cfg(test)]
 mod tests;
 mod visit;
-mod wants;
 
 use std::time::Duration;
 
 use self::look::Look;
-pub(crate) use self::news::{Ask, BoardRow, HostFacts, Identity, IdleLimits, News};
+pub(crate) use self::news::{BoardRow, HostFacts, Identity, IdleLimits, News, Request};
 use self::pace::Pace;
 use self::visit::Visit;
 use super::room::RoomView;
@@ -135,8 +135,8 @@ impl Session {
     }
 
     /// What the session wants since the last call.
-    pub(crate) fn asks(&mut self) -> Vec<Ask> {
-        std::mem::take(&mut self.visit.asks)
+    pub(crate) fn requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.visit.requests)
     }
 
     /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
@@ -163,7 +163,7 @@ impl Session {
         self.measure(now);
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            visit.asks.extend(stay.look_at(room, now));
+            visit.requests.extend(stay.look_at(room, now));
             if stay.watch.take_ring() && visit.identity.preferences.bell {
                 protocol.ring_bell();
             }

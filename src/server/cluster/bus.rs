@@ -1,15 +1,15 @@
-//! The bus: what hosts of a cluster keep together and tell each other.
+//! The message bus of a cluster: logs, values by key, and broadcasts.
 //!
 //! # Rules
 //!
-//! - **A room has a log.** A message is appended to it only if the writer names the number of the message
-//!   before. So who was replaced without noticing it cannot write, however late they are.
-//! - **What is said in a room may be lost**, and nobody keeps it. Who misses something reads the log.
-//! - **Values have keys.** A new value is kept only if there is none.
+//! - **A room has a log.** A message is appended only if the writer names the number of the newest message
+//!   (compare and append). So a sequencer that was replaced cannot write, however late it notices.
+//! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
+//! - **A value has a key and a revision.** A host replaces only the revision that it has seen last.
 //!
-//! Consumers of the log that the engine keeps for each room and host were refused: they are state in the
-//! engine, and notice a loss after seconds. What is appended is said in the room instead, and a host reads
-//! the log only where something is missing.
+//! JetStream consumers for each room and host were refused: they are state in the server, and notice a loss after
+//! seconds. The sequencer broadcasts what it has appended instead, and a host reads the log only where a number is
+//! missing.
 
 use std::pin::Pin;
 
@@ -17,11 +17,11 @@ use tokio::sync::mpsc;
 
 use crate::server::summary::RoomId;
 
-/// What hosts share.
+/// What the hosts of a cluster share.
 pub(super) trait Bus: Send + Sync {
     /// Appends a message to the log of a room, whose last message is number `last`, 0 for none; returns its
     /// number.
-    fn publish(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
+    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
 
     /// The first message of a room's log after number `after`, with its number.
     fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>>;
@@ -32,14 +32,14 @@ pub(super) trait Bus: Send + Sync {
     /// Drops the log of a room.
     fn drop_log(&self, room: RoomId) -> Answer<'_, ()>;
 
-    /// Says something to all hosts that have the room.
-    fn say(&self, room: RoomId, talk: Vec<u8>) -> Answer<'_, ()>;
+    /// Sends a message to all hosts that have subscribed to the room.
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()>;
 
-    /// What is said in a room from now on.
-    fn hear(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+    /// The broadcasts to a room from now on.
+    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
-    /// A number that nobody has got before.
-    fn number(&self) -> Answer<'_, u32>;
+    /// A number that was never returned before, on any host.
+    fn next_number(&self) -> Answer<'_, u32>;
 
     /// Keeps a value in place of the one that this host has got or put last. If another host has put one
     /// since, it is refused, and the next one is not.

@@ -1,12 +1,13 @@
-//! The rooms of a cluster, on one of its hosts: which ones there are, and the ways into them.
+//! The directory of a cluster's rooms, on one of its hosts: it lists them, and starts a [`Replica`] of each that
+//! somebody enters here.
 //!
 //! # Rules
 //!
-//! - A room is a record that every host knows, and has a number that is never used again. It takes no step
-//!   until somebody enters it on some host; then that host has a [`Station`] for it.
+//! - Every host knows the record of every room. The number of a room is never used again. A room takes no steps
+//!   until somebody enters it.
 //! - A standing room is made by the first host that has it in its configuration.
-//! - A room whose record says that a host runs it, and that has not changed for [`ABANDONED`], has lost its host. Any
-//!   other host runs it then, until it is empty.
+//! - A record that says that the room runs, and that has not changed for [`ABANDONED`], is of a room that has lost
+//!   its host. Any other host then runs the room until it is empty.
 
 mod standing;
 
@@ -19,29 +20,29 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::{Instant, interval, sleep, timeout};
 
-use super::Company;
+use super::HostContext;
 use super::bus::{BusFault, Key};
 use super::record::Record;
-use super::replica::Replica;
-use super::station::{Asked, Beginning, Station};
+use super::replica::{Beginning, JoinRequest, Replica};
+use super::room_state::RoomState;
 use crate::server::line::Line;
 use crate::server::locked;
 #[cfg(test)]
 use crate::server::room::RoomView;
 use crate::server::room::{Header, MemberId, Mode};
 use crate::server::rooms::{Place, RoomLimits, RoomRefusal, Rooms};
-use crate::server::sequencer::{Doorway, Inbox, Shown};
+use crate::server::sequencer::{Inbox, RoomInterface, Shown};
 use crate::server::summary::{RoomId, RoomWish};
 
 /// The time without a change after which the record of a running room says that its host is gone.
 const ABANDONED: Duration = Duration::from_secs(15);
-/// The time from one look after all rooms to the next.
-const TOUR: Duration = Duration::from_secs(5);
-/// The most who wait to be asked for a place in one room.
-const MOST_ASKED: usize = 64;
+/// The time from one round of maintenance to the next.
+const MAINTENANCE_PERIOD: Duration = Duration::from_secs(5);
+/// The most join requests that wait in one room.
+const MOST_JOIN_REQUESTS: usize = 64;
 /// The time in which rooms are left to other hosts.
 const ENDING: Duration = Duration::from_secs(2);
-/// How often a room is entered that closes at that moment.
+/// How often joining is tried if the replica ends at that moment.
 const TRIES: usize = 3;
 
 /// The rooms that a host shares. Clones are the same.
@@ -49,42 +50,42 @@ const TRIES: usize = 3;
 pub(in crate::server) struct SharedRooms(Arc<Inner>);
 
 struct Inner {
-    company: Arc<Company>,
-    /// What lobbies see.
+    context: Arc<HostContext>,
+    /// The directory of rooms that lobbies show.
     rooms: Rooms,
     standing: Mutex<Vec<RoomWish>>,
     records: Mutex<BTreeMap<RoomId, Known>>,
-    /// Locked while one is made, so that a room has one.
-    stations: tokio::sync::Mutex<BTreeMap<RoomId, Door>>,
+    /// Locked while a replica is made, so that a room has one at most.
+    replicas: tokio::sync::Mutex<BTreeMap<RoomId, RoomHandle>>,
 }
 
-/// A record, and since when it is like that.
+/// A record, and when it was received.
 struct Known {
     record: Record,
     since: Instant,
 }
 
-/// The way into a room of this host.
+/// The handle of a replica on this host.
 #[derive(Clone)]
-struct Door {
-    doorway: Arc<Doorway>,
+struct RoomHandle {
+    interface: Arc<RoomInterface>,
     watchers: Arc<AtomicUsize>,
-    asked: mpsc::Sender<Asked>,
+    join_requests: mpsc::Sender<JoinRequest>,
 }
 
 impl SharedRooms {
-    /// The rooms of a cluster. It is to be called within a runtime, on which they run.
-    pub(super) fn new(company: Arc<Company>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
+    /// Starts the directory on the current runtime.
+    pub(super) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
         let (standing, records) = (Mutex::new(standing), Mutex::default());
         let shared = Self(Arc::new(Inner {
-            company,
+            context,
             rooms,
             standing,
             records,
-            stations: tokio::sync::Mutex::default(),
+            replicas: tokio::sync::Mutex::default(),
         }));
         tokio::spawn(shared.clone().follow());
-        tokio::spawn(shared.clone().look_after());
+        tokio::spawn(shared.clone().maintain());
         shared
     }
 
@@ -98,11 +99,11 @@ impl SharedRooms {
         if is_full {
             return Err(RoomRefusal::TooMany);
         }
-        let company = &self.0.company;
+        let context = &self.0.context;
         let header = self.header(wish).ok_or(RoomRefusal::NoLevel)?;
-        let id = RoomId(company.bus.number().await.map_err(not_now)?);
+        let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
         let record = Record::new(header, false).to_bytes();
-        company.bus.create(Key::Room(id), record).await.map_err(not_now)?;
+        context.bus.create(Key::Room(id), record).await.map_err(not_now)?;
         self.join(id, name).await
     }
 
@@ -121,12 +122,12 @@ impl SharedRooms {
 
     /// Watches a room.
     pub(in crate::server) async fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
-        let door = self.door(id).await?;
-        if door.watchers.fetch_add(1, Ordering::AcqRel) >= self.0.rooms.limits().most_watchers {
-            door.watchers.fetch_sub(1, Ordering::AcqRel);
+        let handle = self.handle(id).await?;
+        if handle.watchers.fetch_add(1, Ordering::AcqRel) >= self.0.rooms.limits().most_watchers {
+            handle.watchers.fetch_sub(1, Ordering::AcqRel);
             return Err(RoomRefusal::Full);
         }
-        Ok(Place::watcher(id, door.doorway, door.watchers, self.0.rooms.clone()))
+        Ok(Place::watcher(id, handle.interface, handle.watchers, self.0.rooms.clone()))
     }
 
     /// Replaces what the host allows.
@@ -136,72 +137,84 @@ impl SharedRooms {
         self.0.rooms.set_limits(limits);
     }
 
-    /// Leaves all rooms to the other hosts.
+    /// Hands all rooms over to the other hosts.
     pub(in crate::server) async fn end(&self) {
-        self.0.company.ending.send_replace(true);
+        self.0.context.ending.send_replace(true);
         let all_ended = async {
-            for door in self.0.stations.lock().await.values() {
-                door.asked.closed().await;
+            for handle in self.0.replicas.lock().await.values() {
+                handle.join_requests.closed().await;
             }
         };
         _ = timeout(ENDING, all_ended).await;
     }
 
-    /// What this host shows of a room.
+    /// The snapshot of a room on this host.
     #[cfg(test)]
     pub(super) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        let stations = self.0.stations.try_lock().ok()?;
-        let door = stations.get(&id).filter(|door| !door.asked.is_closed())?;
-        door.doorway.shown.view()
+        let replicas = self.0.replicas.try_lock().ok()?;
+        let handle = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed())?;
+        handle.interface.shown.view()
     }
 
     async fn join(&self, id: RoomId, name: &Line) -> Result<Place, RoomRefusal> {
         for _ in 0..TRIES {
-            let door = self.door(id).await?;
+            let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            if door.asked.send(Asked { name: name.clone(), reply }).await.is_err() {
+            if handle.join_requests.send(JoinRequest { name: name.clone(), reply }).await.is_err() {
                 continue;
             }
             if let Ok(answer) = answer.await {
-                return Ok(Place::member(id, answer?, door.doorway));
+                return Ok(Place::member(id, answer?, handle.interface));
             }
         }
         Err(RoomRefusal::Gone)
     }
 
-    /// The way into a room, which this host has from now on.
-    async fn door(&self, id: RoomId) -> Result<Door, RoomRefusal> {
-        let Inner { company, stations, .. } = &*self.0;
-        let mut stations = stations.lock().await;
-        if let Some(door) = stations.get(&id).filter(|door| !door.asked.is_closed()) {
-            return Ok(door.clone());
+    /// The handle of a room's replica, which is started if this host has none.
+    async fn handle(&self, id: RoomId) -> Result<RoomHandle, RoomRefusal> {
+        let Inner { context, replicas, .. } = &*self.0;
+        let mut replicas = replicas.lock().await;
+        if let Some(handle) = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed()) {
+            return Ok(handle.clone());
         }
-        let talk = company.bus.hear(id).await.map_err(not_now)?;
-        let (replica, record) = company.load_replica(id).await?;
-        let (asked, asking) = mpsc::channel(MOST_ASKED);
-        let (watchers, room) = (Arc::<AtomicUsize>::default(), replica.room());
+        let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
+        let (state, record) = context.load_state(id).await?;
+        let (join_requests, receiver) = mpsc::channel(MOST_JOIN_REQUESTS);
+        let (watchers, room) = (Arc::<AtomicUsize>::default(), state.room());
         let closes_after = match room.header().mode {
             Mode::Alone => Some(Duration::ZERO),
             _ => (!record.stands).then(|| self.0.rooms.limits().closes_after),
         };
-        let doorway = Arc::new(Doorway {
+        let interface = Arc::new(RoomInterface {
             inbox: Inbox::new(room.header().mode, room.next_member()),
             shown: Shown::new(room.view()),
             closes_after: watch::Sender::new(closes_after),
         });
-        let door = Door { doorway: Arc::clone(&doorway), watchers: Arc::clone(&watchers), asked };
-        let beginning = Beginning { id, record, doorway, watchers, replica, talk, asked: asking };
-        tokio::spawn(Station::new(Arc::clone(company), beginning).run());
-        stations.insert(id, door.clone());
-        Ok(door)
+        let handle = RoomHandle {
+            interface: Arc::clone(&interface),
+            watchers: Arc::clone(&watchers),
+            join_requests,
+        };
+        let beginning = Beginning {
+            id,
+            record,
+            interface,
+            watchers,
+            state,
+            broadcasts,
+            join_requests: receiver,
+        };
+        tokio::spawn(Replica::new(Arc::clone(context), beginning).run());
+        replicas.insert(id, handle.clone());
+        Ok(handle)
     }
 
-    /// Follows the records of all rooms.
+    /// Keeps the records of all rooms up to date.
     async fn follow(self) {
-        let mut pause = TOUR;
+        let mut pause = MAINTENANCE_PERIOD;
         loop {
-            let Ok(mut changes) = self.0.company.bus.watch().await else {
-                sleep(std::mem::replace(&mut pause, TOUR)).await;
+            let Ok(mut changes) = self.0.context.bus.watch().await else {
+                sleep(std::mem::replace(&mut pause, MAINTENANCE_PERIOD)).await;
                 continue;
             };
             while let Some((id, bytes)) = changes.recv().await {
@@ -225,18 +238,19 @@ impl SharedRooms {
         self.0.rooms.show_shared(summaries);
     }
 
-    /// Makes the standing rooms, forgets stations that have ended, and runs rooms that have lost their host.
-    async fn look_after(self) {
-        let mut tours = interval(TOUR);
+    /// Makes the standing rooms, forgets replicas that have ended, and runs rooms that have lost their host,
+    /// again and again.
+    async fn maintain(self) {
+        let mut periods = interval(MAINTENANCE_PERIOD);
         loop {
-            tours.tick().await;
-            if *self.0.company.ending.borrow() {
+            periods.tick().await;
+            if *self.0.context.ending.borrow() {
                 return;
             }
             self.make_standing().await;
-            self.0.stations.lock().await.retain(|_, door| !door.asked.is_closed());
+            self.0.replicas.lock().await.retain(|_, handle| !handle.join_requests.is_closed());
             for id in self.abandoned() {
-                if let Err(refusal) = self.door(id).await {
+                if let Err(refusal) = self.handle(id).await {
                     tracing::warn!(room = %id, "a room has no host: {refusal}");
                 }
             }
@@ -246,7 +260,7 @@ impl SharedRooms {
     fn abandoned(&self) -> Vec<RoomId> {
         let now = Instant::now();
         let is_abandoned =
-            |known: &Known| known.record.is_awake && now.duration_since(known.since) >= ABANDONED;
+            |known: &Known| known.record.is_running && now.duration_since(known.since) >= ABANDONED;
         locked(&self.0.records, |records| {
             let abandoned = records.iter().filter(|(_, known)| is_abandoned(known));
             abandoned.map(|(id, _)| *id).collect()
@@ -255,10 +269,10 @@ impl SharedRooms {
 
     /// The header of a new room. `None` if there is no such level.
     fn header(&self, wish: &RoomWish) -> Option<Header> {
-        let catalog = &self.0.company.catalog;
+        let catalog = &self.0.context.catalog;
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
-        let header = Header::new(level, wish.mode, wish.difficulty, self.0.company.chance());
-        Replica::new(catalog, header.clone()).map(|_| header)
+        let header = Header::new(level, wish.mode, wish.difficulty, self.0.context.chance());
+        RoomState::new(catalog, header.clone()).map(|_| header)
     }
 }
 

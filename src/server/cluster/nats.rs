@@ -3,7 +3,7 @@
 //! | what | where |
 //! |---|---|
 //! | logs | stream `CELLCASTER_LOG`, subject `cellcaster.log.ROOM` |
-//! | what is said in rooms | subject `cellcaster.talk.ROOM`, not kept |
+//! | what is said in rooms | subject `cellcaster.peers.ROOM`, not kept |
 //! | records, checkpoints | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH` |
 //! | numbers of rooms | stream `CELLCASTER_NUMBERS`: the number of its newest message |
 //!
@@ -29,7 +29,7 @@ use futures_util::StreamExt;
 use tokio::sync::mpsc;
 use tokio::time::timeout;
 
-use self::names::{BUCKET, NUMBERS, ROOMS, log_of, name_of, talk_of};
+use self::names::{BUCKET, NUMBERS, ROOMS, key_name, log_subject, peers_subject};
 use super::bus::{Answer, Bus, BusFault, Key};
 use crate::server::locked;
 use crate::server::summary::RoomId;
@@ -43,7 +43,7 @@ const PINGS: Duration = Duration::from_secs(2);
 /// The most messages of a room's log: some minutes without a checkpoint.
 const MOST_MESSAGES: i64 = 20_000;
 /// The most that was said in a room, or changed in the list of rooms, and waits. The rest is lost.
-const MOST_TALK: usize = 1_024;
+const MOST_QUEUED: usize = 1_024;
 
 /// A connection to NATS.
 pub(super) struct NatsBus {
@@ -71,7 +71,7 @@ impl NatsBus {
             .connection_timeout(FIRST_PATIENCE)
             .request_timeout(Some(PATIENCE))
             .ping_interval(PINGS)
-            .subscription_capacity(MOST_TALK);
+            .subscription_capacity(MOST_QUEUED);
         let client = options.connect(servers).await;
         let client = client.map_err(|error| format!("NATS at {names}: {error}"))?;
         let mut context = jetstream::new(client.clone());
@@ -145,12 +145,12 @@ impl NatsBus {
 }
 
 impl Bus for NatsBus {
-    fn publish(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64> {
+    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64> {
         self.call(async move {
             let message = PublishMessage::build()
                 .payload(message.into())
                 .expected_last_subject_sequence(last);
-            let sent = self.context.send_publish(log_of(room), message).await;
+            let sent = self.context.send_publish(log_subject(room), message).await;
             let acknowledged = sent.map_err(unknown)?.await;
             acknowledged.map(|it| it.sequence).map_err(|error| match error.kind() {
                 PublishErrorKind::WrongLastSequence => BusFault::Refused,
@@ -162,7 +162,7 @@ impl Bus for NatsBus {
     fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>> {
         self.call(async move {
             let next = self.log.raw_message_builder().sequence(after + 1);
-            match next.next_by_subject(log_of(room)).send().await {
+            match next.next_by_subject(log_subject(room)).send().await {
                 Ok(message) => Ok(Some((message.sequence, message.payload.to_vec()))),
                 Err(error) if error.kind() == RawMessageErrorKind::NoMessageFound => Ok(None),
                 Err(_) => Err(BusFault::Unknown),
@@ -176,35 +176,36 @@ impl Bus for NatsBus {
             if first <= 1 {
                 return Ok(());
             }
-            let purge = self.log.purge().sequence(first).filter(log_of(room));
+            let purge = self.log.purge().sequence(first).filter(log_subject(room));
             purge.await.map(drop).map_err(unknown)
         })
     }
 
     fn drop_log(&self, room: RoomId) -> Answer<'_, ()> {
-        self.call(
-            async move { self.log.purge().filter(log_of(room)).await.map(drop).map_err(unknown) },
-        )
-    }
-
-    fn say(&self, room: RoomId, talk: Vec<u8>) -> Answer<'_, ()> {
-        self.call(
-            async move { self.client.publish(talk_of(room), talk.into()).await.map_err(unknown) },
-        )
-    }
-
-    fn hear(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(async move {
-            let mut heard = self.client.subscribe(talk_of(room)).await.map_err(unknown)?;
+            self.log.purge().filter(log_subject(room)).await.map(drop).map_err(unknown)
+        })
+    }
+
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()> {
+        self.call(async move {
+            self.client.publish(peers_subject(room), message.into()).await.map_err(unknown)
+        })
+    }
+
+    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+        self.call(async move {
+            let mut subscription =
+                self.client.subscribe(peers_subject(room)).await.map_err(unknown)?;
             // From now on, nothing is missed.
             self.client.flush().await.map_err(unknown)?;
-            let (talk, receiver) = mpsc::channel(MOST_TALK);
+            let (messages, receiver) = mpsc::channel(MOST_QUEUED);
             tokio::spawn(async move {
                 loop {
                     tokio::select! {
-                        () = talk.closed() => return,
-                        message = heard.next() => match message {
-                            Some(message) => _ = talk.try_send(message.payload.to_vec()),
+                        () = messages.closed() => return,
+                        message = subscription.next() => match message {
+                            Some(message) => _ = messages.try_send(message.payload.to_vec()),
                             None => return,
                         }
                     }
@@ -214,7 +215,7 @@ impl Bus for NatsBus {
         })
     }
 
-    fn number(&self) -> Answer<'_, u32> {
+    fn next_number(&self) -> Answer<'_, u32> {
         self.call(async move {
             let sent = self.context.publish(NUMBERS, Vec::new().into()).await.map_err(unknown)?;
             let number = sent.await.map_err(unknown)?.sequence;
@@ -224,7 +225,7 @@ impl Bus for NatsBus {
 
     fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
         self.call(async move {
-            let key = name_of(&key);
+            let key = key_name(&key);
             match self.store.update(&key, value.into(), self.revision(&key)).await {
                 Ok(revision) => {
                     self.note(&key, revision);
@@ -241,7 +242,7 @@ impl Bus for NatsBus {
 
     fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()> {
         self.call(async move {
-            let key = name_of(&key);
+            let key = key_name(&key);
             let revision = self.store.create(&key, value.into()).await;
             let revision = revision.map_err(|error| match error.kind() {
                 CreateErrorKind::AlreadyExists => BusFault::Refused,
@@ -253,12 +254,12 @@ impl Bus for NatsBus {
     }
 
     fn get(&self, key: Key) -> Answer<'_, Option<Vec<u8>>> {
-        self.call(async move { self.entry(&name_of(&key)).await })
+        self.call(async move { self.entry(&key_name(&key)).await })
     }
 
     fn remove(&self, key: Key) -> Answer<'_, ()> {
         self.call(async move {
-            let key = name_of(&key);
+            let key = key_name(&key);
             locked(&self.revisions, |revisions| _ = revisions.remove(&key));
             self.store.purge(&key).await.map_err(unknown)
         })
@@ -268,7 +269,7 @@ impl Bus for NatsBus {
         self.call(async move {
             let keys = format!("{ROOMS}*");
             let mut watch = self.store.watch_with_history(keys).await.map_err(unknown)?;
-            let (changes, receiver) = mpsc::channel(MOST_TALK);
+            let (changes, receiver) = mpsc::channel(MOST_QUEUED);
             tokio::spawn(async move {
                 while let Some(Ok(entry)) = watch.next().await {
                     let number = entry.key.strip_prefix(ROOMS).and_then(|it| it.parse().ok());

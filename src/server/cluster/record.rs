@@ -1,7 +1,7 @@
-//! Records of rooms: what every host knows of a room without having it.
+//! Records of rooms: what every host knows of a room, also without a replica of it.
 //!
 //! ```text
-//! 1.1 standing awake 17
+//! 1.1 standing running 17
 //! playing 5400
 //! museum
 //! name Mara
@@ -9,13 +9,12 @@
 //! …
 //! ```
 //!
-//! The first line has the versions, whether the room is always there, whether a host runs it, and a number that
-//! grows while one does.
-//! The phase follows, the level, the names of the members, and the header with which the log begins.
+//! The first line has the versions, whether the room is a standing one, whether a host runs it, and the heartbeat.
+//! The phase, the level, the names of the members, and the header with which the log begins follow.
 
 use std::sync::Arc;
 
-use super::message::version;
+use super::log_message::version;
 use crate::server::line::Line;
 use crate::server::room::{Header, NAME_COLUMNS, Phase, Room};
 use crate::server::summary::{RoomId, RoomSummary};
@@ -26,14 +25,14 @@ pub(super) struct Record {
     /// Whether the room is always there.
     pub(super) stands: bool,
     /// Whether a host runs it.
-    pub(super) is_awake: bool,
-    /// It grows while a host runs the room.
-    pub(super) beat: u64,
+    pub(super) is_running: bool,
+    /// The number of records that were put so far, which grows while a host runs the room.
+    pub(super) heartbeat: u64,
     phase: Phase,
     names: Arc<[Line]>,
     /// The level of the present round.
     level: String,
-    /// That with which the log begins, as long as there is no checkpoint.
+    /// The header with which the log begins, as long as there is no checkpoint.
     pub(super) header: Header,
 }
 
@@ -41,14 +40,22 @@ impl Record {
     /// That of a room that nobody has entered yet.
     pub(super) fn new(header: Header, stands: bool) -> Self {
         let (names, level) = (Arc::from([]), header.level.clone());
-        Self { stands, is_awake: !stands, beat: 0, phase: Phase::Waiting, names, level, header }
+        Self {
+            stands,
+            is_running: !stands,
+            heartbeat: 0,
+            phase: Phase::Waiting,
+            names,
+            level,
+            header,
+        }
     }
 
     /// The next one, of the room as it is.
-    pub(super) fn next(self, room: &Room, is_awake: bool) -> Self {
+    pub(super) fn next(self, room: &Room, is_running: bool) -> Self {
         let (phase, names) = (room.phase(), room.names().cloned().collect());
         let level = room.header().level.clone();
-        Self { is_awake, beat: self.beat + 1, phase, names, level, ..self }
+        Self { is_running, heartbeat: self.heartbeat + 1, phase, names, level, ..self }
     }
 
     /// The room as lobbies show it, without those who watch.
@@ -67,7 +74,7 @@ impl Record {
     /// The record as bytes.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let stands = if self.stands { "standing" } else { "opened" };
-        let awake = if self.is_awake { "awake" } else { "asleep" };
+        let running = if self.is_running { "running" } else { "idle" };
         let (phase, ends) = match self.phase {
             Phase::Waiting => ("waiting", 0),
             Phase::Countdown { ends } => ("countdown", ends),
@@ -76,16 +83,19 @@ impl Record {
         };
         let names: Vec<String> = self.names.iter().map(|name| format!("name {name}\n")).collect();
         let names = names.concat();
-        let Self { beat, level, header, .. } = self;
-        format!("{} {stands} {awake} {beat}\n{phase} {ends}\n{level}\n{names}{header}", version())
-            .into_bytes()
+        let Self { heartbeat, level, header, .. } = self;
+        format!(
+            "{} {stands} {running} {heartbeat}\n{phase} {ends}\n{level}\n{names}{header}",
+            version()
+        )
+        .into_bytes()
     }
 
     /// The record of those bytes; `None` if they are none, or of another version.
     pub(super) fn parse(bytes: &[u8]) -> Option<Self> {
         let mut lines = str::from_utf8(bytes).ok()?.lines().peekable();
         let words: Vec<&str> = lines.next()?.split(' ').collect();
-        let [found, stands, awake, beat] = words.try_into().ok()?;
+        let [found, stands, running, heartbeat] = words.try_into().ok()?;
         (found == version()).then_some(())?;
         let (phase, ends) = lines.next()?.split_once(' ')?;
         let ends = ends.parse().ok()?;
@@ -103,8 +113,8 @@ impl Record {
         }
         Some(Self {
             stands: stands == "standing",
-            is_awake: awake == "awake",
-            beat: beat.parse().ok()?,
+            is_running: running == "running",
+            heartbeat: heartbeat.parse().ok()?,
             phase,
             names: names.into(),
             level,
@@ -126,8 +136,8 @@ mod tests {
         let names = ["Mara", "a b"].map(|name| Line::of(name, NAME_COLUMNS).unwrap());
         let used = Record {
             stands: false,
-            is_awake: true,
-            beat: 9,
+            is_running: true,
+            heartbeat: 9,
             phase: Phase::Playing { ends: 99 },
             names: names.into(),
             ..new.clone()

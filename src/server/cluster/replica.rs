@@ -1,224 +1,295 @@
-//! Replicas: the room as one host has it, which changes by messages of the log alone.
+//! Replicas: a room on one host of a cluster.
 //!
-//! A replica is a function of a checkpoint, or of the room's first header, and the messages of the log after
-//! it. It takes them in their order, each once. Once a second it notes its checksum; the message that
-//! tells the sequencer's comes later, so that both are known then.
+//! A replica applies the room's log to its [`RoomState`], shows the room to the members and watchers of its host,
+//! and sends their commands to the sequencer. One of the replicas of a room is the sequencer: it has a
+//! [`ClusterSequencer`] as well.
+//!
+//! # Rules
+//!
+//! - A replica applies messages of the log, and nothing else.
+//! - A message has the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round
+//!   trip to the log; in a room of one process it waits for up to a step.
+//! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
+//! - A member is in the room once the log has their joining.
+//! - The sequencer removes members whom no host claims for a while. A host that has ended claims nobody.
+//! - If nothing can be appended to the log, the room waits, and its members are told. Rooms that go on for one
+//!   host alone were refused: each part of a divided cluster would end a round of its own.
 
-use std::collections::VecDeque;
-use std::io::{Read, Write};
+mod joining;
+mod reading;
+mod sequencing;
+
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
-use flate2::Compression;
-use flate2::read::ZlibDecoder;
-use flate2::write::ZlibEncoder;
+use tokio::sync::{mpsc, watch};
+use tokio::time::{Instant, sleep_until};
 
-use super::message::{Check, Message};
-use crate::game::STEPS_PER_SECOND;
-use crate::game::stored::MOST_BYTES;
-use crate::server::room::{Catalog, Entry, Header, Queue, Room};
-use crate::server::sequencer::{Changes, RoundLog};
+pub(super) use self::joining::JoinRequest;
+use self::joining::PendingJoin;
+use super::HostContext;
+use super::lease_worker::Reply;
+use super::peer_message::PeerMessage;
+use super::record::Record;
+use super::room_state::RoomState;
+use super::sequencer::ClusterSequencer;
+use crate::server::sequencer::{RoomInterface, STEP};
+use crate::server::summary::RoomId;
+use crate::store::host::Lease;
 
-/// The steps from one checksum to the next.
-const CHECKED: u64 = STEPS_PER_SECOND as u64;
-/// The checksums that are remembered.
-const MOST_SUMS: usize = 8;
+/// The time from one message of a sequencer to the next.
+pub(super) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
+/// The steps in it.
+const STEPS: u32 = 2;
+/// The time without messages after which a replica reads the log.
+const SILENCE: Duration = Duration::from_secs(1);
+/// The time without steps after which members are told.
+const STANDSTILL: Duration = Duration::from_millis(1_500);
+/// The time from one claim, or renewal, to the next.
+const SECOND: Duration = Duration::from_secs(1);
+/// The least time that a replica exists without members and watchers.
+const LEAST_STAY: Duration = Duration::from_secs(3);
 
-/// A room as one host has it.
+/// What members read while the room waits.
+const WAITS: &str = "The hosts of this room do not reach each other; the game waits.";
+/// What they read then.
+const GOES_ON: &str = "The game goes on.";
+
+/// A room on one host.
 pub(super) struct Replica {
-    room: Room,
-    log: RoundLog,
-    /// The number of the last message.
-    number: u64,
-    /// The steps that the room has taken in all rounds.
-    tick: u64,
-    /// The epoch of the newest message.
-    epoch: u64,
-    /// The newest last.
-    sums: VecDeque<Check>,
+    id: RoomId,
+    context: Arc<HostContext>,
+    interface: Arc<RoomInterface>,
+    /// Who watches on this host.
+    watchers: Arc<AtomicUsize>,
+    /// The newest record.
+    record: Record,
+    state: RoomState,
+    sequencer: Option<ClusterSequencer>,
+    broadcasts: mpsc::Receiver<Vec<u8>>,
+    join_requests: mpsc::Receiver<JoinRequest>,
+    pending_joins: Vec<PendingJoin>,
+    leasing: Leasing,
+    times: Times,
+    /// Whether it is unknown if the log has the message that was appended last.
+    is_append_unknown: bool,
+    is_told_to_wait: bool,
+    /// Whether the record of the room is out of date.
+    is_changed: bool,
+    ending: watch::Receiver<bool>,
 }
 
-/// What a message is to a replica.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Position {
-    /// The one after the last one.
-    Next,
-    /// One that it has.
-    Known,
-    /// One of which those before are missing.
-    Later,
-    /// The next one, but the replica is not as the sequencer's was. It is a bug of the program.
-    Differs,
+/// The calls to the leases that are not answered yet.
+#[derive(Default)]
+struct Leasing {
+    acquiring: Option<Reply<Option<Lease>>>,
+    renewing: Option<Reply<bool>>,
+}
+
+/// When what is done from time to time was done last.
+struct Times {
+    /// The room has taken steps, or was found to rest.
+    moved: Instant,
+    read: Option<Instant>,
+    restored: Option<Instant>,
+    claimed: Option<Instant>,
+    leased: Option<Instant>,
+    kept: Option<Instant>,
+    published: Option<Instant>,
+    /// Somebody needed the replica.
+    needed: Instant,
+    /// Up to when the sequencer has taken steps.
+    stepped: Instant,
+}
+
+/// The parts of a new replica.
+pub(super) struct Beginning {
+    pub(super) id: RoomId,
+    pub(super) record: Record,
+    pub(super) interface: Arc<RoomInterface>,
+    pub(super) watchers: Arc<AtomicUsize>,
+    pub(super) state: RoomState,
+    pub(super) broadcasts: mpsc::Receiver<Vec<u8>>,
+    pub(super) join_requests: mpsc::Receiver<JoinRequest>,
 }
 
 impl Replica {
-    /// A room that nobody has entered yet. `None` if the catalog has no such level.
-    pub(super) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
-        Some(Self::with(Room::new(catalog, header)?, [0; 3]))
-    }
-
-    fn with(room: Room, [number, tick, epoch]: [u64; 3]) -> Self {
-        let log = RoundLog::new(Box::new(Queue::default()), &room);
-        Self { room, log, number, tick, epoch, sums: VecDeque::new() }
-    }
-
-    pub(super) fn room(&self) -> &Room {
-        &self.room
-    }
-
-    /// The number of the last message.
-    pub(super) fn number(&self) -> u64 {
-        self.number
-    }
-
-    /// The steps that the room has taken in all rounds.
-    pub(super) fn tick(&self) -> u64 {
-        self.tick
-    }
-
-    /// The epoch of the newest message.
-    pub(super) fn epoch(&self) -> u64 {
-        self.epoch
-    }
-
-    /// The newest checksum.
-    pub(super) fn sum(&self) -> Option<Check> {
-        self.sums.back().copied()
-    }
-
-    /// What message `number` is to the replica.
-    pub(super) fn position(&self, number: u64, message: &Message) -> Position {
-        let is_equal = |check: Check| {
-            let own = self.sums.iter().find(|own| own.tick == check.tick);
-            own.is_none_or(|own| *own == check)
+    pub(super) fn new(context: Arc<HostContext>, beginning: Beginning) -> Self {
+        let Beginning { id, record, interface, watchers, state, broadcasts, join_requests } =
+            beginning;
+        let (now, ending) = (Instant::now(), context.ending.subscribe());
+        let times = Times {
+            moved: now,
+            read: None,
+            restored: None,
+            claimed: None,
+            leased: None,
+            kept: None,
+            published: None,
+            needed: now,
+            stepped: now,
         };
-        if number <= self.number {
-            Position::Known
-        } else if message.last != self.number {
-            Position::Later
-        } else if message.tick == self.tick && message.check.is_none_or(is_equal) {
-            Position::Next
-        } else {
-            Position::Differs
+        Self {
+            id,
+            context,
+            interface,
+            watchers,
+            record,
+            state,
+            sequencer: None,
+            broadcasts,
+            join_requests,
+            pending_joins: Vec::new(),
+            leasing: Leasing::default(),
+            times,
+            is_append_unknown: false,
+            is_told_to_wait: false,
+            is_changed: false,
+            ending,
         }
     }
 
-    /// Takes the steps of the next message. One of an older epoch than the last changes nothing.
-    pub(super) fn apply(&mut self, number: u64, message: &Message) -> Changes {
-        let mut all = Changes::default();
-        self.number = number;
-        if message.epoch < self.epoch {
-            return all;
-        }
-        self.epoch = message.epoch;
-        let mut entries = message.entries.iter().peekable();
-        for step in 0..message.steps {
-            let changes = self.log.step(&mut self.room, |pass| {
-                while let Some(Entry { member, deed, .. }) = entries.next_if(|it| it.step <= step) {
-                    pass(*member, deed.clone());
+    /// Runs the room on this host, as long as it is needed here.
+    pub(super) async fn run(mut self) {
+        // What was appended before it subscribed.
+        _ = self.read().await;
+        let mut next = Instant::now();
+        loop {
+            tokio::select! {
+                biased;
+                () = sleep_until(next) => {
+                    next = (next + MESSAGE_PERIOD).max(Instant::now());
+                    self.run_period().await;
+                    if self.is_over() {
+                        return self.end().await;
+                    }
                 }
-            });
-            all.add(changes);
-            self.tick += 1;
-            if self.tick.is_multiple_of(CHECKED) {
-                self.sums.push_back(Check { tick: self.tick, sum: self.room.checksum() });
-                if self.sums.len() > MOST_SUMS {
-                    self.sums.pop_front();
-                }
+                Some(bytes) = self.broadcasts.recv() => self.receive_broadcast(&bytes).await,
+                Some(request) = self.join_requests.recv() => self.receive_join(request).await,
             }
         }
-        all
     }
 
-    /// The whole replica, compressed.
-    pub(super) fn checkpoint(&self) -> Vec<u8> {
-        let head = format!("{} {} {}\n", self.number, self.tick, self.epoch);
-        let mut encoder = ZlibEncoder::new(head.into_bytes(), Compression::fast());
-        // Memory accepts every byte.
-        _ = encoder.write_all(&self.room.checkpoint());
-        encoder.finish().unwrap_or_default()
+    async fn run_period(&mut self) {
+        let now = Instant::now();
+        self.send_commands().await;
+        self.repeat_joins(now).await;
+        self.claim(now).await;
+        self.keep_lease(now).await;
+        if self.sequencer.is_some() {
+            self.sequence(now).await;
+            self.keep(now).await;
+        } else if is_due(self.times.read, now, SILENCE) && self.is_silent(now) {
+            _ = self.read().await;
+        }
+        self.tell(now);
     }
 
-    /// The replica of a checkpoint.
-    ///
-    /// # Errors
-    /// A sentence: the bytes are none, or of another version, or of a level that the catalog does not have.
-    pub(super) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
-        let damaged = || "the checkpoint is damaged".to_owned();
-        let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
-        let head = str::from_utf8(&bytes[..end]).map_err(|_| damaged())?;
-        let numbers: Result<Vec<u64>, _> = head.split(' ').map(str::parse).collect();
-        let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
-        let mut room = Vec::new();
-        let mut decoder = ZlibDecoder::new(&bytes[end + 1..]).take(MOST_BYTES as u64 + 1);
-        decoder.read_to_end(&mut room).map_err(|_| damaged())?;
-        Ok(Self::with(Room::restore(catalog, &room)?, numbers.ok_or_else(damaged)?))
+    /// Sends the commands of this host's members to the sequencer.
+    async fn send_commands(&mut self) {
+        let mut commands = Vec::new();
+        for _ in 0..STEPS {
+            self.interface.inbox.take(|member, command| commands.push((member, command)));
+        }
+        match &mut self.sequencer {
+            Some(sequencer) => commands
+                .into_iter()
+                .for_each(|(member, command)| sequencer.command(member, command)),
+            None if commands.is_empty() => {}
+            None => self.broadcast(&PeerMessage::Commands(commands)).await,
+        }
+    }
+
+    async fn claim(&mut self, now: Instant) {
+        if !is_due(self.times.claimed, now, SECOND) {
+            return;
+        }
+        self.times.claimed = Some(now);
+        self.dismiss_removed();
+        let own = self.interface.inbox.seated();
+        match &mut self.sequencer {
+            Some(sequencer) => {
+                sequencer.claim(&own, now);
+                sequencer.remove_unclaimed(now);
+            }
+            None if own.is_empty() => {}
+            None => self.broadcast(&PeerMessage::Claim(own)).await,
+        }
+    }
+
+    /// Handles a broadcast.
+    async fn receive_broadcast(&mut self, bytes: &[u8]) {
+        let now = Instant::now();
+        let message = match PeerMessage::parse(bytes) {
+            Ok(message) => message,
+            Err(fault) => {
+                return tracing::warn!(room = %self.id, "a broadcast that cannot be read: {fault:?}");
+            }
+        };
+        match (message, &mut self.sequencer) {
+            (PeerMessage::Appended(number, message), _) => {
+                if !self.take(number, &message).await {
+                    _ = self.read().await;
+                }
+            }
+            (PeerMessage::Commands(commands), Some(sequencer)) => {
+                for (member, command) in commands {
+                    sequencer.command(member, command);
+                }
+            }
+            (PeerMessage::Claim(members), Some(sequencer)) => sequencer.claim(&members, now),
+            (PeerMessage::Join(token, name), Some(sequencer)) => {
+                if let Some(answer) = sequencer.request_join(token, &name, now) {
+                    self.broadcast(&answer).await;
+                }
+            }
+            (answer @ (PeerMessage::Joined(..) | PeerMessage::Full(_)), _) => self.answer(&answer),
+            (PeerMessage::Commands(_) | PeerMessage::Claim(_) | PeerMessage::Join(..), None) => {}
+        }
+    }
+
+    /// Sends a message to the other hosts. One that is lost is sent again, or read in the log.
+    async fn broadcast(&mut self, message: &PeerMessage) {
+        _ = self.context.bus.broadcast(self.id, message.to_bytes()).await;
+    }
+
+    fn is_silent(&self, now: Instant) -> bool {
+        now.duration_since(self.times.moved) >= SILENCE
+    }
+
+    /// Tells members when the room begins to wait, and when it goes on.
+    fn tell(&mut self, now: Instant) {
+        let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
+        let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
+        if waits != self.is_told_to_wait {
+            self.is_told_to_wait = waits;
+            self.context.tell(self.id, if waits { WAITS } else { GOES_ON });
+        }
+    }
+
+    /// Whether the replica is not needed any more.
+    fn is_over(&mut self) -> bool {
+        let now = Instant::now();
+        let has_work = self
+            .sequencer
+            .as_ref()
+            .is_some_and(|sequencer| self.state.room().len() > 0 || !sequencer.is_empty());
+        let is_needed = has_work
+            || !self.pending_joins.is_empty()
+            || !self.interface.inbox.seated().is_empty()
+            || self.watchers.load(Ordering::Acquire) > 0;
+        if is_needed {
+            self.times.needed = now;
+        }
+        let closes_after = *self.interface.closes_after.borrow();
+        let stay = closes_after.filter(|_| self.sequencer.is_some()).unwrap_or_default();
+        let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
+        is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::game::PlayerColor;
-    use crate::server::line::Line;
-    use crate::server::room::{Deed, MemberId, Mode};
-    use crate::world::Difficulty;
-
-    fn replica() -> Replica {
-        let header = Header::new("museum", Mode::Roam, Difficulty::Normal, 7);
-        Replica::new(&Arc::new(Catalog::builtin()), header).unwrap()
-    }
-
-    fn message(replica: &Replica, epoch: u64, check: Option<Check>) -> Message {
-        let deed = Deed::Join { color: PlayerColor::ALL[0], name: Line::of("Mara", 16).unwrap() };
-        let entries = vec![Entry { step: 1, member: MemberId(1), deed }];
-        let (last, tick) = (replica.number(), replica.tick());
-        Message { epoch, last, tick, steps: 2, check, entries }
-    }
-
-    #[test]
-    fn a_message_is_applied_once_and_after_the_one_before() {
-        let mut replica = replica();
-        let first = message(&replica, 1, None);
-        assert_eq!(replica.position(5, &first), Position::Next);
-        assert!(replica.apply(5, &first).summary);
-        assert_eq!((replica.number(), replica.tick(), replica.room().len()), (5, 2, 1));
-        assert_eq!(replica.position(5, &first), Position::Known);
-        let next = message(&replica, 1, None);
-        assert_eq!(replica.position(9, &Message { last: 8, ..next.clone() }), Position::Later);
-        assert_eq!(replica.position(9, &Message { tick: 3, ..next.clone() }), Position::Differs);
-        // Of an older epoch, it only counts.
-        replica.epoch = 2;
-        replica.apply(9, &next);
-        assert_eq!((replica.number(), replica.tick()), (9, 2));
-    }
-
-    #[test]
-    fn another_checksum_is_a_difference() {
-        let mut replica = replica();
-        for number in 1..=30 {
-            let next = message(&replica, 1, None);
-            replica.apply(number, &next);
-        }
-        let sum = replica.sum().unwrap();
-        assert_eq!(sum.tick, 60);
-        let other = Check { sum: !sum.sum, ..sum };
-        for (check, position) in [(sum, Position::Next), (other, Position::Differs)] {
-            assert_eq!(replica.position(31, &message(&replica, 1, Some(check))), position);
-        }
-    }
-
-    #[test]
-    fn a_checkpoint_gives_the_replica_again() {
-        let catalog = Arc::new(Catalog::builtin());
-        let mut replica = replica();
-        let next = message(&replica, 3, None);
-        replica.apply(4, &next);
-        let bytes = replica.checkpoint();
-        let again = Replica::restore(&catalog, &bytes).unwrap();
-        assert_eq!((again.number(), again.tick(), again.epoch), (4, 2, 3));
-        assert_eq!(again.room().checksum(), replica.room().checksum());
-        for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", b"1 2\n", b"1 2 x\nabc"] {
-            assert!(Replica::restore(&catalog, damaged).is_err());
-        }
-    }
+/// Whether `pause` has passed since `last`.
+fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
+    last.is_none_or(|last| now.duration_since(last) >= pause)
 }

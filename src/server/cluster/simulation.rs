@@ -32,7 +32,7 @@ use crate::game::{Intent, Intents};
 use crate::rng::SplitMix64;
 use crate::server::line::Line;
 use crate::server::load::Load;
-use crate::server::room::{Catalog, Deed, MemberId, Mode, Queue};
+use crate::server::room::{Catalog, Command, MemberId, Mode, Queue};
 use crate::server::rooms::{Logs, Place, RoomLimits, RoomRefusal, Rooms};
 use crate::server::simulation::{HALL, catalog};
 use crate::server::summary::{RoomId, RoomWish};
@@ -162,17 +162,17 @@ impl Run {
             }
             Some(_) if chance.one_in(60) => player.place = None,
             Some(place) => {
-                let deed = match chance.below(12) {
-                    0 => Deed::Say(Line::of("hello", 60).expect("a line")),
-                    1 => Deed::Again,
+                let command = match chance.below(12) {
+                    0 => Command::Say(Line::of("hello", 60).expect("a line")),
+                    1 => Command::Again,
                     it => {
                         let intent = [Intent::Forward, Intent::TurnLeft, Intent::TurnRight][it % 3];
                         let intents: Intents = [intent].into_iter().collect();
-                        Deed::Want { seen: 0, intents }
+                        Command::Intents { seen: 0, intents }
                     }
                 };
                 // What comes too often is refused.
-                _ = place.act(deed);
+                _ = place.act(command);
             }
             None => {}
         }
@@ -209,7 +209,7 @@ impl Host {
         let load = Arc::new(Load::simulated(Arc::clone(&metrics)));
         let logs = Logs::new(|_| Box::<Queue>::default());
         let rooms = Rooms::new(limits, Arc::clone(catalog), logs, Arc::clone(&load), seed);
-        let cluster = Cluster { bus: world.bus(index), desk: world.desk(index), seed };
+        let cluster = Cluster { bus: world.bus(index), leases: world.lease_worker(index), seed };
         let shared = cluster.rooms(&rooms, vec![wish()], load, Visitors::default());
         Self { rooms, shared, metrics, is_killed: false, well_at: Instant::now() }
     }

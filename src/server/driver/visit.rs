@@ -8,7 +8,7 @@ use tokio::time::sleep_until;
 
 use super::Shared;
 use super::account::{self, Known, NameInUse};
-use super::errands::{Reply, replies};
+use super::requests::{Reply, replies};
 use super::terminal;
 use crate::app::Configuration;
 use crate::server::line::Line;
@@ -134,7 +134,7 @@ impl Visit {
     pub(super) async fn run(&mut self, link: &mut Link) -> u8 {
         let Link { inbound, outbox } = link;
         loop {
-            self.run_errands();
+            self.run_requests();
             let mut wakes_at = None;
             if !self.is_sending {
                 let bytes = self.frame(&mut wakes_at);

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::{CATALOG, Deed, Entry, Header, Line, Mode, NAME_COLUMNS, PlayerColor, Room};
+use super::{CATALOG, Command, Entry, Header, Line, Mode, NAME_COLUMNS, PlayerColor, Room};
 use crate::game::{Intent, Intents};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
@@ -55,10 +55,10 @@ fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
     let mut wanted = Intents::new();
     for _ in 0..steps {
         let (step, next) = (room.step(), room.next_member());
-        let mut deeds = Vec::new();
+        let mut commands = Vec::new();
         if room.len() < 3 && random.one_in(60) || room.len() == 0 {
             let name = Line::of("Ada", NAME_COLUMNS).expect("it fits");
-            deeds.push((next, Deed::Join { color: PlayerColor::ALL[random.below(8)], name }));
+            commands.push((next, Command::Join { color: PlayerColor::ALL[random.below(8)], name }));
         }
         if let Some((member, ..)) = room.first_member() {
             if random.one_in(20) {
@@ -67,13 +67,14 @@ fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
                     wanted.insert(Intent::ALL[random.below(Intent::ALL.len())]);
                 });
             }
-            deeds.push((member, Deed::Want { seen: room.game().steps(), intents: wanted }));
+            commands
+                .push((member, Command::Intents { seen: room.game().steps(), intents: wanted }));
             if random.one_in(400) {
-                deeds.push((member, Deed::Leave));
+                commands.push((member, Command::Leave));
             }
         }
-        for (member, deed) in deeds {
-            room.apply(&Entry { step, member, deed });
+        for (member, command) in commands {
+            room.apply(&Entry { step, member, command });
         }
         room.advance();
         if room.is_over() {

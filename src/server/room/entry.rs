@@ -1,4 +1,4 @@
-//! Entries of a room's log: what the members want, in which step.
+//! Entries of a room's log: the commands of its members, each with its step.
 //!
 //! An entry is a line of text:
 //!
@@ -48,20 +48,20 @@ pub(crate) struct Entry {
     pub(crate) step: u64,
     /// Whose entry it is.
     pub(crate) member: MemberId,
-    /// What the member does.
-    pub(crate) deed: Deed,
+    /// The member's command.
+    pub(crate) command: Command,
 }
 
-/// What a member does.
+/// A command of a member.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Deed {
+pub(crate) enum Command {
     /// Enters the room.
     Join { color: PlayerColor, name: Line },
     /// Leaves the room.
     Leave,
-    /// Wants this from now on, after a picture of the step `seen` of the game. The angles count in the
-    /// next step only.
-    Want { seen: u64, intents: Intents },
+    /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in
+    /// the next step only.
+    Intents { seen: u64, intents: Intents },
     /// Says something to all.
     Say(Line),
     /// Shows all an emotion.
@@ -126,16 +126,18 @@ impl Emote {
 
 impl fmt::Display for Entry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { step, member, deed } = self;
-        match deed {
-            Deed::Join { color, name } => write!(f, "{step} join {member} {} {name}", color.name()),
-            Deed::Leave => write!(f, "{step} leave {member}"),
-            Deed::Want { seen, intents } => {
+        let Self { step, member, command } = self;
+        match command {
+            Command::Join { color, name } => {
+                write!(f, "{step} join {member} {} {name}", color.name())
+            }
+            Command::Leave => write!(f, "{step} leave {member}"),
+            Command::Intents { seen, intents } => {
                 write!(f, "{step} want {member} {seen} {}", intents.words())
             }
-            Deed::Say(line) => write!(f, "{step} say {member} {line}"),
-            Deed::Again => write!(f, "{step} again {member}"),
-            Deed::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
+            Command::Say(line) => write!(f, "{step} say {member} {line}"),
+            Command::Again => write!(f, "{step} again {member}"),
+            Command::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
         }
     }
 }
@@ -146,23 +148,23 @@ impl Entry {
         let (step, rest) = line.split_once(' ')?;
         let (verb, rest) = rest.split_once(' ')?;
         let (member, rest) = rest.split_once(' ').unwrap_or((rest, ""));
-        let deed = match verb {
+        let command = match verb {
             "join" => {
                 let (color, name) = rest.split_once(' ')?;
                 let color = PlayerColor::ALL.into_iter().find(|it| it.name() == color)?;
-                Deed::Join { color, name: Line::of(name, NAME_COLUMNS)? }
+                Command::Join { color, name: Line::of(name, NAME_COLUMNS)? }
             }
-            "leave" if rest.is_empty() => Deed::Leave,
-            "again" if rest.is_empty() => Deed::Again,
+            "leave" if rest.is_empty() => Command::Leave,
+            "again" if rest.is_empty() => Command::Again,
             "want" => {
                 let (seen, words) = rest.split_once(' ')?;
-                Deed::Want { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
+                Command::Intents { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
             }
-            "say" => Deed::Say(Line::of(rest, CHAT_COLUMNS)?),
-            "emote" => Deed::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
+            "say" => Command::Say(Line::of(rest, CHAT_COLUMNS)?),
+            "emote" => Command::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
             _ => return None,
         };
-        Some(Self { step: step.parse().ok()?, member: MemberId(member.parse().ok()?), deed })
+        Some(Self { step: step.parse().ok()?, member: MemberId(member.parse().ok()?), command })
     }
 }
 
@@ -173,7 +175,7 @@ mod tests {
     use super::*;
     use crate::game::{Intent, Look};
 
-    fn deed() -> impl Strategy<Value = Deed> {
+    fn command() -> impl Strategy<Value = Command> {
         let line =
             |columns| any::<String>().prop_filter_map("text", move |it| Line::of(&it, columns));
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=5);
@@ -183,19 +185,19 @@ mod tests {
         });
         prop_oneof![
             (prop::sample::select(&PlayerColor::ALL), line(NAME_COLUMNS))
-                .prop_map(|(color, name)| Deed::Join { color, name }),
-            Just(Deed::Leave),
-            Just(Deed::Again),
-            (any::<u64>(), intents).prop_map(|(seen, intents)| Deed::Want { seen, intents }),
-            line(CHAT_COLUMNS).prop_map(Deed::Say),
-            prop::sample::select(&Emote::ALL).prop_map(Deed::Emote),
+                .prop_map(|(color, name)| Command::Join { color, name }),
+            Just(Command::Leave),
+            Just(Command::Again),
+            (any::<u64>(), intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
+            line(CHAT_COLUMNS).prop_map(Command::Say),
+            prop::sample::select(&Emote::ALL).prop_map(Command::Emote),
         ]
     }
 
     proptest! {
         #[test]
-        fn what_is_written_reads_as_the_same(step: u64, member: u32, deed in deed()) {
-            let entry = Entry { step, member: MemberId(member), deed };
+        fn what_is_written_reads_as_the_same(step: u64, member: u32, command in command()) {
+            let entry = Entry { step, member: MemberId(member), command };
             prop_assert_eq!(Entry::parse(&entry.to_string()), Some(entry));
         }
 

@@ -24,19 +24,19 @@ fn line(text: &str) -> Line {
 fn join(room: &mut Room, name: &str) -> MemberId {
     let member = room.next_member();
     let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
-    do_now(room, member, Deed::Join { color, name: line(name) });
+    do_now(room, member, Command::Join { color, name: line(name) });
     member
 }
 
-fn do_now(room: &mut Room, member: MemberId, deed: Deed) {
+fn do_now(room: &mut Room, member: MemberId, command: Command) {
     let step = room.step();
-    room.apply(&Entry { step, member, deed });
+    room.apply(&Entry { step, member, command });
 }
 
 fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
     let seen = room.view().game.steps();
     let intents = intents.iter().copied().collect();
-    do_now(room, member, Deed::Want { seen, intents });
+    do_now(room, member, Command::Intents { seen, intents });
 }
 
 fn advance(room: &mut Room, steps: u64) {
@@ -58,7 +58,7 @@ fn members_walk_side_by_side() {
     advance(&mut room, 60);
     assert!(position(&room, one).x > 2.5);
     assert_eq!(position(&room, other), before);
-    do_now(&mut room, one, Deed::Leave);
+    do_now(&mut room, one, Command::Leave);
     advance(&mut room, 1);
     assert_eq!(room.view().members.len(), 1);
     let said: Vec<String> = room.view().said.iter().map(|it| it.text.clone()).collect();
@@ -142,7 +142,7 @@ fn a_round_that_nobody_else_joins_waits() {
     join(&mut room, "Jon");
     advance(&mut room, 10);
     assert!(matches!(room.view().phase, Phase::Countdown { .. }));
-    do_now(&mut room, one, Deed::Leave);
+    do_now(&mut room, one, Command::Leave);
     advance(&mut room, 1);
     assert_eq!(room.view().phase, Phase::Waiting);
 }
@@ -158,17 +158,17 @@ fn a_full_room_admits_nobody() {
 }
 
 /// A list of entries in order, with the steps between them.
-fn deeds() -> impl Strategy<Value = Vec<(u64, u32, Deed)>> {
+fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
     let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..4);
     let intents = intents.prop_map(|it| it.into_iter().collect::<Intents>());
-    let deed = prop_oneof![
-        2 => Just(Deed::Join { color: PlayerColor::ALL[0], name: line("Mara") }),
-        1 => Just(Deed::Leave),
-        6 => (0_u64..500, intents).prop_map(|(seen, intents)| Deed::Want { seen, intents }),
-        1 => Just(Deed::Say(line("hello"))),
-        1 => Just(Deed::Emote(Emote::Wave)),
+    let command = prop_oneof![
+        2 => Just(Command::Join { color: PlayerColor::ALL[0], name: line("Mara") }),
+        1 => Just(Command::Leave),
+        6 => (0_u64..500, intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
+        1 => Just(Command::Say(line("hello"))),
+        1 => Just(Command::Emote(Emote::Wave)),
     ];
-    prop::collection::vec((0_u64..40, 0_u32..10, deed), 0..40)
+    prop::collection::vec((0_u64..40, 0_u32..10, command), 0..40)
 }
 
 /// Plays a round; entries beyond the step at which it is read are not known yet.
@@ -190,16 +190,16 @@ proptest! {
     fn a_log_is_the_room(
         mode in prop::sample::select(&Mode::ALL),
         seed: u64,
-        deeds in deeds(),
+        commands in commands(),
     ) {
         let header = Header::new("hall", mode, Difficulty::Normal, seed);
         let mut step = 0;
         let mut text = Vec::new();
         let mut recorded = Recorded::new(Queue::default(), &mut text);
         recorded.begin(&header).unwrap();
-        for (wait, member, deed) in deeds {
+        for (wait, member, command) in commands {
             step += wait;
-            recorded.append(Entry { step, member: MemberId(member), deed }).unwrap();
+            recorded.append(Entry { step, member: MemberId(member), command }).unwrap();
         }
         let one = played(&mut recorded, &header, step + 60);
         drop(recorded);
@@ -225,10 +225,11 @@ fn a_recording_is_played_again() {
     log.begin(&header).unwrap();
     let runs = [Intent::Forward, Intent::Run].into_iter().collect();
     let name = line("Mara");
-    for deed in
-        [Deed::Join { color: PlayerColor::ALL[0], name }, Deed::Want { seen: 0, intents: runs }]
-    {
-        log.append(Entry { step: 0, member: MemberId(1), deed }).unwrap();
+    for command in [
+        Command::Join { color: PlayerColor::ALL[0], name },
+        Command::Intents { seen: 0, intents: runs },
+    ] {
+        log.append(Entry { step: 0, member: MemberId(1), command }).unwrap();
     }
     while !room.is_over() {
         while let Some(entry) = log.next(room.step()) {

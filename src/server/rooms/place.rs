@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use tokio::sync::watch;
 
 use super::Rooms;
-use crate::server::room::{Deed, MemberId, RoomView};
-use crate::server::sequencer::{DeedRefusal, Doorway, FinishedRun, State};
+use crate::server::room::{Command, MemberId, RoomView};
+use crate::server::sequencer::{CommandRefusal, FinishedRun, RoomInterface, State};
 use crate::server::summary::RoomId;
 
 /// A visitor's place in a room, as a member or to watch. They leave when it is dropped.
@@ -15,7 +15,7 @@ use crate::server::summary::RoomId;
 pub(crate) struct Place {
     room: RoomId,
     role: Role,
-    doorway: Arc<Doorway>,
+    interface: Arc<RoomInterface>,
     state: watch::Receiver<State>,
 }
 
@@ -30,22 +30,26 @@ enum Role {
 const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
 
 impl Place {
-    pub(in crate::server) fn member(room: RoomId, member: MemberId, doorway: Arc<Doorway>) -> Self {
-        Self::new(room, Role::Member(member), doorway)
+    pub(in crate::server) fn member(
+        room: RoomId,
+        member: MemberId,
+        interface: Arc<RoomInterface>,
+    ) -> Self {
+        Self::new(room, Role::Member(member), interface)
     }
 
     pub(in crate::server) fn watcher(
         room: RoomId,
-        doorway: Arc<Doorway>,
+        interface: Arc<RoomInterface>,
         watchers: Arc<AtomicUsize>,
         rooms: Rooms,
     ) -> Self {
-        Self::new(room, Role::Watcher { watchers, rooms }, doorway)
+        Self::new(room, Role::Watcher { watchers, rooms }, interface)
     }
 
-    fn new(room: RoomId, role: Role, doorway: Arc<Doorway>) -> Self {
-        let state = doorway.shown.state();
-        Self { room, role, doorway, state }
+    fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
+        let state = interface.shown.state();
+        Self { room, role, interface, state }
     }
 
     pub(crate) fn room(&self) -> RoomId {
@@ -63,7 +67,7 @@ impl Place {
     /// The newest snapshot; `None` after a fault of the room.
     pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
         self.state.mark_unchanged();
-        self.doorway.shown.view()
+        self.interface.shown.view()
     }
 
     /// Why the room is closed, if it is: a sentence.
@@ -77,7 +81,7 @@ impl Place {
     /// Whether the member was removed from the room, which others have gone on with.
     #[cfg(feature = "cluster")]
     fn is_dismissed(&self) -> bool {
-        self.member_id().is_some_and(|member| !self.doorway.inbox.seated().contains(&member))
+        self.member_id().is_some_and(|member| !self.interface.inbox.seated().contains(&member))
     }
 
     /// Waits until there is a newer snapshot than the last [`Place::view`], or the room is closed.
@@ -87,21 +91,21 @@ impl Place {
     }
 
     /// Does something in the room.
-    pub(crate) fn act(&self, deed: Deed) -> Result<(), DeedRefusal> {
-        let member = self.member_id().ok_or(DeedRefusal::Impossible)?;
-        self.doorway.inbox.act(member, deed)
+    pub(crate) fn act(&self, command: Command) -> Result<(), CommandRefusal> {
+        let member = self.member_id().ok_or(CommandRefusal::Impossible)?;
+        self.interface.inbox.act(member, command)
     }
 
     /// The run that the visitor has finished since the last call.
     pub(crate) fn finished(&self) -> Option<FinishedRun> {
-        self.doorway.inbox.finished(self.member_id()?)
+        self.interface.inbox.finished(self.member_id()?)
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
         match &self.role {
-            Role::Member(member) => self.doorway.inbox.leave(*member),
+            Role::Member(member) => self.interface.inbox.leave(*member),
             Role::Watcher { watchers, rooms } => {
                 watchers.fetch_sub(1, Ordering::AcqRel);
                 rooms.publish();

@@ -20,12 +20,12 @@ impl Rooms {
             for room in open.rooms.values() {
                 let Some(wish) = &room.stood_for else { continue };
                 let wanted = missing.iter().position(|missing| missing == wish);
-                match wanted.filter(|_| !room.doorway.inbox.is_closed()) {
+                match wanted.filter(|_| !room.interface.inbox.is_closed()) {
                     Some(index) => {
                         missing.remove(index);
-                        room.doorway.closes_after.send_replace(None);
+                        room.interface.closes_after.send_replace(None);
                     }
-                    None => _ = room.doorway.closes_after.send_replace(Some(closes_after)),
+                    None => _ = room.interface.closes_after.send_replace(Some(closes_after)),
                 }
             }
         });

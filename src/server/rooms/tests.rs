@@ -7,18 +7,20 @@ use crate::game::PlayerColor;
 use crate::server::Metrics;
 use crate::server::logging::LogFormat;
 use crate::server::logging::tests::logged;
-use crate::server::room::{Deed, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
+use crate::server::room::{Command, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
 use crate::world::Difficulty;
 
 impl Rooms {
     /// The newest snapshot of a room; `None` if there is no such room.
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.doorway.shown.view()))
+        locked(&self.0.open, |open| {
+            open.rooms.get(&id).and_then(|room| room.interface.shown.view())
+        })
     }
 
     /// Ends a room as a fault does.
     pub(crate) fn close(&self, id: RoomId, sentence: &str) {
-        locked(&self.0.open, |open| open.rooms[&id].doorway.close(sentence));
+        locked(&self.0.open, |open| open.rooms[&id].interface.close(sentence));
     }
 }
 
@@ -98,7 +100,7 @@ fn a_panic_ends_its_room_alone() {
         let mut watcher = rooms.watch(RoomId(2)).unwrap();
         assert!(end_of(&mut ada).await.contains("fault"));
         assert!(end_of(&mut watcher).await.contains("fault"));
-        assert_eq!(ada.act(Deed::Again), Ok(()));
+        assert_eq!(ada.act(Command::Again), Ok(()));
         drop((ada, watcher));
         listed(&rooms, &[1]).await;
         assert_eq!(rooms.enter(RoomId(2), &name("Ada")).err(), Some(RoomRefusal::Gone));
@@ -150,8 +152,8 @@ fn the_end_of_a_round_is_an_event() {
         let mut room = Room::new(rooms.catalog(), header).unwrap();
         let NewRoom { id, .. } = rooms.add(&wish(Mode::Hide), false).unwrap();
         for (member, member_name) in [(1, "Ada"), (2, "Ben")] {
-            let deed = Deed::Join { color: PlayerColor::ALL[0], name: name(member_name) };
-            room.apply(&Entry { step: room.step(), member: MemberId(member), deed });
+            let command = Command::Join { color: PlayerColor::ALL[0], name: name(member_name) };
+            room.apply(&Entry { step: room.step(), member: MemberId(member), command });
         }
         while !matches!(room.phase(), Phase::Over { .. }) {
             room.advance();

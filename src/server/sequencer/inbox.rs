@@ -1,11 +1,11 @@
-//! What the members of a room want, until the sequencer takes it.
+//! The commands of a room's members, until the sequencer takes them.
 //!
 //! Each member has a bounded place of their own: what one floods it with is refused or replaces what
 //! they wanted before, and never waits in another's way. Of chat and emotions only as many are
 //! accepted as [`Pace`] allows. A queue for all members was refused: one of them could fill it.
 //!
-//! Intents take effect in the order in which they were wanted, one change in [`WANT_PAUSE`] steps. If
-//! more than [`MOST_WANTS`] changes wait, the newest replaces the last one.
+//! Intents take effect in the order in which they were wanted, one change in [`INTENT_PAUSE`] steps. If
+//! more than [`MOST_INTENTS`] changes wait, the newest replaces the last one.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
@@ -16,16 +16,16 @@ use super::FinishedRun;
 use crate::game::{PlayerColor, STEPS_PER_SECOND};
 use crate::server::line::Line;
 use crate::server::locked;
-use crate::server::room::{Deed, MemberId, Mode};
+use crate::server::room::{Command, MemberId, Mode};
 
 /// The least number of steps between two changes of a member's intents: 30 changes a second.
-const WANT_PAUSE: u64 = STEPS_PER_SECOND as u64 / 30;
+const INTENT_PAUSE: u64 = STEPS_PER_SECOND as u64 / 30;
 /// The most changes that wait.
-const MOST_WANTS: usize = 8;
+const MOST_INTENTS: usize = 8;
 /// The most arrivals and departures that wait, each of which takes effect in the next step.
 const MOST_MOVES: usize = 64;
 
-/// What the members of a room want.
+/// The commands of a room's members.
 #[derive(Debug)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,
@@ -39,12 +39,12 @@ pub(crate) enum JoinRefusal {
     Full,
 }
 
-/// Why a deed was not accepted.
+/// Why a command was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DeedRefusal {
+pub(crate) enum CommandRefusal {
     /// The member does such things too often.
     TooOften,
-    /// There is no such member, or the deed is none of a member's.
+    /// There is no such member, or the command is none of a member's.
     Impossible,
 }
 
@@ -55,7 +55,7 @@ struct Waiting {
     next: u32,
     /// Those who have joined, whether the room knows it or not.
     seats: Vec<Seat>,
-    moves: VecDeque<(MemberId, Deed)>,
+    moves: VecDeque<(MemberId, Command)>,
     /// The number of steps so far, over all rounds.
     steps: u64,
     finished: Option<FinishedRun>,
@@ -65,10 +65,10 @@ struct Waiting {
 struct Seat {
     id: MemberId,
     color: PlayerColor,
-    wants: VecDeque<Deed>,
+    intents: VecDeque<Command>,
     /// The step after which the next change of intents takes effect.
-    next_want: u64,
-    talk: VecDeque<Deed>,
+    next_intents: u64,
+    talk: VecDeque<Command>,
     chat: Pace,
     emotes: Pace,
 }
@@ -77,7 +77,7 @@ struct Seat {
 #[derive(Debug)]
 struct Pace {
     most: u64,
-    /// Steps that are not used up; one deed uses a second's.
+    /// Steps that are not used up; one command uses a second's.
     credit: u64,
     counted: u64,
 }
@@ -132,17 +132,17 @@ impl Inbox {
             let count = waiting.seats.len();
             waiting.seats.retain(|seat| seat.id != id);
             if waiting.seats.len() < count {
-                waiting.moves.push_back((id, Deed::Leave));
+                waiting.moves.push_back((id, Command::Leave));
             }
         });
     }
 
     /// A member does something.
-    pub(crate) fn act(&self, id: MemberId, deed: Deed) -> Result<(), DeedRefusal> {
+    pub(crate) fn act(&self, id: MemberId, command: Command) -> Result<(), CommandRefusal> {
         locked(&self.waiting, |waiting| {
             let steps = waiting.steps;
             let seat = waiting.seats.iter_mut().find(|seat| seat.id == id);
-            seat.ok_or(DeedRefusal::Impossible)?.act(deed, steps)
+            seat.ok_or(CommandRefusal::Impossible)?.act(command, steps)
         })
     }
 
@@ -187,18 +187,18 @@ impl Inbox {
     }
 
     /// Passes on what takes effect in the next step, in its order.
-    pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Deed)) {
+    pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Command)) {
         locked(&self.waiting, |waiting| {
             let steps = waiting.steps;
-            waiting.moves.drain(..).for_each(|(id, deed)| pass(id, deed));
+            waiting.moves.drain(..).for_each(|(id, command)| pass(id, command));
             for seat in &mut waiting.seats {
-                if seat.next_want <= steps
-                    && let Some(want) = seat.wants.pop_front()
+                if seat.next_intents <= steps
+                    && let Some(intents) = seat.intents.pop_front()
                 {
-                    seat.next_want = steps + WANT_PAUSE;
-                    pass(seat.id, want);
+                    seat.next_intents = steps + INTENT_PAUSE;
+                    pass(seat.id, intents);
                 }
-                seat.talk.drain(..).for_each(|deed| pass(seat.id, deed));
+                seat.talk.drain(..).for_each(|command| pass(seat.id, command));
             }
             waiting.steps += 1;
         });
@@ -217,7 +217,7 @@ impl Waiting {
         let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(JoinRefusal::Full)?;
         let id = MemberId(self.next);
         self.next += 1;
-        self.moves.push_back((id, Deed::Join { color, name: name.clone() }));
+        self.moves.push_back((id, Command::Join { color, name: name.clone() }));
         self.seats.push(Seat::new(id, color, self.steps));
         Ok(id)
     }
@@ -228,31 +228,31 @@ impl Seat {
         Self {
             id,
             color,
-            wants: VecDeque::new(),
-            next_want: 0,
+            intents: VecDeque::new(),
+            next_intents: 0,
             talk: VecDeque::new(),
             chat: Pace::new(4, steps),
             emotes: Pace::new(1, steps),
         }
     }
 
-    fn act(&mut self, deed: Deed, steps: u64) -> Result<(), DeedRefusal> {
-        let pace = match deed {
-            Deed::Want { .. } => {
-                if self.wants.len() >= MOST_WANTS {
-                    self.wants.pop_back();
+    fn act(&mut self, command: Command, steps: u64) -> Result<(), CommandRefusal> {
+        let pace = match command {
+            Command::Intents { .. } => {
+                if self.intents.len() >= MOST_INTENTS {
+                    self.intents.pop_back();
                 }
-                self.wants.push_back(deed);
+                self.intents.push_back(command);
                 return Ok(());
             }
-            Deed::Say(_) => &mut self.chat,
-            Deed::Emote(_) | Deed::Again => &mut self.emotes,
-            Deed::Join { .. } | Deed::Leave => return Err(DeedRefusal::Impossible),
+            Command::Say(_) => &mut self.chat,
+            Command::Emote(_) | Command::Again => &mut self.emotes,
+            Command::Join { .. } | Command::Leave => return Err(CommandRefusal::Impossible),
         };
         if !pace.allows(steps) {
-            return Err(DeedRefusal::TooOften);
+            return Err(CommandRefusal::TooOften);
         }
-        self.talk.push_back(deed);
+        self.talk.push_back(command);
         Ok(())
     }
 }

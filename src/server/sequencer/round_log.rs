@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::game::{self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch};
-use crate::server::room::{Deed, Entry, Log, MemberId, Mode, Room};
+use crate::server::room::{Command, Entry, Log, MemberId, Mode, Room};
 
 /// The log of a room, from which it takes its steps.
 pub(crate) struct RoundLog {
@@ -57,7 +57,7 @@ impl RoundLog {
     pub(crate) fn step(
         &mut self,
         room: &mut Room,
-        take: impl FnOnce(&mut dyn FnMut(MemberId, Deed)),
+        take: impl FnOnce(&mut dyn FnMut(MemberId, Command)),
     ) -> Changes {
         let mut changes = Changes::default();
         if room.is_over() {
@@ -66,8 +66,8 @@ impl RoundLog {
             changes.summary = true;
         }
         let step = room.step();
-        take(&mut |member, deed| {
-            let result = self.log.append(Entry { step, member, deed });
+        take(&mut |member, command| {
+            let result = self.log.append(Entry { step, member, command });
             self.report(result);
         });
         if step.is_multiple_of(FLUSHED) {
@@ -75,7 +75,7 @@ impl RoundLog {
             self.report(result);
         }
         while let Some(entry) = self.log.next(step) {
-            changes.summary |= matches!(entry.deed, Deed::Join { .. } | Deed::Leave);
+            changes.summary |= matches!(entry.command, Command::Join { .. } | Command::Leave);
             room.apply(&entry);
             changes.entries += 1;
         }

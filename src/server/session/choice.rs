@@ -1,10 +1,10 @@
 //! What the entries of menus do.
 
-use super::news::Ask;
+use super::news::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;
-use crate::server::room::{Deed, Emote, Mode};
+use crate::server::room::{Command, Emote, Mode};
 use crate::server::summary::{RoomId, RoomWish};
 use crate::world::Difficulty;
 
@@ -55,15 +55,15 @@ impl Visit {
             Choice::Change(preference) => self.change_preference(preference, true),
             Choice::Back => self.close(),
             Choice::Emote(emote) => {
-                self.ask(Ask::Deed(Deed::Emote(emote)));
+                self.ask(Request::Command(Command::Emote(emote)));
                 self.show(Page::Room);
             }
             Choice::Again => {
-                self.ask(Ask::Deed(Deed::Again));
+                self.ask(Request::Command(Command::Again));
                 self.show(Page::Room);
             }
             Choice::LeaveRoom => {
-                self.ask(Ask::Leave);
+                self.ask(Request::Leave);
                 self.leave_room(None);
             }
             Choice::Nothing => {}
@@ -73,10 +73,10 @@ impl Visit {
     fn enter_room(&mut self, watches: bool) {
         let Page::Card(target) = self.page else { return };
         let ask = match target {
-            Target::Existing(room) => Some(Ask::Enter { room, watches }),
+            Target::Existing(room) => Some(Request::Enter { room, watches }),
             Target::New { mode, level, difficulty } => {
                 let level = self.host.catalog.names().get(level).cloned();
-                level.map(|level| Ask::Open(RoomWish { level, mode, difficulty }))
+                level.map(|level| Request::Open(RoomWish { level, mode, difficulty }))
             }
         };
         if let Some(ask) = ask {
@@ -90,7 +90,7 @@ impl Visit {
         self.board.rows = None;
         let difficulty = self.identity.preferences.difficulty;
         if let Some(level) = self.host.catalog.names().get(self.board.level).cloned() {
-            self.ask(Ask::Board { level, difficulty });
+            self.ask(Request::Board { level, difficulty });
         }
     }
 
@@ -98,7 +98,7 @@ impl Visit {
     pub(super) fn leave_room(&mut self, sentence: Option<String>) {
         self.stay = None;
         self.note = sentence;
-        self.ask(Ask::Rooms);
+        self.ask(Request::Rooms);
         self.show(Page::Lobby);
     }
 }

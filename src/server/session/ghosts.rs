@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::news::Ask;
+use super::news::Request;
 use crate::game::PlayerColor;
 use crate::server::ghost::Ghost;
 use crate::server::room::RoomView;
@@ -26,13 +26,13 @@ pub(super) struct Seen<'g> {
 
 impl Ghosts {
     /// Forgets all at the beginning of a round; returns the wish for those of its level.
-    pub(super) fn begin(&mut self, room: &RoomView) -> Option<Ask> {
+    pub(super) fn begin(&mut self, room: &RoomView) -> Option<Request> {
         *self = Self::default();
         let header = &room.header;
         header.mode.has_ghosts().then(|| {
             let (level, difficulty) = (header.level.clone(), header.difficulty);
             self.level = Some((level.clone(), difficulty));
-            Ask::Ghosts { level, difficulty }
+            Request::Ghosts { level, difficulty }
         })
     }
 

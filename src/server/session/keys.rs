@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use super::page::Page;
 use super::visit::Visit;
-use super::{Ask, choice::Choice};
+use super::{Request, choice::Choice};
 use crate::app::parts::{Action, Selection, changes_by};
 use crate::server::line::Line;
-use crate::server::room::Deed;
+use crate::server::room::Command;
 use crate::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use crate::tui::Press;
 
@@ -107,7 +107,7 @@ impl Visit {
     fn submit(&mut self) {
         if self.page == Page::Chat {
             if let Some(line) = self.entry.line() {
-                self.ask(Ask::Deed(Deed::Say(line)));
+                self.ask(Request::Command(Command::Say(line)));
             }
             return self.show(Page::Room);
         }
@@ -117,7 +117,7 @@ impl Visit {
         }
         if !std::mem::replace(&mut self.awaits_name, true) {
             let name = name.as_ref().map_or("", Line::as_str).to_owned();
-            self.ask(Ask::Name(name));
+            self.ask(Request::Name(name));
         }
     }
 

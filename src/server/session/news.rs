@@ -7,7 +7,7 @@ use crate::app::Configuration;
 use crate::game::Rank;
 use crate::server::ghost::Ghost;
 use crate::server::line::Line;
-use crate::server::room::{Catalog, Deed, MemberId};
+use crate::server::room::{Catalog, Command, MemberId};
 use crate::server::summary::{RoomId, RoomSummary, RoomWish};
 use crate::store::Preferences;
 use crate::store::host::AccountSettings;
@@ -65,9 +65,9 @@ impl Default for IdleLimits {
     }
 }
 
-/// What a session wants of its driver.
+/// A request of a session to its driver.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Ask {
+pub(crate) enum Request {
     /// To have this name: [`News::Named`].
     Name(String),
     /// The rooms, now and whenever they change, until the session is in a room: [`News::Rooms`].
@@ -76,8 +76,8 @@ pub(crate) enum Ask {
     Enter { room: RoomId, watches: bool },
     /// To be a member of a new room: [`News::Entered`] or [`News::Refused`].
     Open(RoomWish),
-    /// To do something in the room: neither [`Deed::Join`] nor [`Deed::Leave`].
-    Deed(Deed),
+    /// To do something in the room: neither [`Command::Join`] nor [`Command::Leave`].
+    Command(Command),
     /// To be in the room no more. Nothing is answered.
     Leave,
     /// A board: [`News::Board`].

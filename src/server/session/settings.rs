@@ -4,7 +4,7 @@
 //! account, except the map and the chat, which are those of a stay in a room.
 
 use super::choice::Choice;
-use super::news::Ask;
+use super::news::Request;
 use super::visit::{Visit, bindings_of};
 use crate::app::parts::{COLORS, GLYPHS, Menu, after, name, on_or_off};
 use crate::store::host::AccountSettings;
@@ -63,7 +63,7 @@ impl Visit {
             (self.identity.preferences, &self.identity.configuration);
         if (preferences, configuration) != (before.0, &before.1) {
             let configuration = configuration.to_string();
-            self.ask(Ask::Save(AccountSettings { preferences, configuration }));
+            self.ask(Request::Save(AccountSettings { preferences, configuration }));
         }
         self.renew_menu();
     }

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::ghosts::{Ghosts, Seen};
+use super::intent_queue::IntentQueue;
 use super::look::Look;
-use super::news::Ask;
+use super::news::Request;
 use super::shown_steps::ShownSteps;
 use super::talk::Talk;
-use super::wants::Wants;
 use crate::app::MapDisplay;
 use crate::app::parts::{MapPanel, Watch};
 use crate::game::{Outcome, PlayerView, STEPS_PER_SECOND};
@@ -23,7 +23,7 @@ pub(super) struct Stay {
     /// Whom they watch.
     watched: Option<MemberId>,
     pub(super) talk: Talk,
-    pub(super) wants: Wants,
+    pub(super) intents: IntentQueue,
     pub(super) frames: ShownSteps,
     pub(super) map: MapPanel,
     /// What the bell rings for.
@@ -64,7 +64,7 @@ impl Stay {
             member,
             watched: None,
             talk: Talk::default(),
-            wants: Wants::default(),
+            intents: IntentQueue::default(),
             frames: ShownSteps::default(),
             map: MapPanel::new(map),
             watch: Watch::default(),
@@ -80,7 +80,7 @@ impl Stay {
     }
 
     /// Takes over what is new in `room` before it is drawn; returns what is wanted to draw it.
-    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Ask> {
+    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
         self.talk.hear(&room.said, now);
         self.talk.forget_old(now);
         let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);

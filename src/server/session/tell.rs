@@ -1,6 +1,6 @@
 //! What the driver brings, and its effect on each page.
 
-use super::news::{Ask, News};
+use super::news::{News, Request};
 use super::page::Page;
 use super::stay::Stay;
 use super::visit::Visit;
@@ -63,7 +63,7 @@ impl Visit {
     /// Shows the lobby for the first time.
     pub(super) fn enter_lobby(&mut self) {
         self.note = None;
-        self.ask(Ask::Rooms);
+        self.ask(Request::Rooms);
         self.show(Page::Lobby);
     }
 

@@ -7,7 +7,7 @@ use super::choice::Choice;
 use super::idle::{Idle, Patience};
 use super::line_entry::LineEntry;
 use super::look::Look;
-use super::news::{Ask, BoardRow, HostFacts, Identity};
+use super::news::{BoardRow, HostFacts, Identity, Request};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
 use crate::app::parts::{
@@ -16,7 +16,7 @@ use crate::app::parts::{
 };
 use crate::app::{Bindings, Configuration};
 use crate::game::Intents;
-use crate::server::room::{Deed, NAME_COLUMNS, RoomView};
+use crate::server::room::{Command, NAME_COLUMNS, RoomView};
 use crate::server::summary::{RoomId, RoomSummary};
 use crate::terminal::Key;
 
@@ -28,7 +28,7 @@ const MOST_ASKS: usize = 64;
 pub(super) struct Visit {
     pub(super) identity: Identity,
     pub(super) host: HostFacts,
-    pub(super) asks: Vec<Ask>,
+    pub(super) requests: Vec<Request>,
     pub(super) bindings: Bindings,
     pub(super) controls: Controls,
     pub(super) pointer: Pointer,
@@ -86,7 +86,7 @@ impl Visit {
         clock.skip_to(now);
         Self {
             entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
-            asks: Vec::new(),
+            requests: Vec::new(),
             bindings: bindings_of(&identity.configuration),
             controls: Controls::default(),
             pointer: Pointer::new(identity.configuration.mouse),
@@ -122,10 +122,10 @@ impl Visit {
         }
     }
 
-    /// Wants something of the driver.
-    pub(super) fn ask(&mut self, ask: Ask) {
-        if self.asks.len() < MOST_ASKS {
-            self.asks.push(ask);
+    /// Requests something of the driver.
+    pub(super) fn ask(&mut self, ask: Request) {
+        if self.requests.len() < MOST_ASKS {
+            self.requests.push(ask);
         }
     }
 
@@ -166,7 +166,7 @@ impl Visit {
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
             stay.and_then(|stay| stay.talk.next_end()),
-            stay.and_then(|stay| stay.wants.next_at()),
+            stay.and_then(|stay| stay.intents.next_at()),
         ];
         times.into_iter().flatten().min()
     }
@@ -191,7 +191,7 @@ impl Visit {
             return;
         }
         if let Some(stay) = &mut self.stay {
-            stay.wants.turn(self.pointer.look());
+            stay.intents.turn(self.pointer.look());
         }
         self.pointer.passed(1);
     }
@@ -205,10 +205,10 @@ impl Visit {
             Intents::new()
         };
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
-        stay.wants.want(intents);
-        if let Some(intents) = stay.wants.take(self.now) {
+        stay.intents.set(intents);
+        if let Some(intents) = stay.intents.take(self.now) {
             let seen = stay.frames.seen(self.answered);
-            self.ask(Ask::Deed(Deed::Want { seen, intents }));
+            self.ask(Request::Command(Command::Intents { seen, intents }));
         }
     }
 
@@ -242,7 +242,7 @@ impl Visit {
         self.idle.restart(self.now);
         let sentence = format!("You pressed no key for {minutes} minutes.");
         if self.stay.as_ref().is_some_and(|stay| stay.member.is_some()) {
-            self.ask(Ask::Leave);
+            self.ask(Request::Leave);
             self.leave_room(Some(sentence));
         } else {
             self.farewell = Some(sentence);

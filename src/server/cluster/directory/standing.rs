@@ -29,12 +29,12 @@ impl SharedRooms {
         number: usize,
         header: Header,
     ) -> Result<(), BusFault> {
-        let bus = &self.0.company.bus;
+        let bus = &self.0.context.bus;
         let text = format!("{} {} {}", header.level, wish.mode.name(), wish.difficulty.name());
         let hash = rng::hash(number as u64, text.bytes().map(u64::from));
         let key = Key::Standing(format!("{hash:016x}"));
         if bus.get(key.clone()).await?.is_none() {
-            let own = bus.number().await?;
+            let own = bus.next_number().await?;
             match bus.create(key.clone(), own.to_string().into_bytes()).await {
                 // Another host was faster.
                 Ok(()) | Err(BusFault::Refused) => {}

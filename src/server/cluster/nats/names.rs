@@ -7,15 +7,15 @@ pub(super) const BUCKET: &str = "cellcaster";
 pub(super) const NUMBERS: &str = "cellcaster.number";
 pub(super) const ROOMS: &str = "room.";
 
-pub(super) fn log_of(room: RoomId) -> String {
+pub(super) fn log_subject(room: RoomId) -> String {
     format!("cellcaster.log.{room}")
 }
 
-pub(super) fn talk_of(room: RoomId) -> String {
-    format!("cellcaster.talk.{room}")
+pub(super) fn peers_subject(room: RoomId) -> String {
+    format!("cellcaster.peers.{room}")
 }
 
-pub(super) fn name_of(key: &Key) -> String {
+pub(super) fn key_name(key: &Key) -> String {
     match key {
         Key::Room(room) => format!("{ROOMS}{room}"),
         Key::Checkpoint(room) => format!("checkpoint.{room}"),

@@ -51,7 +51,7 @@ impl SimulatedBus {
 }
 
 impl Bus for SimulatedBus {
-    fn publish(&self, room: RoomId, last: u64, bytes: Vec<u8>) -> Answer<'_, u64> {
+    fn append(&self, room: RoomId, last: u64, bytes: Vec<u8>) -> Answer<'_, u64> {
         self.call(move |inner, host| {
             let log = inner.logs.entry(room).or_default();
             if log.last().map_or(0, |kept| kept.number) != last {
@@ -83,16 +83,16 @@ impl Bus for SimulatedBus {
         self.drop_before(room, u64::MAX)
     }
 
-    fn say(&self, room: RoomId, talk: Vec<u8>) -> Answer<'_, ()> {
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()> {
         let world = self.world.clone();
         self.call(move |inner, _| {
             for (host, _, listener) in inner.listeners.iter().filter(|it| it.1 == room) {
                 let (world, host) = (world.clone(), *host);
-                let (listener, talk) = (listener.clone(), talk.clone());
+                let (listener, message) = (listener.clone(), message.clone());
                 tokio::spawn(async move {
                     world.pass(host).await;
                     if !world.is_lost(host) {
-                        _ = listener.try_send(talk);
+                        _ = listener.try_send(message);
                     }
                 });
             }
@@ -100,16 +100,16 @@ impl Bus for SimulatedBus {
         })
     }
 
-    fn hear(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(move |inner, host| {
-            let (listener, talk) = mpsc::channel(1_024);
+            let (listener, message) = mpsc::channel(1_024);
             inner.listeners.retain(|it| !it.2.is_closed());
             inner.listeners.push((host, room, listener));
-            Ok(talk)
+            Ok(message)
         })
     }
 
-    fn number(&self) -> Answer<'_, u32> {
+    fn next_number(&self) -> Answer<'_, u32> {
         self.call(|inner, _| {
             inner.rooms += 1;
             Ok(inner.rooms)

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::super::message::Message;
+use super::super::log_message::LogMessage;
 use super::super::record::Record;
-use super::super::replica::{Position, Replica};
+use super::super::room_state::{Position, RoomState};
 use super::Run;
-use crate::server::room::{Deed, Header, MemberId};
+use crate::server::room::{Command, Header, MemberId};
 use crate::server::summary::RoomId;
 
 /// The longest time without a message in a room with members.
@@ -17,7 +17,7 @@ const PAUSE: Duration = Duration::from_millis(500);
 
 /// What the log of a room gives.
 struct Played {
-    replica: Replica,
+    state: RoomState,
     /// The checksum of the game, by round and step.
     states: BTreeMap<(u32, u64), u64>,
     /// In the order of the log.
@@ -64,7 +64,7 @@ impl Run {
         for (room, members) in there {
             let played = self.played(room);
             let known: BTreeSet<MemberId> =
-                played.replica.room().colors().map(|(member, _)| member).collect();
+                played.state.room().colors().map(|(member, _)| member).collect();
             assert_eq!(known, members, "the members of room {room}");
             let is_going_on = played.last_at.is_some_and(|at| now.duration_since(at) < PAUSE);
             assert!(is_going_on, "room {room} stands still");
@@ -73,21 +73,22 @@ impl Run {
 
     fn played(&self, room: RoomId) -> Played {
         let header = self.first_header(room);
-        let replica = Replica::new(&self.catalog, header).expect("a level");
+        let state = RoomState::new(&self.catalog, header).expect("a level");
         let mut played =
-            Played { replica, states: BTreeMap::new(), joined: Vec::new(), last_at: None };
+            Played { state, states: BTreeMap::new(), joined: Vec::new(), last_at: None };
         let mut hosts = BTreeMap::new();
         let mut epoch = 0;
         played.note();
         for kept in self.world.log(room) {
-            let message = Message::parse(&kept.bytes).expect("a message");
+            let message = LogMessage::parse(&kept.bytes).expect("a message");
             let host = *hosts.entry(message.epoch).or_insert(kept.host);
             assert_eq!(host, kept.host, "epoch {} has two sequencers", message.epoch);
             assert!(message.epoch >= epoch, "epoch {} comes after {epoch}", message.epoch);
             epoch = message.epoch;
-            assert_eq!(played.replica.position(kept.number, &message), Position::Next);
-            played.replica.apply(kept.number, &message);
-            let joins = message.entries.iter().filter(|it| matches!(it.deed, Deed::Join { .. }));
+            assert_eq!(played.state.position(kept.number, &message), Position::Next);
+            played.state.apply(kept.number, &message);
+            let joins =
+                message.entries.iter().filter(|it| matches!(it.command, Command::Join { .. }));
             played.joined.extend(joins.map(|entry| entry.member));
             played.last_at = Some(kept.at);
             played.note();
@@ -103,7 +104,7 @@ impl Run {
 
 impl Played {
     fn note(&mut self) {
-        let view = self.replica.room().view();
+        let view = self.state.room().view();
         self.states.insert((view.header.round, view.step), view.game.checksum());
     }
 }

@@ -8,7 +8,7 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, Key};
-use super::super::desk::{Call, Desk};
+use super::super::lease_worker::{Call, LeaseWorker};
 use super::bus::SimulatedBus;
 use crate::rng::SplitMix64;
 use crate::server::locked;
@@ -90,8 +90,8 @@ impl World {
     }
 
     /// The leases of a host, by the one clock of the database.
-    pub(super) fn desk(&self, host: usize) -> Desk {
-        let (desk, mut queue) = Desk::new();
+    pub(super) fn lease_worker(&self, host: usize) -> LeaseWorker {
+        let (worker, mut queue) = LeaseWorker::new();
         let world = self.clone();
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
@@ -104,7 +104,7 @@ impl World {
                 world.pass(host).await;
             }
         });
-        desk
+        worker
     }
 
     fn run(&self, call: Call, host: usize) {

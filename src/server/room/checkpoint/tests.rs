@@ -10,7 +10,7 @@ use crate::game::stored::tests::winning;
 use crate::game::{PlayerColor, RULES_VERSION};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
-use crate::server::room::{Deed, Emote, Entry, MemberId, Mode};
+use crate::server::room::{Command, Emote, Entry, MemberId, Mode};
 use crate::server::simulation;
 use crate::world::Difficulty;
 
@@ -52,26 +52,26 @@ impl Party {
 
     fn entries(&mut self, room: &Room) -> Vec<Entry> {
         let (step, random) = (room.step(), &mut self.random);
-        let entry = |member, deed| Entry { step, member, deed };
+        let entry = |member, command| Entry { step, member, command };
         let mut entries = Vec::new();
         if room.len() == 0 || room.len() < self.most && random.one_in(90) {
             let color = PlayerColor::ALL[random.below(8)];
-            let join = Deed::Join { color, name: line(["Mara", "Jon", "字"][random.below(3)]) };
+            let join = Command::Join { color, name: line(["Mara", "Jon", "字"][random.below(3)]) };
             entries.push(entry(room.next_member(), join));
         }
         for (slot, member) in room.members.iter().enumerate() {
-            let deed = match random.below(400) {
-                0 if slot > 0 => Some(Deed::Leave),
-                1 => Some(Deed::Say(line("behind you"))),
-                2 => Some(Deed::Emote(Emote::ALL[random.below(6)])),
-                3 => Some(Deed::Again),
+            let command = match random.below(400) {
+                0 if slot > 0 => Some(Command::Leave),
+                1 => Some(Command::Say(line("behind you"))),
+                2 => Some(Command::Emote(Emote::ALL[random.below(6)])),
+                3 => Some(Command::Again),
                 _ => None,
             };
-            entries.extend(deed.map(|deed| entry(member.id, deed)));
+            entries.extend(command.map(|command| entry(member.id, command)));
             let ago = random.below(20) as u64;
             let seen = if ago == 0 { u64::MAX } else { room.game().steps().saturating_sub(ago) };
             let intents = self.crowd.want(slot);
-            entries.push(entry(member.id, Deed::Want { seen, intents }));
+            entries.push(entry(member.id, Command::Intents { seen, intents }));
         }
         entries
     }
@@ -230,7 +230,7 @@ fn a_checksum_notices_the_round_the_members_and_the_game() {
     assert!(differs(&|room| room.apply(&Entry {
         step: room.step(),
         member: room.members[0].id,
-        deed: Deed::Want {
+        command: Command::Intents {
             seen: 0,
             intents: Crowd::new(Vec::new(), 1, SplitMix64::new(3)).want(0)
         },

@@ -12,14 +12,14 @@ fn inbox() -> (Inbox, MemberId) {
     (inbox, id)
 }
 
-fn taken(inbox: &Inbox) -> Vec<Deed> {
-    let mut deeds = Vec::new();
-    inbox.take(|_, deed| deeds.push(deed));
-    deeds
+fn taken(inbox: &Inbox) -> Vec<Command> {
+    let mut commands = Vec::new();
+    inbox.take(|_, command| commands.push(command));
+    commands
 }
 
-fn want(intents: impl IntoIterator<Item = Intent>) -> Deed {
-    Deed::Want { seen: 0, intents: intents.into_iter().collect::<Intents>() }
+fn want(intents: impl IntoIterator<Item = Intent>) -> Command {
+    Command::Intents { seen: 0, intents: intents.into_iter().collect::<Intents>() }
 }
 
 #[test]
@@ -29,8 +29,8 @@ fn each_member_has_a_number_and_a_colour_of_their_own() {
     assert_eq!(ids[7], Ok(MemberId(12)));
     assert_eq!(ids[8], Err(JoinRefusal::Full));
     let mut colors = Vec::new();
-    inbox.take(|_, deed| {
-        let Deed::Join { color, .. } = deed else { panic!("{deed:?}") };
+    inbox.take(|_, command| {
+        let Command::Join { color, .. } = command else { panic!("{command:?}") };
         assert!(!colors.contains(&color));
         colors.push(color);
     });
@@ -48,9 +48,9 @@ fn changes_of_intents_keep_their_order_and_thirty_a_second() {
         inbox.act(id, want([Intent::Forward])).unwrap();
     }
     inbox.act(id, want([])).unwrap();
-    let wants: Vec<Deed> = (0..60).flat_map(|_| taken(&inbox)).collect();
-    assert_eq!(wants.len(), MOST_WANTS);
-    assert_eq!(wants.last(), Some(&want([])));
+    let intents: Vec<Command> = (0..60).flat_map(|_| taken(&inbox)).collect();
+    assert_eq!(intents.len(), MOST_INTENTS);
+    assert_eq!(intents.last(), Some(&want([])));
     let mut count = 0;
     for step in 0..600 {
         inbox.act(id, want((step % 2 == 0).then_some(Intent::Back))).unwrap();
@@ -66,23 +66,23 @@ fn a_flood_of_chat_leaves_one_line_a_second() {
     let mut said = 0;
     for _ in 0..600 {
         for _ in 0..50 {
-            _ = inbox.act(id, Deed::Say(line("hello")));
+            _ = inbox.act(id, Command::Say(line("hello")));
         }
         said += taken(&inbox).len();
     }
     assert_eq!(said, 4 + 9);
-    let emotes = (0..5).filter(|_| inbox.act(id, Deed::Emote(Emote::Wave)).is_ok()).count();
+    let emotes = (0..5).filter(|_| inbox.act(id, Command::Emote(Emote::Wave)).is_ok()).count();
     assert_eq!(emotes, 1);
 }
 
 #[test]
 fn nothing_is_done_by_who_has_left() {
     let (inbox, id) = inbox();
-    inbox.act(id, Deed::Say(line("bye"))).unwrap();
+    inbox.act(id, Command::Say(line("bye"))).unwrap();
     inbox.leave(id);
     inbox.leave(id);
-    assert_eq!(inbox.act(id, want([])), Err(DeedRefusal::Impossible));
-    assert!(matches!(taken(&inbox)[..], [Deed::Join { .. }, Deed::Leave]));
+    assert_eq!(inbox.act(id, want([])), Err(CommandRefusal::Impossible));
+    assert!(matches!(taken(&inbox)[..], [Command::Join { .. }, Command::Leave]));
     assert!(inbox.is_empty());
 }
 

@@ -8,9 +8,8 @@
 //! ```
 //!
 //! The line has the versions of the format and of the rules, the epoch of the sequencer, the number of the
-//! message before, the number
-//! of steps that the room has taken in all its rounds, and how many it takes now; then, once a second,
-//! after how many steps the room had which checksum. The step of an entry is counted from the first one of the
+//! message before, the number of steps that the room has taken in all its rounds, and how many it takes now; then,
+//! once a second, a number of steps and the checksum of the room after them. The step of an entry is counted from the first one of the
 //! message. A message without steps begins an epoch.
 //!
 //! Steps of the round were refused: a sequencer would have to know when the round ends before it does.
@@ -27,7 +26,7 @@ pub(super) const MOST_STEPS: u64 = 6;
 
 /// A message of a room's log.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Message {
+pub(super) struct LogMessage {
     /// The epoch of the sequencer.
     pub(super) epoch: u64,
     /// The number of the message before; 0 for none.
@@ -58,7 +57,7 @@ pub(super) enum Unreadable {
     Damaged,
 }
 
-impl Message {
+impl LogMessage {
     /// The message as bytes.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let Self { epoch, last, tick, steps, check, entries } = self;
@@ -110,25 +109,25 @@ pub(super) fn version() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::server::room::{Deed, MemberId};
+    use crate::server::room::{Command, MemberId};
 
-    fn message(check: Option<Check>, entries: Vec<Entry>) -> Message {
-        Message { epoch: 3, last: 18_231, tick: 5_400, steps: 2, check, entries }
+    fn message(check: Option<Check>, entries: Vec<Entry>) -> LogMessage {
+        LogMessage { epoch: 3, last: 18_231, tick: 5_400, steps: 2, check, entries }
     }
 
     #[test]
     fn what_is_written_reads_as_the_same() {
-        let leave = Entry { step: 1, member: MemberId(7), deed: Deed::Leave };
+        let leave = Entry { step: 1, member: MemberId(7), command: Command::Leave };
         let check = Check { tick: 5_399, sum: u64::MAX };
         for message in [message(None, Vec::new()), message(Some(check), vec![leave])] {
-            assert_eq!(Message::parse(&message.to_bytes()), Ok(message));
+            assert_eq!(LogMessage::parse(&message.to_bytes()), Ok(message));
         }
         assert_eq!(message(None, Vec::new()).to_bytes().len(), 19);
     }
 
     #[test]
     fn what_is_damaged_or_of_another_version_is_told() {
-        let text = |head: &str| Message::parse(format!("{head}\n").as_bytes());
+        let text = |head: &str| LogMessage::parse(format!("{head}\n").as_bytes());
         let version = version();
         for head in
             ["3 1 1", "3 1 1 7", "3 1 1 2 9", "3 1 1 2 9 x", "3 1 1 2 9 a b", "3 1 1 2\n5 leave 1"]
@@ -136,6 +135,6 @@ mod tests {
             assert_eq!(text(&format!("{version} {head}")), Err(Unreadable::Damaged), "{head}");
         }
         assert_eq!(text("0.1 3 1 1 2"), Err(Unreadable::OtherVersion));
-        assert_eq!(Message::parse(b"\xff"), Err(Unreadable::Damaged));
+        assert_eq!(LogMessage::parse(b"\xff"), Err(Unreadable::Damaged));
     }
 }

@@ -1,56 +1,57 @@
-//! What hosts say to each other in a room.
+//! Messages that the replicas of a room broadcast to each other.
 //!
-//! A line says what it is; for some, more lines follow:
+//! The first line names the kind; for some kinds, more lines follow:
 //!
 //! ```text
-//! news 18240
-//! wants
+//! appended 18240
+//! commands
 //! claim 1 4 7
 //! join 9f3ac1 Mara
 //! joined 9f3ac1 7 amber
 //! full 9f3ac1
 //! ```
 //!
-//! Each of them may be lost, come twice, or come late. Claims and questions are said again; news that are
-//! missing are read in the log; a change of intents that is lost is followed by others, as keys are.
+//! A message may be lost, come twice, or come late. Claims and requests to join are repeated; appended messages
+//! that are missing are read from the log; commands that are lost are lost, as input of a player whose connection
+//! stalls.
 
 use std::fmt::Write;
 
-use super::message::{Message, Unreadable};
+use super::log_message::{LogMessage, Unreadable};
 use crate::game::PlayerColor;
 use crate::server::line::Line;
-use crate::server::room::{Deed, Entry, MemberId, NAME_COLUMNS};
+use crate::server::room::{Command, Entry, MemberId, NAME_COLUMNS};
 
-/// Something that is said in a room.
+/// A broadcast to the replicas of a room.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Talk {
-    /// A message of the log, with its number.
-    News(u64, Message),
-    /// What members on another host than the sequencer's want.
-    Wants(Vec<(MemberId, Deed)>),
-    /// Members whose players are on the host that says so.
+pub(super) enum PeerMessage {
+    /// A message that the log has, with its number.
+    Appended(u64, LogMessage),
+    /// Commands of the members on a host that is not the sequencer.
+    Commands(Vec<(MemberId, Command)>),
+    /// The members on the host that sends it.
     Claim(Vec<MemberId>),
-    /// Somebody would like to join. The token names the question.
+    /// A request to join. The token identifies it.
     Join(u64, Line),
-    /// They have joined: the log has it.
+    /// The answer: they are in the log.
     Joined(u64, MemberId, PlayerColor),
-    /// They cannot join.
+    /// The answer: the room is full.
     Full(u64),
 }
 
-impl Talk {
-    /// It as bytes.
+impl PeerMessage {
+    /// The message as bytes.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         match self {
-            Self::News(number, message) => {
-                let mut bytes = format!("news {number}\n").into_bytes();
+            Self::Appended(number, message) => {
+                let mut bytes = format!("appended {number}\n").into_bytes();
                 bytes.extend(message.to_bytes());
                 bytes
             }
-            Self::Wants(wants) => {
-                let mut text = "wants\n".to_owned();
-                for (member, deed) in wants {
-                    let entry = Entry { step: 0, member: *member, deed: deed.clone() };
+            Self::Commands(commands) => {
+                let mut text = "commands\n".to_owned();
+                for (member, command) in commands {
+                    let entry = Entry { step: 0, member: *member, command: command.clone() };
                     // Memory accepts every byte.
                     _ = writeln!(text, "{entry}");
                 }
@@ -68,14 +69,14 @@ impl Talk {
         }
     }
 
-    /// What those bytes say.
+    /// Reads the bytes of a message.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         let rest = bytes.get(line.len() + 1..).unwrap_or_default();
         let line = str::from_utf8(line).map_err(|_| Unreadable::Damaged)?;
-        if let Some(number) = line.strip_prefix("news ") {
+        if let Some(number) = line.strip_prefix("appended ") {
             let number = number.parse().map_err(|_| Unreadable::Damaged)?;
-            return Message::parse(rest).map(|message| Self::News(number, message));
+            return LogMessage::parse(rest).map(|message| Self::Appended(number, message));
         }
         Self::read(line, rest).ok_or(Unreadable::Damaged)
     }
@@ -85,10 +86,10 @@ impl Talk {
         let token = |word| u64::from_str_radix(word, 16).ok();
         let member = |word: &str| word.parse().ok().map(MemberId);
         match verb {
-            "wants" => {
+            "commands" => {
                 let lines = str::from_utf8(rest).ok()?.lines().map(Entry::parse);
-                let wants = lines.map(|entry| entry.map(|entry| (entry.member, entry.deed)));
-                Some(Self::Wants(wants.collect::<Option<_>>()?))
+                let commands = lines.map(|entry| entry.map(|entry| (entry.member, entry.command)));
+                Some(Self::Commands(commands.collect::<Option<_>>()?))
             }
             "claim" => {
                 let words = words.split_ascii_whitespace();
@@ -117,27 +118,27 @@ mod tests {
     #[test]
     fn what_is_written_reads_as_the_same() {
         let message =
-            Message { epoch: 1, last: 0, tick: 0, steps: 0, check: None, entries: Vec::new() };
+            LogMessage { epoch: 1, last: 0, tick: 0, steps: 0, check: None, entries: Vec::new() };
         let name = Line::of("a b", NAME_COLUMNS).unwrap();
-        let want = Deed::Want { seen: 3, intents: Intents::new() };
-        let wants = vec![(MemberId(1), want), (MemberId(2), Deed::Leave)];
-        for talk in [
-            Talk::News(9, message),
-            Talk::Wants(wants),
-            Talk::Claim(vec![MemberId(1), MemberId(7)]),
-            Talk::Claim(Vec::new()),
-            Talk::Join(u64::MAX, name),
-            Talk::Joined(7, MemberId(3), PlayerColor::ALL[2]),
-            Talk::Full(0),
+        let want = Command::Intents { seen: 3, intents: Intents::new() };
+        let commands = vec![(MemberId(1), want), (MemberId(2), Command::Leave)];
+        for message in [
+            PeerMessage::Appended(9, message),
+            PeerMessage::Commands(commands),
+            PeerMessage::Claim(vec![MemberId(1), MemberId(7)]),
+            PeerMessage::Claim(Vec::new()),
+            PeerMessage::Join(u64::MAX, name),
+            PeerMessage::Joined(7, MemberId(3), PlayerColor::ALL[2]),
+            PeerMessage::Full(0),
         ] {
-            assert_eq!(Talk::parse(&talk.to_bytes()), Ok(talk));
+            assert_eq!(PeerMessage::parse(&message.to_bytes()), Ok(message));
         }
     }
 
     #[test]
     fn other_bytes_say_nothing() {
-        for bytes in ["", "join", "join x a", "joined 1 2", "claim x", "wants\nx", "\n"] {
-            assert_eq!(Talk::parse(bytes.as_bytes()), Err(Unreadable::Damaged), "{bytes}");
+        for bytes in ["", "join", "join x a", "joined 1 2", "claim x", "commands\nx", "\n"] {
+            assert_eq!(PeerMessage::parse(bytes.as_bytes()), Err(Unreadable::Damaged), "{bytes}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The leases on a thread of their own, since their methods block.
+//! A thread for calls to the leases, whose methods block.
 
 use std::io;
 use std::thread;
@@ -7,14 +7,14 @@ use tokio::sync::{mpsc, oneshot};
 
 use crate::store::host::{Lease, Leases, StoreFailure};
 
-/// The time for which a host has a room without a word to the database.
+/// The time that a lease lasts without being renewed.
 pub(super) const LEASE_TIME: std::time::Duration = std::time::Duration::from_secs(3);
 /// The most calls that wait.
 const MOST_CALLS: usize = 256;
 
-/// Where a host asks for leases. Clones are the same desk.
+/// The sender of calls to the thread. Clones send to the same thread.
 #[derive(Clone)]
-pub(super) struct Desk {
+pub(super) struct LeaseWorker {
     calls: mpsc::Sender<Call>,
 }
 
@@ -28,22 +28,22 @@ pub(super) enum Call {
     Release(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
 }
 
-impl Desk {
-    /// A desk whose calls come out of the receiver.
+impl LeaseWorker {
+    /// A sender, and the receiver of its calls.
     pub(super) fn new() -> (Self, mpsc::Receiver<Call>) {
         let (calls, queue) = mpsc::channel(MOST_CALLS);
         (Self { calls }, queue)
     }
 
-    /// The desk of a host with these leases.
+    /// Starts the thread, for the host called `host`.
     pub(super) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
-        let (desk, mut queue) = Self::new();
+        let (worker, mut queue) = Self::new();
         thread::Builder::new().name("leases".to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
                 call.run(&mut *leases, &host);
             }
         })?;
-        Ok(desk)
+        Ok(worker)
     }
 
     /// Asks for the lease of a room.
@@ -68,7 +68,7 @@ impl Desk {
     }
 
     fn call(&self, call: Call) {
-        // What is not accepted is answered by its end.
+        // The answer to a call that is not accepted is an error, since its sender is dropped.
         _ = self.calls.try_send(call);
     }
 }

@@ -1,4 +1,4 @@
-//! What a member wants, on its way into the log of the room.
+//! The intents of a member, on its way into the log of the room.
 //!
 //! An intent is sent when it changes, at most 30 times a second, and none is left out: a tap may
 //! begin and end between two of those times. In rooms where touches are judged by what the member
@@ -21,7 +21,7 @@ const MOST: usize = 8;
 
 /// The intents of a member.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Wants {
+pub(super) struct IntentQueue {
     sent: Intents,
     sent_at: Option<Duration>,
     waiting: VecDeque<Intents>,
@@ -29,9 +29,9 @@ pub(super) struct Wants {
     angles: [i32; 2],
 }
 
-impl Wants {
+impl IntentQueue {
     /// Records what the member wants from now on.
-    pub(super) fn want(&mut self, intents: Intents) {
+    pub(super) fn set(&mut self, intents: Intents) {
         if *self.waiting.back().unwrap_or(&self.sent) == intents {
             return;
         }
@@ -86,54 +86,54 @@ mod tests {
 
     #[test]
     fn a_tap_begins_and_ends_in_steps_of_their_own() {
-        let mut wants = Wants::default();
-        assert_eq!(wants.next_at(), None);
+        let mut intents = IntentQueue::default();
+        assert_eq!(intents.next_at(), None);
         let strike: Intents = [Intent::Strike].into_iter().collect();
-        wants.want(strike);
-        assert_eq!(wants.take(at(5)), Some(strike));
-        wants.want(Intents::new());
-        assert_eq!(wants.take(at(22)), None);
-        assert_eq!(wants.next_at(), Some(at(39)));
-        assert_eq!(wants.take(at(39)), Some(Intents::new()));
-        assert_eq!(wants.next_at(), None);
+        intents.set(strike);
+        assert_eq!(intents.take(at(5)), Some(strike));
+        intents.set(Intents::new());
+        assert_eq!(intents.take(at(22)), None);
+        assert_eq!(intents.next_at(), Some(at(39)));
+        assert_eq!(intents.take(at(39)), Some(Intents::new()));
+        assert_eq!(intents.next_at(), None);
     }
 
     #[test]
     fn who_moves_tells_again_what_they_saw() {
-        let mut wants = Wants::default();
+        let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
-        wants.want(forward);
-        wants.take(at(0));
-        wants.want(forward);
-        assert_eq!(wants.take(at(249)), None);
-        assert_eq!(wants.take(at(250)), Some(forward));
+        intents.set(forward);
+        intents.take(at(0));
+        intents.set(forward);
+        assert_eq!(intents.take(at(249)), None);
+        assert_eq!(intents.take(at(250)), Some(forward));
     }
 
     #[test]
     fn angles_add_up_and_are_sent_once() {
-        let mut wants = Wants::default();
+        let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
-        wants.want(forward);
-        assert_eq!(wants.take(at(0)), Some(forward));
-        wants.turn(Look { turn: 150, tilt: -20 });
-        wants.turn(Look { turn: 50, tilt: 0 });
-        assert_eq!(wants.take(at(33)), None);
-        assert_eq!(wants.take(at(34)), Some(forward.with_look(Look { turn: 200, tilt: -20 })));
-        assert_eq!(wants.next_at(), Some(at(284)));
-        (0..4).for_each(|_| wants.turn(Look { turn: i16::MIN, tilt: i16::MAX }));
+        intents.set(forward);
+        assert_eq!(intents.take(at(0)), Some(forward));
+        intents.turn(Look { turn: 150, tilt: -20 });
+        intents.turn(Look { turn: 50, tilt: 0 });
+        assert_eq!(intents.take(at(33)), None);
+        assert_eq!(intents.take(at(34)), Some(forward.with_look(Look { turn: 200, tilt: -20 })));
+        assert_eq!(intents.next_at(), Some(at(284)));
+        (0..4).for_each(|_| intents.turn(Look { turn: i16::MIN, tilt: i16::MAX }));
         let most = Look { turn: -i16::MAX, tilt: i16::MAX };
-        assert_eq!(wants.take(at(70)), Some(forward.with_look(most)));
+        assert_eq!(intents.take(at(70)), Some(forward.with_look(most)));
     }
 
     #[test]
     fn only_some_changes_wait() {
-        let mut wants = Wants::default();
+        let mut intents = IntentQueue::default();
         let forward: Intents = [Intent::Forward].into_iter().collect();
         for change in 0..1000 {
-            wants.want(if change % 2 == 0 { forward } else { Intents::new() });
+            intents.set(if change % 2 == 0 { forward } else { Intents::new() });
         }
-        assert!(wants.waiting.len() <= MOST);
-        let last = (0..20).filter_map(|step| wants.take(at(50 * step))).last();
+        assert!(intents.waiting.len() <= MOST);
+        let last = (0..20).filter_map(|step| intents.take(at(50 * step))).last();
         assert_eq!(last, Some(Intents::new()));
     }
 }

@@ -1,4 +1,4 @@
-//! What sessions want of their drivers, and the answers of the store.
+//! Requests of sessions to their drivers, and the answers of the store.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use super::results;
 use super::visit::Visit;
 use crate::server::locked;
 use crate::server::logging::events;
-use crate::server::room::Deed;
+use crate::server::room::Command;
 use crate::server::rooms::{Place, RoomRefusal};
-use crate::server::sequencer::{DeedRefusal, FinishedRun};
-use crate::server::session::{Ask, News};
+use crate::server::sequencer::{CommandRefusal, FinishedRun};
+use crate::server::session::{News, Request};
 use crate::server::summary::{RoomId, RoomWish};
 use crate::store::host::{Account, AccountSettings, Name};
 use crate::world::Difficulty;
@@ -42,35 +42,35 @@ pub(super) fn replies() -> (mpsc::Sender<Reply>, mpsc::Receiver<Reply>) {
 }
 
 impl Visit {
-    /// Does what the session wants.
-    pub(super) fn run_errands(&mut self) {
+    /// Does what the session requests.
+    pub(super) fn run_requests(&mut self) {
         loop {
-            let asks = self.session.asks();
-            if asks.is_empty() {
+            let requests = self.session.requests();
+            if requests.is_empty() {
                 return;
             }
-            for ask in asks {
-                self.run_errand(ask);
+            for ask in requests {
+                self.run_request(ask);
             }
         }
     }
 
-    fn run_errand(&mut self, ask: Ask) {
+    fn run_request(&mut self, ask: Request) {
         match ask {
-            Ask::Name(text) => self.choose_name(&text),
-            Ask::Rooms => {
+            Request::Name(text) => self.choose_name(&text),
+            Request::Rooms => {
                 self.in_lobby = true;
                 let rooms = self.rooms.borrow_and_update().clone();
                 self.tell(News::Rooms(rooms));
             }
-            Ask::Enter { room, watches: true } => self.go(Way::Watch(room)),
-            Ask::Enter { room, watches: false } => self.go(Way::Enter(room)),
-            Ask::Open(wish) => self.go(Way::Open(wish)),
-            Ask::Deed(deed) => self.act(deed),
-            Ask::Leave => self.leave(),
-            Ask::Board { level, difficulty } => self.show_board(level, difficulty),
-            Ask::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
-            Ask::Save(settings) => self.save(settings),
+            Request::Enter { room, watches: true } => self.go(Way::Watch(room)),
+            Request::Enter { room, watches: false } => self.go(Way::Enter(room)),
+            Request::Open(wish) => self.go(Way::Open(wish)),
+            Request::Command(command) => self.act(command),
+            Request::Leave => self.leave(),
+            Request::Board { level, difficulty } => self.show_board(level, difficulty),
+            Request::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
+            Request::Save(settings) => self.save(settings),
         }
     }
 
@@ -189,9 +189,9 @@ impl Visit {
         }
     }
 
-    fn act(&mut self, deed: Deed) {
+    fn act(&mut self, command: Command) {
         let Some(place) = &self.place else { return };
-        if place.act(deed) == Err(DeedRefusal::TooOften) {
+        if place.act(command) == Err(CommandRefusal::TooOften) {
             self.tell(News::Result("Not so fast: wait a second.".to_owned()));
         }
     }

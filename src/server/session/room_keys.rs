@@ -1,13 +1,13 @@
 //! What keys do in a room, besides walking.
 
 use super::line_entry::LineEntry;
-use super::news::Ask;
+use super::news::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;
 use crate::app::parts::Action;
 use crate::game::Intent;
-use crate::server::room::{CHAT_COLUMNS, Deed};
+use crate::server::room::{CHAT_COLUMNS, Command};
 use crate::terminal::Key;
 use crate::tui::Press;
 
@@ -36,12 +36,12 @@ impl Visit {
             Key::Tab if is_member => stay.shows_members ^= true,
             Key::Tab | Key::Right | Key::Down if !is_member => stay.watch_another(true),
             Key::Left | Key::Up if !is_member => stay.watch_another(false),
-            _ => return self.command(action),
+            _ => return self.act_on(action),
         }
         self.is_stale = true;
     }
 
-    fn command(&mut self, action: Option<Action>) {
+    fn act_on(&mut self, action: Option<Action>) {
         let Some(stay) = &mut self.stay else { return };
         let toggles = &mut self.controls.toggles;
         match action {
@@ -71,9 +71,9 @@ impl Visit {
     fn retry(&mut self) {
         let Some(stay) = &mut self.stay else { return };
         if stay.dies_for_good {
-            return self.ask(Ask::Deed(Deed::Again));
+            return self.ask(Request::Command(Command::Again));
         }
-        stay.wants.want([Intent::Retry].into_iter().collect());
+        stay.intents.set([Intent::Retry].into_iter().collect());
         self.want();
     }
 }

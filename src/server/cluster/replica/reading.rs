@@ -1,33 +1,33 @@
-//! The log, as a station reads and applies it.
+//! The log, as a replica reads and applies it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use tokio::time::Instant;
 
-use super::{SECOND, Station, is_due};
+use super::{Replica, SECOND, is_due};
 use crate::server::cluster::bus::BusFault;
-use crate::server::cluster::message::Message;
-use crate::server::cluster::replica::Position;
-use crate::server::cluster::talk::Talk;
+use crate::server::cluster::log_message::LogMessage;
+use crate::server::cluster::peer_message::PeerMessage;
+use crate::server::cluster::room_state::Position;
 use crate::server::logging::events;
 use crate::server::sequencer::{FAULT, message as panic_message};
 
-impl Station {
+impl Replica {
     /// Takes a message of the log, and those that it lets in are told. Returns whether the ones before it
     /// were there.
-    pub(super) async fn take(&mut self, number: u64, message: &Message) -> bool {
-        match self.replica.position(number, message) {
+    pub(super) async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
+        match self.state.position(number, message) {
             Position::Known => return true,
             Position::Later => return false,
             Position::Next => {
-                if message.check.is_some() && self.office.is_none() {
-                    self.company.load.metrics().checks_equal.count();
+                if message.check.is_some() && self.sequencer.is_none() {
+                    self.context.load.metrics().checks_equal.count();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
-                self.company.load.metrics().checks_different.count();
+                self.context.load.metrics().checks_different.count();
                 _ = self.restore().await;
                 return false;
             }
@@ -35,34 +35,34 @@ impl Station {
         let caught = catch_unwind(AssertUnwindSafe(|| self.apply(number, message)));
         if let Err(panic) = caught {
             events::room_failed(self.id.0, panic_message(&*panic));
-            self.doorway.close(FAULT);
+            self.interface.close(FAULT);
             return true;
         }
         self.times.moved = Instant::now();
-        let office = self.office.take_if(|office| office.epoch() >= message.epoch);
-        let Some(mut office) = office else {
+        let sequencer = self.sequencer.take_if(|sequencer| sequencer.epoch() >= message.epoch);
+        let Some(mut sequencer) = sequencer else {
             // Another host has the room now.
-            self.office = None;
+            self.sequencer = None;
             return true;
         };
-        let answers = office.note(message, &self.replica, self.times.moved);
-        self.office = Some(office);
+        let answers = sequencer.note(message, &self.state, self.times.moved);
+        self.sequencer = Some(sequencer);
         for answer in answers {
             self.answer(&answer);
-            self.say(&answer).await;
+            self.broadcast(&answer).await;
         }
         true
     }
 
-    fn apply(&mut self, number: u64, message: &Message) {
-        let Self { replica, doorway, .. } = self;
-        let changes = doorway.shown.replace(|| {
-            let changes = replica.apply(number, message);
-            (replica.room().view(), changes)
+    fn apply(&mut self, number: u64, message: &LogMessage) {
+        let Self { state, interface, .. } = self;
+        let changes = interface.shown.replace(|| {
+            let changes = state.apply(number, message);
+            (state.room().view(), changes)
         });
-        self.company.load.metrics().entries.add(changes.entries);
+        self.context.load.metrics().entries.add(changes.entries);
         if let Some(run) = changes.finished {
-            self.doorway.inbox.finish(run);
+            self.interface.inbox.finish(run);
         }
         self.is_changed |= changes.summary;
     }
@@ -71,11 +71,11 @@ impl Station {
     pub(super) async fn read(&mut self) -> Result<(), BusFault> {
         self.times.read = Some(Instant::now());
         loop {
-            let next = self.company.bus.read(self.id, self.replica.number()).await?;
+            let next = self.context.bus.read(self.id, self.state.number()).await?;
             let Some((number, bytes)) = next else { return Ok(()) };
-            let Ok(message) = Message::parse(&bytes) else {
+            let Ok(message) = LogMessage::parse(&bytes) else {
                 tracing::error!(room = %self.id, number, "a message of a room cannot be read");
-                self.doorway.close("A host of another version has this room now.");
+                self.interface.close("A host of another version has this room now.");
                 return Err(BusFault::Unknown);
             };
             if !self.take(number, &message).await {
@@ -85,25 +85,25 @@ impl Station {
         }
     }
 
-    /// Takes the newest checkpoint in place of the replica.
+    /// Takes the newest checkpoint in place of the state.
     async fn restore(&mut self) -> Result<(), BusFault> {
         let now = Instant::now();
         if !is_due(self.times.restored, now, SECOND) {
             return Err(BusFault::Unknown);
         }
         self.times.restored = Some(now);
-        let loaded = self.company.load_replica(self.id).await;
-        let (replica, _) = loaded.map_err(|_| BusFault::Unknown)?;
-        self.doorway.shown.replace(|| (replica.room().view(), ()));
-        self.replica = replica;
+        let loaded = self.context.load_state(self.id).await;
+        let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
+        self.interface.shown.replace(|| (state.room().view(), ()));
+        self.state = state;
         // Its lease may be over since long.
-        self.office.take_if(|office| office.epoch() < self.replica.epoch());
+        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch());
         self.is_changed = true;
         Ok(())
     }
 
     /// Tells the others of a message that this host has appended.
-    pub(super) async fn announce(&mut self, number: u64, message: Message) {
-        self.say(&Talk::News(number, message)).await;
+    pub(super) async fn announce(&mut self, number: u64, message: LogMessage) {
+        self.broadcast(&PeerMessage::Appended(number, message)).await;
     }
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 use tokio::sync::oneshot::error::TryRecvError;
 use tokio::time::Instant;
 
-use super::{SECOND, Station, is_due};
+use super::{Replica, SECOND, is_due};
 use crate::server::cluster::bus::{BusFault, Key};
-use crate::server::cluster::message::MOST_STEPS;
-use crate::server::cluster::office::Office;
+use crate::server::cluster::log_message::MOST_STEPS;
+use crate::server::cluster::sequencer::ClusterSequencer;
 use crate::server::sequencer::STEP;
 use crate::store::host::Lease;
 
@@ -17,9 +17,9 @@ const CHECKPOINTS: Duration = Duration::from_secs(5);
 /// The time after which the lease is asked for again.
 const ASKED_AGAIN: Duration = Duration::from_millis(500);
 
-impl Station {
+impl Replica {
     /// Renews the lease, or asks for it where nobody seems to have it.
-    pub(super) async fn mind_lease(&mut self, now: Instant) {
+    pub(super) async fn keep_lease(&mut self, now: Instant) {
         if let Some(reply) = &mut self.leasing.renewing {
             match reply.try_recv() {
                 Err(TryRecvError::Empty) => {}
@@ -36,11 +36,11 @@ impl Station {
             }
             self.leasing.acquiring = None;
         }
-        let desk = &self.company.desk;
-        match &self.office {
-            Some(office) if self.leasing.renewing.is_none() => {
+        let leases = &self.context.leases;
+        match &self.sequencer {
+            Some(sequencer) if self.leasing.renewing.is_none() => {
                 if is_due(self.times.leased, now, SECOND) {
-                    self.leasing.renewing = Some(desk.renew(office.lease()));
+                    self.leasing.renewing = Some(leases.renew(sequencer.lease()));
                     self.times.leased = Some(now);
                 }
             }
@@ -48,7 +48,7 @@ impl Station {
             None => {
                 let is_first = self.times.leased.is_none();
                 if is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN) {
-                    self.leasing.acquiring = Some(desk.acquire(&self.id.place()));
+                    self.leasing.acquiring = Some(leases.acquire(&self.id.place()));
                     self.times.leased = Some(now);
                 }
             }
@@ -58,51 +58,51 @@ impl Station {
     /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
     async fn take_over(&mut self, lease: Lease) {
         let is_read = self.read().await.is_ok();
-        if self.replica.epoch() >= lease.epoch() {
+        if self.state.epoch() >= lease.epoch() {
             // The answer has come so late that others have had the room since.
             return;
         }
         let now = Instant::now();
         tracing::info!(room = %self.id, epoch = lease.epoch(), "this host has a room now");
-        self.office = Some(Office::new(lease, &self.replica));
+        self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
         self.times.stepped = now;
-        self.is_doubtful = !is_read;
+        self.is_append_unknown = !is_read;
         self.is_changed = true;
     }
 
     fn step_down(&mut self) {
-        if let Some(office) = self.office.take() {
-            tracing::warn!(room = %self.id, epoch = office.epoch(), "this host has lost a room");
+        if let Some(sequencer) = self.sequencer.take() {
+            tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has lost a room");
         }
         self.leasing.renewing = None;
     }
 
     /// Appends the next message to the log, if one is due.
     pub(super) async fn sequence(&mut self, now: Instant) {
-        if self.is_doubtful {
+        if self.is_append_unknown {
             if self.read().await.is_err() {
                 return;
             }
-            self.is_doubtful = false;
+            self.is_append_unknown = false;
         }
-        let Some(office) = &mut self.office else { return };
-        if self.replica.room().len() == 0 && office.is_empty() {
+        let Some(sequencer) = &mut self.sequencer else { return };
+        if self.state.room().len() == 0 && sequencer.is_empty() {
             (self.times.stepped, self.times.moved) = (now, now);
             return;
         }
         let steps = steps_due(&mut self.times.stepped, now);
-        if steps == 0 && !office.is_sending() {
+        if steps == 0 && !sequencer.is_sending() {
             return;
         }
-        let message = office.next(&self.replica, steps);
-        match self.company.bus.publish(self.id, message.last, message.to_bytes()).await {
+        let message = sequencer.next(&self.state, steps);
+        match self.context.bus.append(self.id, message.last, message.to_bytes()).await {
             Ok(number) => {
                 self.times.published = Some(now);
                 self.take(number, &message).await;
                 self.announce(number, message).await;
             }
-            Err(BusFault::Refused) => self.is_doubtful = self.read().await.is_err(),
-            Err(BusFault::Unknown) => self.is_doubtful = true,
+            Err(BusFault::Refused) => self.is_append_unknown = self.read().await.is_err(),
+            Err(BusFault::Unknown) => self.is_append_unknown = true,
         }
     }
 
@@ -111,7 +111,7 @@ impl Station {
         let is_time = is_due(self.times.kept, now, CHECKPOINTS);
         // Who was replaced without noticing it has appended nothing now, and must not keep what is old.
         let is_surely_sequencer = self.times.published == Some(now);
-        if self.office.is_none() || self.is_doubtful || !(is_time || self.is_changed) {
+        if self.sequencer.is_none() || self.is_append_unknown || !(is_time || self.is_changed) {
             return;
         }
         if is_time && is_surely_sequencer && self.keep_checkpoint().await.is_err() {
@@ -124,14 +124,14 @@ impl Station {
     }
 
     async fn keep_checkpoint(&mut self) -> Result<(), BusFault> {
-        let bus = &self.company.bus;
-        bus.put(Key::Checkpoint(self.id), self.replica.checkpoint()).await?;
-        bus.drop_before(self.id, self.replica.number()).await
+        let bus = &self.context.bus;
+        bus.put(Key::Checkpoint(self.id), self.state.checkpoint()).await?;
+        bus.drop_before(self.id, self.state.number()).await
     }
 
-    async fn keep_record(&mut self, is_awake: bool) -> Result<(), BusFault> {
-        let record = self.record.clone().next(self.replica.room(), is_awake);
-        self.company.bus.put(Key::Room(self.id), record.to_bytes()).await?;
+    async fn keep_record(&mut self, is_running: bool) -> Result<(), BusFault> {
+        let record = self.record.clone().next(self.state.room(), is_running);
+        self.context.bus.put(Key::Room(self.id), record.to_bytes()).await?;
         self.record = record;
         Ok(())
     }
@@ -140,12 +140,12 @@ impl Station {
     pub(super) async fn end(mut self) {
         if *self.ending.borrow() {
             // Members have left meanwhile.
-            self.pass_on().await;
+            self.send_commands().await;
             self.sequence(Instant::now()).await;
         }
-        let is_broken = self.doorway.inbox.is_closed();
-        if let Some(office) = self.office.take_if(|_| !self.is_doubtful) {
-            let is_empty = self.replica.room().len() == 0;
+        let is_broken = self.interface.inbox.is_closed();
+        if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
+            let is_empty = self.state.room().len() == 0;
             if is_broken || is_empty && !self.record.stands {
                 self.close().await;
             } else {
@@ -159,17 +159,17 @@ impl Station {
                     _ = self.keep_record(!is_empty).await;
                 }
             }
-            _ = self.company.desk.release(office.lease()).await;
+            _ = self.context.leases.release(sequencer.lease()).await;
         }
         let ends = *self.ending.borrow();
         let sentence =
             if ends { "The server has ended." } else { "The room was empty and is closed." };
-        self.doorway.close(sentence);
+        self.interface.close(sentence);
     }
 
     /// Removes all of the room.
     async fn close(&mut self) {
-        let bus = &self.company.bus;
+        let bus = &self.context.bus;
         for key in [Key::Room(self.id), Key::Checkpoint(self.id)] {
             _ = bus.remove(key).await;
         }

@@ -1,0 +1,215 @@
+//! The sequencer of a room of a cluster: it orders the commands of the members on all hosts into messages.
+//!
+//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which
+//! has a seat for each member and the limits of a room in one process. A message that was sent to the log is kept,
+//! unchanged, until it is known whether the log has it: another one in its place could be the second with its
+//! number.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::log_message::LogMessage;
+use super::peer_message::PeerMessage;
+use super::room_state::RoomState;
+use crate::game::PlayerColor;
+use crate::server::line::Line;
+use crate::server::room::{Command, Entry, MemberId};
+use crate::server::sequencer::Inbox;
+use crate::store::host::Lease;
+
+/// The time after which a member is removed whom no host claims.
+pub(super) const UNCLAIMED: Duration = Duration::from_secs(4);
+/// The most join requests that are remembered, with their answers.
+const MOST_ANSWERS: usize = 64;
+
+/// The commands that wait, the members who are claimed, and the message that is being appended.
+pub(super) struct ClusterSequencer {
+    lease: Lease,
+    inbox: Inbox,
+    /// When each member was claimed last.
+    claimed: BTreeMap<MemberId, Instant>,
+    /// The requests to join, the newest last.
+    joining: VecDeque<Joining>,
+    /// Whether the log has the first message of the epoch.
+    is_begun: bool,
+    /// The message that was sent, as long as it is unknown whether the log has it.
+    sending: Option<LogMessage>,
+    /// The step of the checksum that was sent last.
+    checked: u64,
+}
+
+/// A request to join.
+struct Joining {
+    token: u64,
+    member: MemberId,
+    /// Set once a message has them.
+    color: Option<PlayerColor>,
+    /// Whether the log has that message.
+    is_in: bool,
+}
+
+impl ClusterSequencer {
+    /// The sequencer of an epoch whose first message is still to be appended. Commands until then are lost: the
+    /// predecessor may still append messages that change who is in the room.
+    pub(super) fn new(lease: Lease, state: &RoomState) -> Self {
+        let room = state.room();
+        let inbox = Inbox::new(room.header().mode, room.next_member());
+        let mut sequencer = Self {
+            lease,
+            inbox,
+            claimed: BTreeMap::new(),
+            joining: VecDeque::new(),
+            is_begun: false,
+            sending: None,
+            checked: state.tick(),
+        };
+        sequencer.sending = Some(sequencer.message(state, 0));
+        sequencer
+    }
+
+    pub(super) fn lease(&self) -> &Lease {
+        &self.lease
+    }
+
+    pub(super) fn epoch(&self) -> u64 {
+        self.lease.epoch()
+    }
+
+    /// The message that is being appended; otherwise the next one, of `steps` steps.
+    pub(super) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+        let message = match self.sending.take() {
+            Some(sent) if sent.last == state.number() => sent,
+            // The predecessor has written before it was fenced off.
+            Some(sent) => {
+                LogMessage { last: state.number(), tick: state.tick(), check: None, ..sent }
+            }
+            None => self.message(state, steps),
+        };
+        self.sending = Some(message.clone());
+        message
+    }
+
+    /// Whether a message is being appended.
+    pub(super) fn is_sending(&self) -> bool {
+        self.sending.is_some()
+    }
+
+    /// Notes that the log has a message, which was applied to `state`; returns the answers to the requests that it
+    /// fulfils.
+    pub(super) fn note(
+        &mut self,
+        message: &LogMessage,
+        state: &RoomState,
+        now: Instant,
+    ) -> Vec<PeerMessage> {
+        if self.sending.as_ref() != Some(message) {
+            return Vec::new();
+        }
+        self.sending = None;
+        if !self.is_begun {
+            self.begin(state, now);
+        }
+        let mut answers = Vec::new();
+        for joining in self.joining.iter_mut().filter(|joining| !joining.is_in) {
+            joining.is_in = joining.color.is_some();
+            answers.extend(joining.answer());
+        }
+        answers
+    }
+
+    /// Handles a request to join; returns the answer if it is known.
+    pub(super) fn request_join(
+        &mut self,
+        token: u64,
+        name: &Line,
+        now: Instant,
+    ) -> Option<PeerMessage> {
+        if let Some(known) = self.joining.iter().find(|joining| joining.token == token) {
+            return known.answer();
+        }
+        if !self.is_begun {
+            return None;
+        }
+        let Ok(member) = self.inbox.join(name) else { return Some(PeerMessage::Full(token)) };
+        self.claimed.insert(member, now);
+        self.joining.push_back(Joining { token, member, color: None, is_in: false });
+        if self.joining.len() > MOST_ANSWERS {
+            self.joining.pop_front();
+        }
+        None
+    }
+
+    /// Takes a command of a member on any host.
+    pub(super) fn command(&mut self, member: MemberId, command: Command) {
+        match command {
+            Command::Leave => self.leave(member),
+            // What comes too often was refused on the member's own host.
+            command => _ = self.inbox.act(member, command),
+        }
+    }
+
+    /// Notes that a host has these members.
+    pub(super) fn claim(&mut self, members: &[MemberId], now: Instant) {
+        for member in members {
+            self.claimed.entry(*member).and_modify(|time| *time = now);
+        }
+    }
+
+    /// Removes the members whom no host claims any more.
+    pub(super) fn remove_unclaimed(&mut self, now: Instant) {
+        let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
+        let lost: Vec<MemberId> =
+            self.claimed.iter().filter(|(_, time)| is_lost(time)).map(|(id, _)| *id).collect();
+        for member in lost {
+            self.leave(member);
+        }
+    }
+
+    /// Whether nobody is in the room, and no message is being appended.
+    pub(super) fn is_empty(&self) -> bool {
+        self.sending.is_none() && self.inbox.is_empty()
+    }
+
+    /// Begins the epoch with the present members, each of whom is to be claimed within the usual time.
+    fn begin(&mut self, state: &RoomState, now: Instant) {
+        let room = state.room();
+        self.is_begun = true;
+        self.inbox = Inbox::new(room.header().mode, room.next_member());
+        room.colors().for_each(|(member, color)| self.inbox.admit(member, color));
+        self.claimed = room.colors().map(|(member, _)| (member, now)).collect();
+    }
+
+    fn leave(&mut self, member: MemberId) {
+        self.claimed.remove(&member);
+        self.inbox.leave(member);
+    }
+
+    fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+        let mut entries = Vec::new();
+        let Self { inbox, joining, .. } = self;
+        for step in 0..steps {
+            inbox.take(|member, command| {
+                if let Command::Join { color, .. } = &command
+                    && let Some(joining) =
+                        joining.iter_mut().find(|joining| joining.member == member)
+                {
+                    joining.color = Some(*color);
+                }
+                entries.push(Entry { step, member, command });
+            });
+        }
+        let check = state.sum().filter(|check| check.tick > self.checked);
+        self.checked = check.map_or(self.checked, |check| check.tick);
+        let (epoch, last, tick) = (self.epoch(), state.number(), state.tick());
+        LogMessage { epoch, last, tick, steps, check, entries }
+    }
+}
+
+impl Joining {
+    fn answer(&self) -> Option<PeerMessage> {
+        let color = self.color.filter(|_| self.is_in)?;
+        Some(PeerMessage::Joined(self.token, self.member, color))
+    }
+}
