@@ -31,6 +31,8 @@ pub struct Metrics {
     pub checks_equal: Counter,
     /// Checksums of rooms that differed from those of another host, which is a bug.
     pub checks_different: Counter,
+    /// Steps of rooms that went on while the bus of the cluster did not answer.
+    pub steps_alone: Counter,
     /// How late the steps of rooms are.
     pub step_lateness: Histogram,
     /// The time in which a frame is drawn and encoded.

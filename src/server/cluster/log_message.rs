@@ -20,9 +20,9 @@ use crate::game::RULES_VERSION;
 use crate::server::room::Entry;
 
 /// The version of the format.
-const FORMAT: u32 = 1;
-/// The most steps of a message.
-pub(super) const MOST_STEPS: u64 = 6;
+const FORMAT: u32 = 2;
+/// The most steps of a message: ten seconds.
+pub(super) const MOST_STEPS: u64 = 600;
 
 /// A message of a room's log.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +71,19 @@ impl LogMessage {
             _ = writeln!(text, "{entry}");
         }
         text.into_bytes()
+    }
+
+    /// Whether another message can follow in this one.
+    pub(super) fn has_room(&self, next: &Self) -> bool {
+        self.steps + next.steps <= MOST_STEPS
+    }
+
+    /// Appends the steps of the message that follows. Its checksum is left out.
+    pub(super) fn merge(&mut self, next: Self) {
+        let steps = self.steps;
+        self.entries
+            .extend(next.entries.into_iter().map(|it| Entry { step: it.step + steps, ..it }));
+        self.steps += next.steps;
     }
 
     /// The message of those bytes.
@@ -129,9 +142,14 @@ mod tests {
     fn what_is_damaged_or_of_another_version_is_told() {
         let text = |head: &str| LogMessage::parse(format!("{head}\n").as_bytes());
         let version = version();
-        for head in
-            ["3 1 1", "3 1 1 7", "3 1 1 2 9", "3 1 1 2 9 x", "3 1 1 2 9 a b", "3 1 1 2\n5 leave 1"]
-        {
+        for head in [
+            "3 1 1",
+            "3 1 1 601",
+            "3 1 1 2 9",
+            "3 1 1 2 9 x",
+            "3 1 1 2 9 a b",
+            "3 1 1 2\n5 leave 1",
+        ] {
             assert_eq!(text(&format!("{version} {head}")), Err(Unreadable::Damaged), "{head}");
         }
         assert_eq!(text("0.1 3 1 1 2"), Err(Unreadable::OtherVersion));

@@ -12,12 +12,15 @@
 //! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
 //! - A member is in the room once the log has their joining.
 //! - The sequencer removes members whom no host claims for a while. A host that has ended claims nobody.
-//! - If nothing can be appended to the log, the room waits, and its members are told. Rooms that go on for one
-//!   host alone were refused: each part of a divided cluster would end a round of its own.
+//! - If the bus does not answer, a room goes on if all its members are on the host that has the lease; otherwise it
+//!   waits, or another host takes it over. Members are told. See [`alone`].
 
+mod alone;
 mod joining;
+mod progress;
 mod reading;
 mod sequencing;
+mod times;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -26,8 +29,11 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until};
 
+use self::alone::Alone;
 pub(super) use self::joining::JoinRequest;
 use self::joining::PendingJoin;
+use self::progress::Progress;
+use self::times::{SECOND, Times, is_due};
 use super::HostContext;
 use super::lease_worker::Reply;
 use super::peer_message::PeerMessage;
@@ -44,17 +50,8 @@ pub(super) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
 const STEPS: u32 = 2;
 /// The time without messages after which a replica reads the log.
 const SILENCE: Duration = Duration::from_secs(1);
-/// The time without steps after which members are told.
-const STANDSTILL: Duration = Duration::from_millis(1_500);
-/// The time from one claim, or renewal, to the next.
-const SECOND: Duration = Duration::from_secs(1);
 /// The least time that a replica exists without members and watchers.
 const LEAST_STAY: Duration = Duration::from_secs(3);
-
-/// What members read while the room waits.
-const WAITS: &str = "The hosts of this room do not reach each other; the game waits.";
-/// What they read then.
-const GOES_ON: &str = "The game goes on.";
 
 /// A room on one host.
 pub(super) struct Replica {
@@ -74,7 +71,14 @@ pub(super) struct Replica {
     times: Times,
     /// Whether it is unknown if the log has the message that was appended last.
     is_append_unknown: bool,
-    is_told_to_wait: bool,
+    /// The messages of a room that goes on without the bus.
+    alone: Option<Alone>,
+    /// Whether the state has messages that the log will not have.
+    is_diverged: bool,
+    /// Whether the bus has answered when the log was last read without a sequencer.
+    reaches_bus: bool,
+    /// What members were told last.
+    told: Progress,
     /// Whether the record of the room is out of date.
     is_changed: bool,
     ending: watch::Receiver<bool>,
@@ -85,22 +89,6 @@ pub(super) struct Replica {
 struct Leasing {
     acquiring: Option<Reply<Option<Lease>>>,
     renewing: Option<Reply<bool>>,
-}
-
-/// When what is done from time to time was done last.
-struct Times {
-    /// The room has taken steps, or was found to rest.
-    moved: Instant,
-    read: Option<Instant>,
-    restored: Option<Instant>,
-    claimed: Option<Instant>,
-    leased: Option<Instant>,
-    kept: Option<Instant>,
-    published: Option<Instant>,
-    /// Somebody needed the replica.
-    needed: Instant,
-    /// Up to when the sequencer has taken steps.
-    stepped: Instant,
 }
 
 /// The parts of a new replica.
@@ -119,17 +107,7 @@ impl Replica {
         let Beginning { id, record, interface, watchers, state, broadcasts, join_requests } =
             beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
-        let times = Times {
-            moved: now,
-            read: None,
-            restored: None,
-            claimed: None,
-            leased: None,
-            kept: None,
-            published: None,
-            needed: now,
-            stepped: now,
-        };
+        let times = Times::new(now);
         Self {
             id,
             context,
@@ -144,7 +122,10 @@ impl Replica {
             leasing: Leasing::default(),
             times,
             is_append_unknown: false,
-            is_told_to_wait: false,
+            alone: None,
+            is_diverged: false,
+            reaches_bus: true,
+            told: Progress::Usual,
             is_changed: false,
             ending,
         }
@@ -153,7 +134,7 @@ impl Replica {
     /// Runs the room on this host, as long as it is needed here.
     pub(super) async fn run(mut self) {
         // What was appended before it subscribed.
-        _ = self.read().await;
+        self.reaches_bus = self.read().await.is_ok();
         let mut next = Instant::now();
         loop {
             tokio::select! {
@@ -181,7 +162,7 @@ impl Replica {
             self.sequence(now).await;
             self.keep(now).await;
         } else if is_due(self.times.read, now, SILENCE) && self.is_silent(now) {
-            _ = self.read().await;
+            self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
     }
@@ -258,16 +239,6 @@ impl Replica {
         now.duration_since(self.times.moved) >= SILENCE
     }
 
-    /// Tells members when the room begins to wait, and when it goes on.
-    fn tell(&mut self, now: Instant) {
-        let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
-        let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
-        if waits != self.is_told_to_wait {
-            self.is_told_to_wait = waits;
-            self.context.tell(self.id, if waits { WAITS } else { GOES_ON });
-        }
-    }
-
     /// Whether the replica is not needed any more.
     fn is_over(&mut self) -> bool {
         let now = Instant::now();
@@ -287,9 +258,4 @@ impl Replica {
         let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
     }
-}
-
-/// Whether `pause` has passed since `last`.
-fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
-    last.is_none_or(|last| now.duration_since(last) >= pause)
 }

@@ -102,10 +102,16 @@ impl RoomState {
         }
     }
 
-    /// Applies the next message. One of an older epoch than the last changes nothing.
-    pub(super) fn apply(&mut self, number: u64, message: &LogMessage) -> Changes {
-        let mut all = Changes::default();
+    /// Notes the number that the log has given to what was applied last.
+    pub(super) fn set_number(&mut self, number: u64) {
         self.number = number;
+    }
+
+    /// Applies the next message, which has no number as long as the log does not have it. One of an older epoch
+    /// than the last changes nothing.
+    pub(super) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
+        let mut all = Changes::default();
+        self.number = number.unwrap_or(self.number);
         if message.epoch < self.epoch {
             return all;
         }
@@ -183,7 +189,7 @@ mod tests {
         let mut state = state();
         let first = message(&state, 1, None);
         assert_eq!(state.position(5, &first), Position::Next);
-        assert!(state.apply(5, &first).summary);
+        assert!(state.apply(Some(5), &first).summary);
         assert_eq!((state.number(), state.tick(), state.room().len()), (5, 2, 1));
         assert_eq!(state.position(5, &first), Position::Known);
         let next = message(&state, 1, None);
@@ -191,7 +197,7 @@ mod tests {
         assert_eq!(state.position(9, &LogMessage { tick: 3, ..next.clone() }), Position::Differs);
         // Of an older epoch, it only counts.
         state.epoch = 2;
-        state.apply(9, &next);
+        state.apply(Some(9), &next);
         assert_eq!((state.number(), state.tick()), (9, 2));
     }
 
@@ -200,7 +206,7 @@ mod tests {
         let mut state = state();
         for number in 1..=30 {
             let next = message(&state, 1, None);
-            state.apply(number, &next);
+            state.apply(Some(number), &next);
         }
         let sum = state.sum().unwrap();
         assert_eq!(sum.tick, 60);
@@ -215,7 +221,7 @@ mod tests {
         let catalog = Arc::new(Catalog::builtin());
         let mut state = state();
         let next = message(&state, 3, None);
-        state.apply(4, &next);
+        state.apply(Some(4), &next);
         let bytes = state.checkpoint();
         let again = RoomState::restore(&catalog, &bytes).unwrap();
         assert_eq!((again.number(), again.tick(), again.epoch), (4, 2, 3));

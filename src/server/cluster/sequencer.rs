@@ -34,6 +34,8 @@ pub(super) struct ClusterSequencer {
     joining: VecDeque<Joining>,
     /// Whether the log has the first message of the epoch.
     is_begun: bool,
+    /// Whether messages are applied that the log does not have yet. Whoever is let in must be in the log.
+    is_alone: bool,
     /// The message that was sent, as long as it is unknown whether the log has it.
     sending: Option<LogMessage>,
     /// The step of the checksum that was sent last.
@@ -62,6 +64,7 @@ impl ClusterSequencer {
             claimed: BTreeMap::new(),
             joining: VecDeque::new(),
             is_begun: false,
+            is_alone: false,
             sending: None,
             checked: state.tick(),
         };
@@ -111,6 +114,24 @@ impl ClusterSequencer {
         if !self.is_begun {
             self.begin(state, now);
         }
+        self.answers()
+    }
+
+    /// Goes on alone, if the epoch has begun; returns the message that the log may have.
+    pub(super) fn begin_alone(&mut self) -> Option<LogMessage> {
+        let message = self.sending.take_if(|_| self.is_begun)?;
+        self.is_alone = true;
+        Some(message)
+    }
+
+    /// Goes on as usual, once the log has all messages; returns the answers to the requests that they fulfil.
+    pub(super) fn end_alone(&mut self) -> Vec<PeerMessage> {
+        self.is_alone = false;
+        self.answers()
+    }
+
+    /// The answers to those who are in the log now.
+    fn answers(&mut self) -> Vec<PeerMessage> {
         let mut answers = Vec::new();
         for joining in self.joining.iter_mut().filter(|joining| !joining.is_in) {
             joining.is_in = joining.color.is_some();
@@ -129,7 +150,7 @@ impl ClusterSequencer {
         if let Some(known) = self.joining.iter().find(|joining| joining.token == token) {
             return known.answer();
         }
-        if !self.is_begun {
+        if !self.is_begun || self.is_alone {
             return None;
         }
         let Ok(member) = self.inbox.join(name) else { return Some(PeerMessage::Full(token)) };
@@ -186,7 +207,8 @@ impl ClusterSequencer {
         self.inbox.leave(member);
     }
 
-    fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+    /// The next message, of `steps` steps.
+    pub(super) fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let mut entries = Vec::new();
         let Self { inbox, joining, .. } = self;
         for step in 0..steps {

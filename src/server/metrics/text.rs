@@ -57,6 +57,8 @@ impl Text {
         self.head(name, "counter", "Checksums of rooms, compared with those of other hosts.");
         self.line(name, "{result=\"equal\"}", metrics.checks_equal.get());
         self.line(name, "{result=\"different\"}", metrics.checks_different.get());
+        let help = "Steps of rooms that went on while the bus of the cluster did not answer.";
+        self.counter("room_steps_alone", help, metrics.steps_alone.get());
         let help = "How late the steps of rooms are.";
         self.histogram("step_lateness_seconds", help, &metrics.step_lateness);
     }

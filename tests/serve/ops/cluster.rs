@@ -127,7 +127,7 @@ fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
     }
     hosts.nats.restart();
     for player in [&mara, &jon] {
-        player.wait_for("The game goes on.");
+        player.wait_for("reach each other again");
     }
     says(&jon, &mara, "that was long");
 
@@ -138,6 +138,29 @@ fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
     hosts.postgres.restart();
     thread::sleep(Duration::from_secs(2));
     says(&jon, &mara, "and again");
+    hosts.assert_equal(&[0, 1], 1.0);
+}
+
+#[test]
+fn a_room_of_one_host_goes_on_while_nats_is_away() {
+    let mut hosts = Hosts::start(2);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(0, "Jon"));
+    mara.wait_for("Jon comes in.");
+    hosts.nats.kill();
+    for player in [&mara, &jon] {
+        player.wait_for("the game goes on, and nobody can join");
+    }
+    let time = says(&mara, &jon, "just the two of us");
+    assert!(time < Duration::from_secs(1), "{time:?}");
+    see_each_other_walk(&mara, &jon);
+    hosts.nats.restart();
+    for player in [&mara, &jon] {
+        player.wait_for("reach each other again");
+    }
+    assert!(hosts.figure(0, "room_steps_alone_total") > 0.0);
+    let kim = hosts.player(1, "Kim");
+    says(&kim, &mara, "what have I missed");
+    thread::sleep(Duration::from_secs(3));
     hosts.assert_equal(&[0, 1], 1.0);
 }
 

@@ -4,7 +4,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use tokio::time::Instant;
 
-use super::{Replica, SECOND, is_due};
+use super::Replica;
+use super::times::{SECOND, is_due};
 use crate::server::cluster::bus::BusFault;
 use crate::server::cluster::log_message::LogMessage;
 use crate::server::cluster::peer_message::PeerMessage;
@@ -16,6 +17,12 @@ impl Replica {
     /// Takes a message of the log, and those that it lets in are told. Returns whether the ones before it
     /// were there.
     pub(super) async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
+        if self.is_ahead_of(message) {
+            return true;
+        }
+        if self.is_diverged {
+            return false;
+        }
         match self.state.position(number, message) {
             Position::Known => return true,
             Position::Later => return false,
@@ -32,12 +39,7 @@ impl Replica {
                 return false;
             }
         }
-        let caught = catch_unwind(AssertUnwindSafe(|| self.apply(number, message)));
-        if let Err(panic) = caught {
-            events::room_failed(self.id.0, panic_message(&*panic));
-            self.interface.close(FAULT);
-            return true;
-        }
+        self.apply(Some(number), message);
         self.times.moved = Instant::now();
         let sequencer = self.sequencer.take_if(|sequencer| sequencer.epoch() >= message.epoch);
         let Some(mut sequencer) = sequencer else {
@@ -47,19 +49,34 @@ impl Replica {
         };
         let answers = sequencer.note(message, &self.state, self.times.moved);
         self.sequencer = Some(sequencer);
+        self.send_answers(answers).await;
+        true
+    }
+
+    /// Answers those who are in the room now, on all hosts.
+    pub(super) async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
         for answer in answers {
             self.answer(&answer);
             self.broadcast(&answer).await;
         }
-        true
     }
 
-    fn apply(&mut self, number: u64, message: &LogMessage) {
+    /// Applies a message, and shows the room after it. A fault ends the room on this host.
+    pub(super) fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
-        let changes = interface.shown.replace(|| {
-            let changes = state.apply(number, message);
-            (state.room().view(), changes)
-        });
+        let apply = || {
+            interface.shown.replace(|| {
+                let changes = state.apply(number, message);
+                (state.room().view(), changes)
+            })
+        };
+        let changes = match catch_unwind(AssertUnwindSafe(apply)) {
+            Ok(changes) => changes,
+            Err(panic) => {
+                events::room_failed(self.id.0, panic_message(&*panic));
+                return self.interface.close(FAULT);
+            }
+        };
         self.context.load.metrics().entries.add(changes.entries);
         if let Some(run) = changes.finished {
             self.interface.inbox.finish(run);
@@ -70,6 +87,9 @@ impl Replica {
     /// Reads the log to its end.
     pub(super) async fn read(&mut self) -> Result<(), BusFault> {
         self.times.read = Some(Instant::now());
+        if self.is_diverged {
+            self.restore().await?;
+        }
         loop {
             let next = self.context.bus.read(self.id, self.state.number()).await?;
             let Some((number, bytes)) = next else { return Ok(()) };
@@ -96,6 +116,7 @@ impl Replica {
         let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
         self.interface.shown.replace(|| (state.room().view(), ()));
         self.state = state;
+        self.is_diverged = false;
         // Its lease may be over since long.
         self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch());
         self.is_changed = true;

@@ -5,11 +5,11 @@ use std::time::Duration;
 use tokio::sync::oneshot::error::TryRecvError;
 use tokio::time::Instant;
 
-use super::{Replica, SECOND, is_due};
+use super::Replica;
+use super::times::{SECOND, is_due, steps_due};
 use crate::server::cluster::bus::{BusFault, Key};
-use crate::server::cluster::log_message::MOST_STEPS;
+use crate::server::cluster::lease_worker::LEASE_TIME;
 use crate::server::cluster::sequencer::ClusterSequencer;
-use crate::server::sequencer::STEP;
 use crate::store::host::Lease;
 
 /// The time from one checkpoint to the next.
@@ -23,7 +23,11 @@ impl Replica {
         if let Some(reply) = &mut self.leasing.renewing {
             match reply.try_recv() {
                 Err(TryRecvError::Empty) => {}
-                Ok(Ok(false)) => self.step_down(),
+                Ok(Ok(false)) => self.diverge(),
+                Ok(Ok(true)) => {
+                    self.note_lease();
+                    self.leasing.renewing = None;
+                }
                 // Without the database nobody else gets the lease; and the log refuses who has lost it.
                 _ => self.leasing.renewing = None,
             }
@@ -31,7 +35,10 @@ impl Replica {
         if let Some(reply) = &mut self.leasing.acquiring {
             match reply.try_recv() {
                 Err(TryRecvError::Empty) => return,
-                Ok(Ok(Some(lease))) => self.take_over(lease).await,
+                Ok(Ok(Some(lease))) => {
+                    self.note_lease();
+                    self.take_over(lease).await;
+                }
                 _ => {}
             }
             self.leasing.acquiring = None;
@@ -47,7 +54,10 @@ impl Replica {
             Some(_) => {}
             None => {
                 let is_first = self.times.leased.is_none();
-                if is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN) {
+                let is_time =
+                    is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN);
+                // A host that cannot write the log would keep the room from those that can.
+                if is_time && self.reaches_bus {
                     self.leasing.acquiring = Some(leases.acquire(&self.id.place()));
                     self.times.leased = Some(now);
                 }
@@ -70,18 +80,27 @@ impl Replica {
         self.is_changed = true;
     }
 
-    fn step_down(&mut self) {
+    /// Notes that the lease lasts from when it was asked for.
+    fn note_lease(&mut self) {
+        self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_TIME);
+    }
+
+    pub(super) fn step_down(&mut self) {
         if let Some(sequencer) = self.sequencer.take() {
             tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has lost a room");
         }
         self.leasing.renewing = None;
+        self.times.lease_ends = None;
     }
 
     /// Appends the next message to the log, if one is due.
     pub(super) async fn sequence(&mut self, now: Instant) {
+        if self.alone.is_some() {
+            return self.go_on_alone(now).await;
+        }
         if self.is_append_unknown {
             if self.read().await.is_err() {
-                return;
+                return self.lack_bus(now);
             }
             self.is_append_unknown = false;
         }
@@ -175,11 +194,4 @@ impl Replica {
         }
         _ = bus.drop_log(self.id).await;
     }
-}
-
-/// The steps that are due since `stepped`, which is moved on.
-fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
-    let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
-    *stepped = if due > MOST_STEPS { now } else { *stepped + STEP * due as u32 };
-    due.min(MOST_STEPS)
 }

@@ -86,7 +86,7 @@ impl Run {
             assert!(message.epoch >= epoch, "epoch {} comes after {epoch}", message.epoch);
             epoch = message.epoch;
             assert_eq!(played.state.position(kept.number, &message), Position::Next);
-            played.state.apply(kept.number, &message);
+            played.state.apply(Some(kept.number), &message);
             let joins =
                 message.entries.iter().filter(|it| matches!(it.command, Command::Join { .. }));
             played.joined.extend(joins.map(|entry| entry.member));
