@@ -23,9 +23,7 @@ impl Progress {
         match self {
             Self::Usual => "The hosts of this room reach each other again.",
             Self::Waiting => "The hosts of this room do not reach each other; the game waits.",
-            Self::Alone => {
-                "This host does not reach the others; the game goes on, and nobody can join."
-            }
+            Self::Alone => "Other hosts are out of reach; the game goes on alone.",
         }
     }
 }
