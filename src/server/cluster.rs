@@ -39,7 +39,7 @@ use std::sync::{Arc, Mutex};
 use tokio::sync::watch;
 
 use self::bus::{Bus, Key};
-pub(super) use self::directory::SharedRooms;
+pub(super) use self::directory::{Entrant, SharedRooms};
 use self::lease_worker::LeaseWorker;
 use self::nats::NatsBus;
 use self::record::Record;

@@ -14,6 +14,7 @@ mod requests;
 mod results;
 #[cfg(test)]
 mod simulated;
+mod stay;
 mod store_worker;
 mod terminal;
 mod visit;
@@ -233,7 +234,10 @@ impl Host for GameHost {
         let status = match shared.log_in(&visitor).await {
             Ok(known) => {
                 let options = terminal::options(&visitor);
-                Visit::new(shared, &visitor, known, options).run(&mut link).await
+                let mut visit = Visit::new(shared, &visitor, known, options);
+                #[cfg(feature = "cluster")]
+                visit.look_for_place();
+                visit.run(&mut link).await
             }
             Err(sentence) => {
                 refuse(link, &sentence).await;

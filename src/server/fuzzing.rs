@@ -103,7 +103,7 @@ impl Hall {
     pub fn tell(&mut self, visitor: usize, seconds: u64) {
         let line = Line::of("The host speaks.", CHAT_COLUMNS).expect("it fits");
         let news = match seconds % 5 {
-            0 => News::Draining { seconds },
+            0 => News::Draining { seconds, can_return: seconds % 10 == 0 },
             1 => News::Said(line),
             2 => News::Result("It was refused.".to_owned()),
             3 => {

@@ -16,6 +16,7 @@ mod header;
 mod log;
 mod member;
 mod mode;
+mod presence;
 mod replayed;
 mod round;
 mod talk;
@@ -108,6 +109,7 @@ impl Room {
             id: member.id,
             color: member.color,
             points: member.points.saturating_add(won(member.id)),
+            kept: member.kept,
             name: member.name.clone(),
         };
         Header {
@@ -184,16 +186,22 @@ impl Room {
     }
 
     fn all_wish_again(&self) -> bool {
-        let all = self.members.iter().all(|member| self.again.contains(&member.id));
-        all && !self.members.is_empty()
+        // One who is away wishes for nothing.
+        let mut here = self.members.iter().map(|member| member.id).filter(|id| !self.is_away(*id));
+        !self.again.is_empty() && here.all(|id| self.again.contains(&id))
     }
 
-    /// Applies an entry. One of a member who is not there has no effect.
+    /// Applies an entry. One of a member who is not there has no effect, and what a host sends late for one who is
+    /// away has none.
     pub(crate) fn apply(&mut self, entry: &Entry) {
         let id = entry.member;
         match &entry.command {
             Command::Join { color, name } => self.join(id, *color, name),
             Command::Leave => self.leave(id),
+            Command::Keep => self.keep(id),
+            Command::Away => self.go_away(id),
+            Command::Return { token } => self.take_back(id, *token),
+            _ if self.is_away(id) => {}
             Command::Intents { seen, intents } => {
                 // Nobody has seen a step that is yet to come.
                 let seen = (*seen).min(self.game.steps());
@@ -217,6 +225,7 @@ impl Room {
 
     /// Advances the room by one step.
     pub(crate) fn advance(&mut self) {
+        self.count_away();
         let Self { members, round, inputs, game, step, emotes, .. } = self;
         inputs.clear();
         inputs.extend(members.iter_mut().filter_map(|member| {
@@ -246,6 +255,7 @@ impl Room {
             points: member.points,
             is_blind: self.round.is_blind(member.id),
             emote: emote(member.id),
+            is_away: self.is_away(member.id),
         };
         RoomView {
             game: Arc::clone(&self.game),
@@ -256,43 +266,5 @@ impl Room {
             standings: Arc::clone(&self.standings),
             said: self.said.iter().cloned().collect(),
         }
-    }
-
-    fn join(&mut self, id: MemberId, color: PlayerColor, name: &Line) {
-        if self.is_full() || self.members.iter().any(|member| member.id == id) {
-            return;
-        }
-        self.next_member = self.next_member.max(id.0.saturating_add(1));
-        self.seat(&Seat { id, color, points: 0, name: name.clone() });
-        self.announce(format!("{name} comes in."));
-    }
-
-    fn seat(&mut self, seat: &Seat) {
-        let game = Arc::make_mut(&mut self.game);
-        let player = game.join(seat.color);
-        self.members.push(Member {
-            id: seat.id,
-            name: seat.name.clone(),
-            color: seat.color,
-            player,
-            points: seat.points,
-            intents: Intents::new(),
-            acted: Intents::new(),
-            seen: game.steps(),
-        });
-    }
-
-    fn leave(&mut self, id: MemberId) {
-        let Some(index) = self.members.iter().position(|member| member.id == id) else { return };
-        let member = self.members.remove(index);
-        self.again.remove(&id);
-        if let Some(player) = member.player {
-            Arc::make_mut(&mut self.game).leave(player);
-        }
-        self.announce(format!("{} leaves.", member.name));
-    }
-
-    fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
-        self.members.iter_mut().find(|member| member.id == id)
     }
 }

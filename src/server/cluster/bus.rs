@@ -16,6 +16,7 @@ use std::pin::Pin;
 use tokio::sync::mpsc;
 
 use crate::server::summary::RoomId;
+use crate::store::host::AccountKey;
 
 /// What the hosts of a cluster share.
 pub(super) trait Bus: Send + Sync {
@@ -79,4 +80,6 @@ pub(super) enum Key {
     Checkpoint(RoomId),
     /// The number of a standing room.
     Standing(String),
+    /// Where the player with a key is: the room and the member.
+    Place(AccountKey),
 }

@@ -9,6 +9,7 @@
 //! - A record that says that the room runs, and that has not changed for [`ABANDONED`], is of a room that has lost
 //!   its host. Any other host then runs the room until it is empty.
 
+mod places;
 mod standing;
 
 use std::collections::BTreeMap;
@@ -20,12 +21,12 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::{Instant, interval, sleep, timeout};
 
+pub(in crate::server) use self::places::Entrant;
 use super::HostContext;
 use super::bus::{BusFault, Key};
 use super::record::Record;
-use super::replica::{Beginning, JoinRequest, Replica};
+use super::replica::{Beginning, JoinRequest, Replica, Wish};
 use super::room_state::RoomState;
-use crate::server::line::Line;
 use crate::server::locked;
 #[cfg(test)]
 use crate::server::room::RoomView;
@@ -93,7 +94,7 @@ impl SharedRooms {
     pub(in crate::server) async fn open(
         &self,
         wish: &RoomWish,
-        name: &Line,
+        visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
         let is_full = locked(&self.0.records, |it| it.len()) >= self.0.rooms.limits().most;
         if is_full {
@@ -104,20 +105,20 @@ impl SharedRooms {
         let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
         let record = Record::new(header, false).to_bytes();
         context.bus.create(Key::Room(id), record).await.map_err(not_now)?;
-        self.join(id, name).await
+        self.join(id, visitor).await
     }
 
     /// Joins a room.
     pub(in crate::server) async fn enter(
         &self,
         id: RoomId,
-        name: &Line,
+        visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
         let mode = locked(&self.0.records, |it| it.get(&id).map(|it| it.record.header.mode));
         if mode == Some(Mode::Alone) {
             return Err(RoomRefusal::Alone);
         }
-        self.join(id, name).await
+        self.join(id, visitor).await
     }
 
     /// Watches a room.
@@ -156,11 +157,13 @@ impl SharedRooms {
         handle.interface.shown.view()
     }
 
-    async fn join(&self, id: RoomId, name: &Line) -> Result<Place, RoomRefusal> {
+    /// Becomes the member of a room that `wish` says.
+    async fn be_member(&self, id: RoomId, wish: Wish) -> Result<Place, RoomRefusal> {
         for _ in 0..TRIES {
             let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            if handle.join_requests.send(JoinRequest { name: name.clone(), reply }).await.is_err() {
+            let request = JoinRequest { wish: wish.clone(), reply };
+            if handle.join_requests.send(request).await.is_err() {
                 continue;
             }
             if let Ok(answer) = answer.await {
@@ -173,6 +176,9 @@ impl SharedRooms {
     /// The handle of a room's replica, which is started if this host has none.
     async fn handle(&self, id: RoomId) -> Result<RoomHandle, RoomRefusal> {
         let Inner { context, replicas, .. } = &*self.0;
+        if *context.ending.borrow() {
+            return Err(RoomRefusal::NotNow);
+        }
         let mut replicas = replicas.lock().await;
         if let Some(handle) = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed()) {
             return Ok(handle.clone());

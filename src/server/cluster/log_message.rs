@@ -3,7 +3,7 @@
 //! A message is a line of numbers, and a line for each entry:
 //!
 //! ```text
-//! 1.1 3 18231 5400 2 5400 9f3ac1
+//! 2.1 3 18231 5400 2 5400 9f3ac1
 //! 0 want 7 5399 forward
 //! ```
 //!
@@ -19,7 +19,7 @@ use std::fmt::Write;
 use crate::game::RULES_VERSION;
 use crate::server::room::Entry;
 
-/// The version of the format.
+/// The version of the format of messages, records and checkpoints.
 const FORMAT: u32 = 2;
 /// The most steps of a message: ten seconds.
 pub(super) const MOST_STEPS: u64 = 600;

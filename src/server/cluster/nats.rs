@@ -4,7 +4,7 @@
 //! |---|---|
 //! | logs | stream `CELLCASTER_LOG`, subject `cellcaster.log.ROOM` |
 //! | what is said in rooms | subject `cellcaster.peers.ROOM`, not kept |
-//! | records, checkpoints | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH` |
+//! | records, checkpoints, places | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH`, `place.KEY` |
 //! | numbers of rooms | stream `CELLCASTER_NUMBERS`: the number of its newest message |
 //!
 //! Streams and the bucket are made if they are missing; who wants copies on several servers makes them before.

@@ -6,12 +6,15 @@
 //! appended 18240
 //! commands
 //! claim 1 4 7
-//! join 9f3ac1 Mara
+//! join 9f3ac1 kept Mara
 //! joined 9f3ac1 7 amber
 //! full 9f3ac1
+//! return 9f3ac2 7
+//! taken 9f3ac2
+//! released
 //! ```
 //!
-//! A message may be lost, come twice, or come late. Claims and requests to join are repeated; appended messages
+//! A message may be lost, come twice, or come late. Claims and requests to join or to return are repeated; appended messages
 //! that are missing are read from the log; commands that are lost are lost, as input of a player whose connection
 //! stalls.
 
@@ -31,12 +34,18 @@ pub(super) enum PeerMessage {
     Commands(Vec<(MemberId, Command)>),
     /// The members on the host that sends it.
     Claim(Vec<MemberId>),
-    /// A request to join. The token identifies it.
-    Join(u64, Line),
+    /// A request to join, and whether the place is kept. The token identifies it.
+    Join(u64, bool, Line),
     /// The answer: they are in the log.
     Joined(u64, MemberId, PlayerColor),
     /// The answer: the room is full.
     Full(u64),
+    /// A request to return to a member. The token identifies it, and the log has it if it is granted.
+    Return(u64, MemberId),
+    /// The answer: the member has a host.
+    Taken(u64),
+    /// The sender has released the lease of the room.
+    Released,
 }
 
 impl PeerMessage {
@@ -61,11 +70,17 @@ impl PeerMessage {
                 let words: Vec<String> = members.iter().map(MemberId::to_string).collect();
                 format!("claim {}\n", words.join(" ")).into_bytes()
             }
-            Self::Join(token, name) => format!("join {token:x} {name}\n").into_bytes(),
+            Self::Join(token, is_kept, name) => {
+                let place = if *is_kept { "kept" } else { "guest" };
+                format!("join {token:x} {place} {name}\n").into_bytes()
+            }
             Self::Joined(token, member, color) => {
                 format!("joined {token:x} {member} {}\n", color.name()).into_bytes()
             }
             Self::Full(token) => format!("full {token:x}\n").into_bytes(),
+            Self::Return(token, member) => format!("return {token:x} {member}\n").into_bytes(),
+            Self::Taken(token) => format!("taken {token:x}\n").into_bytes(),
+            Self::Released => b"released\n".to_vec(),
         }
     }
 
@@ -96,8 +111,14 @@ impl PeerMessage {
                 Some(Self::Claim(words.map(member).collect::<Option<_>>()?))
             }
             "join" => {
-                let (word, name) = words.split_once(' ')?;
-                Some(Self::Join(token(word)?, Line::of(name, NAME_COLUMNS)?))
+                let [word, place, name] =
+                    words.splitn(3, ' ').collect::<Vec<_>>().try_into().ok()?;
+                let is_kept = match place {
+                    "kept" => true,
+                    "guest" => false,
+                    _ => return None,
+                };
+                Some(Self::Join(token(word)?, is_kept, Line::of(name, NAME_COLUMNS)?))
             }
             "joined" => {
                 let [word, id, color] = words.splitn(3, ' ').collect::<Vec<_>>().try_into().ok()?;
@@ -105,6 +126,12 @@ impl PeerMessage {
                 Some(Self::Joined(token(word)?, member(id)?, color))
             }
             "full" => Some(Self::Full(token(words)?)),
+            "return" => {
+                let (word, id) = words.split_once(' ')?;
+                Some(Self::Return(token(word)?, member(id)?))
+            }
+            "taken" => Some(Self::Taken(token(words)?)),
+            "released" if words.is_empty() => Some(Self::Released),
             _ => None,
         }
     }
@@ -127,9 +154,13 @@ mod tests {
             PeerMessage::Commands(commands),
             PeerMessage::Claim(vec![MemberId(1), MemberId(7)]),
             PeerMessage::Claim(Vec::new()),
-            PeerMessage::Join(u64::MAX, name),
+            PeerMessage::Join(u64::MAX, true, name.clone()),
+            PeerMessage::Join(3, false, name),
             PeerMessage::Joined(7, MemberId(3), PlayerColor::ALL[2]),
             PeerMessage::Full(0),
+            PeerMessage::Return(u64::MAX, MemberId(3)),
+            PeerMessage::Taken(7),
+            PeerMessage::Released,
         ] {
             assert_eq!(PeerMessage::parse(&message.to_bytes()), Ok(message));
         }
@@ -137,7 +168,18 @@ mod tests {
 
     #[test]
     fn other_bytes_say_nothing() {
-        for bytes in ["", "join", "join x a", "joined 1 2", "claim x", "commands\nx", "\n"] {
+        for bytes in [
+            "",
+            "join",
+            "join x a",
+            "join 1 x a",
+            "return 1",
+            "released 1",
+            "joined 1 2",
+            "claim x",
+            "commands\nx",
+            "\n",
+        ] {
             assert_eq!(PeerMessage::parse(bytes.as_bytes()), Err(Unreadable::Damaged), "{bytes}");
         }
     }

@@ -1,7 +1,7 @@
 //! Records of rooms: what every host knows of a room, also without a replica of it.
 //!
 //! ```text
-//! 1.1 standing running 17
+//! 2.1 standing running 17
 //! playing 5400
 //! museum
 //! name Mara

@@ -11,17 +11,22 @@
 //!   trip to the log; in a room of one process it waits for up to a step.
 //! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
 //! - A member is in the room once the log has their joining.
-//! - The sequencer removes members whom no host claims for a while. A host that has ended claims nobody.
+//! - Members whom no host claims for a while are away. A host that has ended claims nobody.
+//! - A member who was away has returned once the log has it, with the token of the request. A host that has another
+//!   token for a member lets them go.
 //! - If the bus does not answer, a room goes on if all its members are on the host that has the lease; otherwise it
 //!   waits, or another host takes it over. Members are told. See [`alone`].
 
 mod alone;
+mod broadcasts;
 mod joining;
 mod progress;
 mod reading;
+mod returning;
 mod sequencing;
 mod times;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -30,9 +35,10 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until};
 
 use self::alone::Alone;
-pub(super) use self::joining::JoinRequest;
 use self::joining::PendingJoin;
+pub(super) use self::joining::{JoinRequest, Wish};
 use self::progress::Progress;
+use self::returning::PendingReturn;
 use self::times::{SECOND, Times, is_due};
 use super::HostContext;
 use super::lease_worker::Reply;
@@ -40,6 +46,7 @@ use super::peer_message::PeerMessage;
 use super::record::Record;
 use super::room_state::RoomState;
 use super::sequencer::ClusterSequencer;
+use crate::server::room::MemberId;
 use crate::server::sequencer::{RoomInterface, STEP};
 use crate::server::summary::RoomId;
 use crate::store::host::Lease;
@@ -67,6 +74,9 @@ pub(super) struct Replica {
     broadcasts: mpsc::Receiver<Vec<u8>>,
     join_requests: mpsc::Receiver<JoinRequest>,
     pending_joins: Vec<PendingJoin>,
+    pending_returns: Vec<PendingReturn>,
+    /// The tokens of this host's members who have returned.
+    tokens: BTreeMap<MemberId, u64>,
     leasing: Leasing,
     times: Times,
     /// Whether it is unknown if the log has the message that was appended last.
@@ -119,6 +129,8 @@ impl Replica {
             broadcasts,
             join_requests,
             pending_joins: Vec::new(),
+            pending_returns: Vec::new(),
+            tokens: BTreeMap::new(),
             leasing: Leasing::default(),
             times,
             is_append_unknown: false,
@@ -156,6 +168,7 @@ impl Replica {
         let now = Instant::now();
         self.send_commands().await;
         self.repeat_joins(now).await;
+        self.repeat_returns(now).await;
         self.claim(now).await;
         self.keep_lease(now).await;
         if self.sequencer.is_some() {
@@ -169,14 +182,14 @@ impl Replica {
 
     /// Sends the commands of this host's members to the sequencer.
     async fn send_commands(&mut self) {
-        let mut commands = Vec::new();
+        let (mut commands, now) = (Vec::new(), Instant::now());
         for _ in 0..STEPS {
             self.interface.inbox.take(|member, command| commands.push((member, command)));
         }
         match &mut self.sequencer {
             Some(sequencer) => commands
                 .into_iter()
-                .for_each(|(member, command)| sequencer.command(member, command)),
+                .for_each(|(member, command)| sequencer.command(member, command, now)),
             None if commands.is_empty() => {}
             None => self.broadcast(&PeerMessage::Commands(commands)).await,
         }
@@ -187,52 +200,18 @@ impl Replica {
             return;
         }
         self.times.claimed = Some(now);
-        self.dismiss_removed();
+        self.return_own(now).await;
+        self.dismiss_lost();
         let own = self.interface.inbox.seated();
         match &mut self.sequencer {
             Some(sequencer) => {
-                sequencer.claim(&own, now);
-                sequencer.remove_unclaimed(now);
+                let answers = sequencer.claim(&own, now);
+                sequencer.set_unclaimed_away(now);
+                self.tell_answers(answers).await;
             }
             None if own.is_empty() => {}
             None => self.broadcast(&PeerMessage::Claim(own)).await,
         }
-    }
-
-    /// Handles a broadcast.
-    async fn receive_broadcast(&mut self, bytes: &[u8]) {
-        let now = Instant::now();
-        let message = match PeerMessage::parse(bytes) {
-            Ok(message) => message,
-            Err(fault) => {
-                return tracing::warn!(room = %self.id, "a broadcast that cannot be read: {fault:?}");
-            }
-        };
-        match (message, &mut self.sequencer) {
-            (PeerMessage::Appended(number, message), _) => {
-                if !self.take(number, &message).await {
-                    _ = self.read().await;
-                }
-            }
-            (PeerMessage::Commands(commands), Some(sequencer)) => {
-                for (member, command) in commands {
-                    sequencer.command(member, command);
-                }
-            }
-            (PeerMessage::Claim(members), Some(sequencer)) => sequencer.claim(&members, now),
-            (PeerMessage::Join(token, name), Some(sequencer)) => {
-                if let Some(answer) = sequencer.request_join(token, &name, now) {
-                    self.broadcast(&answer).await;
-                }
-            }
-            (answer @ (PeerMessage::Joined(..) | PeerMessage::Full(_)), _) => self.answer(&answer),
-            (PeerMessage::Commands(_) | PeerMessage::Claim(_) | PeerMessage::Join(..), None) => {}
-        }
-    }
-
-    /// Sends a message to the other hosts. One that is lost is sent again, or read in the log.
-    async fn broadcast(&mut self, message: &PeerMessage) {
-        _ = self.context.bus.broadcast(self.id, message.to_bytes()).await;
     }
 
     fn is_silent(&self, now: Instant) -> bool {
@@ -248,6 +227,7 @@ impl Replica {
             .is_some_and(|sequencer| self.state.room().len() > 0 || !sequencer.is_empty());
         let is_needed = has_work
             || !self.pending_joins.is_empty()
+            || !self.pending_returns.is_empty()
             || !self.interface.inbox.seated().is_empty()
             || self.watchers.load(Ordering::Acquire) > 0;
         if is_needed {

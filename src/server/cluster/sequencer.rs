@@ -5,22 +5,25 @@
 //! unchanged, until it is known whether the log has it: another one in its place could be the second with its
 //! number.
 
-use std::collections::{BTreeMap, VecDeque};
+mod returning;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
 use tokio::time::Instant;
 
+use self::returning::ReturnRequest;
 use super::log_message::LogMessage;
 use super::peer_message::PeerMessage;
 use super::room_state::RoomState;
 use crate::game::PlayerColor;
 use crate::server::line::Line;
-use crate::server::room::{Command, Entry, MemberId};
+use crate::server::room::{Command, Entry, MemberId, Room};
 use crate::server::sequencer::Inbox;
 use crate::store::host::Lease;
 
-/// The time after which a member is removed whom no host claims.
-pub(super) const UNCLAIMED: Duration = Duration::from_secs(4);
+/// The time after which a member is away whom no host claims.
+const UNCLAIMED: Duration = Duration::from_secs(4);
 /// The most join requests that are remembered, with their answers.
 const MOST_ANSWERS: usize = 64;
 
@@ -30,8 +33,12 @@ pub(super) struct ClusterSequencer {
     inbox: Inbox,
     /// When each member was claimed last.
     claimed: BTreeMap<MemberId, Instant>,
+    /// The members who are away, whom no host has to claim.
+    away: BTreeSet<MemberId>,
     /// The requests to join, the newest last.
     joining: VecDeque<Joining>,
+    /// The requests to return, the newest last.
+    returning: VecDeque<ReturnRequest>,
     /// Whether the log has the first message of the epoch.
     is_begun: bool,
     /// Whether messages are applied that the log does not have yet. Whoever is let in must be in the log.
@@ -62,7 +69,9 @@ impl ClusterSequencer {
             lease,
             inbox,
             claimed: BTreeMap::new(),
+            away: BTreeSet::new(),
             joining: VecDeque::new(),
+            returning: VecDeque::new(),
             is_begun: false,
             is_alone: false,
             sending: None,
@@ -114,6 +123,7 @@ impl ClusterSequencer {
         if !self.is_begun {
             self.begin(state, now);
         }
+        self.forget_lost(state.room());
         self.answers()
     }
 
@@ -145,6 +155,7 @@ impl ClusterSequencer {
         &mut self,
         token: u64,
         name: &Line,
+        is_kept: bool,
         now: Instant,
     ) -> Option<PeerMessage> {
         if let Some(known) = self.joining.iter().find(|joining| joining.token == token) {
@@ -154,6 +165,9 @@ impl ClusterSequencer {
             return None;
         }
         let Ok(member) = self.inbox.join(name) else { return Some(PeerMessage::Full(token)) };
+        if is_kept {
+            self.inbox.keep(member);
+        }
         self.claimed.insert(member, now);
         self.joining.push_back(Joining { token, member, color: None, is_in: false });
         if self.joining.len() > MOST_ANSWERS {
@@ -163,28 +177,30 @@ impl ClusterSequencer {
     }
 
     /// Takes a command of a member on any host.
-    pub(super) fn command(&mut self, member: MemberId, command: Command) {
+    pub(super) fn command(&mut self, member: MemberId, command: Command, now: Instant) {
         match command {
             Command::Leave => self.leave(member),
+            Command::Away => self.set_away(member, now),
             // What comes too often was refused on the member's own host.
             command => _ = self.inbox.act(member, command),
         }
     }
 
-    /// Notes that a host has these members.
-    pub(super) fn claim(&mut self, members: &[MemberId], now: Instant) {
+    /// Notes that a host has these members; returns the answers to the requests that are refused for it.
+    pub(super) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
         for member in members {
             self.claimed.entry(*member).and_modify(|time| *time = now);
         }
+        self.refuse_returns(members)
     }
 
-    /// Removes the members whom no host claims any more.
-    pub(super) fn remove_unclaimed(&mut self, now: Instant) {
+    /// Members whom no host claims any more are away.
+    pub(super) fn set_unclaimed_away(&mut self, now: Instant) {
         let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
         let lost: Vec<MemberId> =
             self.claimed.iter().filter(|(_, time)| is_lost(time)).map(|(id, _)| *id).collect();
         for member in lost {
-            self.leave(member);
+            self.set_away(member, now);
         }
     }
 
@@ -193,18 +209,45 @@ impl ClusterSequencer {
         self.sending.is_none() && self.inbox.is_empty()
     }
 
+    /// Whether the log has all that members have done.
+    pub(super) fn is_settled(&self) -> bool {
+        self.sending.is_none() && !self.inbox.has_moves()
+    }
+
     /// Begins the epoch with the present members, each of whom is to be claimed within the usual time.
     fn begin(&mut self, state: &RoomState, now: Instant) {
         let room = state.room();
         self.is_begun = true;
         self.inbox = Inbox::new(room.header().mode, room.next_member());
         room.colors().for_each(|(member, color)| self.inbox.admit(member, color));
-        self.claimed = room.colors().map(|(member, _)| (member, now)).collect();
+        let members = room.colors().map(|(member, _)| member);
+        let (away, here): (BTreeSet<MemberId>, BTreeSet<MemberId>) =
+            members.partition(|member| room.is_away(*member));
+        self.away = away;
+        self.claimed = here.into_iter().map(|member| (member, now)).collect();
     }
 
     fn leave(&mut self, member: MemberId) {
         self.claimed.remove(&member);
+        self.away.remove(&member);
         self.inbox.leave(member);
+    }
+
+    fn set_away(&mut self, member: MemberId, now: Instant) {
+        if self.claimed.remove(&member).is_some() {
+            self.away.insert(member);
+            self.inbox.set_away(member);
+            self.take_back_if_requested(member, now);
+        }
+    }
+
+    /// Forgets the members whom the room has removed itself: guests, and who was away for too long.
+    fn forget_lost(&mut self, room: &Room) {
+        for member in self.inbox.seated().into_iter().filter(|member| room.has_lost(*member)) {
+            self.claimed.remove(&member);
+            self.away.remove(&member);
+            self.inbox.dismiss(member);
+        }
     }
 
     /// The next message, of `steps` steps.

@@ -6,14 +6,15 @@ use tokio::sync::mpsc;
 
 use super::account::{self, choose_name};
 use super::results;
+use super::stay::Way;
 use super::visit::Visit;
 use crate::server::locked;
 use crate::server::logging::events;
 use crate::server::room::Command;
+#[cfg(feature = "cluster")]
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::{CommandRefusal, FinishedRun};
 use crate::server::session::{News, Request};
-use crate::server::summary::{RoomId, RoomWish};
 use crate::store::host::{Account, AccountSettings, Name};
 use crate::world::Difficulty;
 
@@ -25,13 +26,9 @@ pub(super) enum Reply {
     /// A place in a room of the cluster.
     #[cfg(feature = "cluster")]
     Place(Result<Place, RoomRefusal>),
-}
-
-/// A way into a room.
-enum Way {
-    Watch(RoomId),
-    Enter(RoomId),
-    Open(RoomWish),
+    /// The place in which the visitor was before.
+    #[cfg(feature = "cluster")]
+    Returned(Result<Place, RoomRefusal>),
 }
 
 /// The most answers that wait for a session. Further ones are dropped, as those to a flood of wishes.
@@ -82,6 +79,8 @@ impl Visit {
             Reply::Named(_, Err(sentence)) => News::Named(Err(sentence)),
             #[cfg(feature = "cluster")]
             Reply::Place(place) => return self.enter(place),
+            #[cfg(feature = "cluster")]
+            Reply::Returned(place) => return self.returned(place),
         };
         self.tell(news);
     }
@@ -103,7 +102,7 @@ impl Visit {
         }
     }
 
-    fn tell(&mut self, news: News) {
+    pub(super) fn tell(&mut self, news: News) {
         let now = self.shared.now();
         self.session.tell(news, now);
     }
@@ -143,50 +142,6 @@ impl Visit {
         self.account = account.or(self.account.take());
         self.name = Some(name);
         News::Named(Ok(line))
-    }
-
-    /// Enters a room. Only a visitor with a name can be a member.
-    fn go(&mut self, way: Way) {
-        if !matches!(way, Way::Watch(_)) {
-            self.leave();
-        }
-        let name = self.name.as_ref().map(account::line);
-        #[cfg(feature = "cluster")]
-        if let Some(rooms) = self.shared.cluster.clone() {
-            let replies = self.replies.clone();
-            tokio::spawn(async move {
-                let place = match (&way, &name) {
-                    (Way::Watch(room), _) => rooms.watch(*room).await,
-                    (Way::Enter(room), Some(name)) => rooms.enter(*room, name).await,
-                    (Way::Open(wish), Some(name)) => rooms.open(wish, name).await,
-                    (_, None) => Err(RoomRefusal::Gone),
-                };
-                // A visitor who has gone leaves the room when the place is dropped.
-                _ = replies.send(Reply::Place(place)).await;
-            });
-            return;
-        }
-        let rooms = &self.shared.rooms;
-        let place = match (way, &name) {
-            (Way::Watch(room), _) => rooms.watch(room),
-            (Way::Enter(room), Some(name)) => rooms.enter(room, name),
-            (Way::Open(wish), Some(name)) => rooms.open(&wish, name),
-            (_, None) => Err(RoomRefusal::Gone),
-        };
-        self.enter(place);
-    }
-
-    fn enter(&mut self, place: Result<Place, RoomRefusal>) {
-        match place {
-            Ok(place) => {
-                self.in_lobby = false;
-                self.presence.set_room(Some(place.room().place()));
-                let news = News::Entered { room: place.room(), member: place.member_id() };
-                self.place = Some(place);
-                self.tell(news);
-            }
-            Err(refusal) => self.tell(News::Refused(refusal.to_string())),
-        }
     }
 
     fn act(&mut self, command: Command) {

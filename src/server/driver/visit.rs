@@ -44,9 +44,14 @@ pub(super) struct Visit {
     /// The same, if the frame on its way answers it.
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
-    ends_at: Option<Duration>,
+    pub(super) ends_at: Option<Duration>,
     /// Whether a frame is on its way.
     is_sending: bool,
+    /// Whether the server ends.
+    pub(super) is_draining: bool,
+    /// Whether the visitor waits for the place in which they were before.
+    #[cfg(feature = "cluster")]
+    pub(super) is_returning: bool,
 }
 
 /// What a driver waits for.
@@ -68,8 +73,6 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const MOST_WAITING: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
-/// The time between the end of the sessions and that of the server, where there is as much.
-const LAST: Duration = Duration::from_secs(2);
 
 impl Visit {
     pub(super) fn new(
@@ -125,6 +128,9 @@ impl Visit {
             answers_key: None,
             ends_at: None,
             is_sending: false,
+            is_draining: false,
+            #[cfg(feature = "cluster")]
+            is_returning: false,
             shared,
         }
     }
@@ -132,6 +138,16 @@ impl Visit {
     /// Drives the session to its end; returns the exit status. The future may be dropped before, and
     /// the session driven on.
     pub(super) async fn run(&mut self, link: &mut Link) -> u8 {
+        let status = self.drive(link).await;
+        if self.is_draining {
+            self.part();
+        } else {
+            self.leave();
+        }
+        status
+    }
+
+    async fn drive(&mut self, link: &mut Link) -> u8 {
         let Link { inbound, outbox } = link;
         loop {
             self.run_requests();
@@ -154,10 +170,7 @@ impl Visit {
                 }
                 Happening::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
                 Happening::Arrived(Arrival::Drains) => self.drain(now),
-                Happening::Arrived(Arrival::Ended) => {
-                    self.leave();
-                    return 0;
-                }
+                Happening::Arrived(Arrival::Ended) => return 0,
                 Happening::Drained => {
                     self.session.written(now);
                     self.is_sending = false;
@@ -247,7 +260,7 @@ impl Visit {
         self.session.wake(now);
         self.woken_at = now;
         if let Some(sentence) = self.place.as_ref().and_then(Place::closed) {
-            self.leave();
+            self.part();
             self.session.tell(News::Left(sentence.to_string()), now);
         }
         if let Some(place) = &self.place
@@ -256,23 +269,8 @@ impl Visit {
             self.submit(run);
         }
         if self.ends_at.take_if(|end| *end <= now).is_some() {
-            self.session.tell(News::Ended("The server has ended. Come again!".to_owned()), now);
+            self.session.tell(News::Ended(self.last_sentence().to_owned()), now);
         }
-    }
-
-    /// Leaves the room, and submits what was won in it.
-    pub(super) fn leave(&mut self) {
-        let Some(place) = self.place.take() else { return };
-        self.presence.set_room(None);
-        if let Some(run) = place.finished() {
-            self.submit(run);
-        }
-    }
-
-    fn drain(&mut self, now: Duration) {
-        let time = self.shared.config.get().drain;
-        self.session.tell(News::Draining { seconds: time.as_secs() }, now);
-        self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
     }
 }
 

@@ -69,8 +69,12 @@ fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
             }
             commands
                 .push((member, Command::Intents { seen: room.game().steps(), intents: wanted }));
-            if random.one_in(400) {
-                commands.push((member, Command::Leave));
+            if random.one_in(100) {
+                let token = random.bits();
+                let command =
+                    [Command::Leave, Command::Keep, Command::Away, Command::Return { token }]
+                        .swap_remove(random.below(4));
+                commands.push((member, command));
             }
         }
         for (member, command) in commands {

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::entry::{CHAT_COLUMNS, NAME_COLUMNS};
 use super::member::Member;
+use super::presence::{AWAY, KeptPlace};
 use super::replayed::no_level;
 use super::talk::SAID;
 use super::{Catalog, Header, Room, Said};
@@ -148,9 +149,15 @@ impl Room {
             let name = Line::of(member.name.as_str(), NAME_COLUMNS);
             self.members[..index].iter().all(is_other)
                 && name.as_ref() == Some(&member.name)
+                && is_kept_possibly(member.kept)
                 && (member.player.is_none() || color(member) == Some(member.color))
         })
     }
+}
+
+/// Whether such a place may be kept: nobody has more time to return than those who have just gone.
+fn is_kept_possibly(kept: Option<KeptPlace>) -> bool {
+    kept.and_then(|kept| kept.away).is_none_or(|left| (1..=AWAY).contains(&left))
 }
 
 fn read_header(input: &mut Reader) -> Result<Header, Unrestorable> {

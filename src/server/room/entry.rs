@@ -7,6 +7,9 @@
 //! 12 want 1 9 forward run turn:1.5
 //! 40 say 1 behind you
 //! 41 emote 1 wave
+//! 41 keep 1
+//! 80 away 1
+//! 85 return 1 9f3ac1
 //! 90 leave 1
 //! ```
 //!
@@ -59,6 +62,12 @@ pub(crate) enum Command {
     Join { color: PlayerColor, name: Line },
     /// Leaves the room.
     Leave,
+    /// Has an account, so that their place is kept while they are away.
+    Keep,
+    /// Is away: their host is gone.
+    Away,
+    /// Returns from another host. The token is that of no other return.
+    Return { token: u64 },
     /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in
     /// the next step only.
     Intents { seen: u64, intents: Intents },
@@ -132,6 +141,9 @@ impl fmt::Display for Entry {
                 write!(f, "{step} join {member} {} {name}", color.name())
             }
             Command::Leave => write!(f, "{step} leave {member}"),
+            Command::Keep => write!(f, "{step} keep {member}"),
+            Command::Away => write!(f, "{step} away {member}"),
+            Command::Return { token } => write!(f, "{step} return {member} {token:x}"),
             Command::Intents { seen, intents } => {
                 write!(f, "{step} want {member} {seen} {}", intents.words())
             }
@@ -155,6 +167,9 @@ impl Entry {
                 Command::Join { color, name: Line::of(name, NAME_COLUMNS)? }
             }
             "leave" if rest.is_empty() => Command::Leave,
+            "keep" if rest.is_empty() => Command::Keep,
+            "away" if rest.is_empty() => Command::Away,
+            "return" => Command::Return { token: u64::from_str_radix(rest, 16).ok()? },
             "again" if rest.is_empty() => Command::Again,
             "want" => {
                 let (seen, words) = rest.split_once(' ')?;
@@ -187,6 +202,9 @@ mod tests {
             (prop::sample::select(&PlayerColor::ALL), line(NAME_COLUMNS))
                 .prop_map(|(color, name)| Command::Join { color, name }),
             Just(Command::Leave),
+            Just(Command::Keep),
+            Just(Command::Away),
+            any::<u64>().prop_map(|token| Command::Return { token }),
             Just(Command::Again),
             (any::<u64>(), intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
             line(CHAT_COLUMNS).prop_map(Command::Say),
@@ -209,7 +227,15 @@ mod tests {
 
     #[test]
     fn other_lines_are_no_entries() {
-        for line in ["", "0", "0 join 1", "0 join 1 plaid Mara", "x leave 1", "0 want 1 2 fly"] {
+        for line in [
+            "",
+            "0",
+            "0 join 1",
+            "0 join 1 plaid Mara",
+            "x leave 1",
+            "0 want 1 2 fly",
+            "0 away 1 x",
+        ] {
             assert_eq!(Entry::parse(line), None, "{line}");
         }
     }

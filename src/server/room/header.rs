@@ -8,14 +8,17 @@
 //! seed 77
 //! round 3
 //! member 1 amber 250 Mara
+//! kept 1 9f3ac1 1200
 //! ```
 //!
-//! A line for each member holds their number, colour, points and name.
+//! A line for each member holds their number, colour, points and name. Lines for the places that are kept follow,
+//! each with the number of the member, the token of the last return, and the steps that are left to one who is away.
 
 use std::fmt;
 
 use super::entry::{MemberId, NAME_COLUMNS};
 use super::mode::Mode;
+use super::presence::KeptPlace;
 use crate::game::PlayerColor;
 use crate::server::line::Line;
 use crate::world::Difficulty;
@@ -50,6 +53,8 @@ pub(crate) struct Seat {
     /// The points of the rounds before.
     pub(crate) points: u32,
     pub(crate) name: Line,
+    /// The place that is kept for the member; `None` if it is not.
+    pub(crate) kept: Option<KeptPlace>,
 }
 
 impl Header {
@@ -69,7 +74,13 @@ impl Header {
         let difficulty = value("difficulty")?;
         let difficulty = Difficulty::ALL.into_iter().find(|it| it.name() == difficulty)?;
         let [seed, round, next_member] = [value("seed")?, value("round")?, value("next")?];
-        let members = lines.map(Seat::parse).collect::<Option<_>>()?;
+        let mut members: Vec<Seat> = Vec::new();
+        for line in lines {
+            match line.strip_prefix("kept ") {
+                Some(words) => read_kept(&mut members, words)?,
+                None => members.push(Seat::parse(line)?),
+            }
+        }
         let (seed, round) = (seed.parse().ok()?, round.parse().ok()?);
         let next_member = next_member.parse().ok()?;
         Some(Self { level, mode, difficulty, seed, round, next_member, members })
@@ -81,7 +92,8 @@ impl fmt::Display for Header {
         writeln!(f, "{FIRST_LINE}\nlevel {}\nmode {}", self.level, self.mode.name())?;
         writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
         writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
-        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))
+        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))?;
+        self.members.iter().try_for_each(|seat| write_kept(f, seat))
     }
 }
 
@@ -92,15 +104,40 @@ impl Seat {
         let color = words.next()?;
         let color = PlayerColor::ALL.into_iter().find(|it| it.name() == color)?;
         let points = words.next()?.parse().ok()?;
-        Some(Self { id, color, points, name: Line::of(words.next()?, NAME_COLUMNS)? })
+        Some(Self { id, color, points, name: Line::of(words.next()?, NAME_COLUMNS)?, kept: None })
     }
 }
 
 impl fmt::Display for Seat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { id, color, points, name } = self;
+        let Self { id, color, points, name, kept: _ } = self;
         write!(f, "member {id} {} {points} {name}", color.name())
     }
+}
+
+/// Writes the line of the place that is kept for a member, if it is.
+fn write_kept(f: &mut fmt::Formatter<'_>, seat: &Seat) -> fmt::Result {
+    match seat.kept {
+        None => Ok(()),
+        Some(KeptPlace { token, away: None }) => writeln!(f, "kept {} {token:x}", seat.id),
+        Some(KeptPlace { token, away: Some(left) }) => {
+            writeln!(f, "kept {} {token:x} {left}", seat.id)
+        }
+    }
+}
+
+/// Reads such a line after its first word.
+fn read_kept(members: &mut [Seat], words: &str) -> Option<()> {
+    let mut words = words.split(' ');
+    let id = MemberId(words.next()?.parse().ok()?);
+    let token = u64::from_str_radix(words.next()?, 16).ok()?;
+    let away = match words.next() {
+        Some(left) => Some(left.parse().ok()?),
+        None => None,
+    };
+    let seat = members.iter_mut().find(|seat| seat.id == id)?;
+    seat.kept = Some(KeptPlace { token, away });
+    words.next().is_none().then_some(())
 }
 
 #[cfg(test)]
@@ -111,10 +148,18 @@ mod tests {
     fn what_is_written_reads_as_the_same() {
         let seat = |id, points, name| {
             let name = Line::of(name, NAME_COLUMNS).unwrap();
-            Seat { id: MemberId(id), color: PlayerColor::ALL[id as usize % 8], points, name }
+            Seat {
+                id: MemberId(id),
+                color: PlayerColor::ALL[id as usize % 8],
+                points,
+                name,
+                kept: None,
+            }
         };
         let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
         header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c")];
+        header.members[0].kept = Some(KeptPlace { token: u64::MAX, away: None });
+        header.members[1].kept = Some(KeptPlace { token: 0, away: Some(1_200) });
         header.next_member = 9;
         let text = header.to_string();
         assert_eq!(Header::parse(text.lines()), Some(header));

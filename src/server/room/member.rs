@@ -1,6 +1,7 @@
 //! Members of a room.
 
 use super::entry::MemberId;
+use super::presence::KeptPlace;
 use crate::game::stored::stored;
 use crate::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 use crate::server::line::Line;
@@ -16,6 +17,8 @@ pub(crate) struct Member {
     pub(crate) player: Option<PlayerId>,
     /// The points of the rounds before.
     pub(crate) points: u32,
+    /// The place that is kept for the member; `None` if it is not.
+    pub(crate) kept: Option<KeptPlace>,
     /// What the member wants in the next step.
     pub(super) intents: Intents,
     /// What they wanted in the last one.
@@ -24,7 +27,7 @@ pub(crate) struct Member {
     pub(super) seen: u64,
 }
 
-stored! { struct Member { id, name, color, player, points, intents, acted, seen } }
+stored! { struct Member { id, name, color, player, points, kept, intents, acted, seen } }
 
 impl Member {
     /// What the member wants in the step that begins. The angles of it count in no other step.

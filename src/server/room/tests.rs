@@ -6,44 +6,44 @@ use crate::server::simulation;
 use crate::world::{Difficulty, FieldOfView};
 
 /// Two levels with a hall in which the exit is straight ahead.
-fn catalog() -> Arc<Catalog> {
+pub(super) fn catalog() -> Arc<Catalog> {
     let map = simulation::HALL
         .replace("............>#", ".............#")
         .replace("@............#", "@.......>....#");
     Arc::new(simulation::catalog(&map))
 }
 
-fn room(mode: Mode) -> Room {
+pub(super) fn room(mode: Mode) -> Room {
     Room::new(&catalog(), Header::new("hall", mode, Difficulty::Normal, 7)).unwrap()
 }
 
-fn line(text: &str) -> Line {
+pub(super) fn line(text: &str) -> Line {
     Line::of(text, CHAT_COLUMNS).unwrap()
 }
 
-fn join(room: &mut Room, name: &str) -> MemberId {
+pub(super) fn join(room: &mut Room, name: &str) -> MemberId {
     let member = room.next_member();
     let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
     do_now(room, member, Command::Join { color, name: line(name) });
     member
 }
 
-fn do_now(room: &mut Room, member: MemberId, command: Command) {
+pub(super) fn do_now(room: &mut Room, member: MemberId, command: Command) {
     let step = room.step();
     room.apply(&Entry { step, member, command });
 }
 
-fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
+pub(super) fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
     let seen = room.view().game.steps();
     let intents = intents.iter().copied().collect();
     do_now(room, member, Command::Intents { seen, intents });
 }
 
-fn advance(room: &mut Room, steps: u64) {
+pub(super) fn advance(room: &mut Room, steps: u64) {
     (0..steps).for_each(|_| room.advance());
 }
 
-fn position(room: &Room, member: MemberId) -> glam::DVec2 {
+pub(super) fn position(room: &Room, member: MemberId) -> glam::DVec2 {
     let view = room.view();
     let player = view.member(member).unwrap().player.unwrap();
     view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()
@@ -164,6 +164,9 @@ fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
     let command = prop_oneof![
         2 => Just(Command::Join { color: PlayerColor::ALL[0], name: line("Mara") }),
         1 => Just(Command::Leave),
+        2 => Just(Command::Keep),
+        1 => Just(Command::Away),
+        1 => any::<u64>().prop_map(|token| Command::Return { token }),
         6 => (0_u64..500, intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
         1 => Just(Command::Say(line("hello"))),
         1 => Just(Command::Emote(Emote::Wave)),

@@ -43,6 +43,8 @@ pub(crate) struct MemberView {
     pub(crate) is_blind: bool,
     /// The latest emotion, for as long as it is shown.
     pub(crate) emote: Option<Emote>,
+    /// Whether their host is gone, so that they stand still.
+    pub(crate) is_away: bool,
 }
 
 /// Something that was said to all.

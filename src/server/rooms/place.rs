@@ -10,12 +10,15 @@ use crate::server::room::{Command, MemberId, RoomView};
 use crate::server::sequencer::{CommandRefusal, FinishedRun, RoomInterface, State};
 use crate::server::summary::RoomId;
 
-/// A visitor's place in a room, as a member or to watch. They leave when it is dropped.
+/// A visitor's place in a room, as a member or to watch. They leave when it is dropped, or are away if their host ends.
 #[derive(Debug)]
 pub(crate) struct Place {
     room: RoomId,
     role: Role,
     interface: Arc<RoomInterface>,
+    /// Whether the member is away, and does not leave, when the place is dropped.
+    #[cfg(feature = "cluster")]
+    is_kept: bool,
     state: watch::Receiver<State>,
 }
 
@@ -49,7 +52,14 @@ impl Place {
 
     fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
         let state = interface.shown.state();
-        Self { room, role, interface, state }
+        Self {
+            room,
+            role,
+            interface,
+            #[cfg(feature = "cluster")]
+            is_kept: false,
+            state,
+        }
     }
 
     pub(crate) fn room(&self) -> RoomId {
@@ -84,6 +94,12 @@ impl Place {
         self.member_id().is_some_and(|member| !self.interface.inbox.seated().contains(&member))
     }
 
+    /// Sets whether the room keeps the place when it is dropped, since the host ends.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn set_kept(&mut self, is_kept: bool) {
+        self.is_kept = is_kept;
+    }
+
     /// Waits until there is a newer snapshot than the last [`Place::view`], or the room is closed.
     pub(crate) async fn changed(&mut self) {
         // The place holds the sender.
@@ -105,6 +121,8 @@ impl Place {
 impl Drop for Place {
     fn drop(&mut self) {
         match &self.role {
+            #[cfg(feature = "cluster")]
+            Role::Member(member) if self.is_kept => self.interface.inbox.part(*member),
             Role::Member(member) => self.interface.inbox.leave(*member),
             Role::Watcher { watchers, rooms } => {
                 watchers.fetch_sub(1, Ordering::AcqRel);

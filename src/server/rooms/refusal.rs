@@ -17,6 +17,9 @@ pub(crate) enum RoomRefusal {
     TooMany,
     /// There is no such level.
     NoLevel,
+    /// The member is somewhere else.
+    #[cfg(feature = "cluster")]
+    Taken,
     /// The hosts cannot agree now.
     #[cfg(feature = "cluster")]
     NotNow,
@@ -40,6 +43,8 @@ impl fmt::Display for RoomRefusal {
             Self::Alone => "Somebody plays alone in this room; you can watch.",
             Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
             Self::NoLevel => "There is no such level.",
+            #[cfg(feature = "cluster")]
+            Self::Taken => "You are in a room by another connection, and stay there.",
             #[cfg(feature = "cluster")]
             Self::NotNow => "The room does not answer now; try again.",
         })

@@ -7,6 +7,9 @@
 //! Intents take effect in the order in which they were wanted, one change in [`INTENT_PAUSE`] steps. If
 //! more than [`MOST_INTENTS`] changes wait, the newest replaces the last one.
 
+#[cfg(feature = "cluster")]
+mod away;
+
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
@@ -247,7 +250,11 @@ impl Seat {
             }
             Command::Say(_) => &mut self.chat,
             Command::Emote(_) | Command::Again => &mut self.emotes,
-            Command::Join { .. } | Command::Leave => return Err(CommandRefusal::Impossible),
+            Command::Join { .. }
+            | Command::Leave
+            | Command::Keep
+            | Command::Away
+            | Command::Return { .. } => return Err(CommandRefusal::Impossible),
         };
         if !pace.allows(steps) {
             return Err(CommandRefusal::TooOften);

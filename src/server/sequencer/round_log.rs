@@ -74,6 +74,7 @@ impl RoundLog {
             let result = self.log.flush();
             self.report(result);
         }
+        let count = room.len();
         while let Some(entry) = self.log.next(step) {
             changes.summary |= matches!(entry.command, Command::Join { .. } | Command::Leave);
             room.apply(&entry);
@@ -81,7 +82,7 @@ impl RoundLog {
         }
         let phase = room.phase();
         room.advance();
-        changes.summary |= phase != room.phase();
+        changes.summary |= phase != room.phase() || count != room.len();
         if room.header().mode == Mode::Alone {
             changes.finished = self.run.step(room);
         }

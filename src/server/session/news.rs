@@ -109,8 +109,8 @@ pub(crate) enum News {
     Result(String),
     /// A line from the host to all.
     Said(Line),
-    /// The server ends in that many seconds.
-    Draining { seconds: u64 },
+    /// The server ends in that many seconds; whether the visitor finds the room as it was on another one.
+    Draining { seconds: u64, can_return: bool },
     /// The session ends, and why: a sentence.
     Ended(String),
 }

@@ -40,8 +40,10 @@ impl Visit {
             }
             News::Result(sentence) => self.hear(sentence),
             News::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
-            News::Draining { seconds } => {
-                self.draining = Some(format!("The server ends in {seconds} seconds."));
+            News::Draining { seconds, can_return } => {
+                let then =
+                    if can_return { " Connect again, and you are where you were." } else { "" };
+                self.draining = Some(format!("The server ends in {seconds} seconds.{then}"));
                 self.renew_menu();
             }
             News::Ended(sentence) => self.farewell = Some(sentence),

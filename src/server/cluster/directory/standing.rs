@@ -3,10 +3,11 @@
 use super::SharedRooms;
 use crate::rng;
 use crate::server::cluster::bus::{BusFault, Key};
+use crate::server::cluster::log_message::version;
 use crate::server::cluster::record::Record;
 use crate::server::locked;
 use crate::server::room::Header;
-use crate::server::summary::{RoomId, RoomWish};
+use crate::server::summary::RoomId;
 
 impl SharedRooms {
     /// Makes those that are missing.
@@ -15,7 +16,7 @@ impl SharedRooms {
         for (index, wish) in standing.iter().enumerate() {
             let number = standing[..index].iter().filter(|other| *other == wish).count();
             match self.header(wish) {
-                Some(header) => _ = self.make_standing_room(wish, number, header).await,
+                Some(header) => _ = self.make_standing_room(number, header).await,
                 None => {
                     tracing::error!(level = wish.level, "no standing room: there is no such level");
                 }
@@ -23,14 +24,11 @@ impl SharedRooms {
         }
     }
 
-    async fn make_standing_room(
-        &self,
-        wish: &RoomWish,
-        number: usize,
-        header: Header,
-    ) -> Result<(), BusFault> {
+    async fn make_standing_room(&self, number: usize, header: Header) -> Result<(), BusFault> {
         let bus = &self.0.context.bus;
-        let text = format!("{} {} {}", header.level, wish.mode.name(), wish.difficulty.name());
+        // Rooms of another version are none for this host.
+        let Header { level, mode, difficulty, .. } = &header;
+        let text = format!("{} {level} {} {}", version(), mode.name(), difficulty.name());
         let hash = rng::hash(number as u64, text.bytes().map(u64::from));
         let key = Key::Standing(format!("{hash:016x}"));
         if bus.get(key.clone()).await?.is_none() {

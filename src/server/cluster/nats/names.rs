@@ -20,5 +20,10 @@ pub(super) fn key_name(key: &Key) -> String {
         Key::Room(room) => format!("{ROOMS}{room}"),
         Key::Checkpoint(room) => format!("checkpoint.{room}"),
         Key::Standing(hash) => format!("standing.{hash}"),
+        Key::Place(key) => format!("place.{}", hex(key.bytes())),
     }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

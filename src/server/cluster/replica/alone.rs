@@ -23,7 +23,6 @@ use super::times::{SECOND, steps_due};
 use crate::server::cluster::bus::BusFault;
 use crate::server::cluster::log_message::LogMessage;
 use crate::server::cluster::sequencer::ClusterSequencer;
-use crate::server::room::MemberId;
 
 /// The longest time in which a room goes on alone.
 const MOST_ALONE: Duration = Duration::from_mins(10);
@@ -170,9 +169,9 @@ impl Replica {
     }
 
     fn has_only_own_members(&self) -> bool {
-        let own = self.interface.inbox.seated();
-        let is_own = |member: MemberId| own.contains(&member);
-        self.state.room().colors().all(|(member, _)| is_own(member))
+        let (own, room) = (self.interface.inbox.seated(), self.state.room());
+        // Those who are away have no host.
+        room.colors().all(|(member, _)| own.contains(&member) || room.is_away(member))
     }
 
     /// Leaves the room to hosts that reach the bus.

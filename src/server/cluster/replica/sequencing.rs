@@ -9,6 +9,7 @@ use super::Replica;
 use super::times::{SECOND, is_due, steps_due};
 use crate::server::cluster::bus::{BusFault, Key};
 use crate::server::cluster::lease_worker::LEASE_TIME;
+use crate::server::cluster::peer_message::PeerMessage;
 use crate::server::cluster::sequencer::ClusterSequencer;
 use crate::store::host::Lease;
 
@@ -158,9 +159,8 @@ impl Replica {
     /// Leaves the room to other hosts, or closes it if nobody needs it.
     pub(super) async fn end(mut self) {
         if *self.ending.borrow() {
-            // Members have left meanwhile.
-            self.send_commands().await;
-            self.sequence(Instant::now()).await;
+            self.join_requests.close();
+            self.part_with_members().await;
         }
         let is_broken = self.interface.inbox.is_closed();
         if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
@@ -179,6 +179,7 @@ impl Replica {
                 }
             }
             _ = self.context.leases.release(sequencer.lease()).await;
+            self.broadcast(&PeerMessage::Released).await;
         }
         let ends = *self.ending.borrow();
         let sentence =

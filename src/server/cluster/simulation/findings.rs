@@ -10,6 +10,7 @@ use super::super::record::Record;
 use super::super::room_state::{Position, RoomState};
 use super::Run;
 use crate::server::room::{Command, Header, MemberId};
+use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::summary::RoomId;
 
 /// The longest time without a message in a room with members.
@@ -49,7 +50,7 @@ impl Run {
         assert_eq!(let_in.len(), self.let_in.len(), "two players have the same number");
     }
 
-    /// The members of rooms are those who are there.
+    /// The members of rooms who are not away are those who are there.
     pub(super) fn assert_members(&self) {
         let mut there: BTreeMap<RoomId, BTreeSet<MemberId>> = BTreeMap::new();
         for place in self.players.iter().filter_map(|player| player.place.as_ref()) {
@@ -58,16 +59,35 @@ impl Run {
                 continue;
             }
             let members = there.entry(place.room()).or_default();
-            members.insert(place.member_id().expect("a member"));
+            assert!(members.insert(place.member_id().expect("a member")), "two are one member");
+        }
+        for (host, place) in self.players.iter().flat_map(|player| &player.taken) {
+            let is_killed = self.hosts[*host].is_killed;
+            assert!(is_killed || place.closed().is_some(), "a place that was taken is open");
         }
         let now = Instant::now();
         for (room, members) in there {
             let played = self.played(room);
+            let known = played.state.room().colors().map(|(member, _)| member);
             let known: BTreeSet<MemberId> =
-                played.state.room().colors().map(|(member, _)| member).collect();
+                known.filter(|member| !played.state.room().is_away(*member)).collect();
             assert_eq!(known, members, "the members of room {room}");
             let is_going_on = played.last_at.is_some_and(|at| now.duration_since(at) < PAUSE);
             assert!(is_going_on, "room {room} stands still");
+        }
+    }
+
+    /// Nobody takes the place of one who plays.
+    pub(super) async fn assert_nobody_is_displaced(&self) {
+        for player in &self.players {
+            let is_there = |place: &&Place| place.closed().is_none();
+            let Some(place) = player.place.as_ref().filter(is_there) else { continue };
+            let Some(key) = player.entrant.key else { continue };
+            let at = (place.room(), place.member_id().expect("a member"));
+            for host in self.hosts.iter().filter(|host| !host.is_killed) {
+                let refusal = host.shared.resume(key, at).await.expect_err("they play");
+                assert_eq!(refusal, RoomRefusal::Taken);
+            }
         }
     }
 

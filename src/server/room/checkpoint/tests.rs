@@ -65,6 +65,9 @@ impl Party {
                 1 => Some(Command::Say(line("behind you"))),
                 2 => Some(Command::Emote(Emote::ALL[random.below(6)])),
                 3 => Some(Command::Again),
+                4 => Some(Command::Keep),
+                5 => Some(Command::Away),
+                6 => Some(Command::Return { token: random.bits() }),
                 _ => None,
             };
             entries.extend(command.map(|command| entry(member.id, command)));

@@ -85,6 +85,7 @@ fn name(member: &MemberView, depth: ColorDepth) -> Span<'static> {
 
 const fn role(member: &MemberView, mode: Mode) -> &'static str {
     match (member.role, mode) {
+        _ if member.is_away => "away",
         (Role::Seeker, Mode::Tag) => "is it",
         (Role::Seeker, _) => "seeks",
         (Role::Done, _) => "is out",

@@ -1,0 +1,72 @@
+//! What the replicas of a room tell each other.
+
+use tokio::time::Instant;
+
+use super::Replica;
+use crate::server::cluster::peer_message::PeerMessage;
+
+impl Replica {
+    /// Handles a broadcast.
+    pub(super) async fn receive_broadcast(&mut self, bytes: &[u8]) {
+        let now = Instant::now();
+        let message = match PeerMessage::parse(bytes) {
+            Ok(message) => message,
+            Err(fault) => {
+                return tracing::warn!(room = %self.id, "a broadcast that cannot be read: {fault:?}");
+            }
+        };
+        match (message, &mut self.sequencer) {
+            (PeerMessage::Appended(number, message), _) => {
+                if !self.take(number, &message).await {
+                    _ = self.read().await;
+                }
+            }
+            (PeerMessage::Commands(commands), Some(sequencer)) => {
+                for (member, command) in commands {
+                    sequencer.command(member, command, now);
+                }
+            }
+            (PeerMessage::Claim(members), Some(sequencer)) => {
+                let answers = sequencer.claim(&members, now);
+                self.tell_answers(answers).await;
+            }
+            (PeerMessage::Join(token, is_kept, name), Some(sequencer)) => {
+                if let Some(answer) = sequencer.request_join(token, &name, is_kept, now) {
+                    self.broadcast(&answer).await;
+                }
+            }
+            (PeerMessage::Return(token, member), Some(sequencer)) => {
+                if let Some(answer) = sequencer.request_return(token, member, now) {
+                    self.broadcast(&answer).await;
+                }
+            }
+            // Nobody has to wait until the room is silent.
+            (PeerMessage::Released, None) => self.times.leased = None,
+            (answer @ (PeerMessage::Joined(..) | PeerMessage::Full(_)), _) => self.answer(&answer),
+            (PeerMessage::Taken(token), _) => self.refuse_return(token),
+            (
+                PeerMessage::Commands(_)
+                | PeerMessage::Claim(_)
+                | PeerMessage::Join(..)
+                | PeerMessage::Return(..),
+                None,
+            )
+            | (PeerMessage::Released, Some(_)) => {}
+        }
+    }
+
+    /// Sends a message to the other hosts. One that is lost is sent again, or read in the log.
+    pub(super) async fn broadcast(&mut self, message: &PeerMessage) {
+        _ = self.context.bus.broadcast(self.id, message.to_bytes()).await;
+    }
+
+    /// Passes on answers of the sequencer that this host has.
+    pub(super) async fn tell_answers(&mut self, answers: Vec<PeerMessage>) {
+        for answer in answers {
+            if let PeerMessage::Taken(token) = answer {
+                self.refuse_return(token);
+            }
+            self.broadcast(&answer).await;
+        }
+    }
+}

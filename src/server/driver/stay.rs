@@ -1,0 +1,186 @@
+//! A visitor's stay in a room: the ways in and out.
+//!
+//! # Rules
+//!
+//! - A visitor who leaves, or whose connection ends, is not in the room any more.
+//! - In a cluster, one whose host ends is away. With an account, they are where they were when they connect to any
+//!   host, if they are away for no longer than a minute. A visitor to whom this host looks for their place
+//!   may go elsewhere meanwhile; then they have left.
+
+use std::time::Duration;
+
+use super::account;
+#[cfg(feature = "cluster")]
+use super::requests::Reply;
+use super::visit::Visit;
+#[cfg(feature = "cluster")]
+use crate::server::cluster::Entrant;
+use crate::server::rooms::{Place, RoomRefusal};
+use crate::server::session::News;
+use crate::server::summary::{RoomId, RoomWish};
+
+/// A way into a room.
+pub(super) enum Way {
+    Watch(RoomId),
+    Enter(RoomId),
+    Open(RoomWish),
+}
+
+/// The time between the end of the sessions and that of the server, where there is as much.
+const LAST: Duration = Duration::from_secs(2);
+/// What a visitor reads while their place is looked for.
+#[cfg(feature = "cluster")]
+const LOOKS: &str = "You were in a room; the host looks for your place.";
+/// What they read then.
+#[cfg(feature = "cluster")]
+const WELCOME: &str = "Welcome back: you are where you were.";
+#[cfg(feature = "cluster")]
+const GONE: &str = "Your place in the room is gone.";
+
+impl Visit {
+    /// Enters a room. Only a visitor with a name can be a member.
+    pub(super) fn go(&mut self, way: Way) {
+        if !matches!(way, Way::Watch(_)) {
+            self.leave();
+        }
+        let name = self.name.as_ref().map(account::line);
+        #[cfg(feature = "cluster")]
+        if let Some(rooms) = self.shared.cluster.clone() {
+            self.is_returning = false;
+            let key = self.account.as_ref().map(|account| account.key);
+            let entrant = name.map(|name| Entrant { name, key });
+            let replies = self.replies.clone();
+            tokio::spawn(async move {
+                let place = match (&way, &entrant) {
+                    (Way::Watch(room), _) => rooms.watch(*room).await,
+                    (Way::Enter(room), Some(entrant)) => rooms.enter(*room, entrant).await,
+                    (Way::Open(wish), Some(entrant)) => rooms.open(wish, entrant).await,
+                    (_, None) => Err(RoomRefusal::Gone),
+                };
+                // A visitor who has gone leaves the room when the place is dropped.
+                _ = replies.send(Reply::Place(place)).await;
+            });
+            return;
+        }
+        let rooms = &self.shared.rooms;
+        let place = match (way, &name) {
+            (Way::Watch(room), _) => rooms.watch(room),
+            (Way::Enter(room), Some(name)) => rooms.enter(room, name),
+            (Way::Open(wish), Some(name)) => rooms.open(&wish, name),
+            (_, None) => Err(RoomRefusal::Gone),
+        };
+        self.enter(place);
+    }
+
+    pub(super) fn enter(&mut self, place: Result<Place, RoomRefusal>) {
+        match place {
+            Ok(place) => {
+                #[cfg(feature = "cluster")]
+                let place = self.kept_while_draining(place);
+                self.in_lobby = false;
+                self.presence.set_room(Some(place.room().place()));
+                let news = News::Entered { room: place.room(), member: place.member_id() };
+                self.place = Some(place);
+                self.tell(news);
+            }
+            Err(refusal) => self.tell(News::Refused(refusal.to_string())),
+        }
+    }
+
+    /// Leaves the room, and submits what was won in it.
+    pub(super) fn leave(&mut self) {
+        #[cfg(feature = "cluster")]
+        self.give_place_up();
+        self.part();
+    }
+
+    /// Ends the stay in the room, and submits what was won in it. If the server ends, the room keeps the place.
+    pub(super) fn part(&mut self) {
+        let Some(place) = self.place.take() else { return };
+        self.presence.set_room(None);
+        if let Some(run) = place.finished() {
+            self.submit(run);
+        }
+    }
+
+    /// The server ends soon.
+    pub(super) fn drain(&mut self, now: Duration) {
+        let time = self.shared.config.get().drain;
+        self.is_draining = true;
+        #[cfg(feature = "cluster")]
+        if let Some(place) = self.place.take() {
+            self.place = Some(self.kept_while_draining(place));
+        }
+        let news = News::Draining { seconds: time.as_secs(), can_return: self.can_return() };
+        self.session.tell(news, now);
+        self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
+    }
+
+    /// What a visitor reads at the end of the server.
+    pub(super) fn last_sentence(&self) -> &'static str {
+        if self.can_return() {
+            "This server has ended. Connect again, and you are where you were."
+        } else {
+            "The server has ended. Come again!"
+        }
+    }
+
+    /// Whether a visitor finds the room as it was on another host.
+    fn can_return(&self) -> bool {
+        #[cfg(feature = "cluster")]
+        let can_return = self.shared.cluster.is_some() && self.account.is_some();
+        #[cfg(not(feature = "cluster"))]
+        let can_return = false;
+        can_return
+    }
+}
+
+#[cfg(feature = "cluster")]
+impl Visit {
+    /// Takes a visitor with an account back to the room in which their last host has left them.
+    pub(super) fn look_for_place(&mut self) {
+        let Some(rooms) = self.shared.cluster.clone() else { return };
+        let Some(key) = self.account.as_ref().map(|account| account.key) else { return };
+        self.is_returning = true;
+        let replies = self.replies.clone();
+        tokio::spawn(async move {
+            if let Some(at) = rooms.place_of(key).await {
+                _ = replies.send(Reply::News(News::Result(LOOKS.to_owned()))).await;
+                _ = replies.send(Reply::Returned(rooms.resume(key, at).await)).await;
+            }
+        });
+    }
+
+    /// Records where a visitor has returned to.
+    pub(super) fn returned(&mut self, place: Result<Place, RoomRefusal>) {
+        if !std::mem::take(&mut self.is_returning) {
+            return;
+        }
+        let sentence = match place {
+            Ok(place) => {
+                self.enter(Ok(place));
+                WELCOME.to_owned()
+            }
+            Err(RoomRefusal::Gone) => GONE.to_owned(),
+            Err(refusal) => refusal.to_string(),
+        };
+        self.tell(News::Result(sentence));
+    }
+
+    fn kept_while_draining(&self, mut place: Place) -> Place {
+        place.set_kept(self.is_draining);
+        place
+    }
+
+    /// The room does not keep the place any more.
+    fn give_place_up(&mut self) {
+        let Some(place) = &mut self.place else { return };
+        place.set_kept(false);
+        let key = self.account.as_ref().map(|account| account.key);
+        // One who was removed may be somewhere else now.
+        let is_member = place.member_id().is_some() && place.closed().is_none();
+        if let (Some(rooms), Some(key), true) = (self.shared.cluster.clone(), key, is_member) {
+            tokio::spawn(async move { rooms.forget_place(key).await });
+        }
+    }
+}
