@@ -53,7 +53,7 @@ pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId
 #[cfg(feature = "cluster")]
 pub use self::cluster::Cluster;
 pub use self::config::{Config, LiveConfig, StandingRoom};
-pub use self::driver::GameHost;
+pub use self::driver::{GameHost, HostParts};
 pub use self::host_key::{HostKey, HostKeyError};
 use self::lock::locked;
 pub(crate) use self::logging::events;

@@ -16,13 +16,14 @@ use tokio::task::JoinSet;
 use super::Error;
 use super::arguments::{Database, Serve};
 use super::data_folder::data_folder;
-use super::host_store;
+use super::host_store::{self, failed};
 #[cfg(unix)]
 use crate::server::{AdminSocket, Operator};
 use crate::server::{
-    Config, GameHost, HostKey, LogFormat, Logging, Metrics, Server, Visitors, events, respond,
+    Config, GameHost, HostKey, HostParts, LogFormat, Logging, Metrics, Server, Visitors, events,
+    respond,
 };
-use crate::store::host::HostStore;
+use crate::store::host::{HostStore, WaitingResults};
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
@@ -41,8 +42,12 @@ pub(super) fn run(mut options: Serve) -> Result<(), Error> {
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
+    let waiting = match database {
+        Database::Folder(_) => None,
+        Database::Address(_) => Some(waiting(&folder)?),
+    };
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
-    let parts = Parts { config, key, folder: &folder, format: options.log, store, place };
+    let parts = Parts { config, key, folder: &folder, format: options.log, store, waiting, place };
     let ended = runtime.block_on(serve(configuration, parts));
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
@@ -57,12 +62,14 @@ struct Parts<'a> {
     folder: &'a Path,
     format: LogFormat,
     store: Box<dyn HostStore>,
+    /// With a store that may be away.
+    waiting: Option<WaitingResults>,
     /// In a cluster.
     place: Option<cluster::Place>,
 }
 
 async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
-    let Parts { config, key, folder, format, store, place } = parts;
+    let Parts { config, key, folder, format, store, waiting, place } = parts;
     let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
     let signals = Signals::catch().map_err(no_signals)?;
     let hangups = Hangups::catch().map_err(no_signals)?;
@@ -81,20 +88,16 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
-    let maps = configuration.maps();
     let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
-    let (live, seen) = (server.config(), visitors.clone());
-    #[cfg(not(feature = "cluster"))]
-    let (host, _) = (GameHost::with_maps(live, Arc::clone(&metrics), seen, store, maps), place);
-    #[cfg(feature = "cluster")]
-    let host = match place {
-        None => GameHost::with_maps(live, Arc::clone(&metrics), seen, store, maps),
-        Some(place) => {
-            let cluster = place.take(address).await?;
-            GameHost::in_cluster(live, Arc::clone(&metrics), seen, store, maps, cluster)
-        }
-    };
-    let host = host.map_err(|error| no_thread(&error))?;
+    let host = HostParts::new(server.config(), Arc::clone(&metrics), visitors.clone(), store);
+    let mut host = host.map_err(|error| no_thread(&error))?.with_maps(configuration.maps());
+    if let Some(waiting) = waiting {
+        host = host.with_waiting(waiting);
+    }
+    if let Some(place) = place {
+        host = place.take(host, address).await?;
+    }
+    let host = GameHost::start(host);
     // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
     let text = invitation(address, &fingerprint);
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
@@ -119,6 +122,15 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     services.shutdown().await;
     events::ended();
     Ok(())
+}
+
+/// The results that wait in the folder for data.
+fn waiting(folder: &Path) -> Result<WaitingResults, Error> {
+    let (waiting, damage) = WaitingResults::open(folder).map_err(failed)?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    Ok(waiting)
 }
 
 /// The socket for `cellcaster admin`. Without one the server runs, too, as in a folder with a name

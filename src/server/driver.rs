@@ -6,10 +6,13 @@
 //!   driver holds no snapshot, so that steps do not copy the game.
 //! - Rooms step whether anybody draws or not, see [`Sequencer`](super::sequencer::Sequencer).
 //! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
-//! - A result counts when the store's thread has replayed its script.
+//! - A result counts when the store's thread has replayed its script. One that a store of several hosts can't take
+//!   because it is away waits in a file, and is recorded later.
 
 mod account;
 mod follow;
+mod late_results;
+mod parts;
 mod requests;
 mod results;
 #[cfg(test)]
@@ -19,7 +22,6 @@ mod store_worker;
 mod terminal;
 mod visit;
 
-use std::io;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -28,41 +30,28 @@ use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
 use self::follow::follow;
+pub use self::parts::HostParts;
+use self::results::Recorder;
 #[cfg(test)]
 pub(super) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
 #[cfg(feature = "cluster")]
-use super::cluster::{Cluster, SharedRooms};
+use super::cluster::SharedRooms;
 use super::ghost::KeptRuns;
 use super::governor::Governor;
 use super::line::Line;
 use super::load::Load;
 use super::room::Catalog;
-use super::rooms::{Logs, RoomLimits, Rooms};
+use super::rooms::{RoomLimits, Rooms};
 use super::summary::RoomSummary;
-use super::{Departure, Host, HostMaps, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
-use crate::store::host::{HostStore, UnixTime};
+use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
+use crate::store::host::UnixTime;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
 #[derive(Debug)]
 pub struct GameHost {
     shared: Arc<Shared>,
-}
-
-/// The parts of a host.
-struct Parts {
-    live: LiveConfig,
-    metrics: Arc<Metrics>,
-    visitors: Visitors,
-    catalog: Catalog,
-    logs: Logs,
-    load: Load,
-    store: StoreWorker,
-    /// Of all chance in rooms.
-    seed: u64,
-    #[cfg(feature = "cluster")]
-    cluster: Option<Cluster>,
 }
 
 /// What the drivers have in common.
@@ -77,6 +66,7 @@ struct Shared {
     #[cfg(feature = "cluster")]
     cluster: Option<SharedRooms>,
     store: StoreWorker,
+    recorder: Recorder,
     /// The runs of boards that walk along. Only the thread of the store uses them.
     runs: Arc<Mutex<KeptRuns>>,
     names: NamesInUse,
@@ -88,79 +78,15 @@ struct Shared {
 const GOVERNED: Duration = Duration::from_millis(250);
 
 impl GameHost {
-    /// A host that keeps accounts and results in `store`, with the built-in levels. It adds to `metrics`,
-    /// and its sessions are among `visitors`.
+    /// A host of these parts.
     ///
     /// It is to be called within a runtime, on which the rooms run.
-    ///
-    /// # Errors
-    /// If no thread can be started.
-    pub fn new(
-        live: LiveConfig,
-        metrics: Arc<Metrics>,
-        visitors: Visitors,
-        store: Box<dyn HostStore>,
-    ) -> io::Result<Self> {
-        Self::with_maps(live, metrics, visitors, store, &HostMaps::default())
-    }
-
-    /// As [`GameHost::new`], with the maps of the host beside the built-in levels.
-    ///
-    /// # Errors
-    /// If no thread can be started.
-    pub fn with_maps(
-        live: LiveConfig,
-        metrics: Arc<Metrics>,
-        visitors: Visitors,
-        store: Box<dyn HostStore>,
-        maps: &HostMaps,
-    ) -> io::Result<Self> {
-        Ok(Self::of(Self::parts(live, metrics, visitors, store, maps)?))
-    }
-
-    /// As [`GameHost::with_maps`], with the rooms of a cluster.
-    ///
-    /// # Errors
-    /// If no thread can be started.
-    #[cfg(feature = "cluster")]
-    pub fn in_cluster(
-        live: LiveConfig,
-        metrics: Arc<Metrics>,
-        visitors: Visitors,
-        store: Box<dyn HostStore>,
-        maps: &HostMaps,
-        cluster: Cluster,
-    ) -> io::Result<Self> {
-        let parts = Self::parts(live, metrics, visitors, store, maps)?;
-        Ok(Self::of(Parts { cluster: Some(cluster), ..parts }))
-    }
-
-    fn parts(
-        live: LiveConfig,
-        metrics: Arc<Metrics>,
-        visitors: Visitors,
-        store: Box<dyn HostStore>,
-        maps: &HostMaps,
-    ) -> io::Result<Parts> {
-        Ok(Parts {
-            visitors,
-            catalog: Catalog::with(maps),
-            logs: Logs::recorded(live.get().recordings.clone()),
-            load: Load::new(Arc::clone(&metrics)),
-            store: StoreWorker::start(store)?,
-            // Without random numbers from the system there would be no keys, either.
-            seed: getrandom::u64().unwrap_or_default(),
-            metrics,
-            live,
-            #[cfg(feature = "cluster")]
-            cluster: None,
-        })
-    }
-
-    fn of(parts: Parts) -> Self {
+    pub fn start(parts: HostParts) -> Self {
         #[cfg(feature = "cluster")]
         let cluster = parts.cluster;
-        let Parts { live, metrics, visitors, catalog, logs, load, store, seed, .. } = parts;
+        let HostParts {
+            live, metrics, visitors, catalog, logs, load, store, waiting, seed, ..
+        } = parts;
         let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
         #[cfg(feature = "cluster")]
         let (limits, standing) = match &cluster {
@@ -171,6 +97,12 @@ impl GameHost {
         #[cfg(feature = "cluster")]
         let shared_rooms = cluster
             .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
+        let recorder = Recorder {
+            catalog: Arc::clone(rooms.catalog()),
+            metrics: Arc::clone(&metrics),
+            visitors: visitors.clone(),
+            waiting: waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
+        };
         let shared = Arc::new(Shared {
             config: live,
             metrics,
@@ -180,6 +112,7 @@ impl GameHost {
             #[cfg(feature = "cluster")]
             cluster: shared_rooms,
             store,
+            recorder,
             runs: Arc::default(),
             names: NamesInUse::default(),
             load,
@@ -187,6 +120,9 @@ impl GameHost {
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
         tokio::spawn(follow(shared.config.subscribe(), shared.limited()));
+        if shared.recorder.waiting.is_some() {
+            tokio::spawn(late_results::record_all(Arc::downgrade(&shared)));
+        }
         Self { shared }
     }
 

@@ -43,6 +43,8 @@ pub struct Metrics {
     pub results_verified: Counter,
     /// Results that a replay has refuted.
     pub results_refused: Counter,
+    /// Results that wait for a store that is away.
+    pub results_waiting: Gauge,
     /// Calls of the store that failed.
     pub store_errors: Counter,
 }

@@ -114,6 +114,14 @@ impl Visitors {
         })
     }
 
+    /// Says a line to those with a key.
+    pub(crate) fn say_to(&self, key: &AccountKey, line: &str) {
+        self.with(|table| {
+            let is_theirs = |entry: &&Entry| entry.key.as_ref() == Some(key);
+            table.entries.values().filter(is_theirs).for_each(|entry| entry.inbox.say(line));
+        });
+    }
+
     /// Says a line to all visitors in a room.
     #[cfg(feature = "cluster")]
     pub(crate) fn say_in(&self, room: &str, line: &str) {

@@ -11,7 +11,8 @@
 //! - **A name is a [`Name`]:** one to read, print and tell from all others. It is chosen once, and can be
 //!   changed after [`RENAME_WAIT`]. The name before is held for the account for [`NAME_HELD`].
 //! - **A result is a [`VerifiedRun`]:** one that [`verify`] has replayed. For each account, level and
-//!   difficulty the fastest run is kept with its script, beside the highest rank.
+//!   difficulty the fastest run is kept with its script, beside the highest rank. To record a run again changes
+//!   nothing, so what may be recorded or not is recorded again: see [`WaitingResults`].
 //! - **Methods block** for as long as the disk or the network does. Callers use a worker thread. A method that has
 //!   returned `Ok` is on the disk.
 //! - **Time is an argument.** A store has no clock.
@@ -33,6 +34,7 @@ mod sql;
 mod sqlite;
 mod time;
 mod verify;
+mod waiting;
 
 pub use account::{Account, AccountId, AccountKey, AccountSettings};
 pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
@@ -50,6 +52,7 @@ pub use verify::{
     MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedDescent, VerifiedLevel, VerifiedRun,
     verify, verify_with,
 };
+pub use waiting::{Late, WaitingResult, WaitingResults};
 
 use super::{Best, Improved};
 

@@ -11,7 +11,9 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster::server::{Config, Counters, GameHost, HostKey, Metrics, RoomRow, Server, Visitors};
+use cellcaster::server::{
+    Config, Counters, GameHost, HostKey, HostParts, Metrics, RoomRow, Server, Visitors,
+};
 use cellcaster::store::host::SqliteStore;
 use russh::Error;
 use russh::client::{self, Handler};
@@ -77,9 +79,9 @@ impl Counted {
         let (address, counters) = (server.address().unwrap(), server.counters());
         let (metrics, visitors) = (Arc::<Metrics>::default(), Visitors::default());
         let guard = runtime.enter();
-        let host =
-            GameHost::new(server.config(), Arc::clone(&metrics), visitors.clone(), Box::new(store))
-                .unwrap();
+        let (counts, seen) = (Arc::clone(&metrics), visitors.clone());
+        let host = HostParts::new(server.config(), counts, seen, Box::new(store));
+        let host = GameHost::start(host.unwrap());
         drop(guard);
         let rooms = Box::new(host.room_rows());
         runtime.spawn(server.run(host, future::pending()));

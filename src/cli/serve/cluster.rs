@@ -1,8 +1,11 @@
 //! The place of the host in a cluster: what it needs, before anything runs.
 
+use std::net::SocketAddr;
+
 use super::{Database, Error, Serve};
 #[cfg(feature = "cluster")]
 use crate::server::Cluster;
+use crate::server::HostParts;
 #[cfg(feature = "cluster")]
 use crate::store::host::PostgresStore;
 
@@ -47,12 +50,22 @@ pub(super) fn place(options: &Serve, _: &Database) -> Result<Option<Place>, Erro
     }
 }
 
-#[cfg(feature = "cluster")]
 impl Place {
-    /// Takes the place, under a name that no other host has.
-    pub(super) async fn take(self, address: std::net::SocketAddr) -> Result<Cluster, Error> {
+    /// Takes the place, under a name that no other host has, with a host that listens at `address`.
+    #[cfg(feature = "cluster")]
+    pub(super) async fn take(
+        self,
+        host: HostParts,
+        address: SocketAddr,
+    ) -> Result<HostParts, Error> {
         let name = format!("{address} {:08x}", getrandom::u32().unwrap_or_default());
         let cluster = Cluster::join(&self.address, Box::new(self.leases), name).await;
-        cluster.map_err(Error::mistake)
+        Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
+    }
+
+    #[cfg(not(feature = "cluster"))]
+    #[expect(clippy::unused_async, reason = "as that of a program that can be in a cluster")]
+    pub(super) async fn take(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
+        match self {}
     }
 }

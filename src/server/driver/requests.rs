@@ -91,10 +91,9 @@ impl Visit {
             let sentence = "A guest's result does not rank: come with a public key.";
             return self.tell(News::Result(sentence.to_owned()));
         };
-        let (replies, metrics) = (self.replies.clone(), Arc::clone(&self.shared.metrics));
-        let catalog = Arc::clone(self.shared.rooms.catalog());
+        let (replies, recorder) = (self.replies.clone(), self.shared.recorder.clone());
         let is_accepted = self.shared.store.run(move |store| {
-            let sentence = results::record(store, &account, &run, &catalog, &metrics);
+            let sentence = recorder.record(store, &account, &run);
             _ = replies.try_send(Reply::News(News::Result(sentence)));
         });
         if !is_accepted {

@@ -1,69 +1,113 @@
 //! Results: a run counts after its script was replayed.
 
+use std::sync::{Arc, Mutex};
+
 use super::unix_time;
 use crate::game::STEPS_PER_SECOND;
-use crate::server::Metrics;
 use crate::server::line::Line;
 use crate::server::logging::events;
 use crate::server::room::{Catalog, NAME_COLUMNS};
 use crate::server::sequencer::FinishedRun;
 use crate::server::session::BoardRow;
+use crate::server::{Metrics, Visitors, locked};
+use crate::store::Improved;
 use crate::store::host::{
-    Account, AccountId, HostStore, LevelBoard, StoreFailure, VerifiedLevel, VerifiedRun,
-    verify_with,
+    Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun,
+    WaitingResult, WaitingResults, verify_with,
 };
 use crate::world::{Difficulty, World};
 
 /// The most entries of a board that are shown, and the places that are told.
 const MOST_ROWS: usize = 100;
+/// What a player is told whose result waits.
+const KEPT: &str = "The host can't reach its database; your result is kept and will be recorded.";
 
-/// Replays a run of an account and records it; a sentence about it for the player.
-pub(super) fn record(
-    store: &mut dyn HostStore,
-    account: &Account,
-    run: &FinishedRun,
-    catalog: &Catalog,
-    metrics: &Metrics,
-) -> String {
-    let world = |name: &str| catalog.world(name).map(|world| World::clone(world));
-    let run = match verify_with(&run.script, world) {
-        Ok(VerifiedRun::Level(run)) => run,
-        Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
-        Err(reason) => {
-            metrics.results_refused.count();
-            events::result_refused(account.name.as_str(), &run.level, &reason);
-            return format!("The result does not count. {reason}");
-        }
-    };
-    metrics.results_verified.count();
-    match placed(store, account.id, &run) {
-        Ok(sentence) => sentence,
-        Err(failure) => {
-            metrics.store_errors.count();
-            events::store_failed(failure);
-            "The host can't keep your result now.".to_owned()
-        }
-    }
+/// What replays runs and records them, on the thread of the store.
+#[derive(Clone, Debug)]
+pub(super) struct Recorder {
+    pub(super) catalog: Arc<Catalog>,
+    pub(super) metrics: Arc<Metrics>,
+    pub(super) visitors: Visitors,
+    /// The results that wait for a store that is away; `None` where none do.
+    pub(super) waiting: Option<Arc<Mutex<WaitingResults>>>,
 }
 
-fn placed(
-    store: &mut dyn HostStore,
-    account: AccountId,
-    run: &VerifiedLevel,
-) -> Result<String, StoreFailure> {
-    let improved = store.record(account, run, unix_time())?;
-    let scores = store.level_scores(run.board(), MOST_ROWS)?;
-    let place = scores.iter().position(|score| score.account == account);
-    let (time, rank) = (clock(run.tally().steps), run.rank());
-    if let Some(score) = place.map(|place| &scores[place]) {
-        let (name, level) = (score.name.as_str(), run.board().level());
-        events::result_verified(name, level, run.tally().steps, rank.name());
+impl Recorder {
+    /// Replays a run of an account and records it; a sentence about it for the player.
+    pub(super) fn record(
+        &self,
+        store: &mut dyn HostStore,
+        account: &Account,
+        run: &FinishedRun,
+    ) -> String {
+        let run = match verify_with(&run.script, |name| self.world(name)) {
+            Ok(VerifiedRun::Level(run)) => run,
+            Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
+            Err(reason) => {
+                self.metrics.results_refused.count();
+                events::result_refused(account.name.as_str(), &run.level, &reason);
+                return format!("The result does not count. {reason}");
+            }
+        };
+        self.metrics.results_verified.count();
+        let now = unix_time();
+        match store.record(account.id, &run, now) {
+            Ok(improved) => self.placed(store, account, &run, improved),
+            Err(failure) => {
+                self.failed(&failure);
+                if failure.is_away() && self.keep(account, &run, now) {
+                    KEPT.to_owned()
+                } else {
+                    "The host can't keep your result now.".to_owned()
+                }
+            }
+        }
     }
-    let what = if improved.time { "your best" } else { "not your best" };
-    Ok(match place {
-        Some(place) => format!("{time}, rank {rank}: {what}. You are number {}.", place + 1),
-        None => format!("{time}, rank {rank}: {what}."),
-    })
+
+    /// The world of a level.
+    pub(super) fn world(&self, name: &str) -> Option<World> {
+        self.catalog.world(name).map(|world| World::clone(world))
+    }
+
+    pub(super) fn failed(&self, failure: &StoreFailure) {
+        self.metrics.store_errors.count();
+        events::store_failed(failure);
+    }
+
+    /// What a run that was recorded has improved.
+    fn placed(
+        &self,
+        store: &mut dyn HostStore,
+        account: &Account,
+        run: &VerifiedLevel,
+        improved: Improved,
+    ) -> String {
+        let (steps, rank) = (run.tally().steps, run.rank());
+        events::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
+        let what = if improved.time { "your best" } else { "not your best" };
+        let what = format!("{}, rank {rank}: {what}.", clock(steps));
+        let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
+            self.failed(&failure);
+            Vec::new()
+        });
+        match scores.iter().position(|score| score.account == account.id) {
+            Some(place) => format!("{what} You are number {}.", place + 1),
+            None => what,
+        }
+    }
+
+    /// Keeps a run for a store that is away; whether it is kept.
+    fn keep(&self, account: &Account, run: &VerifiedLevel, at: UnixTime) -> bool {
+        let Some(waiting) = &self.waiting else { return false };
+        let result = WaitingResult { key: account.key, at, script: run.script().to_owned() };
+        let (kept, count) = locked(waiting, |waiting| (waiting.add(result), waiting.len()));
+        self.metrics.results_waiting.set(count as i64);
+        match kept {
+            Ok(()) => events::result_waits(account.name.as_str(), run.board().level()),
+            Err(ref failure) => events::store_failed(failure),
+        }
+        kept.is_ok()
+    }
 }
 
 /// The entries of a board.
@@ -90,7 +134,7 @@ pub(super) fn board(
 }
 
 /// Steps as minutes and seconds.
-fn clock(steps: u64) -> String {
+pub(super) fn clock(steps: u64) -> String {
     let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

@@ -9,7 +9,7 @@ use tokio::task::JoinHandle;
 use super::store_worker::StoreWorker;
 use super::terminal;
 use super::visit::Visit;
-use super::{GameHost, Parts, Shared, refuse};
+use super::{GameHost, HostParts, Shared, refuse};
 use crate::server::load::Load;
 use crate::server::room::{Catalog, RoomView};
 use crate::server::rooms::{Logs, Place, Rooms};
@@ -48,7 +48,7 @@ impl Simulated {
     pub(in crate::server) fn new(setup: Setup) -> Self {
         let metrics = Arc::<Metrics>::default();
         let time = setup.store_time;
-        let host = GameHost::of(Parts {
+        let host = GameHost::start(HostParts {
             live: setup.live,
             visitors: setup.visitors,
             catalog: setup.catalog,
@@ -56,6 +56,7 @@ impl Simulated {
             load: Load::simulated(Arc::clone(&metrics)),
             metrics,
             store: StoreWorker::simulated(setup.store, time),
+            waiting: None,
             seed: setup.seed,
             #[cfg(feature = "cluster")]
             cluster: None,

@@ -127,6 +127,17 @@ pub(crate) fn result_refused(name: &str, level: &str, reason: impl Display) {
     warn!(target: RESULTS, name = clean(name), level = clean(level), reason = clean(&reason.to_string()), "refused");
 }
 
+/// A result was replayed, and waits for the store, which is away.
+pub(crate) fn result_waits(name: &str, level: &str) {
+    warn!(target: RESULTS, name = clean(name), level = clean(level), "waits for the store");
+}
+
+/// A result that has waited is lost.
+pub(crate) fn result_lost(key: &AccountKey, reason: impl Display) {
+    let (key, reason) = (key.to_string(), clean(&reason.to_string()));
+    error!(target: RESULTS, key, reason, "lost");
+}
+
 /// An operator has ended the sessions of `count` visitors, and may have banned them.
 pub(crate) fn removed(target: &BanTarget, count: usize, is_banned: bool) {
     let who = shown(target);

@@ -72,6 +72,8 @@ impl Text {
         self.head(name, "counter", "Results that were replayed, by what the replay says.");
         self.line(name, "{verdict=\"verified\"}", metrics.results_verified.get());
         self.line(name, "{verdict=\"refused\"}", metrics.results_refused.get());
+        let help = "Results that wait for a store that is away.";
+        self.gauge("results_waiting", help, metrics.results_waiting.get());
         self.counter("store_errors", "Calls of the store that failed.", metrics.store_errors.get());
     }
 

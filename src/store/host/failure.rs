@@ -6,7 +6,10 @@ use super::UnixTime;
 
 /// A failure of the store, as a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StoreFailure(String);
+pub struct StoreFailure {
+    sentence: String,
+    is_away: bool,
+}
 
 /// Why an account was not created or renamed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +33,18 @@ pub enum Refusal {
 
 impl StoreFailure {
     pub(super) fn new(sentence: impl Into<String>) -> Self {
-        Self(sentence.into())
+        Self { sentence: sentence.into(), is_away: false }
+    }
+
+    /// That of a store that does not answer.
+    #[cfg(any(test, feature = "cluster"))]
+    pub(super) fn away(sentence: impl Into<String>) -> Self {
+        Self { sentence: sentence.into(), is_away: true }
+    }
+
+    /// Whether the store did not answer, so that the same call may succeed later. Otherwise the store has refused it.
+    pub fn is_away(&self) -> bool {
+        self.is_away
     }
 
     /// That of a program without PostgreSQL.
@@ -42,7 +56,7 @@ impl StoreFailure {
 
 impl fmt::Display for StoreFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(&self.sentence)
     }
 }
 

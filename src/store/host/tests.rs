@@ -9,6 +9,7 @@ mod postgres;
 #[path = "../../../tests/support/postgres_server.rs"]
 mod postgres_server;
 mod presence;
+mod waiting;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};

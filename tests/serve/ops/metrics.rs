@@ -10,7 +10,7 @@ use super::running::Running;
 use crate::transport::PATIENCE;
 
 /// A port that was free a moment ago.
-fn free_port() -> u16 {
+pub(super) fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 

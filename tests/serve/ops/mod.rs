@@ -2,6 +2,8 @@
 
 mod admin;
 #[cfg(feature = "cluster-tests")]
+mod away;
+#[cfg(feature = "cluster-tests")]
 mod cluster;
 mod documents;
 mod killed;

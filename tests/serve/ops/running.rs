@@ -19,6 +19,7 @@ pub(super) struct Running {
     pub(super) folder: PathBuf,
     process: Child,
     port: String,
+    options: Vec<String>,
 }
 
 impl Running {
@@ -33,13 +34,14 @@ impl Running {
         // A host that has run before.
         drop(SqliteStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
-        let (process, port) = spawn(&folder, format, options);
-        Self { folder, process, port }
+        let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
+        let (process, port) = spawn(&folder, format, &options);
+        Self { folder, process, port, options }
     }
 
-    /// Starts the server again in the same folder.
+    /// Starts the server again in the same folder, with the same options.
     pub(super) fn restart(&mut self) {
-        (self.process, self.port) = spawn(&self.folder, "text", &[]);
+        (self.process, self.port) = spawn(&self.folder, "text", &self.options);
     }
 
     pub(super) fn log(&self) -> String {
@@ -107,7 +109,7 @@ impl Running {
 }
 
 /// The process, and its port.
-fn spawn(folder: &Path, format: &str, options: &[&str]) -> (Child, String) {
+fn spawn(folder: &Path, format: &str, options: &[String]) -> (Child, String) {
     let log = File::create(folder.join("log")).unwrap();
     let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster"))
         .args(["serve", "--listen", "127.0.0.1:0", "--log", format, "--config"])

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use cellcaster::server::{Config, GameHost, HostKey, Metrics, Server, Visitors};
+use cellcaster::server::{Config, GameHost, HostKey, HostParts, Metrics, Server, Visitors};
 use cellcaster::store::host::SqliteStore;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
@@ -107,9 +107,9 @@ impl Running {
         let thread = thread::spawn(move || {
             runtime.block_on(async {
                 let metrics = Arc::<Metrics>::default();
-                let host =
-                    GameHost::new(server.config(), metrics, Visitors::default(), Box::new(store));
-                server.run(host.unwrap(), async { _ = stopped.await }).await;
+                let visitors = Visitors::default();
+                let host = HostParts::new(server.config(), metrics, visitors, Box::new(store));
+                server.run(GameHost::start(host.unwrap()), async { _ = stopped.await }).await;
             });
         });
         Self { address, stop: Some(stop), thread }

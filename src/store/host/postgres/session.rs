@@ -139,7 +139,7 @@ impl Link {
             Ok(Err(error)) => reason(&error),
             Err(_) => "no answer in time".to_owned(),
         };
-        let failure = StoreFailure::new(format!("{} can't be used: {why}", self.address.shown));
+        let failure = StoreFailure::away(format!("{} can't be used: {why}", self.address.shown));
         self.refused = Some((Instant::now(), failure.clone()));
         Err(failure)
     }
@@ -171,7 +171,7 @@ impl Call<'_> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(Fault::Lost | Fault::Unknown) => {
                 self.fault.set(Some(Fault::Unknown));
-                StoreFailure::new(format!("{failure}; the last change may be kept or not"))
+                StoreFailure::away(format!("{failure}; the last change may be kept or not"))
             }
             _ => failure,
         })
@@ -196,7 +196,11 @@ impl Call<'_> {
             Err(_) => (Fault::Unknown, "no answer in time".to_owned()),
         };
         self.fault.set(Some(fault));
-        Err(StoreFailure::new(format!("{} failed: {why}", self.shown)))
+        let sentence = format!("{} failed: {why}", self.shown);
+        Err(match fault {
+            Fault::Lost | Fault::Unknown => StoreFailure::away(sentence),
+            Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
+        })
     }
 }
 

@@ -66,7 +66,9 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
     server.crash();
     for _ in 0..3 {
         let start = Instant::now();
-        let failure = store.account(&key(1)).unwrap_err().to_string();
+        let failure = store.account(&key(1)).unwrap_err();
+        assert!(failure.is_away());
+        let failure = failure.to_string();
         assert!(failure.contains("can't be used") && failure.lines().count() == 1, "{failure}");
         assert!(store.create_account(&key(2), &name("Bob"), at(0)).is_err());
         assert!(start.elapsed() < MOST, "{:?}", start.elapsed());
@@ -76,6 +78,8 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
     until_it_answers(&mut store);
     assert_eq!(store.account(&key(1)).unwrap(), Some(ada));
     store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
+    let refused = store.record(AccountId(99), &run("cellar", 9, Rank::Ghost), at(0)).unwrap_err();
+    assert!(!refused.is_away(), "{refused}");
 }
 
 #[test]
@@ -86,8 +90,11 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
     server.pause();
     for _ in 0..2 {
         let start = Instant::now();
-        let failure = store.note_visit(AccountId(1), at(1)).unwrap_err().to_string();
-        assert!(failure.ends_with("no answer in time"), "{failure}");
+        let failure = store.note_visit(AccountId(1), at(1)).unwrap_err();
+        assert!(
+            failure.is_away() && failure.to_string().ends_with("no answer in time"),
+            "{failure}"
+        );
         let changed = store.create_account(&key(1), &name("Ada"), at(0));
         assert!(matches!(changed, Err(Refusal::Failed(_))), "{changed:?}");
         assert!(start.elapsed() < 2 * MOST, "{:?}", start.elapsed());

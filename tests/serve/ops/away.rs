@@ -1,0 +1,138 @@
+//! Results of runs that end while the database is away.
+
+use std::path::PathBuf;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use rustix::process::Signal;
+
+use super::killed::user_key;
+use super::maps::{HALL, choose, maps};
+use super::metrics::{free_port, scrape};
+use super::running::Running;
+use crate::player::Player;
+use crate::postgres_server::PostgresServer;
+use crate::transport::{folder, wait_until};
+
+/// A host over a database of its own, with one map and metrics.
+struct Host {
+    postgres: PostgresServer,
+    store: String,
+    running: Running,
+    metrics: u16,
+}
+
+impl Host {
+    fn start() -> Self {
+        let (postgres, metrics) = (PostgresServer::start(), free_port());
+        let store = postgres.address();
+        let maps = maps(&[("moss.toml", HALL)]);
+        let config = format!(
+            "maps = \"{}\"\nroom = []\n[metrics]\nlisten = \"127.0.0.1:{metrics}\"\n",
+            maps.display()
+        );
+        let running = Running::start_with(&config, "text", &["--store", &store]);
+        Self { postgres, store, running, metrics }
+    }
+
+    fn key(&self) -> PathBuf {
+        let folder = folder();
+        user_key(&folder)
+    }
+
+    fn waiting(&self) -> f64 {
+        scrape(self.metrics)["cellcaster_results_waiting"]
+    }
+
+    /// Names, steps and times of the results in the database, in the order of the times.
+    fn results(&self) -> Vec<(String, u64, u64)> {
+        let place = self.store.rsplit_once("%3D").unwrap().1;
+        let rows = self.postgres.sql(&format!(
+            "SELECT name, steps, verified_at FROM {place}.results \
+             JOIN {place}.accounts ON id = account ORDER BY verified_at, steps"
+        ));
+        let row = |row: &str| {
+            let [name, steps, at] = row.split('|').collect::<Vec<_>>().try_into().unwrap();
+            (name.to_owned(), steps.parse().unwrap(), at.parse().unwrap())
+        };
+        rows.lines().map(row).collect()
+    }
+}
+
+/// Goes into the map of the host, alone.
+fn go_in(player: &Player) {
+    player.wait_for("The moss hall");
+    // The last level of the list.
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("comes in.");
+}
+
+/// Walks to the exit, until `sentence` says what became of the result.
+fn win(player: &Player, sentence: &str) {
+    wait_until(sentence, || {
+        player.send("w");
+        player.text().contains(sentence)
+    });
+}
+
+fn now() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs()
+}
+
+const KEPT: &str = "your result is kept and will be recorded.";
+
+#[test]
+fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_were_won() {
+    let mut host = Host::start();
+    let players = ["Mara", "Jon"].map(|name| {
+        let player = host.running.player(Some(&host.key()));
+        choose(&player, name, "4");
+        go_in(&player);
+        player
+    });
+    host.postgres.crash();
+    assert_eq!(host.waiting(), 0.0);
+    let mut told = Vec::new();
+    for player in &players {
+        let start = now();
+        win(player, KEPT);
+        told.push(start..=now());
+        // Times are whole seconds.
+        wait_until("the next second", || now() > *told.last().unwrap().end());
+    }
+    assert_eq!(host.waiting(), 2.0);
+    host.running.signal(Signal::KILL);
+    host.running.wait_for_end();
+    drop(players);
+
+    host.postgres.restart();
+    assert_eq!(host.results(), []);
+    host.running.restart();
+    wait_until("the results", || host.results().len() == 2);
+    let results = host.results();
+    for ((name, _, at), (expected, told)) in results.iter().zip(["Mara", "Jon"].iter().zip(told)) {
+        assert_eq!(name, expected);
+        assert!(told.contains(at), "{at} is not in {told:?}");
+    }
+    wait_until("none to wait", || host.waiting() == 0.0);
+    wait_until("the file to go", || !host.running.folder.join("waiting_results").exists());
+}
+
+#[test]
+fn a_player_who_is_still_there_reads_that_the_result_is_recorded() {
+    let host = Host::start();
+    let mara = host.running.player(Some(&host.key()));
+    choose(&mara, "Mara", "4");
+    go_in(&mara);
+    // The server neither answers nor closes its connections.
+    host.postgres.pause();
+    win(&mara, KEPT);
+    host.postgres.resume();
+    mara.wait_for("is recorded now.");
+    let results = host.results();
+    let (_, steps, _) = results.first().unwrap();
+    let time = format!("The moss hall, 0:{:02}.{}", steps / 60, steps * 10 / 60 % 10);
+    assert!(mara.text().contains(&time), "{time} is not in\n{}", mara.text());
+    assert_eq!((results.len(), host.waiting()), (1, 0.0));
+}
