@@ -28,6 +28,7 @@ mod translucent;
 mod wall_column;
 mod wall_level;
 mod wall_part;
+mod wall_run;
 
 pub(crate) use band::Band;
 use column_batch::BatchMemory;

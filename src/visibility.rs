@@ -46,7 +46,7 @@ pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
     BillboardColumn, DrawList, DrawnPlane, Extent, Layer, Material, PlaneSpan, SeeThroughColumn,
-    Span, SpanMemory, SpanPair, WallColumn, WallSink,
+    Span, SpanMemory, SpanPair, WallColumn, WallRun, WallSink,
 };
 pub(crate) use facing::Facing;
 pub use filter::Filter;

@@ -75,6 +75,15 @@ impl<'a> Band<'a> {
         self.pixels[first..].iter_mut().step_by(width).take(count)
     }
 
+    /// The pixels from column `x` in the first of `rows` on, before that column in the row after the last. The
+    /// rows are in the band.
+    #[inline]
+    pub(crate) fn pixels_from(&mut self, x: u32, rows: Range<u32>) -> &mut [Rgb] {
+        let Range { start, end } = self.places(rows);
+        let end = (end + x as usize).min(self.pixels.len());
+        self.pixels.get_mut(start + x as usize..end).unwrap_or_default()
+    }
+
     /// The pixel in column `x` of `row`, which is in the band.
     #[inline]
     pub(crate) fn pixel_mut(&mut self, x: u32, row: u32) -> &mut Rgb {

@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::{iter, ptr};
 
-use super::direct_columns::DirectColumn;
+use super::direct_columns::{self, DirectColumn};
 use super::lanes::{LANES, Lanes, QueuedColumn};
 use super::shaded_texels::{ShadedRange, ShadedTexels};
 use super::target::Target;
@@ -92,15 +92,20 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        let height = level.height() as usize;
         // Other lightings are applied to each texel of a batch, and to each pixel of a direct column.
-        let is_lit = L::HAS_COLUMNS || rows.len() <= height;
-        if self.are_direct && is_lit && DirectColumn::is_for(height) {
-            let (texels, lighting) = lighting.lit_column(level, u);
-            DirectColumn { x, rows, texels, stepper }.draw(lighting, self.target.band_mut());
+        let is_lit = L::HAS_TEXELS || rows.len() <= level.height() as usize;
+        if is_lit && self.is_direct(level) {
+            let column = DirectColumn { x, rows, u, stepper };
+            direct_columns::draw(level, lighting, iter::once(column), self.target.band_mut());
         } else {
             self.queue_texels(x, rows, level.column(u), stepper, lighting);
         }
+    }
+
+    /// Whether columns of `level` are drawn without a batch.
+    #[inline]
+    pub(super) fn is_direct(&self, level: &MipLevel) -> bool {
+        self.are_direct && direct_columns::have(level.height() as usize)
     }
 
     /// Queues `rows` of column `x` for drawing with `texels`.

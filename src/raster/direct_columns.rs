@@ -11,6 +11,7 @@ use std::ops::Range;
 use super::band::Band;
 use crate::color::Rgb;
 use crate::visibility::{Lighting, Scene, TextureStepper};
+use crate::world::texture::MipLevel;
 
 /// The most rows of a band, and the most pixels, for which direct columns take less time.
 const MOST_ROWS: usize = 256;
@@ -23,122 +24,151 @@ pub(super) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
     is_small && scene.projection.is_horizon_near()
 }
 
-/// A column of pixels, which is not empty, and the texels of its wall from top to bottom.
+/// Whether there is a loop for columns of this number of texels: a power of two, up to 256. Others are
+/// drawn faster in a batch.
+#[inline]
+pub(super) fn have(texels: usize) -> bool {
+    texels.is_power_of_two() && texels <= 256
+}
+
+/// A column of pixels, which is not empty, of a wall of height 1.
 #[derive(Clone, Debug)]
-pub(super) struct DirectColumn<'a> {
+pub(super) struct DirectColumn {
     pub(super) x: u32,
     pub(super) rows: Range<u32>,
-    pub(super) texels: &'a [Rgb],
+    pub(super) u: f64,
     pub(super) stepper: TextureStepper,
 }
 
-impl DirectColumn<'_> {
-    /// Whether there is a loop for columns of this number of texels: a power of two, up to 256. Others are
-    /// drawn faster in a batch.
-    #[inline]
-    pub(super) fn is_for(texels: usize) -> bool {
-        texels.is_power_of_two() && texels <= 256
+/// Draws `columns` of `level` in this `lighting`. There must be a loop for them.
+#[inline]
+pub(super) fn draw<L: Lighting>(
+    level: &MipLevel,
+    lighting: L,
+    columns: impl Iterator<Item = DirectColumn>,
+    band: &mut Band<'_>,
+) {
+    let (texels, lighting) = lighting.lit_texels(level);
+    let texels = Texels { level, texels, lighting };
+    match level.height() {
+        256 => texels.draw::<256, 8>(columns, band),
+        128 => texels.draw::<128, 7>(columns, band),
+        64 => texels.draw::<64, 6>(columns, band),
+        32 => texels.draw::<32, 5>(columns, band),
+        16 => texels.draw::<16, 4>(columns, band),
+        8 => texels.draw::<8, 3>(columns, band),
+        4 => texels.draw::<4, 2>(columns, band),
+        2 => texels.draw::<2, 1>(columns, band),
+        _ => columns.for_each(|column| texels.draw_rows(column, band)),
     }
+}
 
-    /// Draws the column in this `lighting`.
-    #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
-    #[inline(always)]
-    pub(super) fn draw<L: Lighting>(&self, lighting: L, band: &mut Band<'_>) {
-        let Self { rows, texels, stepper, .. } = self;
-        let pixels =
-            Pixels { x: self.x as usize, width: band.width(), rows: band.rows_mut(rows.clone()) };
-        let first = rows.start;
-        match texels.len() {
-            256 => pixels.draw::<_, 256, 8>(texels, stepper.in_uppermost::<8>(first), lighting),
-            128 => pixels.draw::<_, 128, 7>(texels, stepper.in_uppermost::<7>(first), lighting),
-            64 => pixels.draw::<_, 64, 6>(texels, stepper.in_uppermost::<6>(first), lighting),
-            32 => pixels.draw::<_, 32, 5>(texels, stepper.in_uppermost::<5>(first), lighting),
-            16 => pixels.draw::<_, 16, 4>(texels, stepper.in_uppermost::<4>(first), lighting),
-            8 => pixels.draw::<_, 8, 3>(texels, stepper.in_uppermost::<3>(first), lighting),
-            4 => pixels.draw::<_, 4, 2>(texels, stepper.in_uppermost::<2>(first), lighting),
-            _ => self.clone().draw_rows(rows.clone(), lighting, band),
-        }
-        // Rounding may put the first row and the last one a texel too far.
-        for row in [first, rows.end - 1] {
-            if !stepper.is_on_wall(row) {
-                self.clone().draw_rows(row..row + 1, lighting, band);
+/// The texels of a level, and the lighting that is left to be applied to them.
+struct Texels<'a, L> {
+    level: &'a MipLevel,
+    texels: &'a [Rgb],
+    lighting: L,
+}
+
+impl<L: Lighting> Texels<'_, L> {
+    /// Draws `columns` of `N` texels, two to the power of `BITS`.
+    #[inline(never)]
+    fn draw<const N: usize, const BITS: u32>(
+        &self,
+        columns: impl Iterator<Item = DirectColumn>,
+        band: &mut Band<'_>,
+    ) {
+        let (of_columns, _) = self.texels.as_chunks::<N>();
+        let width = band.width();
+        for DirectColumn { x, rows, u, stepper } in columns {
+            let Some(texels) = of_columns.get(self.level.column_index(u)) else { continue };
+            let position = stepper.in_uppermost::<BITS>(rows.start);
+            let pixels = band.pixels_from(x, rows.clone());
+            draw_pixels::<_, N, BITS>(texels, position, self.lighting, pixels, width);
+            // Rounding may put the first row and the last one a texel too far.
+            for row in [rows.start, rows.end - 1] {
+                if !stepper.is_on_wall(row) {
+                    let column = DirectColumn { x, rows: row..row + 1, u, stepper };
+                    self.draw_rows(column, band);
+                }
             }
         }
     }
 
-    /// Draws the part of the column in `rows`. A reference would force the column into memory.
+    /// Draws `column`. A reference would force each column into memory.
     #[cold]
     #[inline(never)]
-    fn draw_rows<L: Lighting>(self, rows: Range<u32>, lighting: L, band: &mut Band<'_>) {
+    fn draw_rows(&self, column: DirectColumn, band: &mut Band<'_>) {
+        let DirectColumn { x, rows, u, stepper } = column;
+        let height = self.level.height() as usize;
+        let texels = &self.texels[self.level.column_index(u) * height..][..height];
         let first = rows.start;
-        for (pixel, row) in band.column_mut(self.x, rows).zip(first..) {
-            *pixel = lighting.apply(self.texels[self.stepper.at(row)]);
+        for (pixel, row) in band.column_mut(x, rows).zip(first..) {
+            *pixel = self.lighting.apply(texels[stepper.at(row)]);
         }
     }
 }
 
-/// The pixels of a column.
-struct Pixels<'p> {
-    x: usize,
+/// Draws `texels`, of which there are `N`, two to the power of `BITS`, on the first of `pixels` and every
+/// `width`th one after it. The uppermost bits of a position are the index of its texel, so that a lookup needs
+/// no bounds check. The loop is in a function of its own, which has all registers.
+#[inline(never)]
+fn draw_pixels<L: Lighting, const N: usize, const BITS: u32>(
+    texels: &[Rgb; N],
+    (mut position, step): (u64, u64),
+    lighting: L,
+    pixels: &mut [Rgb],
     width: usize,
-    /// The rows of the column, which are `width` pixels wide.
-    rows: &'p mut [Rgb],
-}
-
-impl Pixels<'_> {
-    /// Draws `texels`, of which there are `N`, two to the power of `BITS`. The uppermost bits of a position
-    /// are the index of its texel, so that a lookup needs no bounds check. The loop is in a function of its
-    /// own, which has all registers.
-    #[inline(never)]
-    fn draw<L: Lighting, const N: usize, const BITS: u32>(
-        self,
-        texels: &[Rgb],
-        (mut position, step): (u64, u64),
-        lighting: L,
-    ) {
-        let Some(texels) = texels.first_chunk::<N>() else { return };
-        let mut next = || {
-            let texel = texels[(position >> (u64::BITS - BITS)) as usize % N];
-            position = position.wrapping_add(step);
-            lighting.apply(texel)
-        };
-        let Self { x, width, rows: mut rest } = self;
-        let [second, third, fourth] = [1, 2, 3].map(|rows| x + rows * width);
-        let four_rows = 4 * width;
-        // Tested once, none is tested in the loop.
-        if fourth >= four_rows || third >= four_rows || second >= four_rows || x >= width {
-            return;
-        }
-        while rest.len() >= four_rows {
-            let (pixels, below) = mem::take(&mut rest).split_at_mut(four_rows);
-            pixels[x] = next();
-            pixels[second] = next();
-            pixels[third] = next();
-            pixels[fourth] = next();
-            rest = below;
-        }
-        while rest.len() >= width {
-            let (pixels, below) = mem::take(&mut rest).split_at_mut(width);
-            pixels[x] = next();
-            rest = below;
-        }
+) {
+    let at = |position: u64| lighting.apply(texels[(position >> (u64::BITS - BITS)) as usize % N]);
+    let mut rest = pixels;
+    let [second, third, fourth, four_rows] = [1, 2, 3, 4].map(|rows| rows * width);
+    // Tested once, none is tested in the loop.
+    if second >= four_rows || third >= four_rows || fourth >= four_rows {
+        return;
+    }
+    // Multiples do not wait for each other, as sums do.
+    let steps = [1, 2, 3, 4].map(|rows| step.wrapping_mul(rows));
+    while rest.len() >= four_rows {
+        let (pixels, below) = mem::take(&mut rest).split_at_mut(four_rows);
+        pixels[0] = at(position);
+        pixels[second] = at(position.wrapping_add(steps[0]));
+        pixels[third] = at(position.wrapping_add(steps[1]));
+        pixels[fourth] = at(position.wrapping_add(steps[2]));
+        position = position.wrapping_add(steps[3]);
+        rest = below;
+    }
+    while let [pixel, ..] = rest {
+        *pixel = at(position);
+        position = position.wrapping_add(step);
+        rest = mem::take(&mut rest).get_mut(width..).unwrap_or_default();
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::iter;
+    use std::num::NonZeroU32;
+
     use proptest::prelude::*;
 
     use super::*;
+    use crate::cast::Side;
     use crate::render::Frame;
-    use crate::visibility::{FrameSize, FullyLit, PixelAspect, Projection};
-    use crate::world::{Camera, FieldOfView, Heading, Pitch};
+    use crate::visibility::{FrameSize, PixelAspect, Projection, SideLit};
+    use crate::world::{Camera, FieldOfView, Heading, Pitch, Texture};
 
     const HEIGHT: u32 = 90;
 
-    /// A column of a wall: its distance, and the power of two of its texels; or `None`.
-    fn column() -> impl Strategy<Value = Option<(f64, u32)>> {
-        prop::option::weighted(0.95, (0.01..20.0, prop_oneof![1 => 0_u32..9, 4 => Just(6)]))
+    /// A column of a wall: its distance, its texture coordinate, and the power of two of its texels; or `None`.
+    fn column() -> impl Strategy<Value = Option<(f64, f64, usize)>> {
+        let bits = prop_oneof![1 => 0_usize..9, 4 => Just(6)];
+        prop::option::weighted(0.95, (0.01..20.0, 0.0..1.0, bits))
+    }
+
+    fn texture(bits: u32) -> Texture {
+        let [width, height] = [8, 1 << bits].map(|side| NonZeroU32::new(side).unwrap());
+        Texture::from_fn(width, height, |x, y| Rgb::new(1, x as u8, y as u8))
     }
 
     proptest! {
@@ -146,8 +176,9 @@ mod tests {
         fn columns_show_their_texels(
             columns in prop::collection::vec(column(), 1..200),
             degrees in -30.0..30.0,
+            side in prop::sample::select(&[Side::X, Side::Y][..]),
         ) {
-            let texels: Vec<_> = (0..256).map(|texel| Rgb::new(1, 2, texel as u8)).collect();
+            let textures: Vec<_> = (0..9).map(texture).collect();
             let size = FrameSize::new(columns.len() as u32, HEIGHT).unwrap();
             let east = Heading::from_degrees(0.0).unwrap();
             let camera = Camera::new((0.0, 0.0).into(), east, FieldOfView::default()).unwrap();
@@ -157,15 +188,17 @@ mod tests {
             let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
             let mut band = frame.whole();
             for (x, column) in columns.iter().enumerate() {
-                let Some((t, bits)) = column else { continue };
-                let (rows, texels) = (projection.wall_rows(*t), &texels[..1 << bits]);
-                let wall = projection.wall_texels(texels.len());
-                let stepper = projection.texels_down_the_wall(*t, wall);
+                let Some((t, u, bits)) = *column else { continue };
+                let (rows, level) = (projection.wall_rows(t), textures[bits].level(0));
+                let wall = projection.wall_texels(level.height() as usize);
+                let stepper = projection.texels_down_the_wall(t, wall);
+                let lighting = SideLit(side);
                 for row in rows.clone() {
-                    shown[row as usize][x] = texels[stepper.at(row)];
+                    shown[row as usize][x] = lighting.apply(level.column(u)[stepper.at(row)]);
                 }
                 if !rows.is_empty() {
-                    DirectColumn { x: x as u32, rows, texels, stepper }.draw(FullyLit, &mut band);
+                    let column = DirectColumn { x: x as u32, rows, u, stepper };
+                    draw(level, lighting, iter::once(column), &mut band);
                 }
             }
             prop_assert!(frame.rows().eq(shown));

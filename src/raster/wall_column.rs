@@ -11,6 +11,7 @@ use super::direct_columns;
 use super::sampling::Sampling;
 use super::target::Target;
 use super::wall_level::WallLevel;
+use super::wall_run;
 use crate::cast::Side;
 use crate::visibility::{
     DrawList, Extent, Facing, Faded, Lighting, Pass, Scene, SideLit, Stats, WallColumn, WallSink,
@@ -25,24 +26,21 @@ pub(super) fn draw<M: Sampling, S: Stats>(
     target: &mut Target<'_, S>,
 ) {
     let are_direct = direct_columns::are_for(scene, target.band_mut());
+    let rows = target.rows();
     if scene.plan.walls.faded || scene.world.has_shapes() {
+        let batch = ColumnBatch::new(memory, target, are_direct);
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        draw_lit::<M, _, _>(
-            scene,
-            list,
-            true,
-            ColumnBatch::new(memory, target, are_direct),
-            lighting,
-        );
+        let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
+        list.for_each_flat_wall_column(scene, &rows, &mut queue);
+        list.for_each_portal_wall_column(&rows, &mut queue);
+        queue.batch.draw();
     } else {
+        let mut batch = ColumnBatch::new(memory, target, are_direct);
+        list.for_each_wall_run(scene, |run| wall_run::draw::<M, _>(scene, &run, &mut batch));
         let lighting = |wall: &WallColumn| SideLit(side_of(wall));
-        draw_lit::<M, _, _>(
-            scene,
-            list,
-            false,
-            ColumnBatch::new(memory, target, are_direct),
-            lighting,
-        );
+        let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
+        list.for_each_portal_wall_column(&rows, &mut queue);
+        queue.batch.draw();
     }
 }
 
@@ -63,19 +61,6 @@ pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64
         Facing::Side(side) => Faded::of_wall(side, light, fog, t),
         Facing::Normal(normal) => Faded::of_surface(normal, light, fog, t),
     }
-}
-
-fn draw_lit<'a, M: Sampling, L: Lighting, S: Stats>(
-    scene: Scene<'a>,
-    list: &DrawList,
-    is_lit: bool,
-    batch: ColumnBatch<'_, '_, 'a, L, S>,
-    lighting: impl Fn(&WallColumn) -> L,
-) {
-    let rows = batch.rows();
-    let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
-    list.for_each_wall_column(scene, &rows, is_lit, &mut queue);
-    queue.batch.draw();
 }
 
 /// Queues wall columns in a lighting that depends on each column.

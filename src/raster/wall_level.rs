@@ -38,8 +38,9 @@ impl<'a, M: Sampling> WallLevel<'a, M> {
         }
     }
 
+    /// The level `lod` of the texture `id`.
     #[inline(never)]
-    fn new(scene: Scene<'a>, id: TextureId, lod: M::Lod) -> Self {
+    pub(super) fn new(scene: Scene<'a>, id: TextureId, lod: M::Lod) -> Self {
         let texture = scene.world.texture(id);
         let level = M::level_on_face(texture, lod);
         let texels = scene.projection.wall_texels(level.height() as usize);

@@ -13,7 +13,7 @@ use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
 use super::wall_part::WallPart;
 use super::{Billboard, Column, Facing, Scene, SpanMapping, Surface};
-use crate::cast::MirrorTransform;
+use crate::cast::{MirrorTransform, Side};
 use crate::color::Rgb;
 use crate::world::{Covering, Glass, Light, Paint, Sprite, TextureId};
 
@@ -107,6 +107,17 @@ pub(crate) struct WallColumn {
     pub(crate) paint: Paint,
     pub(crate) light: Light,
     pub(crate) extent: Extent,
+}
+
+/// Neighbouring wall columns of a level scene that show one paint on one kind of side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallRun<'l> {
+    /// The index of the first column.
+    pub(crate) first: u32,
+    /// The columns, each of which has a hit.
+    pub(crate) columns: &'l [Column],
+    pub(crate) side: Side,
+    pub(crate) paint: Paint,
 }
 
 /// A receiver of wall columns.
@@ -244,20 +255,37 @@ impl DrawList {
         portal::for_each_span(scene, &self.runs, rows, &mut memory.starts, &mut emit);
     }
 
-    /// Passes every wall column in `rows` to `sink`, neighbours in succession as far as possible.
-    /// The light is computed only if `is_lit`.
+    /// Passes every wall column in `rows` that the flat way found to `sink`, from left to right.
     #[inline]
-    pub(crate) fn for_each_wall_column(
+    pub(crate) fn for_each_flat_wall_column(
         &self,
         scene: Scene<'_>,
         rows: &Range<u32>,
-        is_lit: bool,
         sink: &mut impl WallSink,
     ) {
-        if self.is_flat && self.opaque_columns.is_empty() {
-            flat::for_each_wall_column(scene, self.flat_columns(), rows, is_lit, sink);
+        if self.has_flat_walls() {
+            flat::for_each_wall_column(scene, self.flat_columns(), rows, sink);
         }
+    }
+
+    /// Passes the same wall columns in runs to `draw`, from left to right. No shape may be in view.
+    #[inline]
+    pub(crate) fn for_each_wall_run<'l>(&'l self, scene: Scene<'_>, draw: impl FnMut(WallRun<'l>)) {
+        if self.has_flat_walls() {
+            flat::for_each_wall_run(scene, self.flat_columns(), draw);
+        }
+    }
+
+    /// Passes every wall column in `rows` that the portal way found to `sink`, neighbours in succession as
+    /// far as possible.
+    #[inline]
+    pub(crate) fn for_each_portal_wall_column(&self, rows: &Range<u32>, sink: &mut impl WallSink) {
         portal::for_each_wall_column(&self.walls, rows, sink);
+    }
+
+    /// Whether the flat way found walls that are drawn as columns.
+    fn has_flat_walls(&self) -> bool {
+        self.is_flat && self.opaque_columns.is_empty()
     }
 
     /// Passes every part of a wall to `draw`, from left to right, with the wall column in its middle: the walls of

@@ -25,7 +25,7 @@ impl Facing {
 
     /// The approach of a ray along `direction` to the face, in cells per unit of its `t`.
     #[inline]
-    pub(super) fn slope(self, direction: DVec2) -> f64 {
+    pub(crate) fn slope(self, direction: DVec2) -> f64 {
         match self {
             Self::Side(Side::X) => direction.x,
             Self::Side(Side::Y) => direction.y,

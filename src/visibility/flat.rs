@@ -22,7 +22,7 @@ use fan::Fan;
 pub(super) use layers::{FlatMemory, PassedHits};
 pub(super) use planes::{PlaneRow, for_each_span};
 pub(super) use portal_starts::PortalStarts;
-pub(super) use wall::{for_each_wall_column, for_each_wall_part};
+pub(super) use wall::{for_each_wall_column, for_each_wall_part, for_each_wall_run};
 
 /// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and the starts of the
 /// columns that are left to the portal way.

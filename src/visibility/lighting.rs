@@ -12,15 +12,16 @@ use crate::world::{Fog, Light};
 
 /// The effect of light and fog on a colour.
 pub(crate) trait Lighting: Copy + PartialEq {
-    /// The lighting that is left to [`Lighting::lit_column`]'s caller.
+    /// The lighting that is left to [`Lighting::lit_texels`]'s caller.
     type Rest: Lighting;
-    /// Whether mip levels have columns in this lighting, so that nothing is left.
-    const HAS_COLUMNS: bool;
+    /// Whether mip levels have texels in this lighting, so that nothing is left.
+    const HAS_TEXELS: bool;
 
     fn apply(self, color: Rgb) -> Rgb;
 
-    /// The column of `level` at `u`, lit as far as the level has it so, and the rest of the lighting.
-    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self::Rest);
+    /// The texels of `level`, column by column, lit as far as the level has them so, and the rest of the
+    /// lighting.
+    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self::Rest);
 }
 
 /// No effect: the surface is near and in full light.
@@ -43,7 +44,7 @@ pub(crate) struct Faded {
 
 impl Lighting for FullyLit {
     type Rest = Self;
-    const HAS_COLUMNS: bool = true;
+    const HAS_TEXELS: bool = true;
 
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
@@ -51,14 +52,14 @@ impl Lighting for FullyLit {
     }
 
     #[inline]
-    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self) {
-        (level.column(u), self)
+    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self) {
+        (level.texels(), self)
     }
 }
 
 impl Lighting for SideLit {
     type Rest = FullyLit;
-    const HAS_COLUMNS: bool = true;
+    const HAS_TEXELS: bool = true;
 
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
@@ -69,10 +70,10 @@ impl Lighting for SideLit {
     }
 
     #[inline]
-    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], FullyLit) {
+    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], FullyLit) {
         let texels = match self.0 {
-            Side::X => level.column(u),
-            Side::Y => level.halved_column(u),
+            Side::X => level.texels(),
+            Side::Y => level.halved_texels(),
         };
         (texels, FullyLit)
     }
@@ -80,7 +81,7 @@ impl Lighting for SideLit {
 
 impl Lighting for Faded {
     type Rest = Self;
-    const HAS_COLUMNS: bool = false;
+    const HAS_TEXELS: bool = false;
 
     #[inline]
     fn apply(self, color: Rgb) -> Rgb {
@@ -88,8 +89,8 @@ impl Lighting for Faded {
     }
 
     #[inline]
-    fn lit_column(self, level: &MipLevel, u: f64) -> (&[Rgb], Self) {
-        (level.column(u), self)
+    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self) {
+        (level.texels(), self)
     }
 }
 

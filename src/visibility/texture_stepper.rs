@@ -107,11 +107,11 @@ impl TextureStepper {
         self.texel_at(self.place(row) >> TEXEL_BITS)
     }
 
-    /// Whether the centre of `row` is on the face, in spite of rounding.
+    /// Whether the centre of `row` is on the wall of height 1, in spite of rounding.
     #[inline]
     pub(crate) fn is_on_wall(self, row: u32) -> bool {
-        let (uppermost, lowest) = self.range;
-        (uppermost..=lowest).contains(&(self.place(row) >> TEXEL_BITS))
+        // A place above the wall is negative, and as large as any without its sign.
+        (self.place(row) as u64) < (self.count as u64) << TEXEL_BITS
     }
 
     /// The texel of the texture for the one at `place`, counted from the top of the uppermost

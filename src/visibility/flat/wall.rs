@@ -1,4 +1,7 @@
 //! The wall columns of a level scene: one for each ray that hit a solid tile.
+//!
+//! Neighbours on one kind of side with one paint are a run. In plain light, nothing else distinguishes them
+//! but distance and texture coordinate, and a run is drawn without looking at the map for each column.
 
 use std::ops::Range;
 
@@ -6,17 +9,15 @@ use glam::DVec2;
 
 use crate::cast::{Hit, Side};
 use crate::visibility::facing::cell_before;
-use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallSink};
+use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallRun, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
-/// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right. The light
-/// is computed only if `is_lit`.
+/// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right.
 #[inline]
 pub(crate) fn for_each_wall_column(
     scene: Scene<'_>,
     columns: &[Column],
     rows: &Range<u32>,
-    is_lit: bool,
     sink: &mut impl WallSink,
 ) {
     let mut latest: Option<(Face<'_>, Paint)> = None;
@@ -30,7 +31,7 @@ pub(crate) fn for_each_wall_column(
         let (face, paint) = match &mut latest {
             Some(latest) if latest.0.is_of(hit) => &*latest,
             latest => {
-                let face = Face::new(scene, x, hit, is_lit);
+                let face = Face::new(scene, x, hit, true);
                 latest.insert((face, face.paint(scene, x, hit)))
             }
         };
@@ -44,11 +45,43 @@ pub(crate) fn for_each_wall_column(
             t: hit.t,
             u: hit.u,
             paint: *paint,
-            light: if is_lit { face.light.at(hit.u) } else { Light::FULL },
+            light: face.light.at(hit.u),
             extent: Extent::Level,
         };
         sink.take(&wall, shown);
     }
+}
+
+/// Passes every run of `columns` to `draw`, from left to right. No shape may be in view.
+#[inline]
+pub(crate) fn for_each_wall_run<'l>(
+    scene: Scene<'_>,
+    columns: &'l [Column],
+    mut draw: impl FnMut(WallRun<'l>),
+) {
+    let mut face: Option<Face<'_>> = None;
+    let mut run: Option<(usize, Side, Paint)> = None;
+    let mut end = |run: Option<(usize, Side, Paint)>, end: usize| {
+        if let Some((first, side, paint)) = run {
+            draw(WallRun { first: first as u32, columns: &columns[first..end], side, paint });
+        }
+    };
+    for (x, column) in columns.iter().enumerate() {
+        let Some(hit) = column.hit.as_ref().filter(|hit| hit.t >= 0.0) else {
+            end(run.take(), x);
+            face = None;
+            continue;
+        };
+        if face.as_ref().is_some_and(|face| face.is_of(hit)) {
+            continue;
+        }
+        let of_hit = face.insert(Face::new(scene, x as u32, hit, false));
+        let paint = of_hit.paint(scene, x as u32, hit);
+        if !run.is_some_and(|(_, side, of_run)| (side, of_run) == (hit.side, paint)) {
+            end(run.replace((x, hit.side, paint)), x);
+        }
+    }
+    end(run, columns.len());
 }
 
 /// Passes each of `parts` to `draw`, with the wall column in its middle. The light is computed only if

@@ -55,9 +55,10 @@ impl MipLevel {
         &self.texels[self.column_range(u)]
     }
 
-    /// The column at `u` at [half brightness](Rgb::halved), as a y-side shows it.
-    pub(crate) fn halved_column(&self, u: f64) -> &[Rgb] {
-        &self.halved[self.column_range(u)]
+    /// The index of the column at `u`, from the left.
+    #[inline]
+    pub(crate) fn column_index(&self, u: f64) -> usize {
+        texel_index(u, self.width.get())
     }
 
     /// The alpha of the texels of [`MipLevel::column`]; `None` if all texels of the level are
@@ -73,8 +74,13 @@ impl MipLevel {
     }
 
     /// The colours of all texels, column by column.
-    pub(super) fn texels(&self) -> &[Rgb] {
+    pub(crate) fn texels(&self) -> &[Rgb] {
         &self.texels
+    }
+
+    /// The same at [half brightness](Rgb::halved), as a y-side shows them.
+    pub(crate) fn halved_texels(&self) -> &[Rgb] {
+        &self.halved
     }
 
     pub(super) fn has_alpha(&self) -> bool {
@@ -84,7 +90,7 @@ impl MipLevel {
     /// The indices of the texels of the column at `u`.
     fn column_range(&self, u: f64) -> Range<usize> {
         let height = self.height.get() as usize;
-        let start = texel_index(u, self.width.get()) * height;
+        let start = self.column_index(u) * height;
         start..start + height
     }
 
@@ -161,6 +167,7 @@ impl<'a> MipLevelByShifts<'a> {
 
 /// The index, of `count`, of the texel at `coordinate`, from 0 to 1; the nearest one for
 /// coordinates outside.
+#[inline]
 fn texel_index(coordinate: f64, count: u32) -> usize {
     let index = (coordinate * f64::from(count)) as u32;
     index.min(count - 1) as usize
