@@ -16,12 +16,23 @@ use crate::world::texture::MipLevel;
 /// The most rows of a band, and the most pixels, for which direct columns take less time.
 const MOST_ROWS: usize = 256;
 const MOST_PIXELS: usize = 1 << 17;
+/// The bytes of a level-1 data cache, and of each of its ways, as most processors have them.
+const CACHE: usize = 1 << 15;
+const WAY: usize = 1 << 12;
 
 /// Whether the columns of `band` are better drawn directly.
 pub(super) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
-    let rows = band.rows().len();
-    let is_small = rows <= MOST_ROWS && rows * band.width() <= MOST_PIXELS;
-    is_small && scene.projection.is_horizon_near()
+    let (rows, width) = (band.rows().len(), band.width());
+    let is_small = rows <= MOST_ROWS && rows * width <= MOST_PIXELS;
+    is_small && is_column_cached(rows, width) && scene.projection.is_horizon_near()
+}
+
+/// Whether the next column of `rows` pixels finds this one in the cache, in a picture of this `width`. The rows
+/// of a picture whose width is a multiple of a large power of two compete for a few sets of the cache.
+fn is_column_cached(rows: usize, width: usize) -> bool {
+    let bytes_of_row = width * size_of::<Rgb>();
+    let bytes_between_sets = WAY.min(1 << bytes_of_row.trailing_zeros());
+    rows * bytes_between_sets <= CACHE
 }
 
 /// Whether there is a loop for columns of this number of texels: a power of two, up to 256. Others are
