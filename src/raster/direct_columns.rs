@@ -60,28 +60,28 @@ pub(super) fn draw<L: Lighting>(
     band: &mut Band<'_>,
 ) {
     let (texels, lighting) = lighting.lit_texels(level);
-    let texels = Texels { level, texels, lighting };
+    let lit = LitLevel { level, texels, lighting };
     match level.height() {
-        256 => texels.draw::<256, 8>(columns, band),
-        128 => texels.draw::<128, 7>(columns, band),
-        64 => texels.draw::<64, 6>(columns, band),
-        32 => texels.draw::<32, 5>(columns, band),
-        16 => texels.draw::<16, 4>(columns, band),
-        8 => texels.draw::<8, 3>(columns, band),
-        4 => texels.draw::<4, 2>(columns, band),
-        2 => texels.draw::<2, 1>(columns, band),
-        _ => columns.for_each(|column| texels.draw_rows(column, band)),
+        256 => lit.draw::<256, 8>(columns, band),
+        128 => lit.draw::<128, 7>(columns, band),
+        64 => lit.draw::<64, 6>(columns, band),
+        32 => lit.draw::<32, 5>(columns, band),
+        16 => lit.draw::<16, 4>(columns, band),
+        8 => lit.draw::<8, 3>(columns, band),
+        4 => lit.draw::<4, 2>(columns, band),
+        2 => lit.draw::<2, 1>(columns, band),
+        _ => columns.for_each(|column| lit.draw_rows(column, band)),
     }
 }
 
-/// The texels of a level, and the lighting that is left to be applied to them.
-struct Texels<'a, L> {
+/// A level, its texels, and the lighting that is left to be applied to them.
+struct LitLevel<'a, L> {
     level: &'a MipLevel,
     texels: &'a [Rgb],
     lighting: L,
 }
 
-impl<L: Lighting> Texels<'_, L> {
+impl<L: Lighting> LitLevel<'_, L> {
     /// Draws `columns` of `N` texels, two to the power of `BITS`.
     #[inline(never)]
     fn draw<const N: usize, const BITS: u32>(

@@ -102,6 +102,6 @@ fn shown_columns(run: &WallRun<'_>, rows: Range<u32>) -> impl Iterator<Item = Sh
         let Column { rows: of_column, hit, .. } = column;
         let hit = hit.as_ref()?;
         let shown = of_column.start.max(rows.start)..of_column.end.min(rows.end);
-        (!shown.is_empty()).then(|| ShownColumn { x, rows: shown, t: hit.t, u: hit.u })
+        (!shown.is_empty()).then_some(ShownColumn { x, rows: shown, t: hit.t, u: hit.u })
     })
 }
