@@ -55,11 +55,6 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         batch
     }
 
-    /// The indices of the rows that can be drawn.
-    pub(super) fn rows(&self) -> Range<u32> {
-        self.target.rows()
-    }
-
     /// The target, for pixels that no queued column has.
     pub(super) fn target_mut(&mut self) -> &mut Target<'t, S> {
         self.target

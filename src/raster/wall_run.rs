@@ -19,13 +19,13 @@ pub(super) fn draw<'a, M: Sampling, S: Stats>(
     batch: &mut ColumnBatch<'_, '_, 'a, SideLit, S>,
 ) {
     if S::ARE_KEPT {
-        for column in shown_columns(run, batch.rows()) {
+        for column in shown_columns(run, batch.target_mut().rows()) {
             batch.count(Pass::Walls, column.rows.len(), run.paint);
         }
     }
     match run.paint {
         Paint::Color(color) => {
-            for column in shown_columns(run, batch.rows()) {
+            for column in shown_columns(run, batch.target_mut().rows()) {
                 batch.queue_color(column.x, column.rows, color, SideLit(run.side));
             }
         }
@@ -75,10 +75,11 @@ fn draw_level<'a, M: Sampling, S: Stats>(
     batch: &mut ColumnBatch<'_, '_, 'a, SideLit, S>,
 ) {
     let lighting = SideLit(run.side);
-    let columns = shown_columns(run, batch.rows()).map(|ShownColumn { x, rows, t, u }| {
-        let stepper = scene.projection.texels_down_the_wall(t, texels);
-        DirectColumn { x, rows, u, stepper }
-    });
+    let columns =
+        shown_columns(run, batch.target_mut().rows()).map(|ShownColumn { x, rows, t, u }| {
+            let stepper = scene.projection.texels_down_the_wall(t, texels);
+            DirectColumn { x, rows, u, stepper }
+        });
     if batch.is_direct(level) {
         direct_columns::draw(level, lighting, columns, batch.target_mut().band_mut());
         return;
