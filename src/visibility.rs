@@ -38,6 +38,7 @@ mod span_mapping;
 mod stats;
 mod texture_stepper;
 mod visible_cells;
+mod wall_column;
 mod wall_part;
 
 pub(crate) use billboard::Billboard;
@@ -46,7 +47,7 @@ pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
     BillboardColumn, DrawList, DrawnPlane, Extent, Layer, Material, PlaneSpan, SeeThroughColumn,
-    Span, SpanMemory, SpanPair, WallColumn, WallRun, WallSink,
+    Span, SpanMemory, SpanPair,
 };
 pub(crate) use facing::Facing;
 pub use filter::Filter;
@@ -62,6 +63,7 @@ pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
 pub(crate) use texture_stepper::{TextureStepper, WallTexels};
+pub(crate) use wall_column::{WallColumn, WallRun, WallSink};
 pub(crate) use wall_part::WallPart;
 
 use crate::cast::{Caster, ExactOnLevel};

@@ -12,10 +12,12 @@ use super::portal;
 use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
 use super::wall_part::WallPart;
-use super::{Billboard, Column, Facing, Scene, SpanMapping, Surface};
-use crate::cast::{MirrorTransform, Side};
+use super::{
+    Billboard, Column, Facing, Scene, SpanMapping, Surface, WallColumn, WallRun, WallSink,
+};
+use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::world::{Covering, Glass, Light, Paint, Sprite, TextureId};
+use crate::world::{Covering, Glass, Light, Sprite, TextureId};
 
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -92,40 +94,6 @@ pub(crate) struct SpanMemory {
     pub(super) plane_rows: Vec<PlaneRow>,
     /// The first column of the current span of each row.
     pub(super) starts: Vec<usize>,
-}
-
-/// The visible part of an upright face that is as wide as a pixel.
-#[derive(Clone, Debug)]
-pub(crate) struct WallColumn {
-    pub(crate) column: u32,
-    pub(crate) rows: Range<u32>,
-    pub(crate) facing: Facing,
-    /// The approach of the ray to the face, in cells per unit of `t`.
-    pub(crate) slope: f64,
-    pub(crate) t: f64,
-    pub(crate) u: f64,
-    pub(crate) paint: Paint,
-    pub(crate) light: Light,
-    pub(crate) extent: Extent,
-}
-
-/// Neighbouring wall columns of a level scene that show one paint on one kind of side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct WallRun<'l> {
-    /// The index of the first column.
-    pub(crate) first: u32,
-    /// The columns, each of which has a hit.
-    pub(crate) columns: &'l [Column],
-    pub(crate) side: Side,
-    pub(crate) paint: Paint,
-}
-
-/// A receiver of wall columns.
-///
-/// It is a trait and not a closure, because each loop over wall columns must inline it.
-pub(crate) trait WallSink {
-    /// Receives the part of `wall` in `rows`, which are not empty.
-    fn take(&mut self, wall: &WallColumn, rows: Range<u32>);
 }
 
 /// A masked or translucent face as wide as a pixel, or the tint of a mirror.
