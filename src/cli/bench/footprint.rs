@@ -2,7 +2,6 @@
 
 use std::env;
 use std::fs;
-use std::hint::black_box;
 use std::io::{self, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -22,8 +21,6 @@ use crate::terminal::{CellWriter, peak_memory};
 pub(super) struct Footprint {
     /// The time from the start of the process to the first byte of a picture.
     pub(super) start_up: Option<Duration>,
-    /// The time to read the level and draw it in a running process.
-    pub(super) first_frame: Duration,
     /// The size of the program, in bytes.
     pub(super) program: Option<u64>,
     /// The peak memory of a game, in bytes.
@@ -40,9 +37,6 @@ pub(super) const STARTS: usize = 9;
 impl Footprint {
     /// Measures. The process must not have done anything else yet.
     pub(super) fn measure() -> Result<Self, Error> {
-        let start = Instant::now();
-        black_box(begin(FIRST_WINDOW)?.picture());
-        let first_frame = start.elapsed();
         play()?;
         let memory = peak_memory();
         let path = env::current_exe().ok();
@@ -50,7 +44,7 @@ impl Footprint {
         let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
         let start_up = starts.filter(|starts: &Vec<f64>| !starts.is_empty()).map(median);
         let start_up = start_up.map(Duration::from_secs_f64);
-        Ok(Self { start_up, first_frame, program, memory })
+        Ok(Self { start_up, program, memory })
     }
 }
 

@@ -64,7 +64,6 @@ fn crowd(row: &CrowdRow) -> Value {
 fn footprint(footprint: &Footprint) -> Value {
     json!({
         "start_milliseconds": footprint.start_up.map(milliseconds),
-        "first_frame_milliseconds": milliseconds(footprint.first_frame),
         "program_bytes": footprint.program,
         "peak_memory_bytes": footprint.memory,
     })

@@ -169,7 +169,6 @@ fn footprint(report: &Report) -> Table {
         labels: 1,
         rows: vec![
             row("start, to the first frame", footprint.start_up.map(milliseconds)),
-            row("reading the level and drawing alone", Some(milliseconds(footprint.first_frame))),
             row("size of the program", footprint.program.map(mebibytes)),
             row("peak memory", footprint.memory.map(mebibytes)),
         ],
