@@ -18,7 +18,7 @@ impl Clock {
 
     /// The number of steps since the last call.
     pub(crate) fn steps_until(&mut self, now: Duration) -> u64 {
-        let steps = (now.saturating_sub(self.counted).as_nanos() / step().as_nanos()) as u64;
+        let steps = steps_in(now.saturating_sub(self.counted));
         self.counted = after(self.counted, steps);
         steps
     }
@@ -36,14 +36,23 @@ impl Clock {
 
 /// The time `steps` steps after `time`.
 pub(crate) fn after(time: Duration, steps: u64) -> Duration {
-    let nanoseconds = step().as_nanos() as u64;
-    time + Duration::from_nanos(nanoseconds.saturating_mul(steps))
+    time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
+}
+
+/// The number of whole steps in `time`.
+pub(crate) fn steps_in(time: Duration) -> u64 {
+    // More nanoseconds are more than five centuries.
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX) / STEP_NANOSECONDS
 }
 
 /// The duration of a step.
+#[cfg(any(test, debug_assertions))]
 pub(crate) fn step() -> Duration {
-    Duration::from_secs_f64(STEP)
+    Duration::from_nanos(STEP_NANOSECONDS)
 }
+
+/// The duration of a step in nanoseconds, rounded.
+const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::clock::step;
+use super::clock::steps_in;
 use super::status::Toggles;
 use crate::app::bindings::{Action, Bindings};
 use crate::game::{Intent, Intents};
@@ -91,8 +91,7 @@ impl Controls {
             return 1;
         }
         let until = self.held.next_expiry().unwrap_or(Duration::MAX);
-        let steps = until.saturating_sub(now).as_nanos() / step().as_nanos();
-        u64::try_from(steps).unwrap_or(u64::MAX).saturating_add(1).min(most)
+        steps_in(until.saturating_sub(now)).saturating_add(1).min(most)
     }
 
     /// The player's intents.
