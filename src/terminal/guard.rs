@@ -110,9 +110,7 @@ impl Guard {
         let mut state = self.lock_taken()?;
         state.changes = changes;
         self.recording().sent(bytes);
-        let mut output_queue = self.output_queue();
-        output_queue.push(bytes);
-        output_queue.write_to(&self.device)
+        self.output_queue().send(bytes, &self.device)
     }
 
     /// Writes the queued bytes, as far as the terminal accepts them at once.

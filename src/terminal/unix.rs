@@ -82,18 +82,20 @@ impl Device {
         })
     }
 
-    /// Writes the part of `bytes` that the terminal accepts at once, and returns its length.
+    /// Writes the part of `bytes` that the terminal accepts at once, and returns its length. Where that is
+    /// not all, the terminal is not asked again: it would accept nothing.
     pub(super) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
-        let mut written = 0;
-        while written < bytes.len() {
-            match rustix::io::write(&self.output, &bytes[written..]) {
-                Ok(count) => written += count,
+        if bytes.is_empty() {
+            return Ok(0);
+        }
+        loop {
+            match rustix::io::write(&self.output, bytes) {
+                Ok(count) => return Ok(count),
                 Err(Errno::INTR) => {}
-                Err(Errno::AGAIN) => break,
+                Err(Errno::AGAIN) => return Ok(0),
                 Err(error) => return Err(error.into()),
             }
         }
-        Ok(written)
     }
 
     /// Writes `bytes` and returns the length of the accepted part. While the terminal accepts no more,

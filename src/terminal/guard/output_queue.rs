@@ -14,11 +14,22 @@ pub(super) struct OutputQueue {
 }
 
 impl OutputQueue {
-    pub(super) fn push(&mut self, bytes: &[u8]) {
+    /// Writes `bytes` after those that wait, as far as `device` accepts them at once. They are kept if the
+    /// device does not accept all of them.
+    pub(super) fn send(&mut self, bytes: &[u8], device: &Device) -> io::Result<()> {
+        if self.is_empty() {
+            let accepted = device.write_some(bytes);
+            if !accepted.as_ref().is_ok_and(|&count| count == bytes.len()) {
+                self.bytes.extend_from_slice(bytes);
+                self.taken = accepted?;
+            }
+            return Ok(());
+        }
         self.bytes.extend_from_slice(bytes);
+        self.write_to(device)
     }
 
-    /// Writes the bytes that `device` accepts at once.
+    /// Writes those of the waiting bytes that `device` accepts at once.
     pub(super) fn write_to(&mut self, device: &Device) -> io::Result<()> {
         self.taken += device.write_some(&self.bytes[self.taken..])?;
         if self.taken == self.bytes.len() {
@@ -52,12 +63,12 @@ mod tests {
     fn a_sequence_is_withheld_until_all_of_it_is_accepted() {
         let mut queue = OutputQueue::default();
         assert!(!queue.withholds("flags"));
-        queue.push(b"frame flags frame");
+        queue.bytes.extend_from_slice(b"frame flags frame");
         for (taken, withheld) in [(0, true), (6, true), (10, true), (11, false), (17, false)] {
             queue.taken = taken;
             assert_eq!(queue.withholds("flags"), withheld, "{taken} bytes");
         }
-        queue.push(b" flags");
+        queue.bytes.extend_from_slice(b" flags");
         assert!(queue.withholds("flags"));
         assert!(!queue.withholds("other"));
     }
