@@ -103,9 +103,12 @@ impl Terrain {
 
     /// Whether a guard walks from `from` to its neighbour `to`.
     pub(super) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
-        let footings = (self.footing(world, from), self.footing(world, to));
-        let (Some(start), Some(end)) = footings else { return false };
-        self.is_entered(gait, end, to) && end.is_reached_from(start, gait)
+        let tile = |cell: Cell| world.grid().tile(i64::from(cell.column), i64::from(cell.row));
+        let (Some(TileId(start)), Some(TileId(end))) = (tile(from), tile(to)) else { return false };
+        let footing = &self.footings[usize::from(end)];
+        // A tile leads to itself wherever it can be entered.
+        self.is_entered(gait, footing, to)
+            && (start == end || footing.is_reached_from(&self.footings[usize::from(start)], gait))
     }
 
     /// Whether guards choose to go to `cell`.
@@ -116,10 +119,11 @@ impl Terrain {
     /// The floor of `cell`, if guards choose to go there.
     pub(super) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
         let footing = self.footing(world, cell)?;
-        self.is_entered(gait, footing, cell).then_some(footing)
+        self.is_entered(gait, &footing, cell).then_some(footing)
     }
 
-    fn is_entered(&self, gait: Gait, footing: Footing, cell: Cell) -> bool {
+    #[inline]
+    fn is_entered(&self, gait: Gait, footing: &Footing, cell: Cell) -> bool {
         let is_open = match footing.kind {
             FootingKind::Free => true,
             FootingKind::Door => gait.opens_doors,
@@ -163,7 +167,10 @@ impl Footing {
     }
 
     /// Whether the step from `start` up or down to this floor can be walked.
-    fn is_reached_from(self, start: Self, gait: Gait) -> bool {
+    fn is_reached_from(&self, start: &Self, gait: Gait) -> bool {
+        if start.kind == FootingKind::Blocked {
+            return false;
+        }
         let climb = self.floor - start.floor;
         let headroom = self.ceiling.min(start.ceiling) - self.floor.max(start.floor);
         (-DROP..=STEP_HEIGHT).contains(&climb) && headroom >= gait.height
