@@ -35,8 +35,9 @@ pub(crate) struct SkyColumn {
     up_for_slope: f64,
 }
 
-/// The number 1 in 2⁻⁶⁴ths.
+/// The number 1 in 2⁻⁶⁴ths, and in 2⁻³²ths.
 const WHOLE: f64 = 18_446_744_073_709_551_616.0;
+const WHOLE_IN_32_BITS: f64 = 4_294_967_296.0;
 
 impl<'a> SkyView<'a> {
     /// The sky of `scene`. `columns` is working memory.
@@ -80,11 +81,19 @@ impl<'a> SkyView<'a> {
                 target.count_texels(Pass::Sky, columns.len());
                 let slope = projection.slope(row);
                 let pixels = target.span_mut(Pass::Sky, row, columns);
-                for (pixel, column) in pixels.iter_mut().zip(&places[across]) {
-                    let down = 1.0 - slope * column.up_for_slope;
-                    let across =
-                        image.map_or(column.across, |image| column.reflected_across(image));
-                    *pixel = level.at_fraction(across, (down * WHOLE) as u64);
+                let texel = |column: &SkyColumn, across: u64| {
+                    // A conversion to 64 bits would take four times the instructions.
+                    let down = (1.0 - slope * column.up_for_slope) * WHOLE_IN_32_BITS;
+                    level.at_short_fraction((across >> u32::BITS) as u32, down as u32)
+                };
+                let pixels = pixels.iter_mut().zip(&places[across]);
+                match image {
+                    Some(image) => pixels.for_each(|(pixel, column)| {
+                        *pixel = texel(column, column.reflected_across(image));
+                    }),
+                    None => pixels.for_each(|(pixel, column)| {
+                        *pixel = texel(column, column.across);
+                    }),
                 }
             }
         }

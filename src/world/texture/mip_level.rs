@@ -98,8 +98,14 @@ impl MipLevel {
     /// top.
     #[inline]
     pub fn at_fraction(&self, x: u64, y: u64) -> Rgb {
-        let index = |fraction: u64, count: NonZeroU32| {
-            (((fraction >> u32::BITS) * u64::from(count.get())) >> u32::BITS) as usize
+        self.at_short_fraction((x >> u32::BITS) as u32, (y >> u32::BITS) as u32)
+    }
+
+    /// The texel at a position in 2⁻³²ths of the width and the height.
+    #[inline]
+    pub(crate) fn at_short_fraction(&self, x: u32, y: u32) -> Rgb {
+        let index = |fraction: u32, count: NonZeroU32| {
+            ((u64::from(fraction) * u64::from(count.get())) >> u32::BITS) as usize
         };
         self.texels[index(x, self.width) * self.height.get() as usize + index(y, self.height)]
     }
