@@ -44,6 +44,8 @@ mod walk;
 pub(crate) use exact::ExactOnLevel;
 pub use exact::{Exact, ExactOrder};
 pub(crate) use hit::HitFace;
+#[cfg(feature = "tui")]
+pub(crate) use hit::distance_on_entry;
 #[cfg(feature = "lab")]
 pub(crate) use hit::texture_coordinate;
 pub use hit::{Hit, Side};

@@ -72,7 +72,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
     }
 
     /// The cell that contains the ray at present; `None` off the map.
-    pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
+    pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
         let tile = self.grid.tile(self.x.index, self.y.index)?;
         Some((Cell { column: self.x.index as u32, row: self.y.index as u32 }, tile))
     }

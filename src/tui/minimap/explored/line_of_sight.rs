@@ -6,15 +6,14 @@
 //! range. The vertical field of view does not count: the player knows the floor at their feet
 //! without looking down.
 //!
-//! Most cells have floor and ceiling at the heights of the observer's own cell. A ray through such cells
-//! sees all of them, so that it only crosses lines until it enters another tile. On the levels of the
-//! game that takes a seventh of the instructions.
-//!
 //! A mirror ends a line of sight: a map cannot show which of its cells is the one in the mirror,
 //! and reflections would reveal what is behind corners.
 
+mod own_gap;
+
+use self::own_gap::Passage;
 use super::is_wall;
-use crate::cast::{Crossed, MirroredWalk, Ray};
+use crate::cast::{Crossed, MirroredWalk, Ray, Walk};
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// Cells in which fog leaves less than this share of light are not seen.
@@ -33,16 +32,6 @@ pub(super) struct Observer<'a> {
     own_gap: Gap,
     /// What each tile is for a ray that has been in cells with that gap only.
     passages: [Passage; TileId::MOST],
-}
-
-/// What a tile is for a ray that has been in cells with the observer's own gap only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Passage {
-    /// The same gap, in which nothing opaque stands: the ray sees the cell.
-    Same,
-    /// A block that ends the ray, which sees its face.
-    Block,
-    Other,
 }
 
 /// The range of slopes at which a ray still sees, in height per distance.
@@ -81,53 +70,31 @@ impl<'a> Observer<'a> {
         observer.find_passages();
         observer
     }
-
-    /// Has rays do the same in all cells.
-    #[cfg(test)]
-    pub(super) fn forget_passages(&mut self) {
-        self.passages.fill(Passage::Other);
-    }
-
-    fn find_passages(&mut self) {
-        let Self { world, eye, top, own_gap, .. } = *self;
-        let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
-        if !is_inside {
-            return;
-        }
-        for (passage, tile) in self.passages.iter_mut().zip(world.tiles()) {
-            let is_empty = !is_opaque_inside(tile);
-            let Some(lowest) = tile.gaps().next() else { continue };
-            let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
-            if own_gap.top <= lowest.bottom || hides_all {
-                *passage = Passage::Block;
-            } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
-                *passage = Passage::Same;
-            }
-        }
-    }
 }
 
 impl Observer<'_> {
     /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
     pub(super) fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
-        let walk = MirroredWalk::new(grid, ray, 0);
-        let position = walk.cell(grid);
-        let mut line = Line { walk, position, from: 0.0 };
+        let walk = Walk::new(grid, ray);
+        let position = walk.cell();
         if let Some((cell, tile)) = position {
-            see(cell, !is_wall(self.world.tile(tile).kind));
+            see(cell, self.is_open(tile));
         }
         let mut gap = self.gap_around_eye(position);
         let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let mut crossed = if let Some((cell, tile)) = position
-            && self.passage(tile) == Passage::Same
+        let mut line = if let Some(start) = position
+            && self.passage(start.1) == Passage::Same
         {
-            let Some(crossed) = self.follow_through_same(&mut line, cell, &mut see) else { return };
+            let Some(line) = self.follow_through_own_gap(walk, ray, start, &mut see) else {
+                return;
+            };
             visible = self.slopes(gap, line.from);
-            crossed
+            line
         } else {
-            self.cross(&mut line, &mut visible, &mut see)
+            Line { walk: MirroredWalk::new(grid, ray, 0), position, from: 0.0 }
         };
+        let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {
             let Line { walk, position, from } = &mut line;
             let t = walk.distance(&crossed);
@@ -136,7 +103,7 @@ impl Observer<'_> {
                 let floor =
                     SlopeRange { low: self.slope(gap.bottom, *from), high: through_gap.low };
                 if self.eye > gap.bottom && !floor.intersection(visible).is_empty() {
-                    see(cell, !is_wall(self.world.tile(tile).kind));
+                    see(cell, self.is_open(tile));
                 }
             }
             visible = visible.intersection(through_gap);
@@ -147,12 +114,11 @@ impl Observer<'_> {
             {
                 return;
             }
-            let kind = self.world.tile(tile).kind;
             match self.enter(tile, visible, t) {
-                Entered { gap: None, .. } => return see(cell, !is_wall(kind)),
+                Entered { gap: None, .. } => return see(cell, self.is_open(tile)),
                 Entered { gap: Some(next), shows_face } => {
                     if shows_face {
-                        see(cell, !is_wall(kind));
+                        see(cell, self.is_open(tile));
                     }
                     gap = next;
                     visible = visible.intersection(self.slopes(next, t));
@@ -179,39 +145,9 @@ impl Observer<'_> {
         line.walk.cross(self.world.grid())
     }
 
-    /// Follows a line from `cell`, in which it begins, through cells with the observer's own gap. Returns
-    /// the crossing into another one, with `line` before it, or `None` if the line ends.
-    fn follow_through_same(
-        &self,
-        line: &mut Line,
-        mut cell: Cell,
-        see: &mut impl FnMut(Cell, bool),
-    ) -> Option<Crossed> {
-        let grid = self.world.grid();
-        let mut slope = f64::NEG_INFINITY;
-        loop {
-            let crossed = line.walk.cross(grid);
-            let t = line.walk.distance(&crossed);
-            let (next, tile) = match crossed.into {
-                Some(into) if self.passage(into.1) != Passage::Other && t <= self.clear_to => into,
-                _ => return Some(crossed),
-            };
-            let slope_before = std::mem::replace(&mut slope, self.slope(self.own_gap.bottom, t));
-            // They are equal in a cell of which the ray meets a corner only.
-            if slope_before < slope {
-                see(cell, true);
-            }
-            if self.passage(tile) == Passage::Block {
-                see(next, !is_wall(self.world.tile(tile).kind));
-                return None;
-            }
-            (line.position, line.from) = (crossed.into, t);
-            cell = next;
-        }
-    }
-
-    fn passage(&self, tile: TileId) -> Passage {
-        self.passages[usize::from(tile.0)]
+    /// Whether cells with `tile` are not walls.
+    fn is_open(&self, TileId(tile): TileId) -> bool {
+        !is_wall(self.world.tiles()[usize::from(tile)].kind)
     }
 
     /// The lowest visible gap of `tile`, in which a ray that enters it at `t` continues.

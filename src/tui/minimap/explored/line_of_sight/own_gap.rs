@@ -1,0 +1,107 @@
+//! Cells with the observer's own gap: floor and ceiling at the heights of the observer's cell.
+//!
+//! Most cells are such. A ray through them sees all of them, so that it only crosses lines until it enters
+//! another tile, and knows nothing of mirrors until then.
+
+use super::{Line, Observer, is_opaque_inside};
+use crate::cast::{Crossing, MirroredWalk, Ray, Side, Walk, distance_on_entry};
+use crate::tui::minimap::explored::is_wall;
+use crate::world::{Cell, TileId};
+
+/// What a tile is for a ray that has been in cells with the observer's own gap only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passage {
+    /// The same gap, in which nothing opaque stands: the ray sees the cell.
+    Same,
+    /// A block that ends the ray, which sees its face.
+    Block,
+    Other,
+}
+
+impl Observer<'_> {
+    /// Has rays do the same in all cells.
+    #[cfg(test)]
+    pub(in super::super) fn forget_passages(&mut self) {
+        self.passages.fill(Passage::Other);
+    }
+
+    pub(super) fn find_passages(&mut self) {
+        let Self { world, eye, top, own_gap, .. } = *self;
+        let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
+        if !is_inside {
+            return;
+        }
+        for (passage, tile) in self.passages.iter_mut().zip(world.tiles()) {
+            let is_empty = !is_opaque_inside(tile);
+            let Some(lowest) = tile.gaps().next() else { continue };
+            let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
+            if own_gap.top <= lowest.bottom || hides_all {
+                *passage = Passage::Block;
+            } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
+                *passage = Passage::Same;
+            }
+        }
+    }
+
+    /// Follows the walk of `ray` from `position`, where it begins, through cells with the observer's own
+    /// gap. Returns the line in the last of them, or `None` if it ends there.
+    #[inline]
+    pub(super) fn follow_through_own_gap(
+        &self,
+        walk: Walk,
+        ray: &Ray,
+        mut position: (Cell, TileId),
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Option<Line> {
+        let (mut from, mut entered) = (0.0, None);
+        for Crossing { cell: next, tile, side } in walk {
+            let t = distance_on_entry(ray, next, side);
+            let passage = self.passage(tile);
+            if passage == Passage::Other || t > self.clear_to {
+                break;
+            }
+            if self.rises(from, t) {
+                see(position.0, true);
+            }
+            if passage == Passage::Block {
+                see(next, self.is_open(tile));
+                return None;
+            }
+            (position, from, entered) = ((next, tile), t, Some(side));
+        }
+        Some(self.line_in(ray, position, from, entered))
+    }
+
+    /// The line of `ray` in a cell that it has entered, or in which it begins.
+    #[inline(never)]
+    fn line_in(
+        &self,
+        ray: &Ray,
+        position: (Cell, TileId),
+        from: f64,
+        entered: Option<Side>,
+    ) -> Line {
+        let grid = self.world.grid();
+        let walk = match entered {
+            Some(side) => MirroredWalk::entering(grid, ray, 0, (position.0, side)).0,
+            None => MirroredWalk::new(grid, ray, 0),
+        };
+        Line { walk, position: Some(position), from }
+    }
+
+    /// Whether the floor of the observer's own gap has a lower slope at `from` than at `t`. They are equal in
+    /// a cell of which the ray meets a corner only.
+    #[inline]
+    fn rises(&self, from: f64, t: f64) -> bool {
+        /// Beyond this distance, in cells, and so much farther, a slope is another one however it is rounded.
+        const NEAR: f64 = 1e-9;
+        const FARTHER: f64 = 1.0 + 1e-9;
+        let bottom = self.own_gap.bottom;
+        from > NEAR && t > from * FARTHER || self.slope(bottom, from) < self.slope(bottom, t)
+    }
+
+    #[inline]
+    pub(super) fn passage(&self, tile: TileId) -> Passage {
+        self.passages[usize::from(tile.0)]
+    }
+}
