@@ -165,7 +165,14 @@ impl Minimap<'_> {
             (0..u32::from(area.width)).map(move |x| pixels.point(x))
         };
         match self.depth {
-            ColorDepth::True | ColorDepth::Indexed256 => {
+            ColorDepth::True => {
+                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
+                    let halves = row(upper).zip(row(upper + 1));
+                    let pixels = halves.map(|(top, bottom)| [top.color(), bottom.color()]);
+                    canvas.draw_pixels(area.x, y, pixels);
+                }
+            }
+            ColorDepth::Indexed256 => {
                 for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
                     let color = |point: MapPoint| color_at(self.depth, point.color());
                     let halves = row(upper).zip(row(upper + 1));

@@ -30,6 +30,8 @@ pub(super) enum MapPoint {
 pub(super) struct Floor {
     pub(super) kind: FloorKind,
     color: Rgb,
+    /// Its colour if it is visible.
+    lit: Rgb,
 }
 
 /// The kinds of floor.
@@ -73,7 +75,7 @@ impl Floor {
     /// Water at `height`.
     pub(super) fn water(height: f64) -> Self {
         let depth = height.min(0.0).abs();
-        Self { kind: FloorKind::Water, color: mix(BASE, WATER, (depth + 0.3) / (depth + 0.6)) }
+        Self::of(FloorKind::Water, mix(BASE, WATER, (depth + 0.3) / (depth + 0.6)))
     }
 
     /// Floor at `height` with the mean colour `color`.
@@ -81,19 +83,18 @@ impl Floor {
         // The share is one half at the height or depth `half`.
         let share = |half: f64| height.abs() / (height.abs() + half);
         if height > SAME_HEIGHT {
-            Self { kind: FloorKind::Ledge, color: mix(BASE, LEDGE, share(0.6)) }
+            Self::of(FloorKind::Ledge, mix(BASE, LEDGE, share(0.6)))
         } else if height >= -SAME_HEIGHT {
-            Self { kind: FloorKind::Base, color: BASE }
+            Self::of(FloorKind::Base, BASE)
         } else if is_watery(color) {
-            Self { kind: FloorKind::Water, color: mix(BASE, WATER, share(0.3)) }
+            Self::of(FloorKind::Water, mix(BASE, WATER, share(0.3)))
         } else {
-            Self { kind: FloorKind::Pit, color: mix(BASE, PIT, share(0.5)) }
+            Self::of(FloorKind::Pit, mix(BASE, PIT, share(0.5)))
         }
     }
 
-    /// The colour of the floor if it is visible.
-    fn lit(self) -> Rgb {
-        mix(self.color, TINT, TINT_SHARE)
+    fn of(kind: FloorKind, color: Rgb) -> Self {
+        Self { kind, color, lit: mix(color, TINT, TINT_SHARE) }
     }
 }
 
@@ -136,7 +137,7 @@ impl MapPoint {
             Self::Void => VOID,
             Self::Wall(color) | Self::Door(color) => color,
             Self::Floor(floor) => floor.color,
-            Self::InView(floor) => floor.lit(),
+            Self::InView(floor) => floor.lit,
             Self::Exit => EXIT,
             Self::Key => KEY,
             Self::Item => ITEM,
