@@ -82,6 +82,7 @@ impl MirroredWalk {
 
     /// The walk of `ray` through `grid` from its entry into `cell` by a line of kind `side`, and
     /// that line, which the walk has just crossed. The ray must enter the cell by such a line.
+    #[inline]
     pub(crate) fn entering(
         grid: &Grid,
         ray: &Ray,
