@@ -1,0 +1,117 @@
+//! Players whose host ends, and who connect to another one.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+
+use super::{Hosts, goes_on};
+use crate::emulator::Emulator;
+use crate::looks::{Look, looks};
+use crate::ops::killed::user_key;
+use crate::play::enter_room;
+use crate::player::Player;
+use crate::transport::folder;
+
+const WELCOME: &str = "Welcome back: you are where you were.";
+/// Walks ahead.
+const WALK: &str = "\x1b[119;1:1u";
+/// Stops, and turns back to where nothing moves.
+const TURN: &str = "\x1b[119;1:3u\x1b[98;1:1u\x1b[98;1:3u";
+
+/// A player with a key on a host, who is in the first room, has walked ahead, and looks back.
+fn walker(hosts: &Hosts, host: usize) -> (Player, PathBuf) {
+    let key = user_key(&folder());
+    let mara = hosts.running[host].0.player(Some(&key));
+    enter_room(&mara, "Mara");
+    mara.send(WALK);
+    std::thread::sleep(Duration::from_millis(700));
+    mara.send(TURN);
+    (mara, key)
+}
+
+/// The picture at rest, without the lines at its edges and the map.
+fn picture(player: &Player) -> Vec<Look> {
+    let is_quiet = |emulator: &Emulator| {
+        let text = emulator.text();
+        ["comes in.", "is away.", "is back.", "leaves.", "Welcome"]
+            .iter()
+            .all(|it| !text.contains(it))
+    };
+    player.wait_until("forgot what was said", is_quiet);
+    player.wait_for_rest();
+    let cells = player.look(|emulator| looks(emulator.screen()));
+    let rows = cells.chunks(80).take(22).skip(1);
+    rows.flat_map(|row| row[..50].to_vec()).collect()
+}
+
+/// Mara connects to a host, and returns; the time that it takes.
+fn returned(hosts: &Hosts, host: usize, key: &Path) -> (Player, Duration) {
+    let start = Instant::now();
+    let mara = hosts.running[host].0.player(Some(key));
+    mara.wait_for(WELCOME);
+    (mara, start.elapsed())
+}
+
+#[test]
+fn a_player_of_a_host_that_drains_is_where_they_were() {
+    let mut hosts = Hosts::start(2);
+    let (mara, key) = walker(&hosts, 0);
+    let jon = hosts.player(1, "Jon");
+    mara.wait_for("Jon comes in.");
+    let before = picture(&mara);
+
+    hosts.running[0].0.signal(Signal::TERM);
+    mara.wait_for("Connect again, and you are where you were.");
+    // She does at once, before the host ends.
+    mara.send("\x03\x03");
+    jon.wait_for("Mara is away.");
+    let (mara, time) = returned(&hosts, 1, &key);
+    println!("she is back after {time:?}");
+    jon.wait_for("Mara is back.");
+    assert!(picture(&mara) == before, "{}", mara.text());
+    assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
+
+    // She is a member as she was.
+    mara.send("/here I am\r");
+    jon.wait_for("here I am");
+    mara.send("\t");
+    mara.wait_for("2/16");
+    // Nobody takes the place of one who plays.
+    let other = hosts.running[1].0.player(Some(&key));
+    other.wait_for("You are in a room by another connection, and stay there.");
+}
+
+#[test]
+fn players_of_a_host_that_has_ended_return_and_guests_are_gone() {
+    let mut hosts = Hosts::start(2);
+    let (mut mara, key) = walker(&hosts, 0);
+    let _guest = hosts.player(0, "Kim");
+    let jon = hosts.player(1, "Jon");
+    mara.wait_for("Jon comes in.");
+    hosts.running[0].0.signal(Signal::TERM);
+    assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
+    mara.wait_for_end();
+    assert!(mara.text().contains("Connect again, and you are where you were."), "{}", mara.text());
+    let time = goes_on(&jon, "anybody there");
+    println!("the room goes on after {time:?}");
+    jon.wait_for("Mara is away.");
+    jon.wait_for("Kim leaves.");
+    // Some seconds later.
+    std::thread::sleep(Duration::from_secs(2));
+    let (_mara, time) = returned(&hosts, 1, &key);
+    println!("she is back after {time:?}");
+    jon.wait_for("Mara is back.");
+    hosts.assert_equal(&[1], 0.0);
+}
+
+#[test]
+fn a_player_of_a_host_that_is_killed_is_where_they_were() {
+    let hosts = Hosts::start(2);
+    let (mara, key) = walker(&hosts, 0);
+    let before = picture(&mara);
+    hosts.running[0].0.signal(Signal::KILL);
+    let (mara, time) = returned(&hosts, 1, &key);
+    println!("she is back after {time:?}");
+    assert!(picture(&mara) == before, "{}", mara.text());
+}
