@@ -7,7 +7,7 @@
 //! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
 //! - **A value has a key and a revision.** A host replaces only the revision that it has seen last.
 //!
-//! JetStream consumers for each room and host were refused: they are state in the server, and notice a loss after
+//! `JetStream` consumers for each room and host were refused: they are state in the server, and notice a loss after
 //! seconds. The sequencer broadcasts what it has appended instead, and a host reads the log only where a number is
 //! missing.
 

@@ -61,6 +61,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 const LEAST_STAY: Duration = Duration::from_secs(3);
 
 /// A room on one host.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Replica {
     id: RoomId,
     context: Arc<HostContext>,

@@ -168,7 +168,7 @@ impl Visit {
     }
 
     fn kept_while_draining(&self, mut place: Place) -> Place {
-        place.set_kept(self.is_draining);
+        place.set_kept(self.is_draining && self.shared.cluster.is_some());
         place
     }
 

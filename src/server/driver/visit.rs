@@ -20,6 +20,10 @@ use crate::store::host::{Account, AccountKey, Name};
 use crate::terminal::Options;
 
 /// A visitor with everything that concerns them.
+#[cfg_attr(
+    feature = "cluster",
+    expect(clippy::struct_excessive_bools, reason = "each is a state of its own")
+)]
 pub(super) struct Visit {
     pub(super) shared: Arc<Shared>,
     pub(super) session: Session,

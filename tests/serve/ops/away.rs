@@ -34,11 +34,6 @@ impl Host {
         Self { postgres, store, running, metrics }
     }
 
-    fn key(&self) -> PathBuf {
-        let folder = folder();
-        user_key(&folder)
-    }
-
     fn waiting(&self) -> f64 {
         scrape(self.metrics)["cellcaster_results_waiting"]
     }
@@ -56,6 +51,11 @@ impl Host {
         };
         rows.lines().map(row).collect()
     }
+}
+
+/// A new key.
+fn key() -> PathBuf {
+    user_key(&folder())
 }
 
 /// Goes into the map of the host, alone.
@@ -86,7 +86,7 @@ const KEPT: &str = "your result is kept and will be recorded.";
 fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_were_won() {
     let mut host = Host::start();
     let players = ["Mara", "Jon"].map(|name| {
-        let player = host.running.player(Some(&host.key()));
+        let player = host.running.player(Some(&key()));
         choose(&player, name, "4");
         go_in(&player);
         player
@@ -122,7 +122,7 @@ fn results_that_the_database_missed_outlive_the_host_and_count_from_when_they_we
 #[test]
 fn a_player_who_is_still_there_reads_that_the_result_is_recorded() {
     let host = Host::start();
-    let mara = host.running.player(Some(&host.key()));
+    let mara = host.running.player(Some(&key()));
     choose(&mara, "Mara", "4");
     go_in(&mara);
     // The server neither answers nor closes its connections.
