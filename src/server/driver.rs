@@ -65,6 +65,8 @@ struct Shared {
     /// In a cluster, the ways into rooms.
     #[cfg(feature = "cluster")]
     cluster: Option<SharedRooms>,
+    /// Whether another host keeps the places of players with accounts when this one ends.
+    keeps_places: bool,
     store: StoreWorker,
     recorder: Recorder,
     /// The runs of boards that walk along. Only the thread of the store uses them.
@@ -97,6 +99,10 @@ impl GameHost {
         #[cfg(feature = "cluster")]
         let shared_rooms = cluster
             .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
+        #[cfg(feature = "cluster")]
+        let keeps_places = shared_rooms.is_some();
+        #[cfg(not(feature = "cluster"))]
+        let keeps_places = false;
         let recorder = Recorder {
             catalog: Arc::clone(rooms.catalog()),
             metrics: Arc::clone(&metrics),
@@ -111,6 +117,7 @@ impl GameHost {
             rooms,
             #[cfg(feature = "cluster")]
             cluster: shared_rooms,
+            keeps_places,
             store,
             recorder,
             runs: Arc::default(),

@@ -40,7 +40,9 @@ use self::round::{Field, Round, SECOND};
 pub(crate) use self::round::{Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
-use crate::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
+#[cfg(feature = "cluster")]
+use crate::game::PlayerColor;
+use crate::game::{Game, Input, Intents, PlayerId, Rules};
 use crate::rng;
 
 /// How long an emotion is shown, in steps.

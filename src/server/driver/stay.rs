@@ -127,11 +127,7 @@ impl Visit {
 
     /// Whether a visitor finds the room as it was on another host.
     fn can_return(&self) -> bool {
-        #[cfg(feature = "cluster")]
-        let can_return = self.shared.cluster.is_some() && self.account.is_some();
-        #[cfg(not(feature = "cluster"))]
-        let can_return = false;
-        can_return
+        self.shared.keeps_places && self.account.is_some()
     }
 }
 

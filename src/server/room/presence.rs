@@ -51,7 +51,7 @@ impl Room {
     }
 
     /// Whether a member has been in the room, and is not any more.
-    #[cfg(feature = "cluster")]
+    #[cfg(any(test, feature = "cluster"))]
     pub(crate) fn has_lost(&self, id: MemberId) -> bool {
         id < self.next_member() && !self.members.iter().any(|member| member.id == id)
     }

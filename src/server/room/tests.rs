@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::game::{Intent, Outcome};
+use crate::game::{Intent, Outcome, PlayerColor};
 use crate::server::simulation;
 use crate::world::{Difficulty, FieldOfView};
 
