@@ -1,4 +1,4 @@
-//! Real SSH sessions that play on one server, and what they cost.
+//! Real SSH sessions that play on one server or on several, and what they cost.
 //!
 //! ```text
 //! cargo run --release --features serve --example load -- --sessions 100 --seconds 20
@@ -10,10 +10,16 @@
 //! read. `--server PATH` is the program, `target/release/cellcaster` otherwise. `--sshd` measures OpenSSH's
 //! server with one process of the game for each session in place of `cellcaster serve`.
 //!
+//! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster, which take turns on the
+//! processors, while the clients are on all of them. Clients are spread over the hosts in turn, so that each
+//! room has members on all of them: no room costs more. `--beside PID` measures another process, such as that of
+//! the NATS server, and may be there several times. The program needs the feature `cluster`.
+//!
 //! `--soak` lets clients come, walk, talk, resize their windows and leave in several ways, by `--seed`,
 //! and prints ten times what the server holds.
 
 mod client;
+mod plan;
 mod process;
 mod report;
 mod server;
@@ -30,18 +36,10 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
+use plan::Plan;
+use process::Usage;
 use report::{Report, Tally};
-use server::ServerProcess;
-
-/// What to do.
-struct Plan {
-    sessions: usize,
-    silent: usize,
-    uses_sshd: bool,
-    seconds: u64,
-    server: String,
-    answer_delay: Duration,
-}
+use server::{ServerProcess, Setup};
 
 /// The time between two connections.
 const PAUSE: Duration = Duration::from_millis(25);
@@ -52,22 +50,33 @@ fn main() -> Result<(), Box<dyn Error>> {
     if std::env::args().any(|it| it == "--soak") {
         return soak::run();
     }
-    let plan = plan()?;
-    process::pin(std::process::id(), 1);
-    let server = if plan.uses_sshd {
-        sshd::start(&plan.server)?
-    } else {
-        ServerProcess::start(&plan.server, plan.sessions + plan.silent)?
-    };
+    let plan = Plan::parse()?;
+    let servers = start(&plan)?;
+    if servers.len() == 1 {
+        process::pin(std::process::id(), 1);
+    }
     let runtime = Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(run(&plan, &server))
+    runtime.block_on(run(&plan, &servers))
 }
 
-async fn run(plan: &Plan, server: &ServerProcess) -> Result<(), Box<dyn Error>> {
+fn start(plan: &Plan) -> Result<Vec<ServerProcess>, Box<dyn Error>> {
+    if plan.uses_sshd {
+        return Ok(vec![sshd::start(&plan.server)?]);
+    }
+    let setup = |number| Setup {
+        program: &plan.server,
+        connections: plan.sessions + plan.silent,
+        number,
+        options: &plan.options,
+    };
+    (0..plan.hosts).map(|number| ServerProcess::start(&setup(number))).collect()
+}
+
+async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error>> {
     let counts = Arc::new(AtomicBool::new(false));
     let mut clients = JoinSet::new();
-    let empty = server.usage();
-    for number in 0..plan.sessions {
+    let empty = usage(servers);
+    for (number, server) in (0..plan.sessions).zip(servers.iter().cycle()) {
         let counts = counts.clone();
         let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay);
         clients.spawn(async move {
@@ -79,24 +88,46 @@ async fn run(plan: &Plan, server: &ServerProcess) -> Result<(), Box<dyn Error>> 
     if plan.sessions > 0 {
         sleep(WARM_UP).await;
     }
-    let walking = server.usage();
+    let walking = usage(servers);
     let mut silent = Vec::new();
     for _ in 0..plan.silent {
-        silent.push(client::never_read(server.address, &server.access).await?);
+        silent.push(client::never_read(servers[0].address, &servers[0].access).await?);
     }
     sleep(Duration::from_secs(2)).await;
-    let before = server.usage();
+    let (before, others_before) = (usage(servers), others(plan));
     counts.store(true, Ordering::Release);
     sleep(Duration::from_secs(plan.seconds)).await;
     counts.store(false, Ordering::Release);
-    let after = server.usage();
+    let (after, others_after) = (usage(servers), others(plan));
     let tallies = ended(clients).await;
     println!(
-        "memory        {} MB empty, {} MB with {} sessions, {} MB at the end",
-        empty.megabytes, walking.megabytes, plan.sessions, after.megabytes
+        "memory        {:.1} MB empty, {:.1} MB with {} sessions, {:.1} MB at the end",
+        megabytes(&empty),
+        megabytes(&walking),
+        plan.sessions,
+        megabytes(&after)
     );
-    Report::new(&tallies, plan.seconds, after.processor.saturating_sub(before.processor)).print();
+    Report::new(&tallies, plan.seconds, process::between(&before, &after)).print();
+    let times = process::between(&others_before, &others_after);
+    for (process, time) in plan.beside.iter().zip(times) {
+        let share = time.as_secs_f64() / plan.seconds as f64;
+        println!("process {process:<6}{:.1} % of a processor", share * 100.0);
+    }
     Ok(())
+}
+
+/// What each of the servers has used so far.
+fn usage(servers: &[ServerProcess]) -> Vec<Usage> {
+    servers.iter().map(ServerProcess::usage).collect()
+}
+
+/// What each of the other processes has used so far.
+fn others(plan: &Plan) -> Vec<Usage> {
+    plan.beside.iter().map(|&process| Usage::of(process)).collect()
+}
+
+fn megabytes(usage: &[Usage]) -> f64 {
+    usage.iter().map(|it| it.megabytes).sum()
 }
 
 /// What the clients have counted.
@@ -110,32 +141,4 @@ async fn ended(mut clients: JoinSet<Result<Tally, String>>) -> Vec<Tally> {
         }
     }
     tallies
-}
-
-fn plan() -> Result<Plan, Box<dyn Error>> {
-    let mut plan = Plan {
-        sessions: 20,
-        silent: 0,
-        uses_sshd: false,
-        seconds: 10,
-        server: "target/release/cellcaster".to_owned(),
-        answer_delay: Duration::ZERO,
-    };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(name) = arguments.next() {
-        if name == "--sshd" {
-            plan.uses_sshd = true;
-            continue;
-        }
-        let value = arguments.next().ok_or_else(|| format!("{name} needs a value"))?;
-        match name.as_str() {
-            "--sessions" => plan.sessions = value.parse()?,
-            "--silent" => plan.silent = value.parse()?,
-            "--seconds" => plan.seconds = value.parse()?,
-            "--server" => plan.server = value,
-            "--answer-delay" => plan.answer_delay = Duration::from_millis(value.parse()?),
-            _ => return Err(format!("there is no option {name}").into()),
-        }
-    }
-    Ok(plan)
 }

@@ -35,6 +35,12 @@ impl Usage {
     }
 }
 
+/// The time that each process has used between two measurements of the same processes.
+pub(crate) fn between(before: &[Usage], after: &[Usage]) -> Vec<Duration> {
+    let pairs = before.iter().zip(after);
+    pairs.map(|(before, after)| after.processor.saturating_sub(before.processor)).collect()
+}
+
 fn stats() -> BTreeMap<u32, Stat> {
     let Ok(entries) = fs::read_dir("/proc") else { return BTreeMap::new() };
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());

@@ -18,11 +18,12 @@ pub(crate) struct Report {
     frames: Vec<f64>,
     bytes: f64,
     delays: Vec<Duration>,
-    busy: f64,
+    /// The share of a processor that each server takes.
+    busy: Vec<f64>,
 }
 
 impl Report {
-    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: Duration) -> Self {
+    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: Vec<Duration>) -> Self {
         let seconds = seconds as f64;
         let mut frames: Vec<f64> = tallies.iter().map(|it| it.frames as f64 / seconds).collect();
         frames.sort_by(f64::total_cmp);
@@ -34,7 +35,7 @@ impl Report {
             frames,
             bytes: tallies.iter().map(|it| it.bytes as f64).sum::<f64>() / seconds,
             delays,
-            busy: processor.as_secs_f64() / seconds,
+            busy: processor.iter().map(|it| it.as_secs_f64() / seconds).collect(),
         }
     }
 
@@ -54,10 +55,12 @@ impl Report {
             self.percentile(99),
             self.delays.len()
         );
+        let busy: f64 = self.busy.iter().sum();
+        let each: Vec<String> = self.busy.iter().map(|it| format!("{:.1} %", it * 100.0)).collect();
         println!(
-            "processor     {:.1} % of one; {:.0} µs a frame",
-            self.busy * 100.0,
-            self.busy * 1e6 / (mean * count).max(1.0)
+            "processor     {} of one; {:.0} µs a frame",
+            each.join(" and "),
+            busy * 1e6 / (mean * count).max(1.0)
         );
     }
 

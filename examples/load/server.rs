@@ -4,8 +4,10 @@ use std::error::Error;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, TcpListener};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::thread::available_parallelism;
 
 use crate::process::Usage;
 
@@ -19,6 +21,17 @@ pub(crate) struct ServerProcess {
     pub(crate) access: Access,
 }
 
+/// How a server is started.
+pub(crate) struct Setup<'a> {
+    pub(crate) program: &'a str,
+    /// The connections that it is for.
+    pub(crate) connections: usize,
+    /// Its number among the servers of this run, which is also that of its processor.
+    pub(crate) number: usize,
+    /// Further options of `cellcaster serve`.
+    pub(crate) options: &'a [String],
+}
+
 /// How a client is let in.
 #[derive(Clone, Debug)]
 pub(crate) enum Access {
@@ -29,10 +42,10 @@ pub(crate) enum Access {
 }
 
 impl ServerProcess {
-    pub(crate) fn start(program: &str, connections: usize) -> Result<Self, Box<dyn Error>> {
-        let folder = folder()?;
+    pub(crate) fn start(setup: &Setup) -> Result<Self, Box<dyn Error>> {
+        let folder = folder(setup.number)?;
         let config = folder.join("serve.toml");
-        let most = connections + 100;
+        let most = setup.connections + 100;
         // A port that is free now.
         let metrics = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
         fs::write(
@@ -44,10 +57,12 @@ impl ServerProcess {
             ),
         )?;
         let mut child = Command::new("taskset")
-            .args(["-c", "0", program, "serve", "--listen", "127.0.0.1:0", "--data"])
+            .args(["-c", &processor(setup.number).to_string(), setup.program])
+            .args(["serve", "--listen", "127.0.0.1:0", "--data"])
             .args([&folder])
             .arg("--config")
             .arg(&config)
+            .args(setup.options)
             .stdout(Stdio::piped())
             .spawn()?;
         let mut line = String::new();
@@ -68,9 +83,15 @@ impl ServerProcess {
     }
 }
 
+/// The processor of a server: they take turns.
+fn processor(number: usize) -> usize {
+    number % available_parallelism().map_or(1, NonZero::get)
+}
+
 /// A folder for the files of a server.
-pub(crate) fn folder() -> Result<PathBuf, Box<dyn Error>> {
-    let folder = std::env::temp_dir().join(format!("cellcaster-load-{}", std::process::id()));
+pub(crate) fn folder(number: usize) -> Result<PathBuf, Box<dyn Error>> {
+    let name = format!("cellcaster-load-{}-{number}", std::process::id());
+    let folder = std::env::temp_dir().join(name);
     fs::create_dir_all(&folder)?;
     Ok(folder)
 }

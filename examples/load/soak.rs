@@ -12,7 +12,7 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use crate::server::ServerProcess;
+use crate::server::{ServerProcess, Setup};
 use crate::wanderer::{self, Leaving};
 
 /// What to do.
@@ -36,7 +36,9 @@ const AFTERWARDS: Duration = Duration::from_secs(90);
 /// Runs a soak with the arguments of this process.
 pub(crate) fn run() -> Result<(), Box<dyn Error>> {
     let plan = plan()?;
-    let server = ServerProcess::start(&plan.server, 2 * plan.clients as usize)?;
+    let connections = 2 * plan.clients as usize;
+    let setup = Setup { program: &plan.server, connections, number: 0, options: &[] };
+    let server = ServerProcess::start(&setup)?;
     Builder::new_current_thread().enable_all().build()?.block_on(soak(&plan, &server))
 }
 

@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Starts a server whose only command is the game on the level on which visitors of the other server
 /// walk.
 pub(crate) fn start(program: &str) -> Result<ServerProcess, Box<dyn Error>> {
-    let folder = super::server::folder()?;
+    let folder = super::server::folder(0)?;
     // Where sshd is started by root, it wants this to exist.
     _ = fs::create_dir_all("/run/sshd");
     for key in ["host_key", "user_key"] {
