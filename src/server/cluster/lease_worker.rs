@@ -1,7 +1,9 @@
 //! A thread for calls to the leases, whose methods block.
+//!
+//! Renewals that wait for the thread are one call of the store: each costs a write to its disk. So a host with
+//! many rooms renews all of their leases in time, however long a write takes.
 
-use std::io;
-use std::thread;
+use std::{io, iter, thread};
 
 use tokio::sync::{mpsc, oneshot};
 
@@ -9,8 +11,8 @@ use crate::store::host::{Lease, Leases, StoreFailure};
 
 /// The time that a lease lasts without being renewed.
 pub(super) const LEASE_TIME: std::time::Duration = std::time::Duration::from_secs(3);
-/// The most calls that wait.
-const MOST_CALLS: usize = 256;
+/// The most calls that wait: one a second for each room.
+const MOST_CALLS: usize = 4_096;
 
 /// The sender of calls to the thread. Clones send to the same thread.
 #[derive(Clone)]
@@ -39,8 +41,9 @@ impl LeaseWorker {
     pub(super) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
         let (worker, mut queue) = Self::new();
         thread::Builder::new().name("leases".to_owned()).spawn(move || {
-            while let Some(call) = queue.blocking_recv() {
-                call.run(&mut *leases, &host);
+            while let Some(first) = queue.blocking_recv() {
+                let rest = iter::from_fn(|| queue.try_recv().ok()).take(MOST_CALLS);
+                run(iter::once(first).chain(rest), &mut *leases, &host);
             }
         })?;
         Ok(worker)
@@ -73,13 +76,24 @@ impl LeaseWorker {
     }
 }
 
-impl Call {
-    /// Does it, and answers.
-    pub(super) fn run(self, leases: &mut dyn Leases, host: &str) {
-        match self {
-            Self::Acquire(room, reply) => _ = reply.send(leases.acquire(&room, host, LEASE_TIME)),
-            Self::Renew(lease, reply) => _ = reply.send(leases.renew(&lease)),
-            Self::Release(lease, reply) => _ = reply.send(leases.release(&lease)),
+/// Does what was asked, and answers: all renewals at once, after the rest.
+pub(super) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, host: &str) {
+    let (mut held, mut replies) = (Vec::new(), Vec::new());
+    for call in calls {
+        match call {
+            Call::Acquire(room, reply) => _ = reply.send(leases.acquire(&room, host, LEASE_TIME)),
+            Call::Release(lease, reply) => _ = reply.send(leases.release(&lease)),
+            Call::Renew(lease, reply) => {
+                held.push(lease);
+                replies.push(reply);
+            }
         }
+    }
+    if held.is_empty() {
+        return;
+    }
+    let renewed = leases.renew(&held);
+    for (index, reply) in replies.into_iter().enumerate() {
+        _ = reply.send(renewed.as_ref().map(|it| it[index]).map_err(Clone::clone));
     }
 }

@@ -43,12 +43,12 @@ pub trait Leases: Send {
         time: Duration,
     ) -> Result<Option<Lease>, StoreFailure>;
 
-    /// Makes a lease last for its time from now on, and returns whether it does: it does not if it was
-    /// released or taken.
+    /// Makes leases last for their times from now on, and returns for each whether it does: it does not if it
+    /// was released or taken. That of many costs the store little more than that of one.
     ///
     /// # Errors
     /// See [`acquire`](Self::acquire).
-    fn renew(&mut self, lease: &Lease) -> Result<bool, StoreFailure>;
+    fn renew(&mut self, leases: &[Lease]) -> Result<Vec<bool>, StoreFailure>;
 
     /// Ends a lease, and returns whether there was one to end.
     ///

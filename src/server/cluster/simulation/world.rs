@@ -1,6 +1,7 @@
 //! What the hosts of a simulation have in common: logs, values, leases, and links with faults.
 
 use std::collections::BTreeMap;
+use std::iter;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -8,7 +9,7 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, Key};
-use super::super::lease_worker::{Call, LeaseWorker};
+use super::super::lease_worker::{self, Call, LeaseWorker};
 use super::bus::SimulatedBus;
 use crate::rng::SplitMix64;
 use crate::server::locked;
@@ -112,7 +113,7 @@ impl World {
             let now = Instant::now();
             inner.leases.pass(now - inner.asked_at);
             inner.asked_at = now;
-            call.run(&mut inner.leases, &format!("host {host}"));
+            lease_worker::run(iter::once(call), &mut inner.leases, &format!("host {host}"));
         });
     }
 

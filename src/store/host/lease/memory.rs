@@ -18,7 +18,8 @@ use crate::store::host::StoreFailure;
 /// assert_eq!(leases.acquire("cellar", "other", time)?, None);
 /// leases.pass(time);
 /// let next = leases.acquire("cellar", "other", time)?.unwrap();
-/// assert!(next.epoch() > lease.epoch() && !leases.renew(&lease)?);
+/// assert!(next.epoch() > lease.epoch());
+/// assert_eq!(leases.renew(&[lease, next])?, [false, true]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -72,9 +73,11 @@ impl Leases for MemoryLeases {
         Ok(Some(lease))
     }
 
-    fn renew(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
-        let ends = self.now + lease.time;
-        Ok(self.own(lease).map(|kept| kept.ends = ends).is_some())
+    fn renew(&mut self, leases: &[Lease]) -> Result<Vec<bool>, StoreFailure> {
+        let now = self.now;
+        let renewed =
+            |lease: &Lease| self.own(lease).map(|kept| kept.ends = now + lease.time).is_some();
+        Ok(leases.iter().map(renewed).collect())
     }
 
     fn release(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {

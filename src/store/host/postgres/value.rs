@@ -65,7 +65,8 @@ fn checked<T: ToSql>(kind: &Type) -> Result<Type, String> {
     fits.then(|| kind.clone()).ok_or_else(|| format!("the parameter is of the type {kind}"))
 }
 
-fn escaped(text: &str) -> Cow<'_, str> {
+/// A text as the tables have it.
+pub(super) fn escaped(text: &str) -> Cow<'_, str> {
     if !text.contains(['\0', ESCAPE]) {
         return Cow::Borrowed(text);
     }

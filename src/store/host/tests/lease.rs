@@ -48,7 +48,26 @@ fn a_room_has_one_holder() {
         // Another room is another matter.
         let other = leases.acquire("museum", "other", LONG).unwrap().unwrap();
         assert_eq!(leases.holder("museum").unwrap(), Some(other));
-        assert!(leases.renew(&lease).unwrap());
+        assert!(renew(leases, &lease));
+    });
+}
+
+#[test]
+fn many_leases_are_renewed_at_once() {
+    with_each(|leases| {
+        let rooms: Vec<String> = (0..40).map(|it| format!("room \u{1} \"{it}\"")).collect();
+        let take = |room: &String| leases.acquire(room, "one", SHORT * 5).unwrap().unwrap();
+        let mut held: Vec<Lease> = rooms.iter().map(take).collect();
+        leases.release(&held[7]).unwrap();
+        leases.release(&held[8]).unwrap();
+        let taken = leases.acquire(held[8].room(), "other", LONG).unwrap().unwrap();
+        // One twice, and one of another host.
+        held.extend([held[9].clone(), taken]);
+        leases.wait(SHORT);
+        let renewed = leases.renew(&held).unwrap();
+        let expected: Vec<bool> = (0..42).map(|it| it != 7 && it != 8).collect();
+        assert_eq!(renewed, expected);
+        assert!(leases.renew(&[]).unwrap().is_empty());
     });
 }
 
@@ -64,7 +83,7 @@ fn epochs_grow_also_over_a_release() {
             assert!(leases.release(&lease).unwrap());
             assert_eq!(leases.holder("cellar").unwrap(), None);
             // It is over for good.
-            assert!(!leases.release(&lease).unwrap() && !leases.renew(&lease).unwrap());
+            assert!(!leases.release(&lease).unwrap() && !renew(leases, &lease));
         }
     });
 }
@@ -77,7 +96,7 @@ fn a_lease_that_is_over_can_be_taken() {
         assert_eq!(leases.holder("cellar").unwrap(), None);
         let next = leases.acquire("cellar", "other", LONG).unwrap().unwrap();
         assert!(next.epoch() > lease.epoch());
-        assert!(!leases.renew(&lease).unwrap() && !leases.release(&lease).unwrap());
+        assert!(!renew(leases, &lease) && !leases.release(&lease).unwrap());
         assert_eq!(leases.holder("cellar").unwrap(), Some(next));
     });
 }
@@ -87,7 +106,7 @@ fn a_lease_that_is_over_and_not_taken_can_be_renewed() {
     with_each(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT).unwrap().unwrap();
         leases.wait(SHORT * 2);
-        assert!(leases.renew(&lease).unwrap());
+        assert!(renew(leases, &lease));
         assert_eq!(leases.holder("cellar").unwrap(), Some(lease));
         assert_eq!(leases.acquire("cellar", "other", LONG).unwrap(), None);
     });
@@ -99,10 +118,14 @@ fn a_renewed_lease_lasts() {
         let lease = leases.acquire("cellar", "one", SHORT * 5).unwrap().unwrap();
         for _ in 0..4 {
             leases.wait(SHORT * 2);
-            assert!(leases.renew(&lease).unwrap());
+            assert!(renew(leases, &lease));
         }
         assert_eq!(leases.acquire("cellar", "other", LONG).unwrap(), None);
     });
+}
+
+fn renew(leases: &mut (impl Leases + ?Sized), lease: &Lease) -> bool {
+    leases.renew(std::slice::from_ref(lease)).unwrap() == [true]
 }
 
 /// Something that a host does, or that happens.
@@ -161,7 +184,7 @@ proptest! {
                 }
                 Event::Renew(host, room) => {
                     let Some(own) = &mut known[host][room] else { continue };
-                    if leases.renew(&own.lease).unwrap() {
+                    if renew(&mut leases, &own.lease) {
                         prop_assert_eq!(owners[room].last(), Some(&(own.lease.epoch(), host)));
                         own.until = now + own.lease.time().as_secs();
                     }
