@@ -73,15 +73,20 @@ fn words(line: &str) -> Vec<String> {
         .collect()
 }
 
-/// The unit with the paths of this machine.
+/// The unit with the paths of this machine, and with its additions.
 fn unit() -> Option<PathBuf> {
     let has_systemd = Command::new("systemd-analyze").arg("--version").output().is_ok();
     has_systemd.then(|| {
         let program = env!("CARGO_BIN_EXE_cellcaster");
         let text = document("hosting/cellcaster.service");
         assert!(text.contains("/usr/local/bin/cellcaster"));
-        let file = folder().join("cellcaster.service");
+        let folder = folder();
+        let file = folder.join("cellcaster.service");
         fs::write(&file, text.replace("/usr/local/bin/cellcaster", program)).unwrap();
+        // What makes it a host of a cluster.
+        let additions = folder.join("cellcaster.service.d");
+        fs::create_dir(&additions).unwrap();
+        fs::write(additions.join("cluster.conf"), document("hosting/cluster.conf")).unwrap();
         file
     })
 }
@@ -106,6 +111,20 @@ fn the_unit_starts_the_program_with_options_that_there_are() {
     assert_eq!(starts.len(), 1);
     let output = cellcaster(&words(starts[0]).iter().map(String::as_str).collect::<Vec<_>>())
         .arg("--help")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[cfg(feature = "cluster-tests")]
+#[test]
+fn the_configuration_of_nats_is_what_it_takes() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let output = Command::new("nats-server")
+        // The package puts it where the superuser looks.
+        .env("PATH", format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default()))
+        .args(["-t", "-c"])
+        .arg(docs.join("hosting/nats-server.conf"))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
