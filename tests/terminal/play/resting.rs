@@ -82,8 +82,8 @@ fn a_frame_takes_two_waits() {
     game.wait_until("went on turning", |emulator| count(emulator.bytes(), END) >= before + FRAMES);
     let waited = waits(&game).unwrap_or_default() - waited;
     let drawn = frames() - before;
-    // One until the frame is due, and one for the terminal's answer.
-    assert!(waited <= 2 * drawn + FRAMES / 4, "{waited} waits for {drawn} frames");
+    // One until the frame is due, and one for the terminal's answer, which may come in two parts.
+    assert!(waited <= 2 * drawn + FRAMES / 2, "{waited} waits for {drawn} frames");
 }
 
 #[test]
