@@ -2,7 +2,7 @@
 //! `nats-server`.
 
 use std::fs;
-use std::net::{TcpListener, TcpStream};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,6 +14,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A server with a log on the disk, and a process that ends it when this one ends.
 pub(crate) struct NatsServer {
     folder: PathBuf,
+    address: Ipv4Addr,
     port: u16,
     /// It ends when its input does, and the server with it.
     watcher: Option<Child>,
@@ -22,20 +23,25 @@ pub(crate) struct NatsServer {
 impl NatsServer {
     /// A server that answers.
     pub(crate) fn start() -> Self {
+        Self::start_at(Ipv4Addr::LOCALHOST)
+    }
+
+    /// A server at an address of this machine.
+    pub(crate) fn start_at(address: Ipv4Addr) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let folder =
             std::env::temp_dir().join(format!("cellcaster-nats-{}-{number}", std::process::id()));
         fs::create_dir(&folder).unwrap();
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let mut server = Self { folder, port, watcher: None };
+        let port = TcpListener::bind((address, 0)).unwrap().local_addr().unwrap().port();
+        let mut server = Self { folder, address, port, watcher: None };
         server.restart();
         server
     }
 
     /// The address.
     pub(crate) fn address(&self) -> String {
-        format!("nats://127.0.0.1:{}", self.port)
+        format!("nats://{}:{}", self.address, self.port)
     }
 
     /// Kills the server.
@@ -49,9 +55,9 @@ impl NatsServer {
     pub(crate) fn restart(&mut self) {
         let folder = self.folder.display();
         let script = format!(
-            "nats-server -a 127.0.0.1 -p {} -js -sd {folder} >{folder}/log 2>&1 & \
+            "nats-server -a {} -p {} -js -sd {folder} >{folder}/log 2>&1 & \
              read _; kill -9 $!; wait",
-            self.port
+            self.address, self.port
         );
         // The package puts it where the superuser looks.
         let path = format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default());
@@ -60,7 +66,7 @@ impl NatsServer {
         let watcher = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         self.watcher = Some(watcher);
         let start = Instant::now();
-        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+        while TcpStream::connect((self.address, self.port)).is_err() {
             assert!(start.elapsed() < PATIENCE, "nats-server is installed, and starts");
             thread::sleep(Duration::from_millis(20));
         }

@@ -5,7 +5,7 @@
 #![allow(dead_code, reason = "every test program uses its own share of this")]
 
 use std::fs;
-use std::net::TcpListener;
+use std::net::{Ipv4Addr, TcpListener};
 use std::os::unix::fs::chown;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -36,6 +36,12 @@ impl PostgresServer {
     /// A server of a test's own.
     pub(crate) fn start() -> Self {
         Self::with("", "", |_| {})
+    }
+
+    /// A server of a test's own at an address of this machine.
+    pub(crate) fn start_at(address: Ipv4Addr) -> Self {
+        let access = "host all all 10.0.0.0/8 trust\n";
+        Self::with(&format!("listen_addresses = '{address}'"), access, |_| {})
     }
 
     /// A server of a test's own that takes encrypted connections alone, with a [certificate](Self::certificate)
@@ -108,8 +114,13 @@ impl PostgresServer {
 
     /// The same over TCP.
     pub(crate) fn address_over_tcp(&self) -> String {
+        self.address_at(Ipv4Addr::LOCALHOST)
+    }
+
+    /// The same over TCP, at the address at which the server was started.
+    pub(crate) fn address_at(&self, address: Ipv4Addr) -> String {
         let Self { port, .. } = self;
-        format!("postgres://{USER}@127.0.0.1:{port}/postgres?{}", self.new_place())
+        format!("postgres://{USER}@{address}:{port}/postgres?{}", self.new_place())
     }
 
     /// A new schema, as an option of an address.

@@ -1,16 +1,19 @@
 //! Three hosts over one NATS server and one PostgreSQL.
 
+mod cut_off;
+mod network;
 mod returning;
 
 use std::env;
-use std::net::TcpListener;
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::process::Output;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 
-use super::metrics::scrape;
+use self::network::Network;
+use super::metrics::scrape_at;
 use super::running::Running;
 use crate::nats_server::NatsServer;
 use crate::play::{enter_room, see_each_other_walk};
@@ -24,8 +27,8 @@ const TAKEOVER: Duration = Duration::from_secs(5);
 
 /// Hosts that share their rooms.
 struct Hosts {
-    /// Each with the port of its metrics.
-    running: Vec<(Running, u16)>,
+    /// Each with the address of its metrics.
+    running: Vec<(Running, SocketAddr)>,
     nats: NatsServer,
     postgres: PostgresServer,
 }
@@ -34,13 +37,20 @@ impl Hosts {
     fn start(count: usize) -> Self {
         let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
         let (bus, store) = (nats.address(), postgres.address());
-        let options = ["--store", store.as_str(), "--cluster", bus.as_str()];
-        let host = |_| {
-            let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-            let config = format!("[metrics]\nlisten = \"127.0.0.1:{port}\"\n");
-            (Running::start_with(&config, "text", &options), port)
-        };
-        Self { running: (0..count).map(host).collect(), nats, postgres }
+        let running = (0..count).map(|_| host(None, Ipv4Addr::LOCALHOST, &bus, &store)).collect();
+        Self { running, nats, postgres }
+    }
+
+    /// Two hosts, of which the first one is in a network of its own.
+    fn start_behind(network: &Network) -> Self {
+        let shared = network.shared();
+        let (nats, postgres) = (NatsServer::start_at(shared), PostgresServer::start_at(shared));
+        let (bus, store) = (nats.address(), postgres.address_at(shared));
+        let running = vec![
+            host(Some(network.namespace()), network.host(), &bus, &store),
+            host(None, Ipv4Addr::LOCALHOST, &bus, &store),
+        ];
+        Self { running, nats, postgres }
     }
 
     /// A player on a host, who is in the first room.
@@ -51,7 +61,7 @@ impl Hosts {
     }
 
     fn figure(&self, host: usize, name: &str) -> f64 {
-        scrape(self.running[host].1)[&format!("cellcaster_{name}")]
+        scrape_at(self.running[host].1)[&format!("cellcaster_{name}")]
     }
 
     /// Asserts that hosts have compared the states of rooms since, and found no difference.
@@ -65,6 +75,20 @@ impl Hosts {
         let compared = equal.iter().filter(|count| **count >= least).count();
         assert!(compared >= hosts.len() - 1, "{equal:?}");
     }
+}
+
+/// A host in a namespace of networks, with metrics at `address`, and where they are.
+fn host(
+    namespace: Option<&str>,
+    address: Ipv4Addr,
+    bus: &str,
+    store: &str,
+) -> (Running, SocketAddr) {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let config = format!("[metrics]\nlisten = \"{address}:{port}\"\n");
+    let options = ["--store", store, "--cluster", bus];
+    let running = Running::start_in(namespace, &config, "text", &options);
+    (running, (address, port).into())
 }
 
 /// Says something that `other` reads, and returns the time that it takes.

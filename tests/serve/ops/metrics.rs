@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream, ToSocketAddrs};
 use std::thread;
 use std::time::Duration;
 
@@ -21,8 +21,8 @@ fn measured() -> (Running, u16) {
 }
 
 /// The answer to what is sent, until the server closes the connection.
-fn answer(port: u16, request: &[u8]) -> String {
-    let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+fn answer(address: impl ToSocketAddrs, request: &[u8]) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
     // A server that has seen enough may have closed the connection.
     _ = stream.write_all(request);
@@ -33,7 +33,12 @@ fn answer(port: u16, request: &[u8]) -> String {
 }
 
 pub(super) fn scrape(port: u16) -> BTreeMap<String, f64> {
-    let answer = answer(port, b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    scrape_at((Ipv4Addr::LOCALHOST, port))
+}
+
+/// The figures of a host that tells them at another address.
+pub(super) fn scrape_at(address: impl ToSocketAddrs) -> BTreeMap<String, f64> {
+    let answer = answer(address, b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
     let (head, body) = answer.split_once("\r\n\r\n").unwrap();
     assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");
     assert!(head.contains("Content-Type: text/plain; version=0.0.4"), "{head}");
@@ -80,7 +85,7 @@ fn what_is_no_request_is_answered_and_costs_no_other() {
         (b"\x16\x03\x01\x00\xff", "400"),
         (&long, "400"),
     ] {
-        let answer = answer(port, request);
+        let answer = answer(("127.0.0.1", port), request);
         assert!(answer.is_empty() || answer.contains(status), "{answer}");
     }
     // These say nothing, and hold all places for two seconds.

@@ -20,6 +20,8 @@ pub(super) struct Running {
     process: Child,
     port: String,
     options: Vec<String>,
+    /// Of its network; `None` for that of the tests.
+    namespace: Option<String>,
 }
 
 impl Running {
@@ -30,18 +32,30 @@ impl Running {
 
     /// As [`Running::start`], with more options.
     pub(super) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
+        Self::start_in(None, config, format, options)
+    }
+
+    /// As [`Running::start_with`], in a namespace of networks.
+    pub(super) fn start_in(
+        namespace: Option<&str>,
+        config: &str,
+        format: &str,
+        options: &[&str],
+    ) -> Self {
         let folder = folder();
         // A host that has run before.
         drop(SqliteStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
         let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
-        let (process, port) = spawn(&folder, format, &options);
-        Self { folder, process, port, options }
+        let namespace = namespace.map(str::to_owned);
+        let (process, port) = spawn(&folder, format, &options, namespace.as_deref());
+        Self { folder, process, port, options, namespace }
     }
 
     /// Starts the server again in the same folder, with the same options.
     pub(super) fn restart(&mut self) {
-        (self.process, self.port) = spawn(&self.folder, "text", &self.options);
+        (self.process, self.port) =
+            spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
     }
 
     pub(super) fn log(&self) -> String {
@@ -65,9 +79,9 @@ impl Running {
                        -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
         let user = if key == "none" { "guest@127.0.0.1" } else { "ann@127.0.0.1" };
         let last = [self.port.as_str(), "-o", &identity, user];
-        let words = options.split_whitespace().chain(last);
-        let arguments: Vec<String> = words.map(str::to_owned).collect();
-        Player::start((80, 24), Speaks::Kitty, "ssh", arguments, &[])
+        let words = ["ssh"].into_iter().chain(options.split_whitespace()).chain(last);
+        let words: Vec<&str> = within(self.namespace.as_deref()).into_iter().chain(words).collect();
+        Player::start((80, 24), Speaks::Kitty, words[0], &words[1..], &[])
     }
 
     /// Waits until the operator sees so many visitors.
@@ -108,14 +122,28 @@ impl Running {
     }
 }
 
+/// The words by which a command runs in a namespace of networks.
+fn within(namespace: Option<&str>) -> Vec<&str> {
+    namespace.map_or_else(Vec::new, |name| vec!["ip", "netns", "exec", name])
+}
+
 /// The process, and its port.
-fn spawn(folder: &Path, format: &str, options: &[String]) -> (Child, String) {
+fn spawn(
+    folder: &Path,
+    format: &str,
+    options: &[String],
+    namespace: Option<&str>,
+) -> (Child, String) {
     let log = File::create(folder.join("log")).unwrap();
-    let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster"))
+    let mut words = within(namespace);
+    words.push(env!("CARGO_BIN_EXE_cellcaster"));
+    let mut process = Command::new(words[0])
+        .args(&words[1..])
         .args(["serve", "--listen", "127.0.0.1:0", "--log", format, "--config"])
         .arg(folder.join("serve.toml"))
         .args(options)
         .env_clear()
+        .env("PATH", "/usr/sbin:/usr/bin:/sbin:/bin")
         .env("CELLCASTER_DATA", folder)
         .stdout(Stdio::piped())
         .stderr(log)

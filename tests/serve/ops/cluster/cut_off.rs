@@ -1,0 +1,54 @@
+//! A host whose link to NATS and the database is cut.
+
+use std::thread;
+use std::time::Duration;
+
+use super::network::Network;
+use super::{Hosts, goes_on, says};
+use crate::ops::killed::user_key;
+use crate::play::enter_room;
+use crate::transport::folder;
+
+#[test]
+fn a_host_that_is_cut_off_is_replaced_and_takes_what_the_others_have_played() {
+    let network = Network::new();
+    let hosts = Hosts::start_behind(&network);
+    // The host of whoever comes first writes the room.
+    let mara = hosts.running[0].0.player(Some(&user_key(&folder())));
+    enter_room(&mara, "Mara");
+    let jon = hosts.player(1, "Jon");
+    mara.wait_for("Jon comes in.");
+    says(&mara, &jon, "before the cut");
+
+    network.cut();
+    mara.wait_for("the game waits");
+    let time = goes_on(&jon, "anybody there");
+    println!("the room goes on after {time:?}");
+    jon.wait_for("Mara is away.");
+
+    network.mend();
+    mara.wait_for("reach each other again");
+    jon.wait_for("Mara is back.");
+    says(&jon, &mara, "after the cut");
+    says(&mara, &jon, "I was waiting");
+    thread::sleep(Duration::from_secs(3));
+    hosts.assert_equal(&[0, 1], 1.0);
+}
+
+#[test]
+fn a_short_cut_is_a_pause() {
+    let network = Network::new();
+    let hosts = Hosts::start_behind(&network);
+    let mara = hosts.player(0, "Mara");
+    let jon = hosts.player(1, "Jon");
+    mara.wait_for("Jon comes in.");
+    network.cut();
+    thread::sleep(Duration::from_secs(1));
+    network.mend();
+    // She has no account, and would be gone if she had been away.
+    let time = says(&mara, &jon, "still here");
+    println!("it is read after {time:?}");
+    says(&jon, &mara, "as am I");
+    thread::sleep(Duration::from_secs(3));
+    hosts.assert_equal(&[0, 1], 1.0);
+}
