@@ -25,7 +25,7 @@ pub(super) type Reply<T> = oneshot::Receiver<Result<T, StoreFailure>>;
 
 /// What is asked of the leases.
 pub(super) enum Call {
-    Acquire(String, oneshot::Sender<Result<Option<Lease>, StoreFailure>>),
+    Acquire(String, u64, oneshot::Sender<Result<Option<Lease>, StoreFailure>>),
     Renew(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
     Release(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
 }
@@ -49,10 +49,10 @@ impl LeaseWorker {
         Ok(worker)
     }
 
-    /// Asks for the lease of a room.
-    pub(super) fn acquire(&self, room: &str) -> Reply<Option<Lease>> {
+    /// Asks for the lease of a room, with an epoch above that of its log.
+    pub(super) fn acquire(&self, room: &str, epoch: u64) -> Reply<Option<Lease>> {
         let (reply, answer) = oneshot::channel();
-        self.call(Call::Acquire(room.to_owned(), reply));
+        self.call(Call::Acquire(room.to_owned(), epoch, reply));
         answer
     }
 
@@ -81,7 +81,9 @@ pub(super) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, ho
     let (mut held, mut replies) = (Vec::new(), Vec::new());
     for call in calls {
         match call {
-            Call::Acquire(room, reply) => _ = reply.send(leases.acquire(&room, host, LEASE_TIME)),
+            Call::Acquire(room, epoch, reply) => {
+                _ = reply.send(leases.acquire(&room, host, LEASE_TIME, epoch));
+            }
             Call::Release(lease, reply) => _ = reply.send(leases.release(&lease)),
             Call::Renew(lease, reply) => {
                 held.push(lease);

@@ -31,7 +31,8 @@ pub struct Lease {
 
 /// Where leases are kept.
 pub trait Leases: Send {
-    /// Takes the lease of a room for `time`; `None` if it has a holder.
+    /// Takes the lease of a room for `time`, with an epoch above `above` and all earlier ones; `None` if the
+    /// room has a holder. A store that was restored from a backup may know fewer epochs than its callers do.
     ///
     /// # Errors
     /// Where the store can't be asked; so for each method. If it says that a change may be kept or not, the
@@ -41,6 +42,7 @@ pub trait Leases: Send {
         room: &str,
         host: &str,
         time: Duration,
+        above: u64,
     ) -> Result<Option<Lease>, StoreFailure>;
 
     /// Makes leases last for their times from now on, and returns for each whether it does: it does not if it

@@ -59,7 +59,7 @@ impl Replica {
                     is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN);
                 // A host that cannot write the log would keep the room from those that can.
                 if is_time && self.reaches_bus {
-                    self.leasing.acquiring = Some(leases.acquire(&self.id.place()));
+                    self.leasing.acquiring = Some(leases.acquire(&self.id.place(), self.state.epoch()));
                     self.times.leased = Some(now);
                 }
             }

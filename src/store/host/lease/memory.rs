@@ -14,10 +14,10 @@ use crate::store::host::StoreFailure;
 /// use cellcaster::store::host::{Leases, MemoryLeases};
 ///
 /// let (mut leases, time) = (MemoryLeases::default(), Duration::from_secs(10));
-/// let lease = leases.acquire("cellar", "one", time)?.unwrap();
-/// assert_eq!(leases.acquire("cellar", "other", time)?, None);
+/// let lease = leases.acquire("cellar", "one", time, 0)?.unwrap();
+/// assert_eq!(leases.acquire("cellar", "other", time, 0)?, None);
 /// leases.pass(time);
-/// let next = leases.acquire("cellar", "other", time)?.unwrap();
+/// let next = leases.acquire("cellar", "other", time, 0)?.unwrap();
 /// assert!(next.epoch() > lease.epoch());
 /// assert_eq!(leases.renew(&[lease, next])?, [false, true]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -61,12 +61,13 @@ impl Leases for MemoryLeases {
         room: &str,
         host: &str,
         time: Duration,
+        above: u64,
     ) -> Result<Option<Lease>, StoreFailure> {
         let known = self.rooms.get(room);
         if known.is_some_and(|kept| kept.is_in_force(self.now)) {
             return Ok(None);
         }
-        let epoch = known.map_or(1, |kept| kept.lease.epoch + 1);
+        let epoch = known.map_or(0, |kept| kept.lease.epoch).max(above) + 1;
         let lease = Lease { room: room.to_owned(), host: host.to_owned(), epoch, time };
         let kept = Kept { lease: lease.clone(), is_released: false, ends: self.now + time };
         self.rooms.insert(room.to_owned(), kept);

@@ -22,15 +22,16 @@ impl Leases for PostgresStore {
         room: &str,
         host: &str,
         time: Duration,
+        above: u64,
     ) -> Result<Option<Lease>, StoreFailure> {
         let sql = "INSERT INTO leases AS kept (room, host, epoch, time_ms, ends_at) VALUES \
-                   (?1, ?2, 1, ?3::bigint, clock_timestamp() + ?3::bigint * interval '1 millisecond') \
-                   ON CONFLICT (room) DO UPDATE SET host = excluded.host, epoch = kept.epoch + 1, \
+                   (?1, ?2, ?4::bigint + 1, ?3::bigint, clock_timestamp() + ?3::bigint * interval '1 millisecond') \
+                   ON CONFLICT (room) DO UPDATE SET host = excluded.host, epoch = greatest(kept.epoch, ?4::bigint) + 1, \
                    time_ms = excluded.time_ms, \
                    ends_at = clock_timestamp() + excluded.time_ms * interval '1 millisecond' \
                    WHERE kept.host IS NULL OR kept.ends_at <= clock_timestamp() \
                    RETURNING room, host, epoch, time_ms";
-        let values = values![room, host, milliseconds(time)];
+        let values = values![room, host, milliseconds(time), above as i64];
         self.database.change_rows(|it| it.row(sql, values)?.as_ref().map(lease).transpose())
     }
 

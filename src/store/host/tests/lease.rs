@@ -39,14 +39,14 @@ const SHORT: Duration = Duration::from_millis(200);
 fn a_room_has_one_holder() {
     with_each(|leases| {
         assert_eq!(leases.holder("cellar").unwrap(), None);
-        let lease = leases.acquire("cellar", "one", LONG).unwrap().unwrap();
+        let lease = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
         assert_eq!((lease.room(), lease.host(), lease.time()), ("cellar", "one", LONG));
         for host in ["one", "other"] {
-            assert_eq!(leases.acquire("cellar", host, LONG).unwrap(), None);
+            assert_eq!(leases.acquire("cellar", host, LONG, 0).unwrap(), None);
         }
         assert_eq!(leases.holder("cellar").unwrap().as_ref(), Some(&lease));
         // Another room is another matter.
-        let other = leases.acquire("museum", "other", LONG).unwrap().unwrap();
+        let other = leases.acquire("museum", "other", LONG, 0).unwrap().unwrap();
         assert_eq!(leases.holder("museum").unwrap(), Some(other));
         assert!(renew(leases, &lease));
     });
@@ -56,11 +56,11 @@ fn a_room_has_one_holder() {
 fn many_leases_are_renewed_at_once() {
     with_each(|leases| {
         let rooms: Vec<String> = (0..40).map(|it| format!("room \u{1} \"{it}\"")).collect();
-        let take = |room: &String| leases.acquire(room, "one", SHORT * 5).unwrap().unwrap();
+        let take = |room: &String| leases.acquire(room, "one", SHORT * 5, 0).unwrap().unwrap();
         let mut held: Vec<Lease> = rooms.iter().map(take).collect();
         leases.release(&held[7]).unwrap();
         leases.release(&held[8]).unwrap();
-        let taken = leases.acquire(held[8].room(), "other", LONG).unwrap().unwrap();
+        let taken = leases.acquire(held[8].room(), "other", LONG, 0).unwrap().unwrap();
         // One twice, and one of another host.
         held.extend([held[9].clone(), taken]);
         leases.wait(SHORT);
@@ -77,7 +77,7 @@ fn epochs_grow_also_over_a_release() {
         let mut last = 0;
         for round in 0..6 {
             let host = ["one", "other"][round % 2];
-            let lease = leases.acquire("cellar", host, LONG).unwrap().unwrap();
+            let lease = leases.acquire("cellar", host, LONG, 0).unwrap().unwrap();
             assert!(lease.epoch() > last);
             last = lease.epoch();
             assert!(leases.release(&lease).unwrap());
@@ -91,10 +91,10 @@ fn epochs_grow_also_over_a_release() {
 #[test]
 fn a_lease_that_is_over_can_be_taken() {
     with_each(|leases| {
-        let lease = leases.acquire("cellar", "one", SHORT).unwrap().unwrap();
+        let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
         leases.wait(SHORT * 2);
         assert_eq!(leases.holder("cellar").unwrap(), None);
-        let next = leases.acquire("cellar", "other", LONG).unwrap().unwrap();
+        let next = leases.acquire("cellar", "other", LONG, 0).unwrap().unwrap();
         assert!(next.epoch() > lease.epoch());
         assert!(!renew(leases, &lease) && !leases.release(&lease).unwrap());
         assert_eq!(leases.holder("cellar").unwrap(), Some(next));
@@ -104,23 +104,35 @@ fn a_lease_that_is_over_can_be_taken() {
 #[test]
 fn a_lease_that_is_over_and_not_taken_can_be_renewed() {
     with_each(|leases| {
-        let lease = leases.acquire("cellar", "one", SHORT).unwrap().unwrap();
+        let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
         leases.wait(SHORT * 2);
         assert!(renew(leases, &lease));
         assert_eq!(leases.holder("cellar").unwrap(), Some(lease));
-        assert_eq!(leases.acquire("cellar", "other", LONG).unwrap(), None);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap(), None);
     });
 }
 
 #[test]
 fn a_renewed_lease_lasts() {
     with_each(|leases| {
-        let lease = leases.acquire("cellar", "one", SHORT * 5).unwrap().unwrap();
+        let lease = leases.acquire("cellar", "one", SHORT * 5, 0).unwrap().unwrap();
         for _ in 0..4 {
             leases.wait(SHORT * 2);
             assert!(renew(leases, &lease));
         }
-        assert_eq!(leases.acquire("cellar", "other", LONG).unwrap(), None);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap(), None);
+    });
+}
+
+#[test]
+fn an_epoch_is_above_that_which_the_caller_knows() {
+    with_each(|leases| {
+        let lease = leases.acquire("cellar", "one", LONG, 41).unwrap().unwrap();
+        assert_eq!(lease.epoch(), 42);
+        leases.release(&lease).unwrap();
+        assert_eq!(leases.acquire("cellar", "one", SHORT, 7).unwrap().unwrap().epoch(), 43);
+        leases.wait(SHORT * 2);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 99).unwrap().unwrap().epoch(), 100);
     });
 }
 
@@ -175,7 +187,7 @@ proptest! {
                 }
                 Event::Acquire(host, room, seconds) => {
                     let time = Duration::from_secs(seconds);
-                    if let Some(lease) = leases.acquire(ROOMS[room], HOSTS[host], time).unwrap() {
+                    if let Some(lease) = leases.acquire(ROOMS[room], HOSTS[host], time, 0).unwrap() {
                         let last = owners[room].last().map_or(0, |(epoch, _)| *epoch);
                         prop_assert!(lease.epoch() > last);
                         owners[room].push((lease.epoch(), host));
@@ -223,7 +235,7 @@ fn of_hosts_that_take_a_lease_at_once_one_has_it() {
                     scope.spawn(move || {
                         let mut store = PostgresStore::open(address).unwrap();
                         barrier.wait();
-                        store.acquire("cellar", host, time).unwrap()
+                        store.acquire("cellar", host, time, 0).unwrap()
                     })
                 })
                 .collect();
