@@ -85,6 +85,17 @@ impl Refusal {
             Self::Penalty => "penalty",
         }
     }
+
+    /// What a client reads that is refused after it has logged in.
+    pub(super) const fn sentence(self) -> &'static str {
+        match self {
+            Self::Key => "You are connected too often with this key: end another game first.",
+            Self::Address => {
+                "You are connected too often from this address: end another game first."
+            }
+            Self::Full | Self::Startups | Self::Penalty => "There are too many connections now.",
+        }
+    }
 }
 
 impl Outcome {

@@ -31,6 +31,7 @@ mod room_state;
 mod sequencer;
 #[cfg(test)]
 mod simulation;
+mod visits;
 
 use std::fmt;
 use std::io;
@@ -44,6 +45,8 @@ use self::lease_worker::LeaseWorker;
 use self::nats::NatsBus;
 use self::record::Record;
 use self::room_state::RoomState;
+use self::visits::Visits;
+pub(super) use self::visits::{CountedVisit, Newcomer, VisitRefusal};
 use super::load::Load;
 use super::locked;
 use super::room::Catalog;
@@ -51,33 +54,37 @@ use super::rooms::{RoomRefusal, Rooms};
 use super::summary::{RoomId, RoomWish};
 use super::visitors::Visitors;
 use crate::rng::SplitMix64;
-use crate::store::host::Leases;
+use crate::store::host::{HostNotice, Leases, Presence};
 
 /// A place in a cluster, for one host.
 pub struct Cluster {
     bus: Box<dyn Bus>,
     leases: LeaseWorker,
+    visits: Visits,
     /// The seed of join tokens, and of the rooms that this host opens.
     seed: u64,
 }
 
 impl Cluster {
-    /// The cluster at an address such as `nats://host:4222`. The host that is called `host`, as no other, gets its
-    /// leases from `leases`.
+    /// The cluster at an address such as `nats://host:4222`. The host of `notice` gets its leases from `leases`, and
+    /// is counted in `presence` with its visitors.
     ///
     /// # Errors
     /// A sentence, if the server does not answer, or has no `JetStream`.
     pub async fn join(
         address: &str,
         leases: Box<dyn Leases>,
-        host: String,
+        presence: Box<dyn Presence>,
+        notice: HostNotice,
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
-        // Before anything that may fail: leases block when they are dropped, too.
-        let leases = LeaseWorker::start(leases, host).map_err(no_thread)?;
+        // Before anything that may fail: what blocks does so when it is dropped, too.
+        let leases = LeaseWorker::start(leases, notice.name.clone()).map_err(no_thread);
+        let visits = Visits::start(presence, notice).map_err(no_thread);
+        let (leases, visits) = (leases?, visits?);
         let bus = Box::new(NatsBus::connect(address).await?);
         // Without random numbers from the system there would be no keys, either.
-        Ok(Self { bus, leases, seed: getrandom::u64().unwrap_or_default() })
+        Ok(Self { bus, leases, visits, seed: getrandom::u64().unwrap_or_default() })
     }
 
     /// The rooms of the cluster, which lobbies see in `rooms`.
@@ -88,10 +95,11 @@ impl Cluster {
         load: Arc<Load>,
         visitors: Visitors,
     ) -> SharedRooms {
-        let Self { bus, leases, seed } = self;
+        let Self { bus, leases, visits, seed } = self;
         let context = HostContext {
             bus,
             leases,
+            visits,
             catalog: Arc::clone(rooms.catalog()),
             load,
             visitors,
@@ -112,6 +120,7 @@ impl fmt::Debug for Cluster {
 struct HostContext {
     bus: Box<dyn Bus>,
     leases: LeaseWorker,
+    visits: Visits,
     catalog: Arc<Catalog>,
     load: Arc<Load>,
     visitors: Visitors,

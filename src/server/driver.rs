@@ -10,6 +10,8 @@
 //!   because it is away waits in a file, and is recorded later.
 
 mod account;
+#[cfg(feature = "cluster")]
+mod counted;
 mod follow;
 mod late_results;
 mod parts;
@@ -45,7 +47,7 @@ use super::load::Load;
 use super::room::Catalog;
 use super::rooms::{RoomLimits, Rooms};
 use super::summary::RoomSummary;
-use super::{Departure, Host, Link, LiveConfig, Metrics, RoomRow, Visitor, Visitors};
+use super::{Departure, Host, Link, LiveConfig, Metrics, Refusal, RoomRow, Visitor, Visitors};
 use crate::store::host::UnixTime;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
@@ -171,23 +173,22 @@ impl Host for GameHost {
     async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
         if let Some(sentence) = terminal::refusal(&visitor) {
-            refuse(link, &sentence).await;
-            return Departure { status: 1 };
+            return refuse(link, &sentence, None).await;
         }
-        let status = match shared.log_in(&visitor).await {
-            Ok(known) => {
-                let options = terminal::options(&visitor);
-                let mut visit = Visit::new(shared, &visitor, known, options);
-                #[cfg(feature = "cluster")]
-                visit.look_for_place();
-                visit.run(&mut link).await
-            }
-            Err(sentence) => {
-                refuse(link, &sentence).await;
-                1
-            }
+        let known = match shared.log_in(&visitor).await {
+            Ok(known) => known,
+            Err(sentence) => return refuse(link, &sentence, None).await,
         };
-        Departure { status }
+        #[cfg(feature = "cluster")]
+        let _counted = match shared.begin_visit(&visitor, known.key).await {
+            Ok(counted) => counted,
+            Err((sentence, reason)) => return refuse(link, sentence, reason).await,
+        };
+        let options = terminal::options(&visitor);
+        let mut visit = Visit::new(shared, &visitor, known, options);
+        #[cfg(feature = "cluster")]
+        visit.look_for_place();
+        Departure { status: visit.run(&mut link).await, refusal: None }
     }
 }
 
@@ -203,11 +204,12 @@ impl Shared {
     }
 }
 
-/// Tells somebody who may not play why.
-async fn refuse(link: Link, sentence: &str) {
+/// Tells somebody who may not play why; `refusal` is the limit that forbids it, if one does.
+async fn refuse(link: Link, sentence: &str, refusal: Option<Refusal>) -> Departure {
     let Link { mut outbox, .. } = link;
     _ = outbox.try_send(format!("{sentence}\r\n").into_bytes());
     outbox.drained().await;
+    Departure { status: 1, refusal }
 }
 
 /// Sets the frame rate as long as the host exists.

@@ -57,6 +57,8 @@ pub struct Link {
 pub struct Departure {
     /// The exit status that the visitor's `ssh` ends with.
     pub status: u8,
+    /// The limit by which the visitor was refused, if they were.
+    pub refusal: Option<Refusal>,
 }
 
 /// Counts of connections, for metrics and tests.
@@ -76,7 +78,7 @@ pub struct Counters {
     pub frames: AtomicU64,
     /// Their bytes, before compression and encryption.
     pub frame_bytes: AtomicU64,
-    /// Those of `refused` and those with a key too often, by reason.
+    /// Those of `refused` and those that were refused after they had logged in, by reason.
     refusals: [AtomicU64; Refusal::ALL.len()],
 }
 

@@ -106,6 +106,11 @@ impl Visitors {
         self.with(|table| table.entries.values().map(Entry::present).collect())
     }
 
+    /// The number of visitors.
+    pub fn count(&self) -> usize {
+        self.with(|table| table.entries.len())
+    }
+
     /// Says a line to all visitors, and returns how many there are.
     pub fn say(&self, line: &str) -> usize {
         self.say_if(line, |_| true)

@@ -44,7 +44,9 @@ pub use memory::MemoryStore;
 pub use name::{Name, NameFault, printable};
 #[cfg(feature = "cluster")]
 pub use postgres::PostgresStore;
-pub use presence::{HostNotice, HostRow, MemoryPresence, Presence, Visit, VisitId, Visitor};
+pub use presence::{
+    HostNotice, HostRow, MemoryPresence, Presence, Visit, VisitBegin, VisitId, Visitor,
+};
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
 pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};

@@ -7,14 +7,15 @@ use super::{Database, Error, Serve};
 use crate::server::Cluster;
 use crate::server::HostParts;
 #[cfg(feature = "cluster")]
-use crate::store::host::PostgresStore;
+use crate::store::host::{HostNotice, PostgresStore};
 
 /// A place in a cluster that is still to be taken.
 #[cfg(feature = "cluster")]
 pub(super) struct Place {
     address: String,
-    /// On a connection of their own, so that they wait for nothing else.
+    /// Each on a connection of its own, so that they wait for nothing else.
     leases: PostgresStore,
+    presence: PostgresStore,
 }
 
 /// There is none.
@@ -34,9 +35,8 @@ pub(super) fn place(options: &Serve, store: &Database) -> Result<Option<Place>, 
     if options.record_room.is_some() {
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
-    let leases =
-        PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()))?;
-    Ok(Some(Place { address: address.0.clone(), leases }))
+    let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
+    Ok(Some(Place { address: address.0.clone(), leases: open()?, presence: open()? }))
 }
 
 /// None, since this program cannot be in a cluster.
@@ -58,8 +58,14 @@ impl Place {
         host: HostParts,
         address: SocketAddr,
     ) -> Result<HostParts, Error> {
-        let name = format!("{address} {:08x}", getrandom::u32().unwrap_or_default());
-        let cluster = Cluster::join(&self.address, Box::new(self.leases), name).await;
+        let notice = HostNotice {
+            name: unique_name(address),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            address: address.to_string(),
+            load: 0,
+        };
+        let (leases, presence) = (Box::new(self.leases), Box::new(self.presence));
+        let cluster = Cluster::join(&self.address, leases, presence, notice).await;
         Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
     }
 
@@ -68,4 +74,15 @@ impl Place {
     pub(super) async fn take(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
         match self {}
     }
+}
+
+/// The name of this machine with the port, which operators know, and a number that no other start of a host has.
+#[cfg(feature = "cluster")]
+fn unique_name(address: SocketAddr) -> String {
+    #[cfg(unix)]
+    let machine =
+        rustix::system::uname().nodename().to_string_lossy().replace(char::is_whitespace, "-");
+    #[cfg(not(unix))]
+    let machine = address.ip();
+    format!("{machine}:{} {:08x}", address.port(), getrandom::u32().unwrap_or_default())
 }

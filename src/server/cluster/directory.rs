@@ -27,6 +27,7 @@ use super::bus::{BusFault, Key};
 use super::record::Record;
 use super::replica::{Beginning, JoinRequest, Replica, Wish};
 use super::room_state::RoomState;
+use super::visits::{ANNOUNCED, Visits};
 use crate::server::locked;
 #[cfg(test)]
 use crate::server::room::RoomView;
@@ -87,6 +88,7 @@ impl SharedRooms {
         }));
         tokio::spawn(shared.clone().follow());
         tokio::spawn(shared.clone().maintain());
+        tokio::spawn(shared.clone().announce());
         shared
     }
 
@@ -138,13 +140,19 @@ impl SharedRooms {
         self.0.rooms.set_limits(limits);
     }
 
-    /// Hands all rooms over to the other hosts.
+    /// The visits of this host, which are counted with those of all others.
+    pub(in crate::server) fn visits(&self) -> &Visits {
+        &self.0.context.visits
+    }
+
+    /// Hands all rooms over to the other hosts, of which this one is none any more.
     pub(in crate::server) async fn end(&self) {
         self.0.context.ending.send_replace(true);
         let all_ended = async {
             for handle in self.0.replicas.lock().await.values() {
                 handle.join_requests.closed().await;
             }
+            self.visits().leave().await;
         };
         _ = timeout(ENDING, all_ended).await;
     }
@@ -260,6 +268,15 @@ impl SharedRooms {
                     tracing::warn!(room = %id, "a room has no host: {refusal}");
                 }
             }
+        }
+    }
+
+    /// Announces this host, again and again.
+    async fn announce(self) {
+        let mut periods = interval(ANNOUNCED);
+        while !*self.0.context.ending.borrow() {
+            periods.tick().await;
+            self.visits().announce(self.0.context.visitors.count());
         }
     }
 

@@ -161,7 +161,8 @@ impl Host {
         let load = Arc::new(Load::simulated(Arc::clone(&metrics)));
         let logs = Logs::new(|_| Box::<Queue>::default());
         let rooms = Rooms::new(limits, Arc::clone(catalog), logs, Arc::clone(&load), seed);
-        let cluster = Cluster { bus: world.bus(index), leases: world.lease_worker(index), seed };
+        let (bus, leases) = (world.bus(index), world.lease_worker(index));
+        let cluster = Cluster { bus, leases, visits: world.visits(index), seed };
         let shared = cluster.rooms(&rooms, vec![wish()], load, Visitors::default());
         Self { rooms, shared, metrics, is_killed: false, well_at: Instant::now() }
     }

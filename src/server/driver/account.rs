@@ -35,6 +35,8 @@ pub(super) struct NameInUse {
     names: NamesInUse,
 }
 
+/// What a visitor is told whom the store cannot find now.
+pub(super) const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
 /// What a visitor is told whose name cannot be kept.
 const NOT_NOW: &str = "The host can't keep this now; try again later.";
 
@@ -63,7 +65,7 @@ impl Shared {
             failed => {
                 self.metrics.store_errors.count();
                 events::store_failed(format!("{failed:?}"));
-                return Err("The host can't look you up now; try again later.".to_owned());
+                return Err(NOT_KNOWN.to_owned());
             }
         };
         if let Some(ban) = ban {

@@ -93,10 +93,7 @@ async fn serve(
 ) -> u8 {
     let known = match shared.log_in(&visitor).await {
         Ok(known) => known,
-        Err(sentence) => {
-            refuse(link, &sentence).await;
-            return 1;
-        }
+        Err(sentence) => return refuse(link, &sentence, None).await.status,
     };
     let mut visit = Visit::new(shared, &visitor, known, options);
     loop {

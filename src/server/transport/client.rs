@@ -55,7 +55,6 @@ pub(super) struct Client {
 /// The user who is a guest even with a key.
 const GUEST: &str = "guest";
 const NO_TERMINAL: &str = "This is a game for a terminal: connect with ssh -t.";
-const TOO_MANY: &str = "You are connected too often with this key: end another game first.";
 const NO_RSA: &str =
     "An RSA key is not an account here: make an ed25519 key with ssh-keygen -t ed25519.";
 /// The exit status of a refused session.
@@ -157,8 +156,8 @@ impl Client {
 
     /// Starts the session, or says why not.
     pub(super) fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
-        if self.refusal == Some(Refusal::Key) {
-            return refuse(channel, TOO_MANY, session);
+        if let Some(reason) = self.refusal {
+            return refuse(channel, reason.sentence(), session);
         }
         let Some((term, size)) = self.terminal.take() else {
             return refuse(channel, NO_TERMINAL, session);

@@ -140,6 +140,7 @@ async fn converse<H: Host>(
 ) {
     let Begun { visitor, link, inlet, handle, channel } = begun;
     let _session = Counted::new(&shared.counters.sessions);
+    let peer = visitor.peer.ip();
     let mut session = pin!(host.serve(visitor, link));
     let mut lost = pin!(lost(&shared.config, line, &handle));
     let mut is_lost = false;
@@ -163,6 +164,10 @@ async fn converse<H: Host>(
             },
         }
     };
+    if let Some(reason) = departure.refusal {
+        shared.counters.refuse(reason);
+        events::refused(peer, reason, 0);
+    }
     let farewell = async {
         _ = handle.exit_status_request(channel, u32::from(departure.status)).await;
         _ = handle.eof(channel).await;

@@ -38,7 +38,7 @@ impl StoreFailure {
 
     /// That of a store that does not answer.
     #[cfg(any(test, feature = "cluster"))]
-    pub(super) fn away(sentence: impl Into<String>) -> Self {
+    pub(crate) fn away(sentence: impl Into<String>) -> Self {
         Self { sentence: sentence.into(), is_away: true }
     }
 

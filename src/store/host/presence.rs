@@ -2,15 +2,17 @@
 //!
 //! Rules:
 //!
-//! - **A visit counts on all hosts**, so that a limit of visits by a key or by addresses holds for all hosts
-//!   together.
-//! - **A visit of a host that has ended without a word stops to count** when its time is over. A host renews all
-//!   of its visits at once. It may be late: then those that it renews count again, and for a while there may
-//!   be more than the limit.
-//! - **A host is there while it announces itself.**
+//! - **A host is there while it announces itself.** One that has ended without a word is gone some seconds later.
+//! - **A visit counts on all hosts, while its host is there**, so that a limit of visits by a key or by addresses
+//!   holds for all hosts together. A host that was late has its visitors none the less: then its visits count
+//!   again, and for a while there may be more than the limit.
+//! - **Who is refused learns how fresh that is.** The visits in the way may be those of a host that was just
+//!   killed.
 //! - **Time is that of the store**, as with [leases](super::Leases).
 //!
-//! A counter for each visitor was refused: what a host has counted when it is killed would be there for ever.
+//! A counter for each visitor was refused: what a host has counted when it is killed would be there for ever. So
+//! was a time for each visit that the host renews: a host with a thousand visitors would write a thousand rows
+//! each time.
 
 mod memory;
 
@@ -47,8 +49,17 @@ pub struct Visit {
     pub since: Duration,
 }
 
+/// Whether a visit has begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VisitBegin {
+    /// It counts now.
+    Begun(VisitId),
+    /// There are as many as allowed, counting only hosts that have announced themselves in this time.
+    TooMany(Duration),
+}
+
 /// What a host says of itself.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct HostNotice {
     /// Its name, which no other host of the cluster has.
     pub name: String,
@@ -69,25 +80,20 @@ pub struct HostRow {
     pub ago: Duration,
 }
 
-/// Where visits and hosts are kept.
+/// Where visits and hosts are kept. In each method, a host is there that has announced itself in the last `time`.
 pub trait Presence: Send {
-    /// Begins a visit that counts for `time`; `None` if `most` of the visitor count already.
+    /// Begins a visit, if fewer than `most` of the visitor count.
     ///
     /// # Errors
-    /// Where the store can't be asked; so for each method.
+    /// Where the store can't be asked; so for each method. If it says that a change may be kept or not, the visit
+    /// may count.
     fn begin_visit(
         &mut self,
         host: &str,
         visitor: &Visitor,
         most: u32,
         time: Duration,
-    ) -> Result<Option<VisitId>, StoreFailure>;
-
-    /// Makes all visits of a host count for `time` from now on, and returns their number.
-    ///
-    /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
-    fn renew_visits(&mut self, host: &str, time: Duration) -> Result<u64, StoreFailure>;
+    ) -> Result<VisitBegin, StoreFailure>;
 
     /// Ends a visit.
     ///
@@ -95,17 +101,11 @@ pub trait Presence: Send {
     /// See [`begin_visit`](Self::begin_visit).
     fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure>;
 
-    /// Ends all visits of a host, which begins or ends, and returns their number.
-    ///
-    /// # Errors
-    /// See [`begin_visit`](Self::begin_visit).
-    fn end_visits(&mut self, host: &str) -> Result<u64, StoreFailure>;
-
     /// The visits that count, in the order in which they were begun.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn visits(&mut self) -> Result<Vec<Visit>, StoreFailure>;
+    fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure>;
 
     /// Keeps what a host says of itself, in place of what it said before.
     ///
@@ -113,7 +113,13 @@ pub trait Presence: Send {
     /// See [`begin_visit`](Self::begin_visit).
     fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure>;
 
-    /// The hosts that have announced themselves in the last `time`, by name.
+    /// Forgets a host that ends, with all of its visits.
+    ///
+    /// # Errors
+    /// See [`begin_visit`](Self::begin_visit).
+    fn leave(&mut self, host: &str) -> Result<(), StoreFailure>;
+
+    /// The hosts that are there, by name.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).

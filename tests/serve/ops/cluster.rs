@@ -1,6 +1,7 @@
 //! Three hosts over one NATS server and one PostgreSQL.
 
 mod cut_off;
+mod limits;
 mod network;
 mod returning;
 
@@ -35,10 +36,15 @@ struct Hosts {
 
 impl Hosts {
     fn start(count: usize) -> Self {
+        Self::start_with(count, "")
+    }
+
+    /// Hosts with these settings.
+    fn start_with(count: usize, settings: &str) -> Self {
         let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
         let (bus, store) = (nats.address(), postgres.address());
-        let running = (0..count).map(|_| host(None, Ipv4Addr::LOCALHOST, &bus, &store)).collect();
-        Self { running, nats, postgres }
+        let host = |_| host(None, Ipv4Addr::LOCALHOST, &bus, &store, settings);
+        Self { running: (0..count).map(host).collect(), nats, postgres }
     }
 
     /// Two hosts, of which the first one is in a network of its own.
@@ -47,8 +53,8 @@ impl Hosts {
         let (nats, postgres) = (NatsServer::start_at(shared), PostgresServer::start_at(shared));
         let (bus, store) = (nats.address(), postgres.address_at(shared));
         let running = vec![
-            host(Some(network.namespace()), network.host(), &bus, &store),
-            host(None, Ipv4Addr::LOCALHOST, &bus, &store),
+            host(Some(network.namespace()), network.host(), &bus, &store, ""),
+            host(None, Ipv4Addr::LOCALHOST, &bus, &store, ""),
         ];
         Self { running, nats, postgres }
     }
@@ -83,9 +89,10 @@ fn host(
     address: Ipv4Addr,
     bus: &str,
     store: &str,
+    settings: &str,
 ) -> (Running, SocketAddr) {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    let config = format!("[metrics]\nlisten = \"{address}:{port}\"\n");
+    let config = format!("{settings}[metrics]\nlisten = \"{address}:{port}\"\n");
     let options = ["--store", store, "--cluster", bus];
     let running = Running::start_in(namespace, &config, "text", &options);
     (running, (address, port).into())

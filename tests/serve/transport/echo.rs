@@ -49,7 +49,7 @@ impl Host for Echo {
         loop {
             if link.outbox.is_empty() {
                 if is_over {
-                    return Departure { status };
+                    return Departure { status, ..Departure::default() };
                 }
                 if screen.is_stale {
                     link.outbox.try_send(screen.frame()).unwrap();
@@ -73,7 +73,7 @@ impl Host for Echo {
                         link.outbox.try_send(screen.frame()).unwrap();
                         is_over = true;
                     }
-                    Arrival::Ended => return Departure { status },
+                    Arrival::Ended => return Departure { status, ..Departure::default() },
                 },
                 () = link.outbox.drained(), if waits => {}
                 () = tick(&mut screen.ticks) => screen.tick(),

@@ -10,11 +10,12 @@ use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, Key};
 use super::super::lease_worker::{self, Call, LeaseWorker};
+use super::super::visits::{Keeper, Visits};
 use super::bus::SimulatedBus;
 use crate::rng::SplitMix64;
 use crate::server::locked;
 use crate::server::summary::RoomId;
-use crate::store::host::MemoryLeases;
+use crate::store::host::{HostNotice, MemoryLeases, MemoryPresence};
 
 pub(super) const PATIENCE: Duration = Duration::from_secs(1);
 /// The time from one look whether a fault is over to the next.
@@ -36,6 +37,7 @@ pub(super) struct Inner {
     pub(super) changes: Vec<(RoomId, Option<Vec<u8>>)>,
     pub(super) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
     leases: MemoryLeases,
+    presence: MemoryPresence,
     asked_at: Instant,
     links: Vec<Link>,
 }
@@ -77,6 +79,7 @@ impl World {
             changes: Vec::new(),
             listeners: Vec::new(),
             leases: MemoryLeases::default(),
+            presence: MemoryPresence::default(),
             asked_at: Instant::now(),
             links: vec![good; hosts],
         })))
@@ -108,11 +111,26 @@ impl World {
         worker
     }
 
+    /// The visits of a host, by the same clock.
+    pub(super) fn visits(&self, host: usize) -> Visits {
+        let (visits, mut queue) = Visits::new();
+        let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
+        let mut keeper = Keeper::new(notice, &visits);
+        let world = self.clone();
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                world.pass(host).await;
+                if !world.link(host).has_no_database {
+                    world.with(|inner| keeper.run(inner.presence(), call));
+                }
+            }
+        });
+        visits
+    }
+
     fn run(&self, call: Call, host: usize) {
         self.with(|inner| {
-            let now = Instant::now();
-            inner.leases.pass(now - inner.asked_at);
-            inner.asked_at = now;
+            inner.let_time_pass();
             lease_worker::run(iter::once(call), &mut inner.leases, &format!("host {host}"));
         });
     }
@@ -156,6 +174,18 @@ impl World {
 }
 
 impl Inner {
+    fn let_time_pass(&mut self) {
+        let now = Instant::now();
+        self.leases.pass(now - self.asked_at);
+        self.presence.pass(now - self.asked_at);
+        self.asked_at = now;
+    }
+
+    fn presence(&mut self) -> &mut MemoryPresence {
+        self.let_time_pass();
+        &mut self.presence
+    }
+
     pub(super) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {
         if let Key::Room(room) = key {
             self.changes.push((room, value.clone()));

@@ -5,7 +5,9 @@ use std::time::Duration;
 use super::PostgresStore;
 use super::lease::milliseconds;
 use crate::store::host::sql::{Database, Row, values};
-use crate::store::host::{HostNotice, HostRow, Presence, StoreFailure, Visit, VisitId, Visitor};
+use crate::store::host::{
+    HostNotice, HostRow, Presence, StoreFailure, Visit, VisitBegin, VisitId, Visitor,
+};
 
 impl Presence for PostgresStore {
     fn begin_visit(
@@ -14,30 +16,30 @@ impl Presence for PostgresStore {
         visitor: &Visitor,
         most: u32,
         time: Duration,
-    ) -> Result<Option<VisitId>, StoreFailure> {
+    ) -> Result<VisitBegin, StoreFailure> {
+        let Some(others) = most.checked_sub(1) else {
+            return Ok(VisitBegin::TooMany(Duration::ZERO));
+        };
         // Of those who count the same visits, each waits for the one before. A serializable transaction would
         // meet those who count others, too, where the table is short.
         let lock = "SELECT pg_advisory_xact_lock(hashtextextended('visits of ' || ?1::text, 0))";
-        let sql = "INSERT INTO visits (host, visitor, began_at, ends_at) SELECT ?1::text, ?2::text, \
-                   clock_timestamp(), clock_timestamp() + ?4::bigint * interval '1 millisecond' \
-                   WHERE (SELECT count(*) FROM visits \
-                   WHERE visitor = ?2::text AND ends_at > clock_timestamp()) < ?3::bigint RETURNING id";
+        let in_the_way = "SELECT (extract(epoch FROM clock_timestamp() - seen_at) * 1000)::bigint \
+                          FROM visits JOIN hosts ON hosts.name = visits.host WHERE visitor = ?1 \
+                          AND seen_at > clock_timestamp() - ?2::bigint * interval '1 millisecond' \
+                          ORDER BY seen_at DESC OFFSET ?3 LIMIT 1";
+        let sql = "INSERT INTO visits (host, visitor, began_at) \
+                   VALUES (?1, ?2, clock_timestamp()) RETURNING id";
         let visitor = visitor.to_string();
+        let visitor = visitor.as_str();
         self.database.change_rows(|it| {
-            it.execute(lock, values![visitor.as_str()])?;
-            let row = it.row(sql, values![host, visitor.as_str(), most, milliseconds(time)])?;
-            row.map(|row| row.get(0).map(VisitId)).transpose()
-        })
-    }
-
-    fn renew_visits(&mut self, host: &str, time: Duration) -> Result<u64, StoreFailure> {
-        let sql = "UPDATE visits SET \
-                   ends_at = clock_timestamp() + ?2::bigint * interval '1 millisecond' WHERE host = ?1";
-        // Those of hosts that do not come back.
-        let stale = "DELETE FROM visits WHERE ends_at < clock_timestamp() - interval '1 day'";
-        self.database.once(|it| {
-            it.execute(stale, &[])?;
-            it.execute(sql, values![host, milliseconds(time)])
+            it.execute(lock, values![visitor])?;
+            let row = it.row(in_the_way, values![visitor, milliseconds(time), others])?;
+            if let Some(row) = row {
+                return Ok(VisitBegin::TooMany(Duration::from_millis(row.get(0)?)));
+            }
+            let row = it.row(sql, values![host, visitor])?;
+            let row = row.ok_or_else(|| StoreFailure::new("the host's store began no visit"))?;
+            Ok(VisitBegin::Begun(VisitId(row.get(0)?)))
         })
     }
 
@@ -46,16 +48,14 @@ impl Presence for PostgresStore {
         self.database.once(|it| it.execute(sql, values![visit.0]).map(|_| ()))
     }
 
-    fn end_visits(&mut self, host: &str) -> Result<u64, StoreFailure> {
-        let sql = "DELETE FROM visits WHERE host = ?1";
-        self.database.change_rows(|it| it.execute(sql, values![host]))
-    }
-
-    fn visits(&mut self) -> Result<Vec<Visit>, StoreFailure> {
+    fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure> {
         let sql = "SELECT id, host, visitor, \
                    (extract(epoch FROM clock_timestamp() - began_at) * 1000)::bigint \
-                   FROM visits WHERE ends_at > clock_timestamp() ORDER BY id";
-        self.database.once(|it| it.rows(sql, &[])?.iter().map(visit).collect())
+                   FROM visits JOIN hosts ON hosts.name = visits.host \
+                   WHERE seen_at > clock_timestamp() - ?1::bigint * interval '1 millisecond' \
+                   ORDER BY id";
+        let values = values![milliseconds(time)];
+        self.database.once(|it| it.rows(sql, values)?.iter().map(visit).collect())
     }
 
     fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure> {
@@ -63,9 +63,22 @@ impl Presence for PostgresStore {
                    VALUES (?1, ?2, ?3, ?4, clock_timestamp()) ON CONFLICT (name) DO UPDATE SET \
                    version = excluded.version, address = excluded.address, load = excluded.load, \
                    seen_at = clock_timestamp()";
+        // What hosts have left that do not come back.
+        let stale = "WITH gone AS (DELETE FROM hosts \
+                     WHERE seen_at < clock_timestamp() - interval '1 day' RETURNING name) \
+                     DELETE FROM visits WHERE host IN (SELECT name FROM gone)";
         let HostNotice { name, version, address, load } = notice;
         let values = values![name.as_str(), version.as_str(), address.as_str(), *load];
-        self.database.once(|it| it.execute(sql, values).map(|_| ()))
+        self.database.once(|it| {
+            it.execute(stale, &[])?;
+            it.execute(sql, values).map(|_| ())
+        })
+    }
+
+    fn leave(&mut self, host: &str) -> Result<(), StoreFailure> {
+        let sql =
+            "WITH gone AS (DELETE FROM hosts WHERE name = ?1) DELETE FROM visits WHERE host = ?1";
+        self.database.once(|it| it.execute(sql, values![host]).map(|_| ()))
     }
 
     fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure> {

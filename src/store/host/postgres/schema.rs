@@ -8,7 +8,7 @@ use crate::store::host::sql::{Statements, values};
 /// The lock under which tables are made, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND];
+pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD];
 
 /// As those of SQLite. A text is compared by its bytes, whatever the language of the database.
 const FIRST: &str = r#"
@@ -112,6 +112,9 @@ CREATE TABLE hosts (
     seen_at TIMESTAMPTZ NOT NULL
 );
 "#;
+
+/// A visit counts while its host is there, whose row says so.
+const THIRD: &str = "ALTER TABLE visits DROP COLUMN ends_at;";
 
 /// What a database has.
 enum Found {

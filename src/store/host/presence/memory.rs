@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::{HostNotice, HostRow, Presence, Visit, VisitId, Visitor};
+use super::{HostNotice, HostRow, Presence, Visit, VisitBegin, VisitId, Visitor};
 use crate::store::host::StoreFailure;
 
 /// Visits and hosts of one program, whose time [passes](Self::pass) when it is told to.
@@ -11,14 +11,17 @@ use crate::store::host::StoreFailure;
 /// ```
 /// use std::time::Duration;
 ///
-/// use cellcaster::store::host::{AccountKey, MemoryPresence, Presence, Visitor};
+/// use cellcaster::store::host::{
+///     AccountKey, HostNotice, MemoryPresence, Presence, VisitBegin, Visitor,
+/// };
 ///
 /// let (mut presence, time) = (MemoryPresence::default(), Duration::from_secs(10));
+/// presence.announce(&HostNotice { name: "one".to_owned(), ..HostNotice::default() })?;
 /// let ada = Visitor::Key(AccountKey::new([1; 32]));
-/// let visit = presence.begin_visit("one", &ada, 1, time)?.unwrap();
-/// assert_eq!(presence.begin_visit("other", &ada, 1, time)?, None);
+/// let VisitBegin::Begun(visit) = presence.begin_visit("one", &ada, 1, time)? else { panic!() };
+/// assert!(matches!(presence.begin_visit("other", &ada, 1, time)?, VisitBegin::TooMany(_)));
 /// presence.end_visit(visit)?;
-/// assert!(presence.begin_visit("other", &ada, 1, time)?.is_some());
+/// assert!(matches!(presence.begin_visit("other", &ada, 1, time)?, VisitBegin::Begun(_)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -35,13 +38,18 @@ struct Kept {
     host: String,
     visitor: Visitor,
     began: Duration,
-    ends: Duration,
 }
 
 impl MemoryPresence {
     /// Lets time pass.
     pub fn pass(&mut self, time: Duration) {
         self.now += time;
+    }
+
+    /// The time since a host has announced itself, if that is less than `time`.
+    fn ago(&self, host: &str, time: Duration) -> Option<Duration> {
+        let (_, at) = self.hosts.get(host)?;
+        Some(self.now.saturating_sub(*at)).filter(|ago| *ago < time)
     }
 }
 
@@ -52,23 +60,19 @@ impl Presence for MemoryPresence {
         visitor: &Visitor,
         most: u32,
         time: Duration,
-    ) -> Result<Option<VisitId>, StoreFailure> {
-        let now = self.now;
-        let counting = self.visits.values().filter(|kept| now < kept.ends);
-        if counting.filter(|kept| kept.visitor == *visitor).count() >= most as usize {
-            return Ok(None);
+    ) -> Result<VisitBegin, StoreFailure> {
+        let of_visitor = self.visits.values().filter(|kept| kept.visitor == *visitor);
+        let mut agos: Vec<Duration> =
+            of_visitor.filter_map(|kept| self.ago(&kept.host, time)).collect();
+        agos.sort();
+        if agos.len() >= most as usize {
+            let ago = (most as usize).checked_sub(1).map(|index| agos[index]);
+            return Ok(VisitBegin::TooMany(ago.unwrap_or_default()));
         }
         self.last += 1;
-        let (host, visitor) = (host.to_owned(), *visitor);
-        let kept = Kept { host, visitor, began: now, ends: now + time };
+        let kept = Kept { host: host.to_owned(), visitor: *visitor, began: self.now };
         self.visits.insert(VisitId(self.last), kept);
-        Ok(Some(VisitId(self.last)))
-    }
-
-    fn renew_visits(&mut self, host: &str, time: Duration) -> Result<u64, StoreFailure> {
-        let ends = self.now + time;
-        let own = self.visits.values_mut().filter(|kept| kept.host == host);
-        Ok(own.map(|kept| kept.ends = ends).count() as u64)
+        Ok(VisitBegin::Begun(VisitId(self.last)))
     }
 
     fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure> {
@@ -76,14 +80,8 @@ impl Presence for MemoryPresence {
         Ok(())
     }
 
-    fn end_visits(&mut self, host: &str) -> Result<u64, StoreFailure> {
-        let before = self.visits.len();
-        self.visits.retain(|_, kept| kept.host != host);
-        Ok((before - self.visits.len()) as u64)
-    }
-
-    fn visits(&mut self) -> Result<Vec<Visit>, StoreFailure> {
-        let counting = self.visits.iter().filter(|(_, kept)| self.now < kept.ends);
+    fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure> {
+        let counting = self.visits.iter().filter(|(_, kept)| self.ago(&kept.host, time).is_some());
         let visit = |(id, kept): (&VisitId, &Kept)| Visit {
             id: *id,
             host: kept.host.clone(),
@@ -98,11 +96,17 @@ impl Presence for MemoryPresence {
         Ok(())
     }
 
+    fn leave(&mut self, host: &str) -> Result<(), StoreFailure> {
+        self.hosts.remove(host);
+        self.visits.retain(|_, kept| kept.host != host);
+        Ok(())
+    }
+
     fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure> {
-        let rows = self.hosts.values().map(|(notice, at)| HostRow {
-            notice: notice.clone(),
-            ago: self.now.saturating_sub(*at),
+        let rows = self.hosts.values().filter_map(|(notice, _)| {
+            let ago = self.ago(&notice.name, time)?;
+            Some(HostRow { notice: notice.clone(), ago })
         });
-        Ok(rows.filter(|row| row.ago < time).collect())
+        Ok(rows.collect())
     }
 }

@@ -40,56 +40,100 @@ fn network() -> Visitor {
     Visitor::Addresses(AddressPrefix::parse("2001:db8::/64").unwrap())
 }
 
+fn notice(name: &str, load: u32) -> HostNotice {
+    HostNotice {
+        name: name.to_owned(),
+        version: "0.1.0".to_owned(),
+        address: format!("{name}.example.org:2222"),
+        load,
+    }
+}
+
+fn announce(presence: &mut dyn Timed, hosts: &[&str]) {
+    for host in hosts {
+        presence.announce(&notice(host, 0)).unwrap();
+    }
+}
+
+/// A visit that is let in.
+fn begin(presence: &mut dyn Timed, host: &str, visitor: &Visitor, most: u32) -> VisitId {
+    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
+        VisitBegin::Begun(visit) => visit,
+        VisitBegin::TooMany(ago) => panic!("too many on hosts that were there {ago:?} ago"),
+    }
+}
+
+/// How fresh a refusal is.
+fn refused(presence: &mut dyn Timed, host: &str, visitor: &Visitor, most: u32) -> Duration {
+    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
+        VisitBegin::TooMany(ago) => ago,
+        VisitBegin::Begun(visit) => panic!("{visit:?} has begun"),
+    }
+}
+
 #[test]
 fn the_visits_of_somebody_are_limited_over_all_hosts() {
     with_each(|presence| {
-        let first = presence.begin_visit("one", &ada(), 2, LONG).unwrap().unwrap();
-        let second = presence.begin_visit("other", &ada(), 2, LONG).unwrap().unwrap();
+        announce(presence, &["one", "other", "third"]);
+        let first = begin(presence, "one", &ada(), 2);
+        let second = begin(presence, "other", &ada(), 2);
         assert_ne!(first, second);
         for host in ["one", "other", "third"] {
-            assert_eq!(presence.begin_visit(host, &ada(), 2, LONG).unwrap(), None);
+            refused(presence, host, &ada(), 2);
         }
-        let third = presence.begin_visit("one", &network(), 1, LONG).unwrap().unwrap();
-        let visits = presence.visits().unwrap();
+        let third = begin(presence, "one", &network(), 1);
+        let visits = presence.visits(LONG).unwrap();
         let shown: Vec<_> = visits.iter().map(|it| (it.id, it.host.as_str(), it.visitor)).collect();
         let expected = [(first, "one", ada()), (second, "other", ada()), (third, "one", network())];
         assert_eq!(shown, expected);
         assert!(visits.iter().all(|visit| visit.since < LONG));
         presence.end_visit(first).unwrap();
-        presence.begin_visit("third", &ada(), 2, LONG).unwrap().unwrap();
-        assert_eq!(presence.begin_visit("third", &ada(), 0, LONG).unwrap(), None);
-        // A host that begins anew has nobody.
-        assert_eq!(presence.end_visits("one").unwrap(), 1);
-        assert_eq!(presence.end_visits("one").unwrap(), 0);
-        assert_eq!(presence.visits().unwrap().len(), 2);
+        begin(presence, "third", &ada(), 2);
+        assert_eq!(refused(presence, "third", &ada(), 0), Duration::ZERO);
+        // A host that has ended has nobody, and is not there.
+        presence.leave("one").unwrap();
+        assert_eq!(presence.visits(LONG).unwrap().len(), 2);
+        assert_eq!(presence.hosts(LONG).unwrap().len(), 2);
     });
 }
 
 #[test]
-fn visits_count_while_their_host_renews_them() {
+fn visits_count_while_their_host_is_there() {
     with_each(|presence| {
-        presence.begin_visit("one", &ada(), 1, SHORT).unwrap().unwrap();
-        presence.begin_visit("killed", &network(), 1, SHORT).unwrap().unwrap();
-        assert_eq!(presence.renew_visits("one", LONG).unwrap(), 1);
+        announce(presence, &["one", "killed"]);
+        begin(presence, "one", &ada(), 1);
+        begin(presence, "killed", &network(), 1);
         presence.wait(SHORT * 2);
-        assert_eq!(presence.begin_visit("other", &ada(), 1, LONG).unwrap(), None);
-        presence.begin_visit("other", &network(), 1, LONG).unwrap().unwrap();
-        assert_eq!(presence.visits().unwrap().len(), 2);
+        announce(presence, &["one", "other"]);
+        assert!(refused(presence, "other", &ada(), 1) < SHORT);
+        // It may have been killed: of its visits is said how old their host's last word is.
+        assert!(refused(presence, "other", &network(), 1) >= SHORT * 2);
+        assert_eq!(presence.visits(SHORT).unwrap().len(), 1);
+        let begun = presence.begin_visit("other", &network(), 1, SHORT).unwrap();
+        assert!(matches!(begun, VisitBegin::Begun(_)), "{begun:?}");
         // A host that was late has its visitors none the less.
-        assert_eq!(presence.renew_visits("killed", LONG).unwrap(), 1);
-        assert_eq!(presence.visits().unwrap().len(), 3);
-        assert_eq!(presence.begin_visit("other", &network(), 2, LONG).unwrap(), None);
+        announce(presence, &["killed"]);
+        assert_eq!(presence.visits(SHORT).unwrap().len(), 3);
+        refused(presence, "other", &network(), 2);
+    });
+}
+
+#[test]
+fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
+    with_each(|presence| {
+        announce(presence, &["old", "one", "other"]);
+        for host in ["old", "one", "other"] {
+            begin(presence, host, &ada(), 3);
+        }
+        presence.wait(SHORT * 2);
+        announce(presence, &["one", "other"]);
+        assert!(refused(presence, "one", &ada(), 3) >= SHORT * 2);
+        assert!(refused(presence, "one", &ada(), 2) < SHORT);
     });
 }
 
 #[test]
 fn a_host_is_there_while_it_announces_itself() {
-    let notice = |name: &str, load| HostNotice {
-        name: name.to_owned(),
-        version: "0.1.0".to_owned(),
-        address: format!("{name}.example.org:2222"),
-        load,
-    };
     with_each(|presence| {
         presence.announce(&notice("one", 1)).unwrap();
         presence.announce(&notice("other", 2)).unwrap();
@@ -117,10 +161,11 @@ fn a_visitor_is_read_as_it_is_written() {
 #[test]
 fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
     let address = postgres_server::PostgresServer::shared().address();
-    PostgresStore::open(&address).unwrap();
-    let barrier = std::sync::Barrier::new(6);
-    let begun: Vec<VisitId> = std::thread::scope(|scope| {
-        let threads: Vec<_> = ["a", "b", "c", "d", "e", "f"]
+    let hosts = ["a", "b", "c", "d", "e", "f"];
+    announce(&mut PostgresStore::open(&address).unwrap(), &hosts);
+    let barrier = std::sync::Barrier::new(hosts.len());
+    let begun: Vec<VisitBegin> = std::thread::scope(|scope| {
+        let threads: Vec<_> = hosts
             .into_iter()
             .map(|host| {
                 let (barrier, address) = (&barrier, &address);
@@ -132,8 +177,9 @@ fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
                 })
             })
             .collect();
-        threads.into_iter().flat_map(|thread| thread.join().unwrap()).flatten().collect()
+        threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
     });
-    assert_eq!(begun.len(), 7, "{begun:?}");
-    assert_eq!(PostgresStore::open(&address).unwrap().visits().unwrap().len(), 7);
+    let begun = begun.iter().filter(|it| matches!(it, VisitBegin::Begun(_))).count();
+    assert_eq!(begun, 7);
+    assert_eq!(PostgresStore::open(&address).unwrap().visits(LONG).unwrap().len(), 7);
 }

@@ -1,0 +1,34 @@
+//! The limits of connections that hold on all hosts of a cluster together.
+
+use super::Shared;
+use super::account::NOT_KNOWN;
+use crate::server::cluster::{CountedVisit, Newcomer, VisitRefusal};
+use crate::server::logging::events;
+use crate::server::{Refusal, Visitor};
+use crate::store::host::AccountKey;
+
+impl Shared {
+    /// Counts a visitor on all hosts, or tells why they may not play, and which limit forbids it.
+    pub(super) async fn begin_visit(
+        &self,
+        visitor: &Visitor,
+        key: Option<AccountKey>,
+    ) -> Result<Option<CountedVisit>, (&'static str, Option<Refusal>)> {
+        let Some(rooms) = &self.cluster else { return Ok(None) };
+        let limits = self.config.get().admission;
+        let newcomer = Newcomer {
+            key,
+            per_key: limits.per_key,
+            address: visitor.peer.ip(),
+            per_address: limits.per_address,
+        };
+        rooms.visits().begin(newcomer).await.map(Some).map_err(|refusal| match refusal {
+            VisitRefusal::TooMany(reason) => (reason.sentence(), Some(reason)),
+            VisitRefusal::NotNow(failure) => {
+                self.metrics.store_errors.count();
+                events::store_failed(failure);
+                (NOT_KNOWN, None)
+            }
+        })
+    }
+}
