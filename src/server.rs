@@ -59,7 +59,9 @@ use self::lock::locked;
 pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::maps::{HostMaps, MOST_BYTES, MOST_MAP_BYTES, MOST_MAPS, MapsError};
-pub use self::metrics::{Counter, Gauge, Histogram, Metrics, respond};
+pub use self::metrics::{
+    Counter, EachRoom, Gauge, Histogram, Metrics, RoomFigures, respond,
+};
 pub use self::recorded::{MOST_RECORDED_BYTES, RecordedRound, is_room_recording, replay_room};
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,

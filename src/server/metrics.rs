@@ -9,16 +9,23 @@
 mod histogram;
 mod process;
 mod responder;
+mod rooms;
 mod text;
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 
 pub use histogram::Histogram;
 pub use responder::respond;
+pub use rooms::{EachRoom, RoomFigures};
 
 /// The figures of a server, apart from those that its transport counts.
 #[derive(Debug, Default)]
 pub struct Metrics {
+    /// The name of the host in a cluster, which every line has then.
+    pub host: OnceLock<String>,
+    /// The figures of each room that this host of a cluster runs.
+    pub each_room: EachRoom,
     /// Rooms that are open.
     pub rooms: Gauge,
     /// Members of all rooms.

@@ -46,6 +46,7 @@ use super::peer_message::PeerMessage;
 use super::record::Record;
 use super::room_state::RoomState;
 use super::sequencer::ClusterSequencer;
+use crate::server::metrics::RoomFigures;
 use crate::server::room::MemberId;
 use crate::server::sequencer::{RoomInterface, STEP};
 use crate::server::summary::RoomId;
@@ -66,6 +67,7 @@ pub(super) struct Replica {
     id: RoomId,
     context: Arc<HostContext>,
     interface: Arc<RoomInterface>,
+    figures: Arc<RoomFigures>,
     /// Who watches on this host.
     watchers: Arc<AtomicUsize>,
     /// The newest record.
@@ -119,10 +121,12 @@ impl Replica {
             beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
+        let figures = context.load.metrics().each_room.add(id.0);
         Self {
             id,
             context,
             interface,
+            figures,
             watchers,
             record,
             state,
@@ -179,6 +183,9 @@ impl Replica {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
+        self.figures.members.set(self.state.room().len() as i64);
+        self.figures.watchers.set(self.watchers.load(Ordering::Acquire) as i64);
+        self.figures.writes.set(self.sequencer.is_some().into());
     }
 
     /// Sends the commands of this host's members to the sequencer.
@@ -238,5 +245,11 @@ impl Replica {
         let stay = closes_after.filter(|_| self.sequencer.is_some()).unwrap_or_default();
         let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
+    }
+}
+
+impl Drop for Replica {
+    fn drop(&mut self) {
+        self.context.load.metrics().each_room.remove(self.id.0, &self.figures);
     }
 }

@@ -56,6 +56,39 @@ fn each_figure_has_a_sample() {
     }
 }
 
+#[cfg(feature = "cluster")]
+#[test]
+fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
+    let metrics = Metrics::default();
+    metrics.host.set("a \"b\"\\".to_owned()).unwrap();
+    let [old, new] = [0; 2].map(|_| metrics.each_room.add(7));
+    // A room that was replaced takes nothing with it.
+    metrics.each_room.remove(7, &old);
+    new.members.set(3);
+    new.checks_different.count();
+    let other = metrics.each_room.add(8);
+    other.writes.set(1);
+    assert_eq!(metrics.each_room.written(), [8]);
+    let text = metrics.text(&Counters::default());
+    let lines = samples(&text);
+    let host = "host=\"a \\\"b\\\"\\\\\"";
+    assert!(lines.keys().all(|line| line.contains(host)), "{text}");
+    for (line, value) in [
+        (format!("cellcaster_rooms{{{host}}}"), 0.0),
+        (format!("cellcaster_room_members{{{host},room=\"7\"}}"), 3.0),
+        (format!("cellcaster_room_writes{{{host},room=\"8\"}}"), 1.0),
+        (
+            format!("cellcaster_each_room_checks_total{{{host},room=\"7\",result=\"different\"}}"),
+            1.0,
+        ),
+    ] {
+        assert_eq!(lines.get(&line), Some(&value), "{line}");
+    }
+    metrics.each_room.remove(7, &new);
+    metrics.each_room.remove(8, &other);
+    assert!(!metrics.text(&Counters::default()).contains("room=\""));
+}
+
 #[test]
 fn a_duration_is_in_the_buckets_from_its_bound_on() {
     let metrics = Metrics::default();

@@ -29,12 +29,14 @@ impl Replica {
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
                     self.context.load.metrics().checks_equal.count();
+                    self.figures.checks_equal.count();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
                 self.context.load.metrics().checks_different.count();
+                self.figures.checks_different.count();
                 _ = self.restore().await;
                 return false;
             }
@@ -78,6 +80,8 @@ impl Replica {
             }
         };
         self.context.load.metrics().entries.add(changes.entries);
+        self.figures.entries.add(changes.entries);
+        self.figures.steps.add(message.steps);
         if let Some(run) = changes.finished {
             self.interface.inbox.finish(run);
         }
