@@ -48,7 +48,7 @@ mod visitors;
 
 #[cfg(unix)]
 pub use self::admin::{AdminFailure, AdminSocket, ask};
-pub use self::admin::{AdminReply, AdminRequest, Operator, RoomRow, Target, VisitorRow};
+pub use self::admin::{AdminReply, AdminRequest, HostInfo, Operator, RoomRow, Target, VisitorRow};
 pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
 #[cfg(feature = "cluster")]
 pub use self::cluster::Cluster;
@@ -59,9 +59,7 @@ use self::lock::locked;
 pub(crate) use self::logging::events;
 pub use self::logging::{LogFilter, LogFormat, Logging, UnknownLogFilter};
 pub use self::maps::{HostMaps, MOST_BYTES, MOST_MAP_BYTES, MOST_MAPS, MapsError};
-pub use self::metrics::{
-    Counter, EachRoom, Gauge, Histogram, Metrics, RoomFigures, respond,
-};
+pub use self::metrics::{Counter, EachRoom, Gauge, Histogram, Metrics, RoomFigures, respond};
 pub use self::recorded::{MOST_RECORDED_BYTES, RecordedRound, is_room_recording, replay_room};
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,

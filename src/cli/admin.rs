@@ -13,7 +13,9 @@ use super::Error;
 use super::arguments::{Admin, AdminAction, Database};
 use super::data_folder::data_folder;
 use super::host_store;
-use crate::server::{AdminFailure, AdminReply, AdminRequest, RoomRow, Target, VisitorRow, ask};
+use crate::server::{
+    AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
+};
 use table::{table, time};
 
 /// Does the action, and writes what came of it.
@@ -28,46 +30,100 @@ pub(super) fn run(options: Admin) -> Result<(), Error> {
 }
 
 fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String, Error> {
-    match action {
-        AdminAction::Who => request(folder, &AdminRequest::Who),
-        AdminAction::Rooms => request(folder, &AdminRequest::Rooms),
+    let mut host = RunningHost { folder, remarks: Vec::new() };
+    let text = match action {
+        AdminAction::Who => host.lists(&AdminRequest::Who),
+        AdminAction::Rooms => host.lists(&AdminRequest::Rooms),
+        AdminAction::Hosts => host.lists(&AdminRequest::Hosts),
         AdminAction::Say { text } => {
-            let count = count(folder, &AdminRequest::Say { text })?;
-            Ok(format!("said to {}\n", visitors(count)))
+            let count = host.counts(&AdminRequest::Say { text });
+            count.map(|count| format!("said to {}\n", visitors(count)))
         }
         AdminAction::Drain => {
-            let count = count(folder, &AdminRequest::Drain)?;
-            Ok(format!("the server ends; it waits for {}\n", visitors(count)))
+            let count = host.counts(&AdminRequest::Drain);
+            count.map(|count| format!("the server ends; it waits for {}\n", visitors(count)))
         }
-        AdminAction::Kick { target, reason } => kick(folder, target, reason),
+        AdminAction::Kick { target, reason } => host.kicks(target, reason),
         AdminAction::Ban { target, time, reason } => {
-            bans::ban(folder, database, &target, time, &reason)
+            bans::ban(&mut host, database, &target, time, &reason)
         }
         AdminAction::Unban { target } => bans::unban(database, &target),
         AdminAction::Bans => bans::list(database),
+    };
+    for remark in host.remarks {
+        Error::machine(remark.replace(char::is_control, "?")).warn();
+    }
+    text
+}
+
+/// A server that runs with a data folder.
+struct RunningHost<'a> {
+    folder: &'a Path,
+    /// What it has remarked of its answers.
+    remarks: Vec<String>,
+}
+
+impl RunningHost<'_> {
+    /// Asks it.
+    fn answers(&mut self, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
+        match ask(self.folder, request)? {
+            AdminReply::AllHosts { reply, remarks } => {
+                let new = remarks.into_iter().filter(|remark| !self.remarks.contains(remark));
+                let new: Vec<String> = new.collect();
+                self.remarks.extend(new);
+                Ok(*reply)
+            }
+            reply => Ok(reply),
+        }
+    }
+
+    /// A list as a table.
+    fn lists(&mut self, request: &AdminRequest) -> Result<String, Error> {
+        Ok(match self.answers(request)? {
+            AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
+            AdminReply::Visitors(rows) if rows.iter().any(|row| row.host.is_some()) => {
+                let titles = ["name", "room", "address", "time", "host", "key"];
+                table(titles, rows.iter().map(of_visitor_on_host))
+            }
+            AdminReply::Visitors(rows) => {
+                table(["name", "room", "address", "time", "key"], rows.iter().map(of_visitor))
+            }
+            AdminReply::Rooms(rows) if rows.is_empty() => "no room is open\n".to_owned(),
+            AdminReply::Rooms(rows) => {
+                table(["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
+            }
+            AdminReply::Hosts(rows) => {
+                let titles = ["host", "address", "version", "visitors", "seen", "writes rooms"];
+                table(titles, rows.iter().map(of_host))
+            }
+            AdminReply::Count(count) => format!("{}\n", visitors(count)),
+            AdminReply::Fault(sentence) => return Err(Error::mistake(sentence)),
+            AdminReply::AllHosts { .. } => return Err(other_version()),
+        })
+    }
+
+    /// How many visitors a request concerns.
+    fn counts(&mut self, request: &AdminRequest) -> Result<usize, Error> {
+        match self.answers(request)? {
+            AdminReply::Count(count) => Ok(count),
+            AdminReply::Fault(sentence) => Err(Error::mistake(sentence)),
+            AdminReply::Visitors(_)
+            | AdminReply::Rooms(_)
+            | AdminReply::Hosts(_)
+            | AdminReply::AllHosts { .. } => Err(other_version()),
+        }
+    }
+
+    fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
+        match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
+            0 => Err(Error::mistake("nobody there is on; \"cellcaster admin who\" lists who is")),
+            count => Ok(format!("ended the sessions of {}\n", visitors(count))),
+        }
     }
 }
 
-fn kick(folder: &Path, target: Target, reason: String) -> Result<String, Error> {
-    match count(folder, &AdminRequest::Remove { target, reason, banned: false })? {
-        0 => Err(Error::mistake("nobody there is on; \"cellcaster admin who\" lists who is")),
-        count => Ok(format!("ended the sessions of {}\n", visitors(count))),
-    }
-}
-
-fn request(folder: &Path, request: &AdminRequest) -> Result<String, Error> {
-    Ok(match ask(folder, request)? {
-        AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
-        AdminReply::Visitors(rows) => {
-            table(["name", "room", "address", "time", "key"], rows.iter().map(of_visitor))
-        }
-        AdminReply::Rooms(rows) if rows.is_empty() => "no room is open\n".to_owned(),
-        AdminReply::Rooms(rows) => {
-            table(["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
-        }
-        AdminReply::Count(count) => format!("{}\n", visitors(count)),
-        AdminReply::Fault(sentence) => return Err(Error::mistake(sentence)),
-    })
+fn other_version() -> Error {
+    Error::machine("the server is of another version: it answers something else")
 }
 
 fn of_visitor(row: &VisitorRow) -> [String; 5] {
@@ -88,15 +144,20 @@ fn of_room(row: &RoomRow) -> [String; 5] {
     [room, row.mode.clone(), row.level.clone(), row.difficulty.clone(), members]
 }
 
-/// How many visitors a request concerns.
-fn count(folder: &Path, request: &AdminRequest) -> Result<usize, Error> {
-    match ask(folder, request)? {
-        AdminReply::Count(count) => Ok(count),
-        AdminReply::Fault(sentence) => Err(Error::mistake(sentence)),
-        AdminReply::Visitors(_) | AdminReply::Rooms(_) => {
-            Err(Error::machine("the server is of another version: it answers something else"))
-        }
-    }
+fn of_visitor_on_host(row: &VisitorRow) -> [String; 6] {
+    let [name, room, address, time, key] = of_visitor(row);
+    [name, room, address, time, row.host.clone().unwrap_or_else(|| "-".to_owned()), key]
+}
+
+fn of_host(row: &HostInfo) -> [String; 6] {
+    let rooms = match &row.rooms {
+        None => "-".to_owned(),
+        Some(rooms) if rooms.is_empty() => "none".to_owned(),
+        Some(rooms) => rooms.iter().map(u32::to_string).collect::<Vec<_>>().join(", "),
+    };
+    let seen = format!("{} ago", time(row.seconds));
+    let (visitors, version) = (row.visitors.to_string(), row.version.clone());
+    [row.host.clone(), row.address.clone(), version, visitors, seen, rooms]
 }
 
 fn visitors(count: usize) -> String {

@@ -18,7 +18,7 @@ use super::arguments::{Database, Serve};
 use super::data_folder::data_folder;
 use super::host_store::{self, failed};
 #[cfg(unix)]
-use crate::server::{AdminSocket, Operator};
+use crate::server::AdminSocket;
 use crate::server::{
     Config, GameHost, HostKey, HostParts, LogFormat, Logging, Metrics, Server, Visitors, events,
     respond,
@@ -88,8 +88,8 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
-    let (metrics, visitors) = (Arc::new(Metrics::default()), Visitors::default());
-    let host = HostParts::new(server.config(), Arc::clone(&metrics), visitors.clone(), store);
+    let metrics = Arc::new(Metrics::default());
+    let host = HostParts::new(server.config(), Arc::clone(&metrics), Visitors::default(), store);
     let mut host = host.map_err(|error| no_thread(&error))?.with_maps(configuration.maps());
     if let Some(waiting) = waiting {
         host = host.with_waiting(waiting);
@@ -107,10 +107,11 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
         let counters = server.counters();
         services.spawn(respond(listener, move || metrics.text(&counters)));
     }
+    let operator = host.operator(signals.drain());
+    services.spawn(operator.clone().answer_others());
     #[cfg(unix)]
     if let Some(admin) = admin {
-        let (rooms, drain) = (Box::new(host.room_rows()), signals.drain());
-        services.spawn(admin.serve(Operator { visitors, rooms, drain }));
+        services.spawn(admin.serve(operator));
     }
     services.spawn(configuration.follow(hangups, server.config(), logging));
     let ending = host.ending();

@@ -3,12 +3,17 @@
 //! A connection carries one [`AdminRequest`] and one [`AdminReply`], each a line of JSON. The socket
 //! is `admin.sock`, for its owner alone, and the server answers that user and root only.
 //!
+//! In a cluster, the server asks all hosts, and the reply says which ones have not answered. To end a host, its own
+//! socket is asked.
+//!
 //! Bans are no request: the store keeps them, and `cellcaster admin` writes them there, so that they
 //! can be made while no server runs. A request then ends the sessions to which the ban applies. A port
 //! of TCP with a password was refused: every user of the machine could reach it.
 
 #[cfg(unix)]
 mod client;
+#[cfg(feature = "cluster")]
+mod merging;
 mod operator;
 #[cfg(unix)]
 mod socket;
@@ -44,6 +49,8 @@ pub enum AdminRequest {
         /// The line. Only its printable characters are shown.
         text: String,
     },
+    /// The hosts of the cluster: [`AdminReply::Hosts`].
+    Hosts,
     /// To end the server as a signal does: [`AdminReply::Count`], the visitors whom it waits for.
     Drain,
 }
@@ -68,8 +75,17 @@ pub enum AdminReply {
     Visitors(Vec<VisitorRow>),
     /// The rooms.
     Rooms(Vec<RoomRow>),
+    /// The hosts of a cluster.
+    Hosts(Vec<HostInfo>),
     /// How many visitors the request concerns.
     Count(usize),
+    /// What all hosts of a cluster answer together.
+    AllHosts {
+        /// Their answer.
+        reply: Box<AdminReply>,
+        /// What is to be known of it, such as that a host did not answer.
+        remarks: Vec<String>,
+    },
     /// Why the request was refused.
     Fault(String),
 }
@@ -86,6 +102,26 @@ pub struct VisitorRow {
     /// The room; `None` for the lobby.
     pub room: Option<String>,
     /// For how long they have been here.
+    pub seconds: u64,
+    /// The host that they are on, in a cluster.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub host: Option<String>,
+}
+
+/// A host of a cluster.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HostInfo {
+    /// The name of its machine, and the port.
+    pub host: String,
+    /// The address that it listens at.
+    pub address: String,
+    /// The version of its program.
+    pub version: String,
+    /// The number of its visitors.
+    pub visitors: usize,
+    /// The rooms whose logs it writes; `None` if it did not answer.
+    pub rooms: Option<Vec<u32>>,
+    /// How long ago it has announced itself.
     pub seconds: u64,
 }
 
@@ -106,6 +142,17 @@ pub struct RoomRow {
     pub most: usize,
     /// The number of those who watch.
     pub watchers: usize,
+}
+
+#[cfg(feature = "cluster")]
+impl AdminRequest {
+    /// Whether all hosts of a cluster answer it. All of them have the same list of rooms.
+    pub(super) fn is_for_all_hosts(&self) -> bool {
+        match self {
+            Self::Who | Self::Hosts | Self::Say { .. } | Self::Remove { .. } => true,
+            Self::Rooms | Self::Drain => false,
+        }
+    }
 }
 
 impl Target {

@@ -24,6 +24,7 @@ mod directory;
 mod lease_worker;
 mod log_message;
 mod nats;
+mod operators;
 mod peer_message;
 mod record;
 mod replica;
@@ -43,6 +44,7 @@ use self::bus::{Bus, Key};
 pub(super) use self::directory::{Entrant, SharedRooms};
 use self::lease_worker::LeaseWorker;
 use self::nats::NatsBus;
+pub(super) use self::operators::OtherHosts;
 use self::record::Record;
 use self::room_state::RoomState;
 use self::visits::Visits;
@@ -61,6 +63,7 @@ pub struct Cluster {
     bus: Box<dyn Bus>,
     leases: LeaseWorker,
     visits: Visits,
+    notice: HostNotice,
     /// The seed of join tokens, and of the rooms that this host opens.
     seed: u64,
 }
@@ -80,11 +83,12 @@ impl Cluster {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
         // Before anything that may fail: what blocks does so when it is dropped, too.
         let leases = LeaseWorker::start(leases, notice.name.clone()).map_err(no_thread);
-        let visits = Visits::start(presence, notice).map_err(no_thread);
+        let visits = Visits::start(presence, notice.clone()).map_err(no_thread);
         let (leases, visits) = (leases?, visits?);
         let bus = Box::new(NatsBus::connect(address).await?);
         // Without random numbers from the system there would be no keys, either.
-        Ok(Self { bus, leases, visits, seed: getrandom::u64().unwrap_or_default() })
+        let seed = getrandom::u64().unwrap_or_default();
+        Ok(Self { bus, leases, visits, notice, seed })
     }
 
     /// The rooms of the cluster, which lobbies see in `rooms`.
@@ -95,11 +99,14 @@ impl Cluster {
         load: Arc<Load>,
         visitors: Visitors,
     ) -> SharedRooms {
-        let Self { bus, leases, visits, seed } = self;
+        let Self { bus, leases, visits, notice, seed } = self;
+        // A host has one name at most.
+        _ = load.metrics().host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
             bus,
             leases,
             visits,
+            notice,
             catalog: Arc::clone(rooms.catalog()),
             load,
             visitors,
@@ -116,11 +123,17 @@ impl fmt::Debug for Cluster {
     }
 }
 
+/// The name of a host as operators read it, without the number of its start.
+fn shown_name(name: &str) -> &str {
+    name.split_once(' ').map_or(name, |(shown, _)| shown)
+}
+
 /// What the replicas of a host share.
 struct HostContext {
     bus: Box<dyn Bus>,
     leases: LeaseWorker,
     visits: Visits,
+    notice: HostNotice,
     catalog: Arc<Catalog>,
     load: Arc<Load>,
     visitors: Visitors,

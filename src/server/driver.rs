@@ -28,6 +28,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use tokio::sync::Notify;
 use tokio::time::{Instant, interval};
 
 use self::account::NamesInUse;
@@ -47,7 +48,9 @@ use super::load::Load;
 use super::room::Catalog;
 use super::rooms::{RoomLimits, Rooms};
 use super::summary::RoomSummary;
-use super::{Departure, Host, Link, LiveConfig, Metrics, Refusal, RoomRow, Visitor, Visitors};
+use super::{
+    Departure, Host, Link, LiveConfig, Metrics, Operator, Refusal, RoomRow, Visitor, Visitors,
+};
 use crate::store::host::UnixTime;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
@@ -147,6 +150,14 @@ impl GameHost {
             }
             rooms.end().await;
         }
+    }
+
+    /// An operator of this host, who notifies `drain` to end it.
+    pub fn operator(&self, drain: Arc<Notify>) -> Operator {
+        let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
+        #[cfg(feature = "cluster")]
+        let operator = operator.in_cluster(self.shared.cluster.clone());
+        operator
     }
 
     /// Lists the rooms, for an operator.

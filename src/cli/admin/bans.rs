@@ -1,19 +1,18 @@
 //! Bans, in the store of a host.
 
 use std::env;
-use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::table::{table, time as shown_time};
-use super::{Error, visitors};
+use super::{Error, RunningHost, visitors};
 use crate::cli::arguments::Database;
 use crate::cli::host_store::{self, failed};
-use crate::server::{AdminFailure, AdminReply, AdminRequest, Target, ask};
+use crate::server::{AdminFailure, AdminReply, AdminRequest, Target};
 use crate::store::host::{Ban, BanTarget, HostStore, UnixTime};
 
 /// Bans, and ends the sessions to which the ban applies.
 pub(super) fn ban(
-    folder: &Path,
+    host: &mut RunningHost<'_>,
     database: &Database,
     target: &Target,
     time: Option<Duration>,
@@ -32,7 +31,7 @@ pub(super) fn ban(
         };
         store.ban(&ban).map_err(failed)?;
     }
-    let removed = remove(folder, &targets, reason)?;
+    let removed = remove(host, &targets, reason)?;
     let whom: Vec<String> = targets.iter().map(shown).collect();
     let time =
         time.map_or("for ever".to_owned(), |time| format!("for {}", shown_time(time.as_secs())));
@@ -91,7 +90,11 @@ fn targets(store: &mut dyn HostStore, target: &Target) -> Result<Vec<BanTarget>,
 }
 
 /// Ends the sessions of `targets`, and returns their number; `None` if no server runs.
-fn remove(folder: &Path, targets: &[BanTarget], reason: &str) -> Result<Option<usize>, Error> {
+fn remove(
+    host: &mut RunningHost<'_>,
+    targets: &[BanTarget],
+    reason: &str,
+) -> Result<Option<usize>, Error> {
     let mut removed = 0;
     for target in targets {
         let target = match target {
@@ -100,7 +103,7 @@ fn remove(folder: &Path, targets: &[BanTarget], reason: &str) -> Result<Option<u
             BanTarget::Addresses(range) => Target::Address(range.to_string()),
         };
         let request = AdminRequest::Remove { target, reason: reason.to_owned(), banned: true };
-        match ask(folder, &request) {
+        match host.answers(&request) {
             Ok(AdminReply::Count(count)) => removed = count.max(removed),
             Err(AdminFailure::NoServer(_)) => return Ok(None),
             Ok(_) => {}

@@ -25,6 +25,7 @@ pub(in crate::cli) struct Admin {
 pub(in crate::cli) enum AdminAction {
     Who,
     Rooms,
+    Hosts,
     Kick {
         target: Target,
         reason: String,
@@ -51,8 +52,11 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     details: "The actions who and rooms list what a running server has; kick ends the sessions of a \
               player, say shows a line to everybody, and drain ends the server as SIGTERM does. The \
               actions ban, unban and bans work without a server, too: bans are in its store. A player \
-              is a name, --key or --address; a banned name is banned with the key of its account.",
+              is a name, --key or --address; a banned name is banned with the key of its account. In a cluster, \
+              who, say, kick and ban are of all hosts; hosts lists them, and drain ends the one whose data \
+              folder is given.",
     examples: "cellcaster admin who\n\
+               cellcaster admin hosts\n\
                cellcaster admin say \"Back in five minutes\"\n\
                cellcaster admin kick ada --reason \"let others play\"\n\
                cellcaster admin ban --address 203.0.113.0/24 --for 7d\n\
@@ -60,7 +64,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     positionals: &[ACTION, WORD],
     options: &[&DATA, &STORE, &KEY, &ADDRESS, &FOR, &REASON],
     surplus: "takes an action and one name or text",
-    missing: "admin takes one of who, rooms, kick, ban, unban, bans, say, drain, as in \"cellcaster admin who\"",
+    missing: "admin takes one of who, rooms, hosts, kick, ban, unban, bans, say, drain, as in \"cellcaster admin who\"",
     read,
 };
 
@@ -70,7 +74,7 @@ const ACTION: Positional = Positional {
     is_required: true,
     action: ArgAction::Set,
     hint: ValueHint::Other,
-    choices: &["who", "rooms", "kick", "ban", "unban", "bans", "say", "drain"],
+    choices: &["who", "rooms", "hosts", "kick", "ban", "unban", "bans", "say", "drain"],
 };
 
 const WORD: Positional = Positional {
@@ -179,6 +183,7 @@ impl Words {
     fn action(&mut self) -> Result<AdminAction, Error> {
         let action = match self.action.as_str() {
             "who" => AdminAction::Who,
+            "hosts" => AdminAction::Hosts,
             "rooms" => AdminAction::Rooms,
             "bans" => AdminAction::Bans,
             "drain" => AdminAction::Drain,

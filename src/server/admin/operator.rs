@@ -5,33 +5,89 @@ use std::sync::Arc;
 
 use tokio::sync::Notify;
 
+#[cfg(feature = "cluster")]
+use super::merging;
 use super::{AdminReply, AdminRequest, RoomRow, VisitorRow};
+#[cfg(feature = "cluster")]
+use crate::server::cluster::SharedRooms;
 use crate::server::line::Line;
 use crate::server::logging::events;
 use crate::server::visitors::{Present, Visitors};
 
-/// What an operator can see and change in a server.
+/// What an operator can see and change in a server. Clones are the same.
+#[derive(Clone)]
 pub struct Operator {
     /// Who is on.
-    pub visitors: Visitors,
+    visitors: Visitors,
     /// The rooms now.
-    pub rooms: Box<dyn Fn() -> Vec<RoomRow> + Send + Sync>,
+    rooms: Arc<dyn Fn() -> Vec<RoomRow> + Send + Sync>,
     /// Notified when the server has to end.
-    pub drain: Arc<Notify>,
+    drain: Arc<Notify>,
+    /// The other hosts of a cluster.
+    #[cfg(feature = "cluster")]
+    pub(super) cluster: Option<SharedRooms>,
 }
 
 /// The longest line that an operator says, in columns.
 const SAID_COLUMNS: usize = 200;
 /// The longest reason, in columns.
 const REASON_COLUMNS: usize = 200;
+/// What an operator reads who asks for hosts where there is one.
+const NO_CLUSTER: &str = "this host is in no cluster";
 
 impl Operator {
-    /// Does what is asked.
-    pub fn answer(&self, request: &AdminRequest) -> AdminReply {
+    /// One who sees these visitors and rooms, and notifies `drain` to end the server.
+    pub fn new(
+        visitors: Visitors,
+        rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
+        drain: Arc<Notify>,
+    ) -> Self {
+        Self {
+            visitors,
+            rooms: Arc::new(rooms),
+            drain,
+            #[cfg(feature = "cluster")]
+            cluster: None,
+        }
+    }
+
+    /// Has the operator see the other hosts of a cluster, too.
+    #[cfg(feature = "cluster")]
+    pub(in crate::server) fn in_cluster(self, cluster: Option<SharedRooms>) -> Self {
+        Self { cluster, ..self }
+    }
+
+    /// Does what is asked, on all hosts of a cluster.
+    #[cfg_attr(not(feature = "cluster"), expect(clippy::unused_async, reason = "hosts are asked"))]
+    pub async fn answer(&self, request: &AdminRequest) -> AdminReply {
+        let own = self.answer_alone(request);
+        #[cfg(feature = "cluster")]
+        if let Some(cluster) = &self.cluster
+            && request.is_for_all_hosts()
+            && !matches!(own, AdminReply::Fault(_))
+        {
+            return merging::merged(cluster, own, cluster.ask_others(request).await);
+        }
+        own
+    }
+
+    /// Answers the operators of other hosts, as long as the future is not dropped.
+    pub async fn answer_others(self) {
+        #[cfg(feature = "cluster")]
+        if let Some(cluster) = self.cluster.clone() {
+            cluster.answer_others(|request| self.answer_alone(request)).await;
+        }
+    }
+
+    /// Does what is asked, on this host.
+    pub(super) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
         match request {
             AdminRequest::Who => {
-                AdminReply::Visitors(self.visitors.list().into_iter().map(row).collect())
+                let host = self.host();
+                let rows = self.visitors.list().into_iter().map(|it| row(it, host.clone()));
+                AdminReply::Visitors(rows.collect())
             }
+            AdminRequest::Hosts => self.hosts(),
             AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
             AdminRequest::Remove { target, reason, banned } => match target.to_ban() {
                 Err(sentence) => AdminReply::Fault(sentence),
@@ -57,6 +113,34 @@ impl Operator {
     }
 }
 
+#[cfg(feature = "cluster")]
+impl Operator {
+    /// The name of this host in a cluster.
+    fn host(&self) -> Option<String> {
+        self.cluster.as_ref().map(|cluster| cluster.own_info().host)
+    }
+
+    fn hosts(&self) -> AdminReply {
+        match &self.cluster {
+            Some(cluster) => AdminReply::Hosts(vec![cluster.own_info()]),
+            None => AdminReply::Fault(NO_CLUSTER.to_owned()),
+        }
+    }
+}
+
+#[cfg(not(feature = "cluster"))]
+impl Operator {
+    #[expect(clippy::unused_self, reason = "as that of a program that can be in a cluster")]
+    fn host(&self) -> Option<String> {
+        None
+    }
+
+    #[expect(clippy::unused_self, reason = "as that of a program that can be in a cluster")]
+    fn hosts(&self) -> AdminReply {
+        AdminReply::Fault(NO_CLUSTER.to_owned())
+    }
+}
+
 impl fmt::Debug for Operator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Operator").field("visitors", &self.visitors).finish_non_exhaustive()
@@ -76,12 +160,13 @@ pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
     }
 }
 
-fn row(present: Present) -> VisitorRow {
+fn row(present: Present, host: Option<String>) -> VisitorRow {
     VisitorRow {
         name: present.name.map(|name| name.as_str().to_owned()),
         address: present.address.to_string(),
         key: present.key.map(|key| key.to_string()),
         room: present.room,
         seconds: present.time.as_secs(),
+        host,
     }
 }

@@ -48,7 +48,6 @@ impl AdminSocket {
 
     /// Answers requests until the future is dropped.
     pub async fn serve(self, operator: Operator) {
-        let operator = Arc::new(operator);
         let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
         // Its tasks end with it.
         let mut tasks = JoinSet::new();
@@ -81,7 +80,7 @@ async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()>
         return Ok(());
     }
     let reply = match request(&mut stream).await?.as_deref().map(serde_json::from_slice) {
-        Some(Ok(request)) => operator.answer(&request),
+        Some(Ok(request)) => operator.answer(&request).await,
         Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
         None => AdminReply::Fault(format!("a request is a line of at most {MOST_REQUEST} bytes")),
     };

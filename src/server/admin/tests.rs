@@ -8,8 +8,11 @@ use super::*;
 use crate::server::visitors::{Notice, Visitors};
 
 fn operator(visitors: &Visitors) -> Operator {
-    let rooms = || Vec::new();
-    Operator { visitors: visitors.clone(), rooms: Box::new(rooms), drain: Arc::new(Notify::new()) }
+    operator_with(visitors, Arc::default())
+}
+
+fn operator_with(visitors: &Visitors, drain: Arc<Notify>) -> Operator {
+    Operator::new(visitors.clone(), Vec::new, drain)
 }
 
 fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {
@@ -18,34 +21,40 @@ fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {
 
 #[tokio::test]
 async fn requests_reach_those_whom_they_concern() {
-    let visitors = Visitors::default();
-    let operator = operator(&visitors);
+    let (visitors, drain) = (Visitors::default(), Arc::<Notify>::default());
+    let operator = operator_with(&visitors, Arc::clone(&drain));
     let mut ada = visitors.arrive(IpAddr::from([192, 0, 2, 1]), None);
     let ben = visitors.arrive(IpAddr::from([192, 0, 2, 2]), None);
     ada.set_name("Ada");
     ben.set_name("Ben");
-    let AdminReply::Visitors(rows) = operator.answer(&AdminRequest::Who) else { panic!("no rows") };
+    let AdminReply::Visitors(rows) = operator.answer_alone(&AdminRequest::Who) else {
+        panic!("no rows")
+    };
     assert_eq!(
         rows.iter().map(|row| row.name.as_deref()).collect::<Vec<_>>(),
         [Some("Ada"), Some("Ben")]
     );
 
     let say = AdminRequest::Say { text: "\u{1b}[2Jclosing \nsoon".to_owned() };
-    assert_eq!(operator.answer(&say), AdminReply::Count(2));
+    assert_eq!(operator.answer_alone(&say), AdminReply::Count(2));
     assert_eq!(ada.notice().await, Notice::Said("[2Jclosing soon".to_owned()));
 
     let kick = remove(Target::Name("ADA".to_owned()), "", false);
-    assert_eq!(operator.answer(&kick), AdminReply::Count(1));
+    assert_eq!(operator.answer_alone(&kick), AdminReply::Count(1));
     let sentence = "The operator of this host has ended your session.";
     assert_eq!(ada.notice().await, Notice::Removed(sentence.to_owned()));
 
     let ban = remove(Target::Address("192.0.2.1".to_owned()), "flood\u{7}s", true);
-    assert_eq!(operator.answer(&ban), AdminReply::Count(1));
+    assert_eq!(operator.answer_alone(&ban), AdminReply::Count(1));
     let sentence = "You are banned from this host: floods";
     assert_eq!(ada.notice().await, Notice::Removed(sentence.to_owned()));
 
-    assert_eq!(operator.answer(&AdminRequest::Drain), AdminReply::Count(2));
-    operator.drain.notified().await;
+    assert_eq!(operator.answer_alone(&AdminRequest::Drain), AdminReply::Count(2));
+    drain.notified().await;
+    let AdminReply::Fault(sentence) = operator.answer_alone(&AdminRequest::Hosts) else {
+        panic!("hosts without a cluster")
+    };
+    assert_eq!(sentence, "this host is in no cluster");
 }
 
 #[test]
@@ -56,7 +65,7 @@ fn what_is_no_target_is_told_in_a_sentence() {
         Target::Key("SHA256:short".to_owned()),
         Target::Address("192.0.2.1/33".to_owned()),
     ] {
-        let reply = operator.answer(&remove(target.clone(), "", false));
+        let reply = operator.answer_alone(&remove(target.clone(), "", false));
         assert!(matches!(reply, AdminReply::Fault(_)), "{target:?}");
     }
 }
@@ -69,6 +78,7 @@ fn the_form_of_a_line_is_fixed() {
             remove(Target::Name("Ada".to_owned()), "spam", true),
             r#"{"do":"remove","target":{"name":"Ada"},"reason":"spam","banned":true}"#,
         ),
+        (AdminRequest::Hosts, r#"{"do":"hosts"}"#),
         (AdminRequest::Say { text: "a\nb".to_owned() }, r#"{"do":"say","text":"a\nb"}"#),
     ];
     for (request, line) in lines {
@@ -76,6 +86,9 @@ fn the_form_of_a_line_is_fixed() {
         assert_eq!(serde_json::from_str::<AdminRequest>(line).unwrap(), request);
     }
     assert_eq!(serde_json::to_string(&AdminReply::Count(2)).unwrap(), r#"{"count":2}"#);
+    let row = r#"{"name":null,"address":"::1","key":null,"room":null,"seconds":7}"#;
+    let visitor: VisitorRow = serde_json::from_str(row).unwrap();
+    assert_eq!(serde_json::to_string(&visitor).unwrap(), row);
     for line in ["", "{}", r#"{"do":"shell"}"#, r#"{"do":"say","text":"a","to":"b"}"#, "null"] {
         assert!(serde_json::from_str::<AdminRequest>(line).is_err(), "{line}");
     }
@@ -91,6 +104,6 @@ proptest! {
             2 => remove(Target::Address(name), &reason, banned),
             _ => AdminRequest::Say { text: name },
         };
-        operator.answer(&request);
+        operator.answer_alone(&request);
     }
 }

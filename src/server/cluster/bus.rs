@@ -5,6 +5,7 @@
 //! - **A room has a log.** A message is appended only if the writer names the number of the newest message
 //!   (compare and append). So a sequencer that was replaced cannot write, however late it notices.
 //! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
+//! - **A request reaches all hosts that are there**, or some of them; each answers for itself.
 //! - **A value has a key and a revision.** A host replaces only the revision that it has seen last.
 //!
 //! `JetStream` consumers for each room and host were refused: they are state in the server, and notice a loss after
@@ -13,7 +14,7 @@
 
 use std::pin::Pin;
 
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, oneshot};
 
 use crate::server::summary::RoomId;
 use crate::store::host::AccountKey;
@@ -39,6 +40,12 @@ pub(super) trait Bus: Send + Sync {
     /// The broadcasts to a room from now on.
     fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
+    /// Asks all hosts, this one too; what they answer from now on.
+    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+
+    /// What is asked of all hosts from now on.
+    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>>;
+
     /// A number that was never returned before, on any host.
     fn next_number(&self) -> Answer<'_, u32>;
 
@@ -57,6 +64,14 @@ pub(super) trait Bus: Send + Sync {
 
     /// The records of all rooms, then those that change: `None` for a room that is closed.
     fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
+}
+
+/// What is asked of all hosts.
+#[derive(Debug)]
+pub(super) struct HostRequest {
+    pub(super) bytes: Vec<u8>,
+    /// Dropped, it answers nothing.
+    pub(super) reply: oneshot::Sender<Vec<u8>>,
 }
 
 /// The answer of a bus, which comes in bounded time.

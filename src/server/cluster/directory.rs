@@ -9,6 +9,7 @@
 //! - A record that says that the room runs, and that has not changed for [`ABANDONED`], is of a room that has lost
 //!   its host. Any other host then runs the room until it is empty.
 
+mod announcing;
 mod places;
 mod standing;
 
@@ -27,7 +28,6 @@ use super::bus::{BusFault, Key};
 use super::record::Record;
 use super::replica::{Beginning, JoinRequest, Replica, Wish};
 use super::room_state::RoomState;
-use super::visits::{ANNOUNCED, Visits};
 use crate::server::locked;
 #[cfg(test)]
 use crate::server::room::RoomView;
@@ -138,11 +138,6 @@ impl SharedRooms {
         let standing = std::mem::take(&mut limits.standing);
         locked(&self.0.standing, |it| *it = standing);
         self.0.rooms.set_limits(limits);
-    }
-
-    /// The visits of this host, which are counted with those of all others.
-    pub(in crate::server) fn visits(&self) -> &Visits {
-        &self.0.context.visits
     }
 
     /// Hands all rooms over to the other hosts, of which this one is none any more.
@@ -268,15 +263,6 @@ impl SharedRooms {
                     tracing::warn!(room = %id, "a room has no host: {refusal}");
                 }
             }
-        }
-    }
-
-    /// Announces this host, again and again.
-    async fn announce(self) {
-        let mut periods = interval(ANNOUNCED);
-        while !*self.0.context.ending.borrow() {
-            periods.tick().await;
-            self.visits().announce(self.0.context.visitors.count());
         }
     }
 

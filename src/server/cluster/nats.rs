@@ -4,6 +4,7 @@
 //! |---|---|
 //! | logs | stream `CELLCASTER_LOG`, subject `cellcaster.log.ROOM` |
 //! | what is said in rooms | subject `cellcaster.peers.ROOM`, not kept |
+//! | what is asked of all hosts | subject `cellcaster.operator.1`, not kept; replies to an inbox |
 //! | records, checkpoints, places | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH`, `place.KEY` |
 //! | numbers of rooms | stream `CELLCASTER_NUMBERS`: the number of its newest message |
 //!
@@ -13,6 +14,7 @@
 //! memory that would be sent when it is out of date.
 
 mod names;
+mod subscription;
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -29,8 +31,9 @@ use futures_util::StreamExt;
 use tokio::sync::mpsc;
 use tokio::time::timeout;
 
-use self::names::{BUCKET, NUMBERS, ROOMS, key_name, log_subject, peers_subject};
-use super::bus::{Answer, Bus, BusFault, Key};
+use self::names::{BUCKET, NUMBERS, OPERATOR, ROOMS, key_name, log_subject, peers_subject};
+use self::subscription::{forward, host_request};
+use super::bus::{Answer, Bus, BusFault, HostRequest, Key};
 use crate::server::locked;
 use crate::server::summary::RoomId;
 
@@ -195,23 +198,25 @@ impl Bus for NatsBus {
 
     fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
         self.call(async move {
-            let mut subscription =
-                self.client.subscribe(peers_subject(room)).await.map_err(unknown)?;
-            // From now on, nothing is missed.
-            self.client.flush().await.map_err(unknown)?;
-            let (messages, receiver) = mpsc::channel(MOST_QUEUED);
-            tokio::spawn(async move {
-                loop {
-                    tokio::select! {
-                        () = messages.closed() => return,
-                        message = subscription.next() => match message {
-                            Some(message) => _ = messages.try_send(message.payload.to_vec()),
-                            None => return,
-                        }
-                    }
-                }
-            });
-            Ok(receiver)
+            let subscription = self.subscription(peers_subject(room)).await?;
+            Ok(forward(subscription, &self.client, |_, message| message.payload.to_vec()))
+        })
+    }
+
+    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+        self.call(async move {
+            let inbox = self.client.new_inbox();
+            let subscription = self.subscription(inbox.clone()).await?;
+            let asked = self.client.publish_with_reply(OPERATOR, inbox, request.into()).await;
+            asked.map_err(unknown)?;
+            Ok(forward(subscription, &self.client, |_, message| message.payload.to_vec()))
+        })
+    }
+
+    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>> {
+        self.call(async move {
+            let subscription = self.subscription(OPERATOR.to_owned()).await?;
+            Ok(forward(subscription, &self.client, host_request))
         })
     }
 

@@ -18,6 +18,7 @@
 
 mod bus;
 mod findings;
+mod operators;
 mod players;
 mod world;
 
@@ -31,7 +32,7 @@ use tokio::runtime::Builder;
 use tokio::time::{Instant, sleep};
 
 use self::players::Player;
-use self::world::{Link, World};
+use self::world::{Link, World, notice};
 use super::{Cluster, SharedRooms};
 use crate::rng::SplitMix64;
 use crate::server::load::Load;
@@ -67,6 +68,7 @@ struct Run {
 struct Host {
     rooms: Rooms,
     shared: SharedRooms,
+    visitors: Visitors,
     metrics: Arc<Metrics>,
     /// Whether it was killed, or has ended.
     is_killed: bool,
@@ -162,9 +164,11 @@ impl Host {
         let logs = Logs::new(|_| Box::<Queue>::default());
         let rooms = Rooms::new(limits, Arc::clone(catalog), logs, Arc::clone(&load), seed);
         let (bus, leases) = (world.bus(index), world.lease_worker(index));
-        let cluster = Cluster { bus, leases, visits: world.visits(index), seed };
-        let shared = cluster.rooms(&rooms, vec![wish()], load, Visitors::default());
-        Self { rooms, shared, metrics, is_killed: false, well_at: Instant::now() }
+        let (notice, visits) = (notice(index), world.visits(index));
+        let cluster = Cluster { bus, leases, visits, notice, seed };
+        let visitors = Visitors::default();
+        let shared = cluster.rooms(&rooms, vec![wish()], load, visitors.clone());
+        Self { rooms, shared, visitors, metrics, is_killed: false, well_at: Instant::now() }
     }
 }
 

@@ -3,8 +3,10 @@
 mod cut_off;
 mod limits;
 mod network;
+mod operators;
 mod returning;
 
+use std::collections::BTreeMap;
 use std::env;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::process::Output;
@@ -67,7 +69,19 @@ impl Hosts {
     }
 
     fn figure(&self, host: usize, name: &str) -> f64 {
-        scrape_at(self.running[host].1)[&format!("cellcaster_{name}")]
+        self.figures(host)[&format!("cellcaster_{name}")]
+    }
+
+    /// All figures of a host, each of which has the name of the host, which is left out here.
+    fn figures(&self, host: usize) -> BTreeMap<String, f64> {
+        let lines = scrape_at(self.running[host].1).into_iter().map(|(line, value)| {
+            let (name, rest) = line.split_once("{host=\"").expect(&line);
+            let (_, labels) = rest.split_once('"').expect(&line);
+            let labels = labels.trim_start_matches(',').trim_end_matches('}');
+            let labels = if labels.is_empty() { String::new() } else { format!("{{{labels}}}") };
+            (format!("{name}{labels}"), value)
+        });
+        lines.collect()
     }
 
     /// Asserts that hosts have compared the states of rooms since, and found no difference.

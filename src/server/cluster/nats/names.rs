@@ -7,6 +7,8 @@ use crate::server::summary::RoomId;
 
 pub(super) const BUCKET: &str = "cellcaster";
 pub(super) const NUMBERS: &str = "cellcaster.number";
+/// With the version of the format of requests.
+pub(super) const OPERATOR: &str = "cellcaster.operator.1";
 pub(super) const ROOMS: &str = "room.";
 
 pub(super) fn log_subject(room: RoomId) -> String {

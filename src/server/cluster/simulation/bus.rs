@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-use super::super::bus::{Answer, Bus, BusFault, Key};
+use super::super::bus::{Answer, Bus, BusFault, HostRequest, Key};
 use super::world::{Inner, Kept, LOOK, PATIENCE, World};
 use crate::server::locked;
 use crate::server::summary::RoomId;
@@ -106,6 +106,37 @@ impl Bus for SimulatedBus {
             inner.listeners.retain(|it| !it.2.is_closed());
             inner.listeners.push((host, room, listener));
             Ok(message)
+        })
+    }
+
+    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>> {
+        let (world, asking) = (self.world.clone(), self.host);
+        self.call(move |inner, _| {
+            let (answers, receiver) = mpsc::channel(1_024);
+            for (host, listener) in inner.operators.iter().cloned() {
+                let (world, answers, bytes) = (world.clone(), answers.clone(), request.clone());
+                tokio::spawn(async move {
+                    world.pass(host).await;
+                    let (reply, answer) = oneshot::channel();
+                    if !world.is_lost(host) {
+                        _ = listener.try_send(HostRequest { bytes, reply });
+                    }
+                    let Ok(answer) = answer.await else { return };
+                    world.pass(host).await;
+                    if !world.is_lost(host) && !world.is_lost(asking) {
+                        _ = answers.try_send(answer);
+                    }
+                });
+            }
+            Ok(receiver)
+        })
+    }
+
+    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>> {
+        self.call(|inner, host| {
+            let (listener, requests) = mpsc::channel(1_024);
+            inner.operators.push((host, listener));
+            Ok(requests)
         })
     }
 

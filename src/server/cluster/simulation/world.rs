@@ -8,7 +8,7 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep};
 
-use super::super::bus::{Bus, Key};
+use super::super::bus::{Bus, HostRequest, Key};
 use super::super::lease_worker::{self, Call, LeaseWorker};
 use super::super::visits::{Keeper, Visits};
 use super::bus::SimulatedBus;
@@ -36,6 +36,7 @@ pub(super) struct Inner {
     pub(super) values: BTreeMap<Key, (u64, Option<Vec<u8>>)>,
     pub(super) changes: Vec<(RoomId, Option<Vec<u8>>)>,
     pub(super) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
+    pub(super) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
     leases: MemoryLeases,
     presence: MemoryPresence,
     asked_at: Instant,
@@ -66,6 +67,12 @@ pub(super) struct Link {
     pub(super) delay: u64,
 }
 
+/// What a host says of itself.
+pub(super) fn notice(host: usize) -> HostNotice {
+    let (name, address) = (format!("host:{host} 1"), format!("host{host}.example.org:2222"));
+    HostNotice { name, version: "0.1.0".to_owned(), address, load: 0 }
+}
+
 impl World {
     pub(super) fn new(seed: u64, hosts: usize) -> Self {
         let good = Link { delay: 2, ..Link::default() };
@@ -78,6 +85,7 @@ impl World {
             values: BTreeMap::new(),
             changes: Vec::new(),
             listeners: Vec::new(),
+            operators: Vec::new(),
             leases: MemoryLeases::default(),
             presence: MemoryPresence::default(),
             asked_at: Instant::now(),
@@ -114,8 +122,7 @@ impl World {
     /// The visits of a host, by the same clock.
     pub(super) fn visits(&self, host: usize) -> Visits {
         let (visits, mut queue) = Visits::new();
-        let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
-        let mut keeper = Keeper::new(notice, &visits);
+        let mut keeper = Keeper::new(notice(host), &visits);
         let world = self.clone();
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
@@ -131,7 +138,7 @@ impl World {
     fn run(&self, call: Call, host: usize) {
         self.with(|inner| {
             inner.let_time_pass();
-            lease_worker::run(iter::once(call), &mut inner.leases, &format!("host {host}"));
+            lease_worker::run(iter::once(call), &mut inner.leases, &notice(host).name);
         });
     }
 

@@ -60,7 +60,7 @@ fn the_visits_of_a_host_that_is_killed_shut_nobody_out() {
 
 #[test]
 fn those_who_play_go_on_while_the_database_is_away_and_count_afterwards() {
-    let mut hosts = Hosts::start_with(2, ONE);
+    let hosts = Hosts::start_with(2, ONE);
     let key = user_key(&folder());
     let mara = hosts.running[0].0.player(Some(&key));
     enter_room(&mara, "Mara");

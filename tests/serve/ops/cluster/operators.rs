@@ -1,0 +1,82 @@
+//! `cellcaster admin` and metrics, where there are several hosts.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+
+use super::Hosts;
+use crate::ops::killed::user_key;
+use crate::play::enter_room;
+use crate::transport::folder;
+
+#[test]
+fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
+    let hosts = Hosts::start(2);
+    let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
+    let key = user_key(&folder());
+    let mut mara = one.player(Some(&key));
+    enter_room(&mara, "Mara");
+    let mut jon = hosts.player(1, "Jon");
+    for host in [one, other] {
+        let who = host.admin_says(&["who"]);
+        let titles = who.lines().next().unwrap();
+        assert!(titles.contains("host") && who.lines().count() == 3, "{who}");
+        assert!(who.contains("Mara") && who.contains("Jon"), "{who}");
+    }
+    assert_eq!(other.admin_says(&["say", "closing soon"]), "said to 2 visitors\n");
+    mara.wait_for("closing soon");
+    jon.wait_for("closing soon");
+
+    // A ban on one host ends the session on another one at once.
+    let store = hosts.postgres.address();
+    let start = Instant::now();
+    let said = other.admin_says(&["ban", "mara", "--reason", "insults", "--store", &store]);
+    assert!(said.ends_with("ended the sessions of 1 visitor\n"), "{said}");
+    mara.wait_for("You are banned from this host: insults");
+    println!("the session ends after {:?}", start.elapsed());
+    mara.wait_for_end();
+    one.player(Some(&key)).wait_for("banned from this server: insults");
+    assert_eq!(one.admin_says(&["kick", "jon"]), "ended the sessions of 1 visitor\n");
+    jon.wait_for_end();
+}
+
+#[test]
+fn hosts_are_listed_with_the_rooms_that_they_write_and_those_that_do_not_answer() {
+    let hosts = Hosts::start(2);
+    let [one, other] = [0, 1].map(|host| &hosts.running[host].0);
+    let _mara = hosts.player(0, "Mara");
+    let list = other.admin_says(&["hosts"]);
+    let rows: Vec<&str> = list.lines().collect();
+    assert!(rows.len() == 3 && rows[0].contains("writes rooms"), "{list}");
+    let writing = rows[1..].iter().filter(|row| !row.ends_with("none")).count();
+    assert!(writing == 1 && list.contains("127.0.0.1:"), "{list}");
+
+    // Each room that a host runs has figures.
+    let figures = hosts.figures(0);
+    let of_rooms = figures.iter().filter(|(line, _)| line.contains("{room=\""));
+    let of_rooms: Vec<_> = of_rooms.collect();
+    assert!(of_rooms.len() >= 7, "{of_rooms:?}");
+    let members = of_rooms.iter().filter(|(line, _)| line.contains("room_members"));
+    assert_eq!(members.map(|(_, value)| **value).sum::<f64>(), 1.0);
+
+    one.signal(Signal::STOP);
+    thread::sleep(Duration::from_secs(1));
+    let output = other.admin(&["hosts"]);
+    one.signal(Signal::CONT);
+    let (said, error) = (String::from_utf8(output.stdout), String::from_utf8(output.stderr));
+    let (said, error) = (said.unwrap(), error.unwrap());
+    assert!(error.contains("did not answer") && error.lines().count() == 1, "{error}");
+    assert!(output.status.success() && said.lines().count() == 3, "{said}");
+}
+
+#[test]
+fn a_host_that_ends_is_listed_no_more() {
+    let mut hosts = Hosts::start(2);
+    hosts.running[0].0.signal(Signal::TERM);
+    assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
+    let other = &hosts.running[1].0;
+    assert_eq!(other.admin_says(&["hosts"]).lines().count(), 2);
+    assert_eq!(other.admin_says(&["who"]), "nobody is on\n");
+    assert!(other.admin_says(&["drain"]).starts_with("the server ends"));
+}
