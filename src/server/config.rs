@@ -31,6 +31,7 @@ use std::time::Duration;
 
 use super::admission::Limits;
 use super::logging::LogFilter;
+use crate::store::host::AccountRate;
 pub use live::LiveConfig;
 pub use standing::StandingRoom;
 
@@ -53,6 +54,8 @@ pub struct Config {
     pub metrics: Option<SocketAddr>,
     /// Which connections are admitted.
     pub admission: Limits,
+    /// How many accounts a network may make.
+    pub accounts: AccountRate,
     /// The time in which a client sends its half of the key exchange.
     pub handshake: Duration,
     /// The time in which a session begins. Its user may have to check the host key and to type a
@@ -96,6 +99,7 @@ impl Default for Config {
             maps: None,
             metrics: None,
             admission: Limits::default(),
+            accounts: AccountRate::default(),
             handshake: Duration::from_secs(20),
             login: Duration::from_mins(2),
             login_bytes: 64 << 10,

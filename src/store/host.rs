@@ -29,6 +29,7 @@ mod name;
 #[cfg(feature = "cluster")]
 mod postgres;
 mod presence;
+mod rate;
 mod score;
 mod sql;
 mod sqlite;
@@ -47,6 +48,7 @@ pub use postgres::PostgresStore;
 pub use presence::{
     HostNotice, HostRow, MemoryPresence, Presence, Visit, VisitBegin, VisitId, Visitor,
 };
+pub use rate::{AccountRate, Origin};
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
 pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};
@@ -77,12 +79,27 @@ pub trait HostStore: Send {
     /// See [`account`](Self::account).
     fn account_named(&mut self, name: &Name) -> Result<Option<Account>, StoreFailure>;
 
-    /// Creates the account of a key.
+    /// Creates the account of a key, whatever others were created.
     ///
     /// # Errors
     /// [`Refusal`].
     fn create_account(
         &mut self,
+        key: &AccountKey,
+        name: &Name,
+        now: UnixTime,
+    ) -> Result<Account, Refusal> {
+        self.create_account_from(None, key, name, now)
+    }
+
+    /// Creates the account of a key, if its network has not made too many. One that is refused for another reason
+    /// does not count.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    fn create_account_from(
+        &mut self,
+        origin: Option<&Origin>,
         key: &AccountKey,
         name: &Name,
         now: UnixTime,

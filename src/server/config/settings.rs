@@ -16,7 +16,7 @@ pub(super) struct Setting {
 }
 
 /// The settings in the order of a file.
-pub(super) const SETTINGS: [Setting; 22] = [
+pub(super) const SETTINGS: [Setting; 24] = [
     Setting {
         name: "connections",
         meaning: "the most connections at a time",
@@ -90,6 +90,22 @@ pub(super) const SETTINGS: [Setting; 22] = [
         most: 86_400,
         get: |config| seconds(config.admission.forget),
         set: |config, value| config.admission.forget = of_seconds(value),
+    },
+    Setting {
+        name: "accounts-per-hour",
+        meaning: "the new accounts that one network (/24, /64) may make in an hour",
+        least: 1,
+        most: 1_000_000,
+        get: |config| config.accounts.per_hour,
+        set: |config, value| config.accounts.per_hour = value,
+    },
+    Setting {
+        name: "accounts-at-once",
+        meaning: "how many of them at once",
+        least: 1,
+        most: 1_000_000,
+        get: |config| config.accounts.at_once,
+        set: |config, value| config.accounts.at_once = value,
     },
     Setting {
         name: "handshake-seconds",

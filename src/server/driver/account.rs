@@ -9,7 +9,7 @@ use crate::server::room::NAME_COLUMNS;
 use crate::server::{Visitor, locked};
 use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
-    Refusal, StoreFailure,
+    Origin, Refusal, StoreFailure,
 };
 
 /// What the store knows of a visitor.
@@ -89,6 +89,7 @@ impl Shared {
 /// The name that a visitor wants, once it is theirs.
 pub(super) fn choose_name(
     store: &mut dyn HostStore,
+    origin: &Origin,
     key: Option<AccountKey>,
     account: Option<AccountId>,
     name: &Name,
@@ -97,7 +98,10 @@ pub(super) fn choose_name(
     let sentence = |refusal: Refusal| refusal.to_string();
     match (key, account) {
         (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
-        (Some(key), None) => store.create_account(&key, name, now).map(Some).map_err(sentence),
+        (Some(key), None) => {
+            let account = store.create_account_from(Some(origin), &key, name, now);
+            account.map(Some).map_err(sentence)
+        }
         (None, None) => match guest_may_use(store, name) {
             Ok(true) => Ok(None),
             Ok(false) => Err(Refusal::NameTaken.to_string()),

@@ -15,7 +15,7 @@ use crate::server::room::Command;
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::{CommandRefusal, FinishedRun};
 use crate::server::session::{News, Request};
-use crate::store::host::{Account, AccountSettings, Name};
+use crate::store::host::{Account, AccountSettings, Name, Origin};
 use crate::world::Difficulty;
 
 /// What the store has answered.
@@ -117,9 +117,10 @@ impl Visit {
             return self.tell(News::Named(Ok(account::line(&name))));
         }
         let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
+        let origin = Origin::new(self.address, self.shared.config.get().accounts);
         let replies = self.replies.clone();
         let is_accepted = self.shared.store.run(move |store| {
-            let result = choose_name(store, key, account, &name);
+            let result = choose_name(store, &origin, key, account, &name);
             _ = replies.try_send(Reply::Named(name, result));
         });
         if !is_accepted {

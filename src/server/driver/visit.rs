@@ -1,5 +1,6 @@
 //! The driver of one visitor.
 
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,6 +29,8 @@ pub(super) struct Visit {
     pub(super) shared: Arc<Shared>,
     pub(super) session: Session,
     pub(super) key: Option<AccountKey>,
+    /// The address that the visitor connects from.
+    pub(super) address: IpAddr,
     pub(super) account: Option<Account>,
     /// The name that a guest may take without asking.
     pub(super) offer: Name,
@@ -117,6 +120,7 @@ impl Visit {
         Self {
             session,
             key,
+            address: visitor.peer.ip(),
             name: account.as_ref().map(|account| account.name.clone()),
             account,
             offer,

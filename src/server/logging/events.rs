@@ -165,9 +165,7 @@ fn clean(text: &str) -> String {
 
 /// The network of an address, as admission knows it: /24 or /64.
 fn network(address: IpAddr) -> String {
-    let address = address.to_canonical();
-    let length = if address.is_ipv4() { 24 } else { 64 };
-    AddressPrefix::new(address, length).map_or_else(String::new, |prefix| prefix.to_string())
+    AddressPrefix::network_of(address).to_string()
 }
 
 fn shown(target: &BanTarget) -> String {

@@ -102,6 +102,14 @@ impl AddressPrefix {
         Some(Self { first, length })
     }
 
+    /// The network of an address, as far as one owner has it: a /24 of IPv4, a /64 of IPv6.
+    pub fn network_of(address: IpAddr) -> Self {
+        let address = address.to_canonical();
+        let length = if address.is_ipv4() { 24 } else { 64 };
+        // An address has so many bits.
+        Self::new(address, length).unwrap_or(Self { first: address, length })
+    }
+
     /// The range of a text such as 203.0.113.0/24. An address without a length is a range of one.
     pub fn parse(text: &str) -> Option<Self> {
         let Some((address, length)) = text.split_once('/') else {
@@ -158,6 +166,18 @@ mod tests {
         }
         let everything_of_v4 = AddressPrefix::parse("0.0.0.0/0").unwrap();
         assert!(!everything_of_v4.contains("2001:db8::1".parse().unwrap()));
+    }
+
+    #[test]
+    fn the_network_of_an_address_is_that_of_its_owner() {
+        for (address, network) in [
+            ("192.0.2.77", "192.0.2.0/24"),
+            ("::ffff:192.0.2.77", "192.0.2.0/24"),
+            ("2001:db8:1:2:3::4", "2001:db8:1:2::/64"),
+        ] {
+            let prefix = AddressPrefix::network_of(address.parse().unwrap());
+            assert_eq!(prefix.to_string(), network);
+        }
     }
 
     proptest! {

@@ -27,6 +27,11 @@ pub enum Refusal {
         /// When it can be changed.
         next: UnixTime,
     },
+    /// The network of a new account has made too many.
+    TooManyAccounts {
+        /// After how many seconds it can make the next one.
+        seconds: u64,
+    },
     /// The store failed.
     Failed(StoreFailure),
 }
@@ -64,6 +69,14 @@ impl fmt::Display for Refusal {
     /// Writes a sentence for the player.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::TooManyAccounts { seconds } => {
+                let minutes = seconds.div_ceil(60).max(1);
+                let unit = if minutes == 1 { "minute" } else { "minutes" };
+                return write!(
+                    f,
+                    "Your network makes too many accounts; try again in {minutes} {unit}."
+                );
+            }
             Self::NameTaken => "Somebody has this name, or one that looks like it.",
             Self::NameBanned => "This name is not allowed here.",
             Self::KeyKnown => "Your key has an account.",

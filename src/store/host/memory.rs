@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::score::with_run;
 use super::{
-    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, DailyScore, DailyTry, Day,
-    HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, RENAME_WAIT, Refusal,
-    StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel,
+    Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyScore,
+    DailyTry, Day, HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin,
+    RENAME_WAIT, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel,
 };
 use crate::store::{Best, Improved, Reached};
 
@@ -30,6 +30,8 @@ pub struct MemoryStore {
     /// By the keys of names.
     names: BTreeMap<String, NameOwner>,
     bans: Vec<Ban>,
+    /// When each network has its whole allowance of accounts again.
+    rates: BTreeMap<AddressPrefix, i64>,
     results: BTreeMap<AccountId, Vec<Kept>>,
     dailies: BTreeMap<(Day, AccountId), Daily>,
 }
@@ -66,8 +68,8 @@ impl MemoryStore {
         self.find(id).ok_or_else(|| StoreFailure::new("there is no such account"))
     }
 
-    /// Takes the keys of a name for an account, and releases those that it had.
-    fn take_name(&mut self, id: AccountId, name: &Name, now: UnixTime) -> Result<(), Refusal> {
+    /// Refuses a name that is banned, or belongs to another account.
+    fn check_name(&mut self, id: AccountId, name: &Name, now: UnixTime) -> Result<(), Refusal> {
         let identity = Identity { name: Some(name), ..Identity::default() };
         if self.ban_of(&identity, now)?.is_some() {
             return Err(Refusal::NameBanned);
@@ -77,6 +79,11 @@ impl MemoryStore {
         if { owners }.any(|owner| owner.account != id && is_held(owner)) {
             return Err(Refusal::NameTaken);
         }
+        Ok(())
+    }
+
+    /// Takes the keys of a name for an account, and releases those that it had.
+    fn take_name(&mut self, id: AccountId, name: &Name, now: UnixTime) {
         let own = self.names.values_mut().filter(|owner| owner.account == id);
         for owner in own.filter(|owner| owner.held_until.is_none()) {
             owner.held_until = Some(now.after(NAME_HELD));
@@ -84,7 +91,6 @@ impl MemoryStore {
         for key in name.keys() {
             self.names.insert(key, NameOwner { account: id, held_until: None });
         }
-        Ok(())
     }
 }
 
@@ -98,8 +104,9 @@ impl HostStore for MemoryStore {
         Ok(alike.min_by_key(|account| (account.name != *name, account.id)).cloned())
     }
 
-    fn create_account(
+    fn create_account_from(
         &mut self,
+        origin: Option<&Origin>,
         key: &AccountKey,
         name: &Name,
         now: UnixTime,
@@ -108,7 +115,12 @@ impl HostStore for MemoryStore {
             return Err(Refusal::KeyKnown);
         }
         let id = AccountId(self.accounts.len() as i64 + 1);
-        self.take_name(id, name, now)?;
+        self.check_name(id, name, now)?;
+        if let Some(origin) = origin {
+            let whole_at = origin.count(self.rates.get(&origin.network).copied(), now)?;
+            self.rates.insert(origin.network, whole_at);
+        }
+        self.take_name(id, name, now);
         let (key, name) = (*key, name.clone());
         let account = Account { id, key, name, named_at: now, created_at: now, seen_at: now };
         self.accounts.push(account.clone());
@@ -125,7 +137,8 @@ impl HostStore for MemoryStore {
         if now < next {
             return Err(Refusal::TooEarly { next });
         }
-        self.take_name(account, name, now)?;
+        self.check_name(account, name, now)?;
+        self.take_name(account, name, now);
         let account = self.existing(account)?;
         (account.name, account.named_at) = (name.clone(), now);
         Ok(account.clone())

@@ -23,8 +23,8 @@ pub(super) use value::{Row, Value, values};
 
 use super::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, DailyScore, DailyTry, Day,
-    HostStore, LevelBoard, LevelScore, Name, Refusal, StoreFailure, UnixTime, VerifiedDescent,
-    VerifiedLevel,
+    HostStore, LevelBoard, LevelScore, Name, Origin, Refusal, StoreFailure, UnixTime,
+    VerifiedDescent, VerifiedLevel,
 };
 use crate::store::{Best, Improved};
 
@@ -88,13 +88,14 @@ impl<D: Database> HostStore for SqlStore<D> {
         self.database.once(|it| accounts::named(it, name))
     }
 
-    fn create_account(
+    fn create_account_from(
         &mut self,
+        origin: Option<&Origin>,
         key: &AccountKey,
         name: &Name,
         now: UnixTime,
     ) -> Result<Account, Refusal> {
-        self.database.change(|it| accounts::create(it, key, name, now))
+        self.database.change(|it| accounts::create(it, origin, key, name, now))
     }
 
     fn rename(

@@ -9,6 +9,7 @@ mod postgres;
 #[path = "../../../tests/support/postgres_server.rs"]
 mod postgres_server;
 mod presence;
+mod rate;
 mod waiting;
 
 use std::path::PathBuf;

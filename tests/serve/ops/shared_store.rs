@@ -58,6 +58,24 @@ fn hosts_share_accounts_and_bans_and_outlive_their_database() {
 }
 
 #[test]
+fn hosts_count_the_new_accounts_of_a_network_together() {
+    let server = PostgresServer::shared();
+    let store = server.address();
+    let options = ["--store", store.as_str()];
+    let config = "room = []\naccounts-at-once = 1\n";
+    let [one, other] = [0; 2].map(|_| Running::start_with(config, "text", &options));
+    let keys = [0; 2].map(|_| user_key(&folder()));
+    choose(&one.player(Some(&keys[0])), "Mara", "\x1b");
+    let jon = other.player(Some(&keys[1]));
+    jon.wait_for("Enter takes it");
+    jon.send("\x15Jon\r");
+    jon.wait_for("Your network makes too many accounts; try again in 3 minutes.");
+    // Those who have an account come as before, and guests play.
+    other.player(Some(&keys[0])).wait_for("> Mara");
+    choose(&other.visitor(), "Jon", "\x1b");
+}
+
+#[test]
 fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
     let (server, stranger) = (PostgresServer::start_encrypted(), PostgresServer::start_encrypted());
     let store = server.address_over_tcp();

@@ -113,8 +113,15 @@ CREATE TABLE hosts (
 );
 "#;
 
-/// A visit counts while its host is there, whose row says so.
-const THIRD: &str = "ALTER TABLE visits DROP COLUMN ends_at;";
+/// A visit counts while its host is there, whose row says so. Hosts count the accounts of networks together.
+const THIRD: &str = r#"
+ALTER TABLE visits DROP COLUMN ends_at;
+
+CREATE TABLE account_rates (
+    network TEXT COLLATE "C" NOT NULL PRIMARY KEY,
+    whole_at_ms BIGINT NOT NULL
+);
+"#;
 
 /// What a database has.
 enum Found {

@@ -4,9 +4,10 @@ use std::num::NonZeroU32;
 
 use super::{Row, Statements, bans, values};
 use crate::store::Preferences;
+use crate::store::host::rate::milliseconds;
 use crate::store::host::{
-    Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, RENAME_WAIT,
-    Refusal, StoreFailure, UnixTime, ban,
+    Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin,
+    RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban,
 };
 use crate::store::values::{self as words, COLORS, GLYPHS, name_of};
 use crate::world::Difficulty;
@@ -37,6 +38,7 @@ pub(super) fn named(
 
 pub(super) fn create(
     database: &dyn Statements,
+    origin: Option<&Origin>,
     key: &AccountKey,
     name: &Name,
     now: UnixTime,
@@ -45,6 +47,9 @@ pub(super) fn create(
         return Err(Refusal::KeyKnown);
     }
     check_name(database, None, name, now)?;
+    if let Some(origin) = origin {
+        count_origin(database, origin, now)?;
+    }
     let sql = "INSERT INTO accounts (key, name, named_at, created_at, seen_at) \
                VALUES (?1, ?2, ?3, ?3, ?3) RETURNING id";
     let row = database.row(sql, values![&key.bytes()[..], name.as_str(), now])?;
@@ -155,6 +160,22 @@ fn account(row: &Row) -> Result<Account, StoreFailure> {
         created_at: row.get(4)?,
         seen_at: row.get(5)?,
     })
+}
+
+/// Counts a new account of a network, and forgets the networks that have their whole allowance.
+fn count_origin(database: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(), Refusal> {
+    let network = origin.network.to_string();
+    let network = network.as_str();
+    let sql = "SELECT whole_at_ms FROM account_rates WHERE network = ?1";
+    let row = database.row(sql, values![network])?;
+    let known = row.map(|row| row.get(0)).transpose()?;
+    let whole_at = origin.count(known, now)?;
+    let sql = "DELETE FROM account_rates WHERE whole_at_ms <= ?1";
+    database.execute(sql, values![milliseconds(now)])?;
+    let sql = "INSERT INTO account_rates (network, whole_at_ms) VALUES (?1, ?2) \
+               ON CONFLICT (network) DO UPDATE SET whole_at_ms = excluded.whole_at_ms";
+    database.execute(sql, values![network, whole_at])?;
+    Ok(())
 }
 
 /// Refuses a name that is banned, or belongs to another account than `own`.

@@ -5,9 +5,9 @@ use rusqlite::{Connection, Result, TransactionBehavior};
 /// The mark of the file in its header, "Cell".
 pub(super) const APPLICATION: i32 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST];
+pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND];
 /// All tables with their columns, those first that others refer to.
-pub(super) const TABLES: [(&str, &str); 6] = [
+pub(super) const TABLES: [(&str, &str); 7] = [
     ("accounts", "id, key, name, named_at, created_at, seen_at"),
     ("names", "key, account, held_until"),
     (
@@ -22,6 +22,7 @@ pub(super) const TABLES: [(&str, &str); 6] = [
          deaths, stunned, rank, verified_at, script",
     ),
     ("dailies", "account, day, floors, treasure, steps, begun_at, verified_at, script"),
+    ("account_rates", "network, whole_at_ms"),
 ];
 
 const FIRST: &str = "
@@ -95,6 +96,13 @@ CREATE TABLE dailies (
     PRIMARY KEY (account, day)
 ) STRICT;
 CREATE INDEX dailies_of_day ON dailies (day);
+";
+
+const SECOND: &str = "
+CREATE TABLE account_rates (
+    network TEXT NOT NULL PRIMARY KEY,
+    whole_at_ms INTEGER NOT NULL
+) STRICT;
 ";
 
 /// The version of the file: the number of migrations that it has.

@@ -28,7 +28,7 @@ macro_rules! failing {
 failing! {
     account(key: &AccountKey) -> Result<Option<Account>, StoreFailure>;
     account_named(name: &Name) -> Result<Option<Account>, StoreFailure>;
-    create_account(key: &AccountKey, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
+    create_account_from(origin: Option<&Origin>, key: &AccountKey, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
     rename(account: AccountId, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
     note_visit(account: AccountId, now: UnixTime) -> Result<(), StoreFailure>;
     settings(account: AccountId) -> Result<AccountSettings, StoreFailure>;
