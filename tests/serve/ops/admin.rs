@@ -54,6 +54,7 @@ fn an_operator_sees_visitors_speaks_to_them_and_ends_their_sessions() {
         assert!(running.log().contains(said), "{}", running.log());
     }
     assert!(!running.log().contains("closing"), "{}", running.log());
+    assert!(complaint(&running.folder, &["hosts"]).contains("this host is in no cluster"));
 }
 
 #[test]
@@ -99,6 +100,7 @@ fn what_is_wrong_is_told_in_a_sentence() {
     for (arguments, said) in [
         (&["who"][..], "no server runs with the data in"),
         (&["rooms"], "no server runs"),
+        (&["hosts"], "no server runs"),
         (&["kick", "ada"], "no server runs"),
         (&["drain"], "no server runs"),
         (&["say", "hello"], "no server runs"),

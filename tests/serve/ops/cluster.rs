@@ -34,6 +34,8 @@ struct Hosts {
     running: Vec<(Running, SocketAddr)>,
     nats: NatsServer,
     postgres: PostgresServer,
+    /// The address of their store.
+    store: String,
 }
 
 impl Hosts {
@@ -46,7 +48,8 @@ impl Hosts {
         let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
         let (bus, store) = (nats.address(), postgres.address());
         let host = |_| host(None, Ipv4Addr::LOCALHOST, &bus, &store, settings);
-        Self { running: (0..count).map(host).collect(), nats, postgres }
+        let running = (0..count).map(host).collect();
+        Self { running, nats, postgres, store }
     }
 
     /// Two hosts, of which the first one is in a network of its own.
@@ -58,7 +61,7 @@ impl Hosts {
             host(Some(network.namespace()), network.host(), &bus, &store, ""),
             host(None, Ipv4Addr::LOCALHOST, &bus, &store, ""),
         ];
-        Self { running, nats, postgres }
+        Self { running, nats, postgres, store }
     }
 
     /// A player on a host, who is in the first room.

@@ -29,9 +29,8 @@ fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
     jon.wait_for("closing soon");
 
     // A ban on one host ends the session on another one at once.
-    let store = hosts.postgres.address();
     let start = Instant::now();
-    let said = other.admin_says(&["ban", "mara", "--reason", "insults", "--store", &store]);
+    let said = other.admin_says(&["ban", "mara", "--reason", "insults", "--store", &hosts.store]);
     assert!(said.ends_with("ended the sessions of 1 visitor\n"), "{said}");
     mara.wait_for("You are banned from this host: insults");
     println!("the session ends after {:?}", start.elapsed());
