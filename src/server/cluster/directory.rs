@@ -13,7 +13,7 @@ mod announcing;
 mod places;
 mod standing;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -56,6 +56,8 @@ struct Inner {
     /// The directory of rooms that lobbies show.
     rooms: Rooms,
     standing: Mutex<Vec<RoomWish>>,
+    /// The numbers of those rooms.
+    own_standing: Mutex<BTreeSet<RoomId>>,
     records: Mutex<BTreeMap<RoomId, Known>>,
     /// Locked while a replica is made, so that a room has one at most.
     replicas: tokio::sync::Mutex<BTreeMap<RoomId, RoomHandle>>,
@@ -83,6 +85,7 @@ impl SharedRooms {
             context,
             rooms,
             standing,
+            own_standing: Mutex::default(),
             records,
             replicas: tokio::sync::Mutex::default(),
         }));
@@ -98,7 +101,8 @@ impl SharedRooms {
         wish: &RoomWish,
         visitor: &Entrant,
     ) -> Result<Place, RoomRefusal> {
-        let is_full = locked(&self.0.records, |it| it.len()) >= self.0.rooms.limits().most;
+        let listed = self.0.rooms.summaries().borrow().len();
+        let is_full = listed >= self.0.rooms.limits().most;
         if is_full {
             return Err(RoomRefusal::TooMany);
         }
@@ -237,14 +241,11 @@ impl SharedRooms {
         // A record that cannot be read is of a room of another version, which is none for this host.
         let record = bytes.and_then(Record::parse);
         let now = Instant::now();
-        let summaries = locked(&self.0.records, |records| {
-            match record {
-                Some(record) => _ = records.insert(id, Known { record, since: now }),
-                None => _ = records.remove(&id),
-            }
-            records.iter().map(|(id, known)| known.record.summary(*id)).collect()
+        locked(&self.0.records, |records| match record {
+            Some(record) => _ = records.insert(id, Known { record, since: now }),
+            None => _ = records.remove(&id),
         });
-        self.0.rooms.show_shared(summaries);
+        self.show();
     }
 
     /// Makes the standing rooms, forgets replicas that have ended, and runs rooms that have lost their host,

@@ -20,6 +20,7 @@ mod bus;
 mod findings;
 mod operators;
 mod players;
+mod standing;
 mod world;
 
 use std::array;

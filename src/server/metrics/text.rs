@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use tokio::runtime::Handle;
 
 use super::histogram::BOUNDS;
-use super::{Counter, Gauge, Histogram, Metrics, RoomFigures, process};
+use super::{Histogram, Metrics, RoomFigures, process};
 use crate::server::{Counters, Refusal};
 
 impl Metrics {
@@ -21,6 +21,21 @@ impl Metrics {
         text.text
     }
 }
+
+/// A figure of a room: its name, kind and description, and how to read it.
+type RoomFigure = (&'static str, &'static str, &'static str, fn(&RoomFigures) -> i64);
+
+const OF_EACH_ROOM: [RoomFigure; 5] = [
+    ("room_members", "gauge", "Members of a room, on all hosts.", |it| it.members.get()),
+    ("room_watchers", "gauge", "Visitors of this host who watch a room.", |it| it.watchers.get()),
+    ("room_writes", "gauge", "Whether this host writes the log of a room.", |it| it.writes.get()),
+    ("room_steps_total", "counter", "Steps that a room has taken on this host.", |it| {
+        it.steps.get() as i64
+    }),
+    ("room_entries_total", "counter", "Entries of the log of a room.", |it| {
+        it.entries.get() as i64
+    }),
+];
 
 #[derive(Default)]
 struct Text {
@@ -79,25 +94,10 @@ impl Text {
         }
         let rooms: Vec<(String, _)> =
             rooms.into_iter().map(|(room, figures)| (room.to_string(), figures)).collect();
-        let gauges: [(&str, &str, fn(&RoomFigures) -> &Gauge); 3] = [
-            ("room_members", "Members of a room, on all hosts.", |it| &it.members),
-            ("room_watchers", "Visitors of this host who watch a room.", |it| &it.watchers),
-            ("room_writes", "Whether this host writes the log of a room.", |it| &it.writes),
-        ];
-        for (name, help, gauge) in gauges {
-            self.head(name, "gauge", help);
+        for (name, kind, help, figure) in OF_EACH_ROOM {
+            self.head(name, kind, help);
             for (room, figures) in &rooms {
-                self.line(name, &[("room", room)], gauge(figures).get());
-            }
-        }
-        let counters: [(&str, &str, fn(&RoomFigures) -> &Counter); 2] = [
-            ("room_steps_total", "Steps that a room has taken on this host.", |it| &it.steps),
-            ("room_entries_total", "Entries of the log of a room.", |it| &it.entries),
-        ];
-        for (name, help, counter) in counters {
-            self.head(name, "counter", help);
-            for (room, figures) in &rooms {
-                self.line(name, &[("room", room)], counter(figures).get());
+                self.line(name, &[("room", room)], figure(figures));
             }
         }
         let name = "each_room_checks_total";

@@ -31,7 +31,6 @@ impl Keeper {
     pub(in crate::server::cluster) fn run(&mut self, presence: &mut dyn Presence, call: Call) {
         self.end(presence);
         match call {
-            Call::End => {}
             Call::Begin(newcomer, visits, reply) => {
                 let begun = self.begin(presence, &newcomer);
                 let begun = begun.map(|begun| begun.map(|ids| CountedVisit { ids, visits }));
@@ -39,7 +38,7 @@ impl Keeper {
                 _ = reply.send(begun);
             }
             Call::Announce(load) if !self.has_left => self.announce(presence, load),
-            Call::Announce(_) => {}
+            Call::Announce(_) | Call::End => {}
             Call::Hosts(reply) => _ = reply.send(presence.hosts(THERE)),
             Call::Leave(reply) => {
                 self.has_left = true;

@@ -79,9 +79,9 @@ impl Database {
     fn run(&mut self, keeper: &mut Keeper, call: Call) {
         self.pass();
         if self.is_away {
-            keeper.run(&mut Away, call)
+            keeper.run(&mut Away, call);
         } else {
-            keeper.run(&mut self.presence, call)
+            keeper.run(&mut self.presence, call);
         }
     }
 
@@ -170,7 +170,7 @@ fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
         let came = Instant::now();
         let _visit = hosts.begin(1, newcomer(1, 1)).await.unwrap();
         assert!(came.elapsed() < THERE + ANNOUNCED, "{:?}", came.elapsed());
-        assert!(came.elapsed() >= THERE - ANNOUNCED, "{:?}", came.elapsed());
+        assert!(came.elapsed() + ANNOUNCED >= THERE, "{:?}", came.elapsed());
     });
 }
 

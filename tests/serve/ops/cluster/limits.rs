@@ -35,7 +35,9 @@ fn a_key_is_limited_over_all_hosts() {
 fn an_address_is_limited_over_all_hosts() {
     let hosts = Hosts::start_with(2, "connections-per-address = 2\n");
     let guests = [0, 1].map(|host| hosts.running[host].0.visitor());
-    guests.iter().for_each(|guest| guest.wait_for("Enter takes it"));
+    for guest in &guests {
+        guest.wait_for("Enter takes it");
+    }
     hosts.running[1].0.visitor().wait_for("You are connected too often from this address");
     let [one, _other] = guests;
     drop(one);
