@@ -28,6 +28,7 @@ pub(super) enum Call {
     Acquire(String, u64, oneshot::Sender<Result<Option<Lease>, StoreFailure>>),
     Renew(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
     Release(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
+    Forget(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
 }
 
 impl LeaseWorker {
@@ -70,6 +71,13 @@ impl LeaseWorker {
         answer
     }
 
+    /// Ends the lease of a room that is closed.
+    pub(super) fn forget(&self, lease: &Lease) -> Reply<bool> {
+        let (reply, answer) = oneshot::channel();
+        self.call(Call::Forget(lease.clone(), reply));
+        answer
+    }
+
     fn call(&self, call: Call) {
         // The answer to a call that is not accepted is an error, since its sender is dropped.
         _ = self.calls.try_send(call);
@@ -85,6 +93,7 @@ pub(super) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, ho
                 _ = reply.send(leases.acquire(&room, host, LEASE_TIME, epoch));
             }
             Call::Release(lease, reply) => _ = reply.send(leases.release(&lease)),
+            Call::Forget(lease, reply) => _ = reply.send(leases.forget(&lease)),
             Call::Renew(lease, reply) => {
                 held.push(lease);
                 replies.push(reply);

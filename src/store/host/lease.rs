@@ -4,8 +4,8 @@
 //!
 //! - **A room has one holder at most.** A lease ends when it is released, or when its time is over without a
 //!   renewal. Nobody else takes it before, its own holder neither: a host that was started again waits.
-//! - **A lease has an epoch**, which is greater than that of all earlier leases of the room and is never
-//!   repeated, so that what a host does with a lease that is over can be told from what its successor does.
+//! - **A lease has an epoch**, which is greater than that of all earlier leases of the room and is not
+//!   repeated while there is the room, so that what a host does with a lease that is over can be told from what its successor does.
 //! - **A lease that is over and that nobody has taken can be renewed**, with its epoch.
 //! - **Time is that of the store.** A host whose clock is wrong keeps no lease too long and loses none.
 //!
@@ -57,6 +57,13 @@ pub trait Leases: Send {
     /// # Errors
     /// See [`acquire`](Self::acquire).
     fn release(&mut self, lease: &Lease) -> Result<bool, StoreFailure>;
+
+    /// Ends the lease of a room that is closed for ever, and forgets its epochs. Returns whether there was one to
+    /// end.
+    ///
+    /// # Errors
+    /// See [`acquire`](Self::acquire).
+    fn forget(&mut self, lease: &Lease) -> Result<bool, StoreFailure>;
 
     /// The lease of a room that is in force.
     ///

@@ -59,7 +59,8 @@ impl Replica {
                     is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN);
                 // A host that cannot write the log would keep the room from those that can.
                 if is_time && self.reaches_bus {
-                    self.leasing.acquiring = Some(leases.acquire(&self.id.place(), self.state.epoch()));
+                    self.leasing.acquiring =
+                        Some(leases.acquire(&self.id.place(), self.state.epoch()));
                     self.times.leased = Some(now);
                 }
             }
@@ -165,8 +166,11 @@ impl Replica {
         let is_broken = self.interface.inbox.is_closed();
         if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
             let is_empty = self.state.room().len() == 0;
+            let (leases, mut is_gone) = (self.context.leases.clone(), false);
             if is_broken || is_empty && !self.record.stands {
-                self.close().await;
+                // A standing room is made again under its number, and others may go on with one that is broken or
+                // not removed.
+                is_gone = self.close().await.is_ok() && !is_broken && !self.record.stands;
             } else {
                 // The first one is refused if the predecessor has put one last.
                 for _ in 0..2 {
@@ -178,7 +182,8 @@ impl Replica {
                     _ = self.keep_record(!is_empty).await;
                 }
             }
-            _ = self.context.leases.release(sequencer.lease()).await;
+            let lease = sequencer.lease();
+            _ = if is_gone { leases.forget(lease) } else { leases.release(lease) }.await;
             self.broadcast(&PeerMessage::Released).await;
         }
         let ends = *self.ending.borrow();
@@ -188,11 +193,12 @@ impl Replica {
     }
 
     /// Removes all of the room.
-    async fn close(&mut self) {
+    async fn close(&mut self) -> Result<(), BusFault> {
         let bus = &self.context.bus;
+        let mut removed = Ok(());
         for key in [Key::Room(self.id), Key::Checkpoint(self.id)] {
-            _ = bus.remove(key).await;
+            removed = removed.and(bus.remove(key).await);
         }
-        _ = bus.drop_log(self.id).await;
+        removed.and(bus.drop_log(self.id).await)
     }
 }

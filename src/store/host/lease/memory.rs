@@ -85,6 +85,14 @@ impl Leases for MemoryLeases {
         Ok(self.own(lease).map(|kept| kept.is_released = true).is_some())
     }
 
+    fn forget(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
+        let is_own = self.own(lease).is_some();
+        if is_own {
+            self.rooms.remove(&lease.room);
+        }
+        Ok(is_own)
+    }
+
     fn holder(&mut self, room: &str) -> Result<Option<Lease>, StoreFailure> {
         let kept = self.rooms.get(room).filter(|kept| kept.is_in_force(self.now));
         Ok(kept.map(|kept| kept.lease.clone()))

@@ -1,4 +1,4 @@
-//! Leases in the database, each a row that stays.
+//! Leases in the database, each a row that stays as long as the room.
 //!
 //! What takes a lease, renews it or ends it is one statement, which the database runs on the newest version of
 //! the row, so that it needs no serializable transaction and meets no other one. The time is `clock_timestamp()`, the
@@ -55,6 +55,12 @@ impl Leases for PostgresStore {
 
     fn release(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
         let sql = "UPDATE leases SET host = NULL WHERE room = ?1 AND host = ?2 AND epoch = ?3";
+        let values = values![lease.room(), lease.host(), lease.epoch() as i64];
+        self.database.change_rows(|it| Ok(it.execute(sql, values)? > 0))
+    }
+
+    fn forget(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
+        let sql = "DELETE FROM leases WHERE room = ?1 AND host = ?2 AND epoch = ?3";
         let values = values![lease.room(), lease.host(), lease.epoch() as i64];
         self.database.change_rows(|it| Ok(it.execute(sql, values)? > 0))
     }

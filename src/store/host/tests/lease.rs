@@ -89,6 +89,21 @@ fn epochs_grow_also_over_a_release() {
 }
 
 #[test]
+fn a_room_that_is_forgotten_begins_anew() {
+    with_each(|leases| {
+        let old = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
+        leases.release(&old).unwrap();
+        assert!(!leases.forget(&old).unwrap());
+        let lease = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
+        assert!(!leases.forget(&old).unwrap());
+        assert!(leases.forget(&lease).unwrap() && !leases.forget(&lease).unwrap());
+        assert!(!renew(leases, &lease));
+        assert_eq!(leases.holder("cellar").unwrap(), None);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap().unwrap().epoch(), 1);
+    });
+}
+
+#[test]
 fn a_lease_that_is_over_can_be_taken() {
     with_each(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
