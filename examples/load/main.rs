@@ -15,9 +15,14 @@
 //! room has members on all of them: no room costs more. `--beside PID` measures another process, such as that of
 //! the NATS server, and may be there several times. The program needs the feature `cluster`.
 //!
+//! `--bus ROOMS --cluster NATS` writes the logs of rooms without hosts and players, and measures how long the bus takes
+//! for a message.
+//!
 //! `--soak` lets clients come, walk, talk, resize their windows and leave in several ways, by `--seed`,
 //! and prints ten times what the server holds.
 
+#[cfg(feature = "cluster")]
+mod bus;
 mod client;
 mod plan;
 mod process;
@@ -51,6 +56,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return soak::run();
     }
     let plan = Plan::parse()?;
+    #[cfg(feature = "cluster")]
+    if let Some(rooms) = plan.rooms {
+        return bus::run(rooms, &plan);
+    }
     let servers = start(&plan)?;
     if servers.len() == 1 {
         process::pin(std::process::id(), 1);
@@ -108,11 +117,7 @@ async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error
         megabytes(&after)
     );
     Report::new(&tallies, plan.seconds, process::between(&before, &after)).print();
-    let times = process::between(&others_before, &others_after);
-    for (process, time) in plan.beside.iter().zip(times) {
-        let share = time.as_secs_f64() / plan.seconds as f64;
-        println!("process {process:<6}{:.1} % of a processor", share * 100.0);
-    }
+    plan.print_others(&process::between(&others_before, &others_after));
     Ok(())
 }
 

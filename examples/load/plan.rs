@@ -14,6 +14,9 @@ pub(crate) struct Plan {
     pub(crate) server: String,
     pub(crate) answer_delay: Duration,
     pub(crate) hosts: usize,
+    /// The rooms of a load on the bus alone.
+    #[cfg(feature = "cluster")]
+    pub(crate) rooms: Option<usize>,
     /// For each server, as they are.
     pub(crate) options: Vec<String>,
     /// Further processes that are measured.
@@ -31,6 +34,8 @@ impl Plan {
             server: "target/release/cellcaster".to_owned(),
             answer_delay: Duration::ZERO,
             hosts: 1,
+            #[cfg(feature = "cluster")]
+            rooms: None,
             options: Vec::new(),
             beside: Vec::new(),
         };
@@ -47,6 +52,8 @@ impl Plan {
                 "--seconds" => plan.seconds = value.parse()?,
                 "--server" => plan.server = value,
                 "--answer-delay" => plan.answer_delay = Duration::from_millis(value.parse()?),
+                #[cfg(feature = "cluster")]
+                "--bus" => plan.rooms = Some(value.parse()?),
                 "--hosts" => plan.hosts = value.parse()?,
                 "--cluster" | "--store" => plan.options.extend([name, value]),
                 "--beside" => plan.beside.push(value.parse()?),
@@ -57,5 +64,20 @@ impl Plan {
             return Err("several hosts need --cluster and --store".into());
         }
         Ok(plan)
+    }
+
+    /// What an option for the servers says.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn option(&self, name: &str) -> Option<&str> {
+        let pair = self.options.chunks(2).find(|pair| pair[0] == name)?;
+        Some(&pair[1])
+    }
+
+    /// Prints the time that the other processes have used.
+    pub(crate) fn print_others(&self, times: &[Duration]) {
+        for (process, time) in self.beside.iter().zip(times) {
+            let share = time.as_secs_f64() / self.seconds as f64;
+            println!("process {process:<6}{:.1} % of a processor", share * 100.0);
+        }
     }
 }
