@@ -14,6 +14,7 @@
 //!   nothing.
 //! - **All hosts apply the same messages**, and compare a checksum once a second.
 //! - **Any host takes any player.** A room without members runs on no host.
+//! - **Limits of connections hold on all hosts together**, and an operator of one host asks all.
 //! - **Rooms carry the versions of the format and of the rules.** A host of other versions does not list them.
 //!
 //! An election among the hosts and a log of our own were refused: the database and the bus provide both, and are

@@ -72,6 +72,7 @@ impl Operator {
     }
 
     /// Answers the operators of other hosts, as long as the future is not dropped.
+    #[cfg_attr(not(feature = "cluster"), expect(clippy::unused_async, reason = "hosts are asked"))]
     pub async fn answer_others(self) {
         #[cfg(feature = "cluster")]
         if let Some(cluster) = self.cluster.clone() {

@@ -11,6 +11,7 @@ use tokio::time::{Instant, sleep};
 use super::{HOSTS, Run};
 use crate::server::admin::Operator;
 use crate::server::{AdminReply, AdminRequest, Notice, Presence, Target};
+use crate::store::host::AccountKey;
 
 /// Hosts with a visitor each, called `p0` and so on, and their operators.
 struct Hosts {
@@ -122,5 +123,31 @@ fn without_the_bus_or_the_database_an_operator_sees_what_there_is() {
         let (rows, remarks) = hosts.who().await;
         assert_eq!((rows.len(), remarks.len()), (1, HOSTS), "{remarks:?}");
         assert!(remarks[0].contains("the bus of the cluster"), "{remarks:?}");
+    });
+}
+
+#[test]
+fn the_answer_of_a_host_has_so_many_visitors_and_fits_into_a_message() {
+    run(async |hosts| {
+        let key = Some(AccountKey::new([255; 32]));
+        let crowd: Vec<Presence> = (0..2_010)
+            .map(|number| {
+                let address = format!("2001:db8:ffff:ffff:ffff:ffff:ffff:{number:x}").parse();
+                let visitor = hosts.run.hosts[1].visitors.arrive(address.unwrap(), key);
+                visitor
+                    .set_name("\u{4e00}\u{4e01}\u{4e02}\u{4e03}\u{4e04}\u{4e05}\u{4e06}\u{4e07}");
+                visitor.set_room(Some("room 4294967295".to_owned()));
+                visitor
+            })
+            .collect();
+        let (rows, remarks) = hosts.who().await;
+        assert_eq!(
+            (rows.len(), remarks),
+            (2_002, vec!["host host:1 has 11 more visitors".to_owned()])
+        );
+        let answer = serde_json::to_vec(&hosts.operators[1].answer(&AdminRequest::Who).await);
+        let bytes = answer.unwrap().len();
+        assert!(bytes < 1_000_000, "{bytes} bytes");
+        drop(crowd);
     });
 }

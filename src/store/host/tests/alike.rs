@@ -10,6 +10,8 @@ use super::*;
 #[derive(Clone, Debug)]
 enum Call {
     Create(u8, usize),
+    /// From one of two networks, each of which makes one account at once, and one in an hour.
+    CreateFrom(u8, u8, usize),
     Rename(i64, usize),
     Visit(i64),
     Set(i64, bool, String),
@@ -37,6 +39,8 @@ fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
     let account = || 1..4_i64;
     let call = prop_oneof![
         4 => (1..4_u8, 0..NAMES.len()).prop_map(|(key, name)| Call::Create(key, name)),
+        4 => (0..2_u8, 1..4_u8, 0..NAMES.len())
+            .prop_map(|(network, key, name)| Call::CreateFrom(network, key, name)),
         3 => (account(), 0..NAMES.len()).prop_map(|(id, name)| Call::Rename(id, name)),
         1 => account().prop_map(Call::Visit),
         1 => (account(), any::<bool>(), any::<String>())
@@ -59,6 +63,12 @@ fn answer(store: &mut dyn HostStore, call: &Call, now: UnixTime) -> String {
     match call {
         Call::Create(number, text) => {
             format!("{:?}", store.create_account(&key(*number), &name(NAMES[*text]), now))
+        }
+        Call::CreateFrom(network, number, text) => {
+            let rate = AccountRate { per_hour: 1, at_once: 1 };
+            let origin = Origin::new([192, 0, *network, 7].into(), rate);
+            let (key, name) = (key(*number), name(NAMES[*text]));
+            format!("{:?}", store.create_account_from(Some(&origin), &key, &name, now))
         }
         Call::Rename(id, text) => {
             format!("{:?}", store.rename(AccountId(*id), &name(NAMES[*text]), now))
