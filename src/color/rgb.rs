@@ -77,6 +77,34 @@ impl Rgb {
         Self(shared(red_and_blue) | shared(green) << 8)
     }
 
+    /// Blends this colour over each of `pixels`, as [`Rgb::over`] does: several channels by one instruction.
+    pub(crate) fn paint_over(self, pixels: &mut [Self], alpha: u8) {
+        /// The number of pixels in a register.
+        const AT_ONCE: usize = 4;
+        const CHANNELS: usize = 4 * AT_ONCE;
+        let (opacity, rest) = (u16::from(alpha), u16::from(u8::MAX - alpha));
+        let own = self.0.to_le_bytes().map(|channel| u16::from(channel) * opacity);
+        let own: [u16; CHANNELS] = std::array::from_fn(|channel| own[channel % 4]);
+        let (blocks, others) = pixels.as_chunks_mut::<AT_ONCE>();
+        for block in blocks {
+            let mut channels = [0; CHANNELS];
+            for (channels, pixel) in channels.as_chunks_mut().0.iter_mut().zip(&*block) {
+                *channels = pixel.0.to_le_bytes();
+            }
+            for (channel, own) in channels.iter_mut().zip(own) {
+                // Divided by 255 and rounded to the nearest. No sum exceeds 16 bits.
+                let sum = u16::from(*channel) * rest + own + u16::from(u8::MAX) / 2;
+                *channel = ((sum + 1 + (sum >> 8)) >> 8) as u8;
+            }
+            for (channels, pixel) in channels.as_chunks().0.iter().zip(block) {
+                *pixel = Self(u32::from_le_bytes(*channels));
+            }
+        }
+        for pixel in others {
+            *pixel = self.over(*pixel, alpha);
+        }
+    }
+
     /// The sum of `own` 256ths of this colour and `share` 256ths of `other`, rounded down.
     ///
     /// `own + share` must be at most 256, so that no channel overflows into the next.
@@ -184,6 +212,19 @@ mod tests {
                     (mixed, behind),
                     "{front} {behind} {alpha}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn many_pixels_are_blended_as_each_by_itself() {
+        let behind: Vec<_> = (0..=255).map(|it| Rgb::new(it, 255 - it, it / 2)).collect();
+        for (alpha, count) in (0..=255).zip((0..9).chain(248..257).cycle()) {
+            for front in [Rgb::BLACK, Rgb::WHITE, Rgb::new(alpha, 17, 200)] {
+                let mut pixels = behind[..count.min(behind.len())].to_vec();
+                let drawn: Vec<_> = pixels.iter().map(|&it| front.over(it, alpha)).collect();
+                front.paint_over(&mut pixels, alpha);
+                assert_eq!(pixels, drawn, "{front} {alpha}");
             }
         }
     }

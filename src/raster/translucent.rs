@@ -69,9 +69,8 @@ impl Tints {
         let end = columns.clone().map(|x| rows_of(x).end).min().unwrap_or_default().max(start);
         let band = target.band_mut();
         for row in start..end {
-            for pixel in &mut band.row_mut(row)[columns.start as usize..columns.end as usize] {
-                *pixel = color.over(*pixel, opacity);
-            }
+            let columns = columns.start as usize..columns.end as usize;
+            color.paint_over(&mut band.row_mut(row)[columns], opacity);
         }
         for x in columns {
             let Range { start: top, end: bottom } = *rows_of(x);
