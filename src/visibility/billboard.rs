@@ -223,7 +223,8 @@ impl Billboard {
     /// The texel of the centre of `row`, counted from the top.
     #[inline]
     pub(crate) fn texel(&self, row: u32) -> usize {
-        ((f64::from(row) + 0.5 - self.top) * self.texels_in_row) as usize
+        // A conversion to 32 bits takes fewer instructions.
+        ((f64::from(row) + 0.5 - self.top) * self.texels_in_row) as u32 as usize
     }
 
     /// The time at which one of `billboards` in view next changes its appearance; `None` for never.
