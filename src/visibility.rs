@@ -62,7 +62,7 @@ pub(crate) use scene::Scene;
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
-pub(crate) use texture_stepper::{TextureStepper, WallTexels};
+pub(crate) use texture_stepper::{FaceTexels, TextureStepper, WallTexels};
 pub(crate) use wall_column::{WallColumn, WallRun, WallSink};
 pub(crate) use wall_part::WallPart;
 

@@ -103,6 +103,24 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
         self.are_direct && direct_columns::have(level.height() as usize)
     }
 
+    /// Draws `rows` of column `x` with the column of `level` at `u`, which a face may repeat or show in part.
+    #[inline]
+    pub(super) fn draw_face(
+        &mut self,
+        (x, rows): (u32, Range<u32>),
+        (level, u): (&'a MipLevel, f64),
+        stepper: TextureStepper,
+        lighting: L,
+    ) {
+        let is_lit = L::HAS_TEXELS || rows.len() <= level.height() as usize;
+        if is_lit && self.is_direct(level) && stepper.shows_all(&rows) {
+            let column = DirectColumn { x, rows, u, stepper };
+            direct_columns::draw(level, lighting, iter::once(column), self.target.band_mut());
+        } else {
+            self.queue_repeating(x, rows, level.column(u), stepper, lighting);
+        }
+    }
+
     /// Queues `rows` of column `x` for drawing with `texels`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
@@ -133,7 +151,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
 
     /// Queues `rows` of column `x` for drawing with `texels` that a face may repeat or show in
     /// part.
-    pub(super) fn queue_repeating(
+    fn queue_repeating(
         &mut self,
         x: u32,
         rows: Range<u32>,
@@ -231,66 +249,4 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::cast::Side;
-    use crate::raster::SurfaceBuffer;
-    use crate::render::Frame;
-    use crate::visibility::{FrameSize, PixelAspect, Projection, SideLit};
-    use crate::world::{Camera, FieldOfView, Heading};
-
-    const HEIGHT: u32 = 90;
-
-    /// A column of a wall: its distance, its side, and its visible texels; or `None`.
-    fn column() -> impl Strategy<Value = Option<(f64, Side, Range<usize>)>> {
-        let side = prop::sample::select(&[Side::X, Side::Y][..]);
-        let texels = prop::sample::select(&[0..64, 64..128, 0..1, 128..1128, 0..9000][..]);
-        prop::option::weighted(0.95, (0.01..20.0, side, texels))
-    }
-
-    proptest! {
-        #[test]
-        fn columns_show_their_texels(
-            columns in prop::collection::vec(column(), 1..400),
-            repeats in 1_usize..20,
-        ) {
-            let texels: Vec<_> =
-                (0..9000).map(|texel| Rgb::new(1, (texel >> 8) as u8, texel as u8)).collect();
-            let columns: Vec<_> =
-                columns.iter().flat_map(|column| vec![column; repeats]).take(400).collect();
-            let size = FrameSize::new(columns.len() as u32, HEIGHT).unwrap();
-            let east = Heading::from_degrees(0.0).unwrap();
-            let camera = Camera::new((0.0, 0.0).into(), east, FieldOfView::default()).unwrap();
-            let projection = Projection::new(&camera, size, PixelAspect::SQUARE);
-            let mut frame = Frame::new(size, PixelAspect::SQUARE);
-            let mut memory = BatchMemory::default();
-            let mut surfaces = SurfaceBuffer::default();
-            let rows = surfaces.bands(size.height).next().unwrap();
-            let mut target = Target::<()>::new(frame.whole(), rows);
-            let mut batch = ColumnBatch::new(&mut memory, &mut target, false);
-            let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
-            let down = |t: f64, range: &Range<usize>| {
-                projection.texels_down_the_wall(t, projection.wall_texels(range.len()))
-            };
-            for (x, (t, side, range)) in walls() {
-                let (rows, lighting) = (projection.wall_rows(*t), SideLit(*side));
-                match texels[range.clone()] {
-                    [color] => batch.queue_color(x, rows, color, lighting),
-                    ref texels => batch.queue_texels(x, rows, texels, down(*t, range), lighting),
-                }
-            }
-            batch.draw();
-            let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
-            for (x, (t, side, range)) in walls() {
-                let texels = &texels[range.clone()];
-                for row in projection.wall_rows(*t) {
-                    let texel = texels[down(*t, range).at(row)];
-                    shown[row as usize][x as usize] = SideLit(*side).apply(texel);
-                }
-            }
-            prop_assert!(frame.rows().eq(shown));
-        }
-    }
-}
+mod tests;

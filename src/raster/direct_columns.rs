@@ -42,7 +42,7 @@ pub(super) fn have(texels: usize) -> bool {
     texels.is_power_of_two() && texels <= 256
 }
 
-/// A column of pixels, which is not empty, of a wall of height 1.
+/// A column of pixels, which is not empty, of a face. All its rows but the first and the last are on the face.
 #[derive(Clone, Debug)]
 pub(super) struct DirectColumn {
     pub(super) x: u32,
@@ -98,7 +98,7 @@ impl<L: Lighting> LitLevel<'_, L> {
             draw_pixels::<_, N, BITS>(texels, position, self.lighting, pixels, width);
             // Rounding may put the first row and the last one a texel too far.
             for row in [rows.start, rows.end - 1] {
-                if !stepper.is_on_wall(row) {
+                if !stepper.is_on_face(row) {
                     let column = DirectColumn { x, rows: row..row + 1, u, stepper };
                     self.draw_rows(column, band);
                 }

@@ -27,7 +27,8 @@ pub(super) fn draw<S: Stats>(
             projection.texels_down_the_wall(t, projection.wall_texels(texels.len()))
         }
         Extent::Heights { bottom, top } => {
-            scene.projection.texels_down_the_face(t, texels.len(), bottom, top)
+            let projection = scene.projection;
+            projection.texels_down_the_face(t, projection.face_texels(texels.len(), (bottom, top)))
         }
     };
     for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {

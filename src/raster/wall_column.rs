@@ -14,7 +14,8 @@ use super::wall_level::WallLevel;
 use super::wall_run;
 use crate::cast::Side;
 use crate::visibility::{
-    DrawList, Extent, Facing, Faded, Lighting, Pass, Scene, SideLit, Stats, WallColumn, WallSink,
+    DrawList, Extent, FaceTexels, Facing, Faded, Lighting, Pass, Projection, Scene, SideLit, Stats,
+    WallColumn, WallSink,
 };
 use crate::world::{Light, Paint};
 
@@ -30,7 +31,8 @@ pub(super) fn draw<M: Sampling, S: Stats>(
     if scene.plan.walls.faded || scene.world.has_shapes() {
         let batch = ColumnBatch::new(memory, target, are_direct);
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
+        let mut queue =
+            Queue::<M, _, _, _> { scene, batch, lighting, latest: None, latest_face: None };
         list.for_each_flat_wall_column(scene, &rows, &mut queue);
         list.for_each_portal_wall_column(&rows, &mut queue);
         queue.batch.draw();
@@ -38,7 +40,8 @@ pub(super) fn draw<M: Sampling, S: Stats>(
         let mut batch = ColumnBatch::new(memory, target, are_direct);
         list.for_each_wall_run(scene, |run| wall_run::draw::<M, _>(scene, &run, &mut batch));
         let lighting = |wall: &WallColumn| SideLit(side_of(wall));
-        let mut queue = Queue::<M, _, _, _> { scene, batch, lighting, latest: None };
+        let mut queue =
+            Queue::<M, _, _, _> { scene, batch, lighting, latest: None, latest_face: None };
         list.for_each_portal_wall_column(&rows, &mut queue);
         queue.batch.draw();
     }
@@ -63,6 +66,35 @@ pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64
     }
 }
 
+/// The texels of a face, kept from one wall column to the next.
+struct KnownFace {
+    /// The number of texels for each cell of height.
+    count: usize,
+    /// The bottom and the top.
+    heights: (f64, f64),
+    texels: FaceTexels,
+}
+
+impl KnownFace {
+    /// The texels of a face between these `heights`, `count` for each cell. `latest` is the face of the column
+    /// before.
+    #[inline]
+    fn texels(
+        projection: &Projection,
+        count: usize,
+        heights: (f64, f64),
+        latest: &mut Option<Self>,
+    ) -> FaceTexels {
+        match latest {
+            Some(known) if (known.count, known.heights) == (count, heights) => known.texels,
+            _ => {
+                let texels = projection.face_texels(count, heights);
+                latest.insert(Self { count, heights, texels }).texels
+            }
+        }
+    }
+}
+
 /// Queues wall columns in a lighting that depends on each column.
 struct Queue<'m, 't, 'a, M: Sampling, L, S, F> {
     scene: Scene<'a>,
@@ -70,6 +102,8 @@ struct Queue<'m, 't, 'a, M: Sampling, L, S, F> {
     lighting: F,
     /// The level of the column before.
     latest: Option<WallLevel<'a, M>>,
+    /// The texels of the face before.
+    latest_face: Option<KnownFace>,
 }
 
 impl<M, L, S, F> WallSink for Queue<'_, '_, '_, M, L, S, F>
@@ -82,7 +116,7 @@ where
     #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]
     #[inline(always)]
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>) {
-        let Self { scene, batch, lighting, latest } = self;
+        let Self { scene, batch, lighting, latest, latest_face } = self;
         let (column, t) = (wall.column, wall.t);
         batch.count(Pass::Walls, rows.len(), wall.paint);
         let texture = match wall.paint {
@@ -101,9 +135,10 @@ where
                 batch.draw_wall((column, rows), (level, wall.u), stepper, lighting(wall));
             }
             Extent::Heights { bottom, top } => {
-                let texels = level.column(wall.u);
-                let stepper = projection.texels_down_the_face(t, texels.len(), bottom, top);
-                batch.queue_repeating(column, rows, texels, stepper, lighting(wall));
+                let count = level.height() as usize;
+                let texels = KnownFace::texels(projection, count, (bottom, top), latest_face);
+                let stepper = projection.texels_down_the_face(t, texels);
+                batch.draw_face((column, rows), (level, wall.u), stepper, lighting(wall));
             }
         }
     }

@@ -5,12 +5,13 @@
 //! the centres of pixels.
 
 mod areas;
+mod texels;
 
 use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
-use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels, ceil, ceil_within};
+use super::texture_stepper::{Horizon, ceil_within};
 use super::{FrameSize, PixelAspect, SpanMapping};
 use crate::cast::Ray;
 use crate::world::{Camera, Heights};
@@ -164,33 +165,6 @@ impl Projection {
     #[inline]
     pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {
         self.row_of(self.rise_to(height), t)
-    }
-
-    /// The texels of a wall with `count` from top to bottom.
-    pub(crate) fn wall_texels(&self, count: usize) -> WallTexels {
-        WallTexels::new(count, 1.0 - self.eye)
-    }
-
-    /// The texels of a wall at distance `t`.
-    #[inline]
-    pub(crate) fn texels_down_the_wall(&self, t: f64, texels: WallTexels) -> TextureStepper {
-        TextureStepper::of_wall(self.horizon_of_texels, t / self.focal_length, texels)
-    }
-
-    /// The texels of a face at distance `t` from the height `bottom` to `top`: `count` for each
-    /// cell of height, from one integer height to the next.
-    pub(crate) fn texels_down_the_face(
-        &self,
-        t: f64,
-        count: usize,
-        bottom: f64,
-        top: f64,
-    ) -> TextureStepper {
-        // On old processors `f64::ceil` is a call.
-        let above = ceil(top) as f64;
-        let of_cells = (above - top, above - bottom);
-        let texels = FaceTexels { count, of_cells, at_eye: above - self.eye };
-        TextureStepper::new(self.horizon_of_texels, t / self.focal_length, texels)
     }
 
     /// The position in the picture of a point on the map.

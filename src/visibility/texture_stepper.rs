@@ -16,12 +16,10 @@ use rounding::{floor, rounded};
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceTexels {
-    /// The number of texels per cell of height; at least one.
-    pub(crate) count: usize,
-    /// The top and the bottom of the face, in cells down from the top of its uppermost texture.
-    pub(crate) of_cells: (f64, f64),
-    /// Eye height, in the same unit.
-    pub(crate) at_eye: f64,
+    /// Those of the uppermost texture, continued upwards and downwards.
+    wall: WallTexels,
+    /// The uppermost and the lowest texel on the face.
+    range: (i64, i64),
 }
 
 /// The horizon of a picture, for the steppers of its faces.
@@ -53,6 +51,17 @@ pub(crate) struct WallTexels {
     at_horizon: i64,
 }
 
+impl FaceTexels {
+    /// `count` texels, at least one, for each cell of height, of a face from `top` to `bottom`, in cells down
+    /// from the top of its uppermost texture. `at_eye` is eye height, in the same unit.
+    pub(crate) fn new(count: usize, (top, bottom): (f64, f64), at_eye: f64) -> Self {
+        let in_texels = |cells: f64| cells * count as f64;
+        let uppermost = floor(in_texels(top));
+        let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
+        Self { wall: WallTexels::new(count, at_eye), range: (uppermost, lowest) }
+    }
+}
+
 impl WallTexels {
     /// `count` texels of a wall, with eye height `at_eye` cells below its top.
     pub(crate) fn new(count: usize, at_eye: f64) -> Self {
@@ -75,12 +84,8 @@ impl TextureStepper {
     /// The stepper of `texels` in a picture with this `horizon`, if a row covers `height_of_row`
     /// cells of the face.
     pub(crate) fn new(horizon: Horizon, height_of_row: f64, texels: FaceTexels) -> Self {
-        let FaceTexels { count, of_cells: (top, bottom), at_eye } = texels;
-        let in_texels = |cells: f64| cells * count as f64;
-        let uppermost = floor(in_texels(top));
-        let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
-        let wall = WallTexels::new(count, at_eye);
-        Self { range: (uppermost, lowest), ..Self::of_wall(horizon, height_of_row, wall) }
+        let FaceTexels { wall, range } = texels;
+        Self { range, ..Self::of_wall(horizon, height_of_row, wall) }
     }
 
     /// The stepper of a wall of height 1 with these `texels`.
@@ -107,11 +112,13 @@ impl TextureStepper {
         self.texel_at(self.place(row) >> TEXEL_BITS)
     }
 
-    /// Whether the centre of `row` is on the wall of height 1, in spite of rounding.
+    /// Whether the centre of `row` is on the face, in spite of rounding.
     #[inline]
-    pub(crate) fn is_on_wall(self, row: u32) -> bool {
-        // A place above the wall is negative, and as large as any without its sign.
-        (self.place(row) as u64) < (self.count as u64) << TEXEL_BITS
+    pub(crate) fn is_on_face(self, row: u32) -> bool {
+        let (uppermost, lowest) = self.range;
+        let from_top = self.place(row).wrapping_sub(uppermost << TEXEL_BITS);
+        // A place above the face is negative, and as large as any without its sign.
+        (from_top as u64) < ((lowest + 1 - uppermost) as u64) << TEXEL_BITS
     }
 
     /// The texel of the texture for the one at `place`, counted from the top of the uppermost
@@ -135,14 +142,25 @@ impl TextureStepper {
         Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
     }
 
+    /// Whether the centres of all `rows` are on the face, in spite of rounding.
+    #[inline]
+    pub(crate) fn shows_all(self, rows: &Range<u32>) -> bool {
+        self.places(rows).is_some_and(|places| self.has(&places))
+    }
+
+    /// Whether all `places` are on the face.
+    #[inline]
+    fn has(self, places: &Range<i64>) -> bool {
+        let (uppermost, lowest) = self.range;
+        uppermost <= places.start && places.end <= lowest + 1
+    }
+
     /// The part of the texture's `texels` at `places`, if all of it is on the face and in the
     /// uppermost texture.
     #[inline]
     pub(crate) fn slice<'t, T>(self, texels: &'t [T], places: &Range<i64>) -> Option<&'t [T]> {
-        let (uppermost, lowest) = self.range;
-        let is_on_face = uppermost <= places.start && places.end <= lowest + 1;
         let range = places.start as usize..places.end as usize;
-        if is_on_face { texels.get(range) } else { None }
+        if self.has(places) { texels.get(range) } else { None }
     }
 
     /// The part of the texture's `texels` at `places`, in pieces.
@@ -199,7 +217,7 @@ mod tests {
     use super::*;
 
     fn wall(count: usize) -> FaceTexels {
-        FaceTexels { count, of_cells: (0.0, 1.0), at_eye: 0.5 }
+        FaceTexels::new(count, (0.0, 1.0), 0.5)
     }
 
     #[test]
@@ -246,7 +264,7 @@ mod tests {
     #[test]
     fn a_high_face_repeats_its_texture_at_each_integer_height() {
         // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
-        let texels = FaceTexels { count: 4, of_cells: (0.5, 2.75), at_eye: 2.0 };
+        let texels = FaceTexels::new(4, (0.5, 2.75), 2.0);
         let texels = TextureStepper::new(Horizon::new(12.0), 0.25, texels);
         let seen: Vec<usize> = (0..9).map(|row| texels.at(row)).collect();
         assert_eq!(seen, [2, 3, 0, 1, 2, 3, 0, 1, 2]);
@@ -260,7 +278,7 @@ mod tests {
             at_eye in 0.02..0.98,
             count in 1_usize..4097,
         ) {
-            let texels = FaceTexels { at_eye, ..wall(count) };
+            let texels = FaceTexels::new(count, (0.0, 1.0), at_eye);
             let texels = TextureStepper::new(Horizon::new(f64::from(height)), 1.0 / rows, texels);
             for row in 0..height {
                 let from_horizon = f64::from(2 * row + 1) / 2.0 - f64::from(height) / 2.0;
