@@ -41,7 +41,7 @@ mod shape;
 mod through;
 mod walk;
 
-pub(crate) use exact::ExactOnLevel;
+pub(crate) use exact::{CommonOrder, ExactOnLevel};
 pub use exact::{Exact, ExactOrder};
 pub(crate) use hit::HitFace;
 #[cfg(feature = "tui")]
@@ -55,7 +55,7 @@ pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
 #[cfg(feature = "lab")]
 pub(crate) use walk::first_line;
-pub(crate) use walk::{Crossed, MirrorTransform, MirroredWalk};
+pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Order, Walk};
 
 use crate::world::{Grid, World};

@@ -20,6 +20,7 @@
 //! its light and its mip level, which a span finds once for many pixels.
 
 mod billboard;
+mod chains;
 mod column;
 mod draw_list;
 mod facing;
@@ -102,7 +103,7 @@ pub(crate) fn fill<C: Caster, S: Stats>(
             let in_portals = if list.flat_columns.is_empty() {
                 None
             } else {
-                let starts = PortalStarts::new(world);
+                let mut starts = PortalStarts::new(world);
                 portal::fill_columns(scene, portal, list, stats, |column| starts.of(column))
             };
             let in_flat = flat::fill_layers(scene, flat, list, stats);

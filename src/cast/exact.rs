@@ -108,18 +108,49 @@ pub struct ExactOrder {
 impl ExactOrder {
     /// The order for `ray` in `grid`.
     pub fn new(grid: &Grid, ray: &Ray) -> Self {
-        Self::within(DVec2::new(f64::from(grid.width()), f64::from(grid.height())), ray)
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let rounded = RoundedOrder::new(ray);
+        let furthest = size + ray.origin().abs();
+        Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
+    }
+}
+
+/// A bound on the error of a difference of rounded distances to lines that are at most `furthest` away.
+#[inline]
+fn uncertainty(furthest: DVec2, weight: DVec2) -> f64 {
+    // A distance is rounded once by the subtraction and once by the weighting; two epsilons are twice
+    // the sum of these errors. The second term bounds the error of underflow.
+    let error = weight.abs() * (2.0 * f64::EPSILON) + DVec2::splat(f64::MIN_POSITIVE);
+    furthest.dot(error)
+}
+
+/// The order in which the rays of a camera meet the lines of a grid.
+#[derive(Clone, Debug)]
+pub(crate) struct CommonOrder {
+    origin: DVec2,
+    furthest: DVec2,
+}
+
+impl CommonOrder {
+    /// The order for rays from `origin` in `grid`, with at most this number of reflections.
+    pub(crate) fn new(grid: &Grid, origin: DVec2, most_bounces: u32) -> Self {
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let furthest = size * f64::from(most_bounces + 1) + origin.abs();
+        Self { origin, furthest }
     }
 
-    /// The order for `ray` among lines that are at most `size` from 0.
-    pub(super) fn within(size: DVec2, ray: &Ray) -> Self {
-        let rounded = RoundedOrder::new(ray);
-        // No line is farther than `furthest`. A distance is rounded once by the subtraction and
-        // once by the weighting; two epsilons are twice the sum of these errors. The second term
-        // bounds the error of underflow.
-        let furthest = size + ray.origin().abs();
-        let error = rounded.weight.abs() * (2.0 * f64::EPSILON) + DVec2::splat(f64::MIN_POSITIVE);
-        Self { ray: *ray, rounded, uncertainty: furthest.dot(error) }
+    /// As [`Order::next`], for the ray in this `direction`. It is not scaled: where a product overflows,
+    /// the difference is in doubt, or infinite and correct.
+    #[inline]
+    pub(crate) fn next(&self, direction: DVec2, x: f64, y: f64) -> Side {
+        let rounded = RoundedOrder::of_direction(self.origin, direction, direction);
+        let (to_x, to_y) = rounded.distances(x, y);
+        let side = if to_y <= to_x { Side::Y } else { Side::X };
+        if (to_x - to_y).abs() > uncertainty(self.furthest, rounded.weight) {
+            side
+        } else {
+            decide(self.origin, direction, x, y)
+        }
     }
 }
 
@@ -152,6 +183,8 @@ impl Order for ExactOrder {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn side(rows: &[&str], origin: (f64, f64), direction: (f64, f64)) -> Option<Side> {
@@ -173,5 +206,33 @@ mod tests {
     fn the_uncertainty_covers_underflow() {
         assert_eq!(side(&["#"], (-1.7e308, -6e-16), (1.0, 5e-324)), Some(Side::X));
         assert_eq!(side(&["#"], (-6e-16, -1.7e308), (5e-324, 1.0)), Some(Side::Y));
+    }
+
+    proptest! {
+        #[test]
+        fn the_rays_of_a_camera_have_the_order_of_each_by_itself(
+            origin in prop::array::uniform2(prop_oneof![
+                -1.0..5.0,
+                (-4..20_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
+            ]),
+            direction in prop::array::uniform2(prop_oneof![
+                -2.0..2.0,
+                (-8..9_i32).prop_map(|quarters| f64::from(quarters) / 4.0),
+            ]),
+        ) {
+            let [origin, direction] = [origin, direction].map(DVec2::from);
+            let ray = Ray::new(origin, direction);
+            prop_assume!(ray.is_ok());
+            let grid = Grid::sketch(&["....", "....", "...."]).unwrap();
+            let common = CommonOrder::new(&grid, origin, 0);
+            let mut order = ExactOrder::new(&grid, &ray.unwrap());
+            let is_ahead =
+                |line: f64, origin: f64, direction: f64| (line - origin) * direction > 0.0;
+            for (x, y) in (0..5).flat_map(|x| (0..4).map(move |y| (f64::from(x), f64::from(y)))) {
+                if is_ahead(x, origin.x, direction.x) && is_ahead(y, origin.y, direction.y) {
+                    prop_assert_eq!(common.next(direction, x, y), order.next(x, y));
+                }
+            }
+        }
     }
 }

@@ -168,19 +168,30 @@ pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
 /// corner to that point, to the south or to the east. The line must not be behind the ray's start.
 #[inline]
 pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
+    let offset = corner - ray.origin();
+    let t = match side {
+        Side::X => (offset.x / ray.direction().x).abs(),
+        Side::Y => (offset.y / ray.direction().y).abs(),
+    };
+    (t, along_line(ray, t, side, corner))
+}
+
+/// The distance from `corner` to the point where `ray` meets its line of kind `side` at `t`, to the south or
+/// to the east.
+#[inline]
+pub(super) fn along_line(ray: &Ray, t: f64, side: Side, corner: DVec2) -> f64 {
     let (origin, direction) = (ray.origin(), ray.direction());
     let offset = corner - origin;
-    let (t, start, slope) = match side {
-        Side::X => ((offset.x / direction.x).abs(), -offset.y, direction.y),
-        Side::Y => ((offset.y / direction.y).abs(), -offset.x, direction.x),
+    let (start, slope) = match side {
+        Side::X => (-offset.y, direction.y),
+        Side::Y => (-offset.x, direction.x),
     };
     let moved = t * slope;
-    let along = if start.abs() + moved.abs() <= FAR {
+    if start.abs() + moved.abs() <= FAR {
         start + moved
     } else {
         far_along(origin, direction, side, corner)
-    };
-    (t, along)
+    }
 }
 
 /// The distance from `corner` to the crossing, if both terms of the sum are large.
@@ -218,7 +229,7 @@ pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f6
 
 /// Whether a viewer who looks along `direction` sees the north or west end of a face on the left.
 #[inline]
-fn is_from_left(direction: DVec2, side: Side) -> bool {
+pub(super) fn is_from_left(direction: DVec2, side: Side) -> bool {
     match side {
         Side::X => direction.x > 0.0,
         Side::Y => direction.y < 0.0,
@@ -226,7 +237,7 @@ fn is_from_left(direction: DVec2, side: Side) -> bool {
 }
 
 #[inline]
-fn from_left(along: f64, is_from_left: bool) -> f64 {
+pub(super) fn from_left(along: f64, is_from_left: bool) -> f64 {
     // Adding zero turns −0 into +0.
     let along = along.clamp(0.0, 1.0) + 0.0;
     if is_from_left { along } else { 1.0 - along }

@@ -23,10 +23,15 @@ impl RoundedOrder {
     pub fn new(ray: &Ray) -> Self {
         // The direction is scaled, so that no product of a length and a direction overflows.
         let (scaled, _) = ray.scaled_direction();
-        let direction = ray.direction();
+        Self::of_direction(ray.origin(), ray.direction(), scaled)
+    }
+
+    /// The order for rays from `origin` along `direction`, which is also `scaled`.
+    #[inline]
+    pub(super) fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
         let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
         let weight = DVec2::new(weight(direction.x, scaled.y), weight(direction.y, scaled.x));
-        Self { origin: ray.origin(), weight }
+        Self { origin, weight }
     }
 
     /// The distances to the lines at `x` and `y`, in a common unit.

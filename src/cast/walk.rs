@@ -9,7 +9,7 @@
 
 mod mirrored;
 
-pub(crate) use mirrored::{Crossed, MirrorTransform, MirroredWalk};
+pub(crate) use mirrored::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 
 use super::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};

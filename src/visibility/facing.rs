@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::cast::{Hit, Side};
-use crate::world::Outline;
+use crate::world::{Cell, Grid, Outline, TileId};
 
 /// The direction of a face.
 #[derive(Clone, Copy, Debug)]
@@ -42,4 +42,11 @@ pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
         Side::X => [column + back(direction.x), row],
         Side::Y => [column, row + back(direction.y)],
     }
+}
+
+/// That cell on the map and its tile; `None` off the map.
+pub(super) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
+    let [column, row] = cell_before(direction, hit);
+    let tile = grid.tile(column, row)?;
+    Some((Cell { column: column as u32, row: row as u32 }, tile))
 }

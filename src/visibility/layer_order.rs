@@ -41,7 +41,7 @@ pub(super) fn put_in_order(
 
 /// The `items` of each block of `N` columns of pixels, split by column. The items of a column, and
 /// those of a block, are contiguous.
-pub(super) fn by_columns<const N: usize, T>(
+fn by_columns<const N: usize, T>(
     items: &[T],
     column_of: impl Fn(&T) -> usize + Copy,
 ) -> impl Iterator<Item = [&[T]; N]> {

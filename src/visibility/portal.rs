@@ -1,52 +1,43 @@
 //! The portal way to fill a draw list: floors, ceilings and walls of any height, and mirrors.
 //!
-//! The ray of a column goes from cell to cell with a clip range: the rows that no nearer surface
-//! covers. In each cell the floor reduces it from below and the ceiling from above. At each line it
+//! The rays of neighbouring columns go from cell to cell together, each with a clip range: the rows that
+//! no nearer surface covers. In each cell the floor reduces it from below and the ceiling from above. At each line it
 //! is divided among the faces and the gaps of the next cell, and the ray continues in every gap
 //! that is still in view: mostly in one, in two if a roof is seen from below and above at once. A
 //! mirror reflects the ray with the clip range of its face. Cells as sectors and lines as portals
 //! are those of the Build engine (Ken Silverman, 1995).
 //!
-//! `walk` follows the rays from the `tile_gaps`; `line` handles the faces and gaps at a line, and
+//! `walk` follows the rays from their `start` through the `tile_gaps`; `line` handles the faces and gaps at a line, and
 //! `standing` the objects inside a cell. `billboards` are found last, and `layers` orders them with
 //! the see-through faces. For a level world without mirrors, the flat way fills the same list at a
 //! lower cost.
 
 mod billboards;
+mod bundle;
 mod layers;
 mod line;
 mod met;
 mod ray_segments;
 mod spans;
 mod standing;
+mod start;
+mod surroundings;
 mod tile_gaps;
 mod walk;
 
 use std::ops::Range;
 
-use super::layer_order::by_columns;
 use super::runs::IMAGES_AT_ONCE;
 use super::runs::ImageId;
 use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
-use crate::cast::Hit;
 use crate::world::World;
 use billboards::Finder;
 use layers::LayerMemory;
 pub(super) use spans::for_each_span;
+pub(super) use start::PortalStart;
+use surroundings::Surroundings;
 use tile_gaps::TileGaps;
-use walk::{ColumnWalk, Surroundings, WalkMemory};
-
-/// The number of columns of pixels that are drawn together.
-const BLOCK: usize = 120;
-
-/// The start of the portal way in a column.
-#[derive(Clone, Debug)]
-pub(super) enum PortalStart {
-    /// At the camera, with all rows.
-    Camera,
-    /// Where the ray has crossed the first line into a cell that is not level, with these rows.
-    Line { hit: Hit, rows: Range<u32> },
-}
+use walk::{BundleWalk, WalkMemory};
 
 /// The number of things in view for which memory is reserved in advance.
 const MOST_THINGS: usize = 4096;
@@ -55,6 +46,8 @@ const MOST_THINGS: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub(super) struct PortalMemory {
     gaps: TileGaps,
+    /// The starts of all columns.
+    starts: Vec<Option<PortalStart>>,
     walk: WalkMemory,
     finder: Finder,
     layers: LayerMemory,
@@ -81,22 +74,16 @@ pub(super) fn fill_columns<S: Stats>(
     memory: &mut PortalMemory,
     list: &mut DrawList,
     stats: &mut S,
-    start: impl Fn(&Column) -> Option<PortalStart>,
+    start: impl FnMut(&Column) -> Option<PortalStart>,
 ) -> Option<f64> {
-    let PortalMemory { gaps, walk, finder, layers } = memory;
-    list.runs.begin();
+    let PortalMemory { gaps, starts, walk, finder, layers } = memory;
+    list.runs.begin(list.columns.len());
     gaps.begin(scene);
-    walk.begin();
+    starts.clear();
+    starts.extend(list.columns.iter().map(start));
     let surroundings = &Surroundings::new(scene, gaps);
-    for x in 0..list.columns.len() {
-        if let Some(start) = start(&list.columns[x]) {
-            let ray = scene.projection.ray(x as u32);
-            let walk = ColumnWalk::new(surroundings, x as u32, walk, list);
-            list.columns[x] = walk.follow(&ray, start);
-        } else {
-            list.runs.skip_column();
-        }
-    }
+    BundleWalk::new(surroundings, walk, list).follow_all(starts);
+    list.runs.end(scene.projection.rows(), |column| starts[column].is_some());
     let first = list.billboards.len();
     let has_things = surroundings.has_things;
     let considered = if has_things { finder.find(scene, &walk.segments, list) } else { 0 };
@@ -118,6 +105,8 @@ impl PortalMemory {
     /// towards more faces allocates nothing.
     pub(super) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
         self.gaps.make_room(world);
+        self.starts.clear();
+        self.starts.reserve(width);
         self.walk.make_room(width);
         self.finder.make_room(world, width);
         list.clear();
@@ -128,22 +117,16 @@ impl PortalMemory {
     }
 }
 
-/// Passes every one of `walls` to `sink`. Neighbours in a block of columns are passed in
-/// succession: the first faces of all of them mostly are parts of one wall or step, and so are the
-/// faces behind those.
+/// Passes every one of `walls` to `sink`. Those of a bundle are in succession.
 pub(super) fn for_each_wall_column(
     walls: &[WallColumn],
     rows: &Range<u32>,
     sink: &mut impl WallSink,
 ) {
-    for mut columns in by_columns::<BLOCK, _>(walls, |wall| wall.column as usize) {
-        while columns.iter().any(|column| !column.is_empty()) {
-            for wall in columns.iter_mut().filter_map(|column| column.split_off_first()) {
-                let shown = wall.rows.start.max(rows.start)..wall.rows.end.min(rows.end);
-                if !shown.is_empty() {
-                    sink.take(wall, shown);
-                }
-            }
+    for wall in walls {
+        let shown = wall.rows.start.max(rows.start)..wall.rows.end.min(rows.end);
+        if !shown.is_empty() {
+            sink.take(wall, shown);
         }
     }
 }

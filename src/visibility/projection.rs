@@ -161,6 +161,17 @@ impl Projection {
         self.first_row_below(self.horizon - rise / t)
     }
 
+    /// The same for each of `distances`, into `rows`.
+    pub(crate) fn rows_of(&self, Rise(rise): Rise, distances: &[f64], rows: &mut [u32]) {
+        if rise == 0.0 {
+            rows.fill(self.first_row_of_ground());
+            return;
+        }
+        for (row, t) in rows.iter_mut().zip(distances) {
+            *row = self.first_row_below(self.horizon - rise / t);
+        }
+    }
+
     /// The same row for `height`, for callers that need it once.
     #[inline]
     pub(crate) fn row_of_height(&self, height: f64, t: f64) -> u32 {

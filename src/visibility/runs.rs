@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use super::Surface;
+use super::chains::Chains;
 use crate::cast::{MirrorTransform, Side};
 use crate::world::TileId;
 
@@ -19,8 +20,10 @@ pub(crate) struct ColumnRuns {
     runs: Vec<Run>,
     /// The first run of each column, and the end of the last column's runs.
     bounds: Vec<usize>,
-    /// The runs of the current column, in any order.
-    unsorted: Vec<Run>,
+    /// The runs of each column, in any order.
+    unsorted: Chains<Run>,
+    /// Those of the current column.
+    current: Vec<Run>,
     /// The transforms of the images to the map: first the direct view, then those in mirrors.
     images: Vec<MirrorTransform>,
 }
@@ -99,48 +102,43 @@ impl ColumnRuns {
         const OF_A_COLUMN: usize = 16;
         self.runs.reserve(width * OF_A_COLUMN);
         self.bounds.reserve(width + 1);
-        self.unsorted.reserve(OF_A_COLUMN);
+        self.unsorted.reserve(width, OF_A_COLUMN);
+        self.current.clear();
+        self.current.reserve(4 * OF_A_COLUMN);
         self.images.reserve(IMAGES_AT_ONCE);
     }
 
-    /// Starts the first column.
-    pub(crate) fn begin(&mut self) {
+    /// Starts a frame of `width` columns.
+    pub(crate) fn begin(&mut self, width: usize) {
         self.clear();
-        self.bounds.push(0);
+        self.unsorted.begin(width);
         self.images.push(MirrorTransform::default());
     }
 
-    /// Leaves a column without runs, for the flat way to fill.
-    pub(crate) fn skip_column(&mut self) {
-        self.bounds.push(self.runs.len());
-    }
-
-    /// Adds the content of `rows` of the current column.
+    /// Adds the content of `rows` of `column`.
     #[inline]
-    pub(crate) fn show(&mut self, rows: Range<u32>, shown: Shown) {
+    pub(crate) fn show(&mut self, column: u32, rows: Range<u32>, shown: Shown) {
         if !rows.is_empty() {
-            self.unsorted.push(Run { rows, shown });
+            self.unsorted.push(column, Run { rows, shown });
         }
     }
 
-    /// Ends the current column, which has `height` rows.
-    pub(crate) fn end_column(&mut self, height: u32) {
-        let Self { runs, bounds, unsorted, .. } = self;
-        // Most floors are added from the bottom up, so that the reversed list is almost sorted.
-        unsorted.reverse();
-        unsorted.sort_unstable_by_key(|run| run.rows.start);
-        // If rounding puts a shape before its own cell, a row is missing.
-        let hole = |rows: Range<u32>| {
-            (!rows.is_empty()).then_some(Run { rows, shown: Shown::Sky(ImageId::NONE) })
-        };
-        let mut above = 0;
-        for run in unsorted.drain(..) {
-            runs.extend(hole(above..run.rows.start));
-            above = run.rows.end;
-            runs.push(run);
+    /// Ends a frame of `height` rows. The flat way fills the columns for which `is_filled` does not hold.
+    pub(crate) fn end(&mut self, height: u32, is_filled: impl Fn(usize) -> bool) {
+        let Self { runs, bounds, unsorted, current, .. } = self;
+        bounds.push(0);
+        for column in 0..unsorted.width() {
+            if is_filled(column) {
+                // Most floors are added from the bottom up, so that the latest is mostly the uppermost.
+                current.clear();
+                for run in unsorted.latest_first(column) {
+                    let below = current.iter().rposition(|above| above.rows.start < run.rows.start);
+                    current.insert(below.map_or(0, |above| above + 1), run.clone());
+                }
+                fill_holes(current, height, runs);
+            }
+            bounds.push(runs.len());
         }
-        runs.extend(hole(above..height));
-        bounds.push(runs.len());
     }
 
     /// Whether no column has any runs.
@@ -183,4 +181,19 @@ impl ColumnRuns {
     pub(crate) fn images(&self) -> &[MirrorTransform] {
         &self.images
     }
+}
+
+/// Adds the runs of a column of `height` rows, which are `sorted`, to `runs`. If rounding puts a shape before
+/// its own cell, a row is missing, and shows the sky.
+fn fill_holes(sorted: &[Run], height: u32, runs: &mut Vec<Run>) {
+    let hole = |rows: Range<u32>| {
+        (!rows.is_empty()).then_some(Run { rows, shown: Shown::Sky(ImageId::NONE) })
+    };
+    let mut above = 0;
+    for run in sorted {
+        runs.extend(hole(above..run.rows.start));
+        above = run.rows.end;
+        runs.push(run.clone());
+    }
+    runs.extend(hole(above..height));
 }

@@ -11,7 +11,7 @@
 use glam::DVec2;
 
 use super::Cloud;
-use crate::cast::{MirroredWalk, Ray};
+use crate::cast::{Ray, RayWalk};
 use crate::world::{Cell, Gap, TileId, TileKind, World};
 
 /// A position and a height, in cells.
@@ -51,7 +51,7 @@ impl Line<'_> {
         let Ok(ray) = Ray::new(self.from.position, way) else {
             return self.is_in_one_gap();
         };
-        let mut walk = MirroredWalk::new(grid, &ray, 0);
+        let mut walk = RayWalk::new(grid, &ray);
         let Some(mut position) = walk.cell(grid) else { return false };
         let mut height = self.from.height;
         loop {
@@ -93,7 +93,7 @@ impl Line<'_> {
     /// Whether the leaf of a door or a shape in the cell covers the line.
     fn is_hidden_by_what_stands(
         &self,
-        walk: &MirroredWalk,
+        walk: &RayWalk,
         (cell, TileId(tile)): (Cell, TileId),
     ) -> bool {
         let tile = &self.world.tiles()[usize::from(tile)];

@@ -10,12 +10,14 @@ use crate::visibility::{Column, DrawList, Scene};
 use crate::world::{Ceiling, Cell, Heights, Tile, TileId, TileKind, World};
 
 /// The starts of the portal way in the columns of a scene.
-#[derive(Clone, Copy)]
 pub(crate) struct PortalStarts<'a> {
     world: &'a World,
     overhead: Overhead,
     /// Whether nothing shows above a level wall.
     walls_hide_all: bool,
+    /// The last cell, and the start of rays that end at it. Mostly, many neighbouring columns show the same
+    /// cell.
+    latest: Option<(Cell, Option<PortalStart>)>,
 }
 
 /// The kinds of ceiling in cells with a level floor.
@@ -38,32 +40,43 @@ impl<'a> PortalStarts<'a> {
         };
         let is_higher = |tile: &Tile| tile.top() > Heights::LEVEL_WALL.floor();
         let walls_hide_all = overhead == Overhead::Ceiling || !world.tiles().iter().any(is_higher);
-        Self { world, overhead, walls_hide_all }
+        Self { world, overhead, walls_hide_all, latest: None }
     }
 
     /// The start in `column`; `None` if the flat way fills all of it.
-    pub(crate) fn of(self, column: &Column) -> Option<PortalStart> {
-        let hit = column.hit.filter(|hit| self.leave(hit.cell))?;
+    pub(crate) fn of(&mut self, column: &Column) -> Option<PortalStart> {
+        let Hit { cell, .. } = *column.hit.as_ref()?;
+        match self.latest {
+            Some((known, start)) if known == cell => start,
+            _ => self.latest.insert((cell, self.start_at(cell))).1,
+        }
+    }
+
+    /// The start of rays that end at `cell`; `None` if the flat way fills their columns.
+    fn start_at(&self, cell: Cell) -> Option<PortalStart> {
+        if !self.leave(cell) {
+            return None;
+        }
         // A ray hits a door or a shape within a cell.
         let is_at_line = |tile: &Tile| !tile.is_level() || matches!(tile.kind, TileKind::Wall(_));
-        if !tile_of(self.world, hit.cell).is_some_and(is_at_line) {
+        if !tile_of(self.world, cell).is_some_and(is_at_line) {
             return Some(PortalStart::Camera);
         }
         Some(match self.overhead {
-            Overhead::Sky => PortalStart::Line { hit, rows: 0..column.rows.end },
-            Overhead::Ceiling => PortalStart::Line { hit, rows: column.rows.clone() },
+            Overhead::Sky => PortalStart::LineUnderSky,
+            Overhead::Ceiling => PortalStart::Line,
             // The part behind the first line may show above a ceiling, in the rows of the sky.
             Overhead::Both => PortalStart::Camera,
         })
     }
 
     /// Whether the flat way leaves what is behind the border of `cell`, in which a ray ends.
-    fn leave(self, cell: Cell) -> bool {
+    fn leave(&self, cell: Cell) -> bool {
         !(self.walls_hide_all && tile_of(self.world, cell).is_some_and(Tile::is_level))
     }
 
     /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
-    fn are_at_camera(self) -> bool {
+    fn are_at_camera(&self) -> bool {
         self.overhead == Overhead::Both
     }
 }
@@ -71,7 +84,7 @@ impl<'a> PortalStarts<'a> {
 /// Removes the parts left to the portal way from the columns of the flat way.
 pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let DrawList { columns, flat_columns, is_flat, .. } = list;
-    let starts = PortalStarts::new(scene.world);
+    let mut starts = PortalStarts::new(scene.world);
     let is_left = |column: &Column| column.hit.as_ref().is_some_and(|hit| starts.leave(hit.cell));
     let cell = |column: &Column| column.hit.map(|hit| hit.cell);
     // Mostly, many neighbouring columns show the same cell.
@@ -82,13 +95,10 @@ pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     *is_flat = !(starts.are_at_camera() && columns.iter().all(is_left));
     let height = scene.projection.rows();
     flat_columns.extend(columns.iter().map(|column| {
-        let (distance, rows) = match starts.of(column) {
-            None => return column.clone(),
-            Some(PortalStart::Camera) => (0.0, 0..height),
-            Some(PortalStart::Line { rows, .. }) => (column.distance, rows),
-        };
+        let Some(start) = starts.of(column) else { return column.clone() };
+        let distance = if start == PortalStart::Camera { 0.0 } else { column.distance };
         let hit = column.hit.map(|hit| Hit { t: -1.0, ..hit });
-        Column { hit, distance, rows }
+        Column { hit, distance, rows: start.rows(column, height) }
     }));
 }
 

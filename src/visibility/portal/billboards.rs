@@ -10,6 +10,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::ImageId;
+use super::bundle::{Bundle, Clip};
 use super::ray_segments::{ImagesInView, RaySegment};
 use super::tile_gaps::{GapId, TileGaps};
 use crate::visibility::runs::IMAGES_AT_ONCE;
@@ -29,6 +30,23 @@ pub(super) struct RayPart {
     /// The height of the top of a pillar below it, which hides what is lower.
     pub(super) top_below: Option<f64>,
     pub(super) image: ImageId,
+}
+
+impl RayPart {
+    /// The part of the ray of `column`, whose clip is `clip`, up to `to`, for billboards that are higher than
+    /// the top of a pillar below it.
+    #[inline]
+    pub(super) fn new(
+        bundle: &Bundle,
+        column: u32,
+        clip: &Clip,
+        to: f64,
+        top_below: Option<f64>,
+    ) -> Self {
+        let &Bundle { gap, image, .. } = bundle;
+        let &Clip { ref rows, from, .. } = clip;
+        Self { column, rows: rows.clone(), from, to, gap, top_below, image }
+    }
 }
 
 /// Finds the billboards in view, in memory that is reused from frame to frame.

@@ -2,6 +2,7 @@
 
 use super::billboards::{Finder, RayPart};
 use super::tile_gaps::TileGaps;
+use crate::visibility::chains::Chains;
 use crate::visibility::layer_order::put_in_order;
 use crate::visibility::{DrawList, Layer, Scene};
 
@@ -34,14 +35,14 @@ impl LayerMemory {
 pub(super) fn fill(
     scene: Scene<'_>,
     gaps: &TileGaps,
-    passed: &[Passed],
+    passed: &Chains<Passed>,
     finder: &Finder,
     memory: &mut LayerMemory,
     list: &mut DrawList,
 ) {
     let by_column = &mut memory.by_column;
     by_column.clear();
-    for passed in passed.iter().rev() {
+    for passed in (0..passed.width()).flat_map(|column| passed.latest_first(column)) {
         match passed {
             &Passed::SeeThrough(index) => by_column.push(Layer::SeeThrough(index)),
             Passed::Billboards(part) => {

@@ -2,143 +2,241 @@
 
 use std::ops::Range;
 
+use super::bundle::{Bundle, Clip};
 use super::met::Met;
-use super::tile_gaps::{BOTTOMLESS, GapId, Holds};
-use super::walk::{ColumnWalk, MOST_BOUNCES, Place, PortalRay};
-use crate::cast::Hit;
+use super::surroundings::{MOST_BOUNCES, Place};
+use super::tile_gaps::{BOTTOMLESS, Holds, VisibleGap};
+use super::walk::{BundleWalk, WalkMemory};
+use crate::cast::{Crossed, CrossedFace, Hit, Side};
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Material};
 use crate::world::{Glass, Paint, Tile, TileKind};
 
-impl ColumnWalk<'_> {
-    /// Divides the clip range of `ray` among the faces and gaps at a line into `place`, and returns
-    /// whether the ray continues in one of the gaps. The other gaps are stored for later.
-    pub(super) fn cross_line(&mut self, ray: &mut PortalRay, place: Place, met: &Met) -> bool {
-        let projection = self.surroundings.scene.projection;
-        let Range { start, end } = ray.rows;
-        if self.is_above_everything(end, met.t) {
-            self.list.runs.show(start..end, Shown::Sky(ray.image));
-            return false;
+/// A line that the rays of a bundle have crossed, at the distances found.
+pub(super) struct Line {
+    pub(super) side: Side,
+    /// The face on it.
+    pub(super) face: CrossedFace,
+    /// The cell in front of it, and the one behind it.
+    pub(super) before: Place,
+    into: Place,
+}
+
+impl BundleWalk<'_> {
+    /// Divides the clip ranges of `bundle` among the faces and gaps at a line that it has crossed, and
+    /// returns whether all of its rays continue. If not, those that do are stored.
+    pub(super) fn cross_line(&mut self, bundle: &mut Bundle, crossed: &Crossed) -> bool {
+        let direction = self.memory.directions[bundle.columns.start as usize];
+        let face = bundle.course.face(direction, crossed);
+        let &Crossed { side, into, .. } = crossed;
+        let line = &Line { side, face, before: bundle.place, into };
+        self.show_what_is_above(bundle);
+        if self.is_open(bundle) {
+            return self.divide_rows(bundle, line);
         }
+        let mut columns = bundle.columns.clone();
+        while let Some(mut part) = self.next_open(bundle, &mut columns) {
+            if self.divide_rows(&mut part, line) {
+                self.store(part);
+            }
+        }
+        false
+    }
+
+    /// Shows the sky where only the sky is above the rows of a ray, and ends these rays.
+    fn show_what_is_above(&mut self, bundle: &Bundle) {
+        let projection = self.surroundings.scene.projection;
+        let ground = projection.first_row_of_ground();
+        for column in bundle.columns.clone() {
+            let Clip { ref rows, from, .. } = self.memory.clips[bundle.clip(column)];
+            let is_above = !rows.is_empty() && rows.end <= ground;
+            if is_above && rows.end <= projection.row_of(self.surroundings.top, from) {
+                self.list.runs.show(column, rows.clone(), Shown::Sky(bundle.image));
+                self.end(bundle, column);
+            }
+        }
+    }
+
+    /// Divides the clip ranges of `bundle`, none of whose rays has ended.
+    fn divide_rows(&mut self, bundle: &mut Bundle, line: &Line) -> bool {
         let gaps = self.surroundings.gaps;
-        let mut goes_on: Option<(GapId, u32, u32)> = None;
-        // The bottom of the solid part below the next gap, and the row below it.
-        let (mut rock_from, mut rock_end) = (f64::NEG_INFINITY, end);
-        for id in gaps.of(place) {
-            let gap = gaps.gap(id);
-            let bottom = gap.row_of_bottom(projection, met.t);
-            let top = gap.row_of_top(projection, met.t);
-            let rock = start.max(bottom)..rock_end;
-            if !rock.is_empty() {
-                self.meet_rock(ray, place, met, rock, rock_from..gap.gap.bottom);
+        let Some((upper, lower)) = gaps.upper_and_lower(line.into) else { return false };
+        let mut lower = lower.map(|id| (Bundle { gap: id, ..bundle.clone() }, gaps.gap(id)));
+        if let Some((lower, gap)) = &mut lower {
+            self.meet_rock(bundle, line, gap, None);
+            lower.first_clip = self.memory.clips.len();
+            self.memory.clips.extend_from_within(bundle.clips());
+            self.open(lower, line, gap);
+            let WalkMemory { tops, ends, .. } = &mut *self.memory;
+            ends[lower.indices()].copy_from_slice(&tops[lower.indices()]);
+        }
+        self.meet_rock(bundle, line, gaps.gap(upper), lower.as_ref().map(|(_, gap)| *gap));
+        bundle.gap = upper;
+        self.open(bundle, line, gaps.gap(upper));
+        if let Some((lower, _)) = &lower {
+            // The upper one is followed first.
+            self.begin_lower(lower, bundle);
+            self.store_open(lower);
+        }
+        let is_open = self.is_open(bundle);
+        if !is_open {
+            self.end_others(lower.as_ref().map(|(lower, _)| lower), bundle);
+            self.store_open(bundle);
+        }
+        is_open
+    }
+
+    /// Begins the rays of `lower` that are followed in `upper`, too.
+    fn begin_lower(&mut self, lower: &Bundle, upper: &Bundle) {
+        for column in upper.columns.clone() {
+            let is_upper_open = !self.memory.clips[upper.clip(column)].rows.is_empty();
+            let clip = &mut self.memory.clips[lower.clip(column)];
+            if is_upper_open {
+                clip.start = clip.from;
             }
-            (rock_from, rock_end) = (gap.gap.top, end.min(top));
-            let (start, mut end) = (start.max(top), end.min(bottom));
-            if start >= end {
-                continue;
+        }
+    }
+
+    /// Ends the rays that are followed neither in `lower` nor in `upper`.
+    fn end_others(&mut self, lower: Option<&Bundle>, upper: &Bundle) {
+        for column in upper.columns.clone() {
+            let is_open = |it: &Bundle| !self.memory.clips[it.clip(column)].rows.is_empty();
+            if !is_open(upper) && !lower.is_some_and(is_open) {
+                self.end(upper, column);
             }
-            if place.is_none() {
-                self.show_beyond_edge(start..end, ray.image);
-                continue;
-            }
-            if gap.holds == Holds::Cube {
-                end = self.pass_cube(ray, place, &(start..end), met);
-                if start >= end {
-                    continue;
+        }
+    }
+
+    /// Puts `bundle` behind the line, into `gap`, and reduces its clip ranges to the rows there.
+    fn open(&mut self, bundle: &mut Bundle, line: &Line, gap: &VisibleGap) {
+        bundle.place = line.into;
+        let indices = bundle.indices();
+        let WalkMemory { clips, bottoms, tops, .. } = &mut *self.memory;
+        let rows = bottoms[indices.clone()].iter().zip(&tops[indices]);
+        for (clip, (&bottom, &top)) in clips[bundle.clips()].iter_mut().zip(rows) {
+            clip.rows = clip.rows.start.max(top)..clip.rows.end.min(bottom);
+        }
+        if line.into.is_none() || gap.holds == Holds::Cube {
+            for column in bundle.columns.clone() {
+                let rows = self.memory.clips[bundle.clip(column)].rows.clone();
+                if !rows.is_empty() {
+                    let end = self.pass_cube_or_edge(bundle, line, column, &rows);
+                    self.memory.clips[bundle.clip(column)].rows.end = end;
                 }
             }
-            if let Some((gap, start, end)) = goes_on.replace((id, start, end)) {
-                let (walk, rows) = (ray.walk.clone(), start..end);
-                self.memory.rays.push(PortalRay { walk, place, gap, rows, ..*ray });
-            }
         }
-        let Some((gap, start, end)) = goes_on else { return false };
-        (ray.place, ray.gap, ray.rows) = (place, gap, start..end);
-        true
     }
 
-    /// Whether only the sky is above row `end`, from distance `t` on.
-    fn is_above_everything(&self, end: u32, t: f64) -> bool {
-        let projection = self.surroundings.scene.projection;
-        end <= projection.first_row_of_ground()
-            && end <= projection.row_of(self.surroundings.top, t)
+    /// Shows what `rows` show of a see-through cube or of the edge of the map, and returns the end of those
+    /// that show something behind it.
+    fn pass_cube_or_edge(
+        &mut self,
+        bundle: &Bundle,
+        line: &Line,
+        column: u32,
+        rows: &Range<u32>,
+    ) -> u32 {
+        if line.into.is_none() {
+            self.show_beyond_edge(column, rows.clone(), bundle.image);
+            return rows.start;
+        }
+        self.pass_cube(bundle, line, column, rows)
     }
 
-    /// Shows the solid part of `place` between two heights, which covers `rows`: a face, or a
-    /// mirror.
-    #[inline(never)]
+    /// Shows the solid part below `gap`, and above the gap `lower` if there is one: its faces, or a mirror.
     fn meet_rock(
         &mut self,
-        ray: &PortalRay,
-        place: Place,
-        met: &Met,
-        rows: Range<u32>,
-        heights: Range<f64>,
+        bundle: &Bundle,
+        line: &Line,
+        gap: &VisibleGap,
+        lower: Option<&VisibleGap>,
     ) {
-        let is_lowest = heights.start == f64::NEG_INFINITY;
+        self.find_rows(bundle, gap);
         let surroundings = self.surroundings;
-        let tile = surroundings.tile(place).unwrap_or(&surroundings.scene.world.tiles()[0]);
-        if is_lowest
+        let tile = surroundings.tile(line.into);
+        let tile = tile.unwrap_or(&surroundings.scene.world.tiles()[0]);
+        if lower.is_none()
             && let TileKind::Mirror(tint) = tile.kind
             && !tint.is_opaque()
-            && ray.walk.bounces() < MOST_BOUNCES
+            && bundle.course.bounces() < MOST_BOUNCES
         {
-            self.reflect(ray, rows, place, met, tint);
+            self.reflect(bundle, line, tint);
             return;
         }
-        let before = surroundings.tile(met.before).map(|tile| &tile.kind);
-        let paint = match (is_lowest, before, &tile.kind) {
-            (true, Some(TileKind::Door(door) | TileKind::Doorway(door)), TileKind::Wall(_)) => {
+        let before = surroundings.tile(line.before).map(|tile| &tile.kind);
+        let paint = match (lower, before, &tile.kind) {
+            (None, Some(TileKind::Door(door) | TileKind::Doorway(door)), TileKind::Wall(_)) => {
                 door.jamb
             }
-            (true, ..) => tile.riser,
-            (false, ..) => tile.lintel,
+            (None, ..) => tile.riser,
+            (Some(_), ..) => tile.lintel,
         };
         // Clipped to the gap from which it is seen.
-        let gap = surroundings.gaps.gap(ray.gap).gap;
-        let extent = Extent::Heights {
-            bottom: heights.start.max(gap.bottom),
-            top: heights.end.min(gap.top),
-        };
-        let u = met.u(ray);
-        self.show_face(rows, met, u, (paint, self.light(place, met, u)), extent);
-        if ray.image == ImageId::NONE {
-            self.hit = place.map(|(cell, _)| Hit { cell, side: met.side, t: met.t, u });
+        let from = surroundings.gaps.gap(bundle.gap).gap;
+        let bottom = lower.map_or(f64::NEG_INFINITY, |lower| lower.gap.top).max(from.bottom);
+        let extent = Extent::Heights { bottom, top: gap.gap.bottom.min(from.top) };
+        for column in bundle.columns.clone() {
+            let rows = self.rows_of_rock(bundle, column, lower.is_some());
+            if !rows.is_empty() {
+                let met = self.met_at(line, column);
+                self.show_face(column, rows, &met, (paint, line.into), extent);
+                self.set_hit(bundle, line, column, &met);
+            }
         }
     }
 
-    /// Stores the mirror image for later, in these `rows` behind the mirror's tint.
-    fn reflect(&mut self, ray: &PortalRay, rows: Range<u32>, place: Place, met: &Met, tint: Glass) {
-        self.memory.stats.bounces += 1;
-        if !tint.is_clear() {
-            let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
-            self.pass(ray, rows.clone(), met, place, Material::Translucent(tint), everywhere);
-        }
-        let mut walk = ray.walk.clone();
-        walk.reflect(met.side);
-        let image = self.list.runs.image_id(walk.transform());
-        self.memory.rays.push(PortalRay { walk, rows, image, ..*ray });
+    /// The rows of `column` that show the solid part below the gap whose rows were found.
+    #[inline]
+    fn rows_of_rock(&self, bundle: &Bundle, column: u32, is_above_gap: bool) -> Range<u32> {
+        let x = column as usize;
+        let Range { start, end } = self.memory.clips[bundle.clip(column)].rows;
+        let end = if is_above_gap { end.min(self.memory.ends[x]) } else { end };
+        start.max(self.memory.bottoms[x])..end
     }
 
-    /// Records the face of the see-through cube in `place`, and returns the end of those of `rows` that show
-    /// something behind it.
-    #[inline(never)]
-    fn pass_cube(&mut self, ray: &PortalRay, place: Place, rows: &Range<u32>, met: &Met) -> u32 {
+    /// Stores the mirror image for later, in the rows of the mirror, behind its tint.
+    fn reflect(&mut self, bundle: &Bundle, line: &Line, tint: Glass) {
+        let everywhere = Extent::Heights { bottom: BOTTOMLESS.bottom, top: BOTTOMLESS.top };
+        let first_clip = self.memory.clips.len();
+        let mut is_seen = false;
+        for column in bundle.columns.clone() {
+            let rows = self.rows_of_rock(bundle, column, false);
+            let from = self.memory.clips[bundle.clip(column)].from;
+            self.memory.clips.push(Clip { rows: rows.clone(), from, start: from });
+            if !rows.is_empty() {
+                is_seen = true;
+                self.memory.stats.bounces += 1;
+                if !tint.is_clear() {
+                    let met = self.met_at(line, column);
+                    let material = Material::Translucent(tint);
+                    self.pass(column, rows, &met, (material, line.into), everywhere);
+                }
+            }
+        }
+        if is_seen {
+            let mut image = Bundle { first_clip, ..bundle.clone() };
+            image.course.reflect(line.side);
+            image.image = self.list.runs.image_id(image.course.transform());
+            self.store_open(&image);
+        }
+    }
+
+    /// Records the face of the see-through cube behind the line, and returns the end of those of `rows` that
+    /// show something behind it.
+    fn pass_cube(&mut self, bundle: &Bundle, line: &Line, column: u32, rows: &Range<u32>) -> u32 {
+        let place = line.into;
         let Some(Tile { heights, kind, .. }) = self.surroundings.tile(place) else {
             return rows.end;
         };
         let (bottom, top) = (heights.floor(), heights.ceiling());
-        let covered = self.rows_between(rows, bottom..top, met.t);
+        let covered = self.rows_between(rows, bottom..top, self.memory.distances[column as usize]);
         let extent = Extent::Heights { bottom, top };
         let material = match *kind {
             TileKind::Glass(glass) if glass.is_opaque() => {
                 let end = if covered.is_empty() { rows.end } else { covered.start };
-                let u = met.u(ray);
-                if ray.image == ImageId::NONE {
-                    self.hit = place.map(|(cell, _)| Hit { cell, side: met.side, t: met.t, u });
-                }
-                let light = self.light(place, met, u);
-                self.show_face(covered, met, u, (Paint::Color(glass.color), light), extent);
+                let met = self.met_at(line, column);
+                self.set_hit(bundle, line, column, &met);
+                self.show_face(column, covered, &met, (Paint::Color(glass.color), place), extent);
                 return end;
             }
             TileKind::Glass(glass) if glass.is_clear() => return rows.end,
@@ -146,8 +244,19 @@ impl ColumnWalk<'_> {
             TileKind::Mask(texture) => Material::Masked(texture),
             _ => return rows.end,
         };
-        self.pass(ray, covered, met, place, material, extent);
+        let met = self.met_at(line, column);
+        self.pass(column, covered, &met, (material, place), extent);
         rows.end
+    }
+
+    /// Sets the hit of `column`, unless it is in a mirror.
+    #[inline]
+    fn set_hit(&mut self, bundle: &Bundle, line: &Line, column: u32, met: &Met) {
+        let &Met { side, t, u, .. } = met;
+        if bundle.image == ImageId::NONE {
+            let hit = line.into.map(|(cell, _)| Hit { cell, side, t, u });
+            self.list.columns[column as usize].hit = hit;
+        }
     }
 
     /// The part of `rows` between two heights at distance `t`.
@@ -163,11 +272,11 @@ impl ColumnWalk<'_> {
 
     /// Shows the sky and, below the horizon, the ground beyond the edge of the map.
     #[inline(never)]
-    fn show_beyond_edge(&mut self, rows: Range<u32>, image: ImageId) {
+    fn show_beyond_edge(&mut self, column: u32, rows: Range<u32>, image: ImageId) {
         let Range { start, end } = rows;
         let horizon = self.surroundings.scene.projection.first_row_of_ground().clamp(start, end);
-        self.list.runs.show(start..horizon, Shown::Sky(image));
+        self.list.runs.show(column, start..horizon, Shown::Sky(image));
         let ground = FlatSurface { tile: None, part: Part::Floor, image };
-        self.list.runs.show(horizon..end, Shown::Plane(ground));
+        self.list.runs.show(column, horizon..end, Shown::Plane(ground));
     }
 }

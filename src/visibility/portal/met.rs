@@ -1,15 +1,17 @@
-//! The faces that a ray meets, opaque or see-through, and their light.
+//! The faces that rays meet, opaque or see-through, and their light.
 
 use std::ops::Range;
 
 use super::layers::Passed;
-use super::walk::{ColumnWalk, Place, PortalRay};
-use crate::cast::{Crossed, Side};
+use super::line::Line;
+use super::surroundings::Place;
+use super::walk::BundleWalk;
+use crate::cast::Side;
 use crate::visibility::runs::Shown;
 use crate::visibility::{Extent, Facing, Material, SeeThroughColumn, WallColumn};
 use crate::world::{Light, Paint, Tile, TileKind};
 
-/// An upright face that a ray meets.
+/// An upright face, where a ray meets it.
 pub(super) struct Met {
     /// The kind of line that the face is on, or to which it is most nearly parallel.
     pub(super) side: Side,
@@ -17,64 +19,67 @@ pub(super) struct Met {
     /// The approach of the ray to the face, in cells per unit of `t`.
     pub(super) slope: f64,
     pub(super) t: f64,
-    pub(super) u: AlongFace,
+    /// The position along the face, from 0 at its left end to 1 at its right.
+    pub(super) u: f64,
     /// The cell from which the ray meets it.
     pub(super) before: Place,
 }
 
-/// The position along a face at which a ray meets it.
-pub(super) enum AlongFace {
-    Known(f64),
-    /// Computed on demand from the line that the ray has just crossed: most lines have no face in
-    /// view.
-    AtLine(Crossed),
-}
+impl BundleWalk<'_> {
+    /// The face at `line` where the ray of `column` meets it.
+    #[inline]
+    pub(super) fn met_at(&self, line: &Line, column: u32) -> Met {
+        let ray = self.ray(column);
+        let t = self.memory.distances[column as usize];
+        let &Line { side, ref face, before, .. } = line;
+        let facing = Facing::Side(side);
+        let slope = facing.slope(ray.direction());
+        Met { side, facing, slope, t, u: face.u(&ray, t), before }
+    }
 
-impl ColumnWalk<'_> {
-    /// Shows a face in `rows`.
+    /// Shows a face of `place` in `rows`.
+    #[inline]
     pub(super) fn show_face(
         &mut self,
+        column: u32,
         rows: Range<u32>,
         met: &Met,
-        u: f64,
-        (paint, light): (Paint, Light),
+        (paint, place): (Paint, Place),
         extent: Extent,
     ) {
         if rows.is_empty() {
             return;
         }
-        self.list.runs.show(rows.clone(), Shown::Face(met.side));
-        let &Met { facing, slope, t, .. } = met;
-        let column = self.column;
+        self.list.runs.show(column, rows.clone(), Shown::Face(met.side));
+        let light = self.light(place, met);
+        let &Met { facing, slope, t, u, .. } = met;
         let wall = WallColumn { column, rows, facing, slope, t, u, paint, light, extent };
         self.list.walls.push(wall);
     }
 
-    /// Records a see-through face in `rows`.
+    /// Records a see-through face of `place` in `rows`.
     pub(super) fn pass(
         &mut self,
-        ray: &PortalRay,
+        column: u32,
         rows: Range<u32>,
         met: &Met,
-        place: Place,
-        material: Material,
+        (material, place): (Material, Place),
         extent: Extent,
     ) {
         if rows.is_empty() {
             return;
         }
-        let u = met.u(ray);
-        let light = self.light(place, met, u);
-        let &Met { facing, slope, t, .. } = met;
-        self.memory.passed.push(Passed::SeeThrough(self.list.see_through.len()));
-        let column = self.column;
+        let light = self.light(place, met);
+        let &Met { facing, slope, t, u, .. } = met;
+        self.memory.passed.push(column, Passed::SeeThrough(self.list.see_through.len()));
         let face = SeeThroughColumn { column, rows, facing, slope, t, u, light, material, extent };
         self.list.see_through.push(face);
     }
 
-    /// The light at `u` on a face of `place`, seen from the cell before it: the tile's own light if
-    /// it is solid and has one, else the light there.
-    pub(super) fn light(&self, place: Place, met: &Met, u: f64) -> Light {
+    /// The light on a face of `place`, seen from the cell before it: the tile's own light if it is solid and
+    /// has one, else the light there.
+    #[inline]
+    fn light(&self, place: Place, met: &Met) -> Light {
         let scene = self.surroundings.scene;
         if !scene.plan.walls.faded {
             return Light::FULL;
@@ -89,20 +94,9 @@ impl ColumnWalk<'_> {
         match place {
             // A leaf has the same light everywhere, as has a shape, which is met in its own cell.
             Some((cell, _)) if cell != before && !is_door => {
-                scene.world.face_light(cell, before).at(u)
+                scene.world.face_light(cell, before).at(met.u)
             }
             _ => scene.world.light_in(before),
-        }
-    }
-}
-
-impl Met {
-    /// The position along the face at which `ray` meets it, from 0 at its left end to 1 at its
-    /// right.
-    pub(super) fn u(&self, ray: &PortalRay) -> f64 {
-        match &self.u {
-            AlongFace::Known(u) => *u,
-            AlongFace::AtLine(crossed) => ray.walk.along_face(crossed),
         }
     }
 }

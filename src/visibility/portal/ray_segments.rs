@@ -154,7 +154,7 @@ mod tests {
             let considered: Vec<BTreeSet<_>> = (0..images.len())
                 .map(|image| in_view.things(image, world).map(|thing| thing.cell).collect())
                 .collect();
-            for passed in &memory.walk.passed {
+            for passed in memory.walk.passed.items() {
                 let Passed::Billboards(part) = passed else { continue };
                 let ImageId(image) = part.image;
                 let transform = images[usize::from(image)];

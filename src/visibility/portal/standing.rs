@@ -2,86 +2,104 @@
 
 use std::ops::Range;
 
-use super::met::{AlongFace, Met};
-use super::walk::{ColumnWalk, Place, PortalRay};
-use crate::cast::{Hit, Passage, Ray};
-use crate::visibility::facing::cell_before;
+use super::billboards::RayPart;
+use super::bundle::Bundle;
+use super::layers::Passed;
+use super::met::Met;
+use super::walk::BundleWalk;
+use crate::cast::{Hit, Passage};
+use crate::visibility::facing::place_before;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{Extent, Facing};
-use crate::world::{Cell, Tile, TileKind};
+use crate::world::{Tile, TileKind};
 
-impl ColumnWalk<'_> {
-    /// Handles the object in the gap of `ray`. The rows above it remain open.
-    pub(super) fn meet_standing(&mut self, ray: &mut PortalRay) {
+impl BundleWalk<'_> {
+    /// Handles the object in the gap of `bundle`. The rows above it remain open.
+    pub(super) fn meet_standing(&mut self, bundle: &Bundle) {
         let surroundings = self.surroundings;
-        let (Some((cell, _)), Some(tile)) = (ray.place, surroundings.tile(ray.place)) else {
-            return;
-        };
-        let kind = tile.kind;
-        let Passage { hit, end } = ray.walk.standing(surroundings.scene.world, cell, kind);
+        let Some(tile) = surroundings.tile(bundle.place) else { return };
+        for column in bundle.columns.clone() {
+            let clip = bundle.clip(column);
+            self.meet_in(bundle, column, tile);
+            if self.memory.clips[clip].rows.is_empty() {
+                self.end(bundle, column);
+            }
+        }
+    }
+
+    /// Handles the object that is `tile` for the ray of `column`.
+    fn meet_in(&mut self, bundle: &Bundle, column: u32, tile: &Tile) {
+        let (kind, Some((cell, _))) = (tile.kind, bundle.place) else { return };
+        let (world, clip) = (self.surroundings.scene.world, bundle.clip(column));
+        let Passage { hit, end } = bundle.course.standing(&self.ray(column), world, cell, kind);
         if let Some(hit) = hit {
             // The ray after a reflection in this cell starts at the mirror: an earlier hit is not
             // on its path.
-            if ray.image != ImageId::NONE && hit.t < ray.from {
+            if bundle.image != ImageId::NONE && hit.t < self.memory.clips[clip].from {
                 return;
             }
-            self.meet_side(ray, kind, tile, hit);
+            self.meet_side(bundle, column, tile, hit);
         }
         if let Some(end) = end {
-            self.look_down_at(ray, tile.top_of_what_stands(), end);
+            self.look_down_at(bundle, column, tile.top_of_what_stands(), end);
         }
     }
 
     /// Shows the face of a leaf or a shape at `hit`.
-    fn meet_side(&mut self, ray: &mut PortalRay, kind: TileKind, tile: &Tile, hit: Hit) {
+    fn meet_side(&mut self, bundle: &Bundle, column: u32, tile: &Tile, hit: Hit) {
+        let kind = tile.kind;
         let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
-        self.close(ray, hit.t);
-        let real = ray.walk.ray_on_map();
+        self.memory.distances[column as usize] = hit.t;
+        self.close(&bundle.part(column..column + 1));
+        let real = bundle.course.on_map(&self.ray(column));
         let (paint, facing) = match kind {
             TileKind::Door(door) => (door.leaf, Facing::Side(hit.side)),
             TileKind::Shape(it) => (it.paint, Facing::of_shape(it.outline, real.at(hit.t), &hit)),
             _ => return,
         };
         let before = match kind {
-            TileKind::Door(_) => self.place_before(&real, &hit),
+            // The cell in front of a leaf's cell, on the side from which the ray comes.
+            TileKind::Door(_) => {
+                place_before(self.surroundings.scene.world.grid(), real.direction(), &hit)
+            }
             // A shape stands in a cell of its own.
-            _ => ray.place,
+            _ => bundle.place,
         };
         let slope = facing.slope(real.direction());
-        let u = AlongFace::Known(hit.u);
-        let met = Met { side: hit.side, facing, slope, t: hit.t, u, before };
-        let rows = self.rows_between(&ray.rows, bottom..top, hit.t);
+        let met = Met { side: hit.side, facing, slope, t: hit.t, u: hit.u, before };
+        let clip = bundle.clip(column);
+        let rows = self.rows_between(&self.memory.clips[clip].rows, bottom..top, hit.t);
         let above = self.surroundings.scene.projection.row_of_height(top, hit.t);
-        ray.rows.end = ray.rows.end.min(above);
-        let light = self.light(ray.place, &met, hit.u);
-        self.show_face(rows, &met, hit.u, (paint, light), Extent::Heights { bottom, top });
-        if ray.image == ImageId::NONE {
-            self.hit = Some(hit);
+        let end = &mut self.memory.clips[clip].rows.end;
+        *end = above.min(*end);
+        let extent = Extent::Heights { bottom, top };
+        self.show_face(column, rows, &met, (paint, bundle.place), extent);
+        if bundle.image == ImageId::NONE {
+            self.list.columns[column as usize].hit = Some(hit);
         }
     }
 
     /// Shows the top of a pillar, which extends to `end`, if the eye is above it.
-    fn look_down_at(&mut self, ray: &mut PortalRay, top: f64, end: f64) {
+    fn look_down_at(&mut self, bundle: &Bundle, column: u32, top: f64, end: f64) {
         let projection = self.surroundings.scene.projection;
-        let is_seen = projection.eye() > top && ray.from <= end;
-        if !is_seen || ray.rows.is_empty() {
+        let index = bundle.clip(column);
+        let clip = &self.memory.clips[index];
+        let is_seen = projection.eye() > top && clip.from <= end;
+        if !is_seen || clip.rows.is_empty() {
             return;
         }
         // What stands on the top is in front of it.
-        self.keep_part(ray, end, Some(top));
-        ray.from = end;
-        let tile = ray.place.map(|(_, tile)| tile);
-        let surface = FlatSurface { tile, part: Part::Top, image: ray.image };
-        let Range { start, end: bottom } = ray.rows;
+        if self.surroundings.has_things {
+            let part = RayPart::new(bundle, column, clip, end, Some(top));
+            self.memory.passed.push(column, Passed::Billboards(part));
+        }
+        let clip = &mut self.memory.clips[index];
+        clip.from = end;
+        let tile = bundle.place.map(|(_, tile)| tile);
+        let surface = FlatSurface { tile, part: Part::Top, image: bundle.image };
+        let Range { start, end: bottom } = clip.rows;
         let row = projection.row_of_height(top, end).clamp(start, bottom);
-        self.list.runs.show(row..bottom, Shown::Plane(surface));
-        ray.rows = start..row;
-    }
-
-    /// The cell in front of a leaf's cell, on the side from which `ray` comes.
-    fn place_before(&self, ray: &Ray, hit: &Hit) -> Place {
-        let [column, row] = cell_before(ray.direction(), hit);
-        let tile = self.surroundings.scene.world.grid().tile(column, row)?;
-        Some((Cell { column: column as u32, row: row as u32 }, tile))
+        clip.rows = start..row;
+        self.list.runs.show(column, row..bottom, Shown::Plane(surface));
     }
 }

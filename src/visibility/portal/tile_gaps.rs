@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::walk::Place;
+use super::surroundings::Place;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
@@ -85,6 +85,14 @@ impl TileGaps {
         self.of_tiles[tile].clone().map(GapId)
     }
 
+    /// The gaps in `place`: the upper one, and the lower one if there are two.
+    #[inline]
+    pub(super) fn upper_and_lower(&self, place: Place) -> Option<(GapId, Option<GapId>)> {
+        let mut gaps = self.of(place);
+        let lowest = gaps.next()?;
+        Some(gaps.next().map_or((lowest, None), |upper| (upper, Some(lowest))))
+    }
+
     /// The gap with this index.
     #[inline]
     pub(crate) fn gap(&self, GapId(index): GapId) -> &VisibleGap {
@@ -108,6 +116,20 @@ impl VisibleGap {
     #[inline]
     pub(crate) fn row_of_top(&self, projection: &Projection, t: f64) -> u32 {
         self.top.map_or(0, |top| projection.row_of(top, t))
+    }
+
+    /// Finds the rows of the bottom and the top of the gap at each of `distances`.
+    pub(super) fn find_rows(
+        &self,
+        projection: &Projection,
+        distances: &[f64],
+        (bottoms, tops): (&mut [u32], &mut [u32]),
+    ) {
+        projection.rows_of(self.bottom, distances, bottoms);
+        match self.top {
+            Some(top) => projection.rows_of(top, distances, tops),
+            None => tops.fill(0),
+        }
     }
 
     /// The first row that shows only surfaces below the gap, at distance `t`.

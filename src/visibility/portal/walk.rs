@@ -1,285 +1,277 @@
-//! The walk of a column of pixels: its ray, followed through the gaps.
+//! The walk of the portal way: rays, followed through the gaps in bundles.
+//!
+//! A bundle is neighbouring columns whose rays have crossed the same lines. Their cell, its gaps and its
+//! faces are looked up once for all of them. Each column has its own clip range, and its own distance to a
+//! line, which is computed from its own ray. Where the first and the last ray of a bundle cross lines of
+//! different kinds, it is divided: all rays have one origin, so that those which pass a corner on one side
+//! are neighbours.
+//!
+//! A walk for each column was refused: it looks up every cell and every gap once for each column.
 
+use std::mem;
 use std::ops::Range;
 
 use glam::DVec2;
 
-use super::PortalStart;
 use super::billboards::RayPart;
+use super::bundle::{Bundle, Clip};
 use super::layers::Passed;
-use super::met::{AlongFace, Met};
 use super::ray_segments::RaySegment;
-use super::tile_gaps::{GapId, Holds, TileGaps};
-use crate::cast::{Crossed, Hit, MirroredWalk, Ray};
-use crate::visibility::facing;
-use crate::visibility::projection::Rise;
+use super::surroundings::Surroundings;
+use super::tile_gaps::{Holds, VisibleGap};
+use crate::cast::{Crossed, Ray, Side};
+use crate::visibility::chains::Chains;
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
-use crate::visibility::{Column, DrawList, Facing, PortalStats, Scene};
-use crate::world::{Camera, Cell, Tile, TileId, TileKind};
-
-/// The most reflections of a ray. The mirror after the last one shows only its tint.
-pub(super) const MOST_BOUNCES: u32 = 8;
-
-/// The values that all rays of a frame share.
-pub(super) struct Surroundings<'a> {
-    pub(super) scene: Scene<'a>,
-    pub(super) gaps: &'a TileGaps,
-    /// The rise above which there is only sky.
-    pub(super) top: Rise,
-    /// Whether there is any thing or figure, or the player in a mirror.
-    pub(super) has_things: bool,
-    most_bounces: u32,
-}
-
-/// A ray that is followed in one gap.
-#[derive(Clone, Debug)]
-pub(super) struct PortalRay {
-    pub(super) walk: MirroredWalk,
-    pub(super) place: Place,
-    pub(super) gap: GapId,
-    /// The clip range: the rows that no nearer surface covers.
-    pub(super) rows: Range<u32>,
-    /// The distance at which this part of the ray begins.
-    pub(super) from: f64,
-    pub(super) image: ImageId,
-}
-
-/// The location of a ray: in a cell, or off the map.
-pub(super) type Place = Option<(Cell, TileId)>;
+use crate::visibility::{DrawList, PortalStats, Scene};
+use crate::world::{Cell, TileId};
 
 /// The results of walks besides the draw list, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WalkMemory {
-    /// The parts of rays that remain to be followed.
-    pub(super) rays: Vec<PortalRay>,
+    /// The bundles that remain to be followed.
+    bundles: Vec<Bundle>,
+    /// The clips of these bundles.
+    pub(super) clips: Vec<Clip>,
     /// The see-through faces, and the parts in which billboards may show: in each column, further
     /// ones come later.
-    pub(super) passed: Vec<Passed>,
+    pub(super) passed: Chains<Passed>,
     /// The segments of the rays on the map.
     pub(super) segments: Vec<RaySegment>,
     pub(super) stats: PortalStats,
+    /// The directions of the rays of all columns.
+    pub(super) directions: Vec<DVec2>,
+    /// The distances at which the rays of a bundle cross a line, by column.
+    pub(super) distances: Vec<f64>,
+    /// The rows of the bottom and the top of a gap at these distances, by column.
+    pub(super) bottoms: Vec<u32>,
+    pub(super) tops: Vec<u32>,
+    /// The ends of the rows that may show the next solid part behind a line, by column.
+    pub(super) ends: Vec<u32>,
 }
 
-/// The walk of one column.
-pub(super) struct ColumnWalk<'a> {
+/// The walk of the rays of a frame.
+pub(super) struct BundleWalk<'a> {
     pub(super) surroundings: &'a Surroundings<'a>,
-    pub(super) column: u32,
-    direction: DVec2,
     pub(super) memory: &'a mut WalkMemory,
     pub(super) list: &'a mut DrawList,
-    /// The last hit before a reflection, and the distance that the ray reached.
-    pub(super) hit: Option<Hit>,
-    pub(super) distance: f64,
 }
 
 impl WalkMemory {
     /// Removes the results of the last frame.
-    pub(super) fn begin(&mut self) {
-        self.passed.clear();
+    fn begin(&mut self, scene: Scene<'_>) {
+        let width = scene.projection.columns();
+        self.passed.begin(width);
         self.segments.clear();
         self.stats = PortalStats::default();
+        self.directions.clear();
+        let columns = 0..width as u32;
+        self.directions.extend(columns.map(|column| scene.projection.direction_of(column)));
     }
 
-    /// Reserves memory for all but extreme maps.
+    /// Reserves memory for all but extreme maps, in pictures of `width` columns.
     pub(super) fn make_room(&mut self, width: usize) {
-        const RAYS_AT_ONCE: usize = 64;
         const OF_A_COLUMN: usize = 16;
-        self.begin();
-        self.rays.reserve(RAYS_AT_ONCE);
-        self.passed.reserve(width * OF_A_COLUMN);
+        self.bundles.reserve(2 * width);
+        self.clips.clear();
+        self.clips.reserve(width * OF_A_COLUMN);
+        self.passed.reserve(width, OF_A_COLUMN);
+        self.segments.clear();
         self.segments.reserve(width * OF_A_COLUMN);
+        self.directions.clear();
+        self.directions.reserve(width);
+        self.distances.resize(width, 0.0);
+        for rows in [&mut self.bottoms, &mut self.tops, &mut self.ends] {
+            rows.resize(width, 0);
+        }
     }
 }
 
-impl<'a> Surroundings<'a> {
-    pub(super) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
-        let world = scene.world;
-        let has_figures = !world.figures().is_empty();
-        let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
-        let tallest_thing =
-            if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
-        let top_of = |tile: &Tile| match tile.kind {
-            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
-            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
-            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
-                tile.top_of_what_stands()
-            }
-        };
-        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
-        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
-        let top = tops.fold(world.top_of_figures(), f64::max);
-        let top = scene.projection.rise_to(top);
-        let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
-        Self { scene, gaps, top, has_things, most_bounces }
-    }
-
-    pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
-        let (_, id) = place?;
-        self.scene.world.tiles().get(usize::from(id.0))
-    }
-}
-
-impl<'a> ColumnWalk<'a> {
-    /// The walk of `column` of the picture.
+impl<'a> BundleWalk<'a> {
+    /// The walk of the rays of a frame, before it begins.
     pub(super) fn new(
         surroundings: &'a Surroundings<'a>,
-        column: u32,
         memory: &'a mut WalkMemory,
         list: &'a mut DrawList,
     ) -> Self {
-        let direction = surroundings.scene.projection.direction_of(column);
-        Self { surroundings, column, direction, memory, list, hit: None, distance: 0.0 }
+        memory.begin(surroundings.scene);
+        Self { surroundings, memory, list }
     }
 
-    /// Follows the column's `ray` from `start` to the end of all its parts. Returns the hit and the
-    /// distance that it reached before any reflection.
-    pub(super) fn follow(mut self, ray: &Ray, start: PortalStart) -> Column {
-        self.memory.stats.rays += 1;
-        match start {
-            PortalStart::Camera => self.start_at_camera(ray),
-            PortalStart::Line { hit, rows } => self.start_at_line(ray, hit, rows),
-        }
-        while let Some(mut ray) = self.memory.rays.pop() {
-            self.follow_one(&mut ray);
-        }
-        let projection = self.surroundings.scene.projection;
-        self.list.runs.end_column(projection.rows());
-        let Self { hit, distance, .. } = self;
-        let row_of = |height| projection.row_of_height(height, distance);
-        Column { hit, distance, rows: row_of(1.0)..row_of(0.0) }
+    /// The ray of `column`.
+    #[inline]
+    pub(super) fn ray(&self, column: u32) -> Ray {
+        let origin = self.surroundings.scene.projection.origin();
+        Ray::of_camera(origin, self.memory.directions[column as usize])
     }
 
-    /// Stores the ray for later, from the line that `hit` is on, in the part of `rows` behind it.
-    fn start_at_line(&mut self, ray: &Ray, hit: Hit, rows: Range<u32>) {
-        let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
-        let runs = &mut self.list.runs;
-        runs.show(0..rows.start, Shown::Flat);
-        runs.show(rows.end..scene.projection.rows(), Shown::Flat);
-        let Hit { cell, side, t, .. } = hit;
-        let grid = scene.world.grid();
-        let (walk, crossed) = MirroredWalk::entering(grid, ray, most_bounces, (cell, side));
-        let before = facing::cell_before(self.direction, &hit);
-        let before = grid
-            .tile(before[0], before[1])
-            .map(|tile| (Cell { column: before[0] as u32, row: before[1] as u32 }, tile));
-        let Some(gap) = gaps.of(before).next() else { return };
-        let into = crossed.into;
-        let met = self.met_at(crossed, t, before);
-        self.distance = t;
-        let image = ImageId::NONE;
-        let mut ray = PortalRay { walk, place: before, gap, rows, from: t, image };
-        if self.cross_line(&mut ray, into, &met) {
-            self.memory.rays.push(ray);
+    /// Stores `bundle` for later.
+    pub(super) fn store(&mut self, bundle: Bundle) {
+        let clips_in_use = self.memory.clips.len();
+        self.memory.bundles.push(Bundle { clips_in_use, ..bundle });
+    }
+
+    /// Whether no ray of `bundle` has ended.
+    pub(super) fn is_open(&self, bundle: &Bundle) -> bool {
+        self.memory.clips[bundle.clips()].iter().all(|clip| !clip.rows.is_empty())
+    }
+
+    /// Stores the parts of `bundle` whose rays have not ended.
+    pub(super) fn store_open(&mut self, bundle: &Bundle) {
+        let mut columns = bundle.columns.clone();
+        while let Some(part) = self.next_open(bundle, &mut columns) {
+            self.store(part);
         }
     }
 
-    /// The face at a line that is crossed at `t`.
-    fn met_at(&self, crossed: Crossed, t: f64, before: Place) -> Met {
-        let side = crossed.side;
-        let facing = Facing::Side(side);
-        let slope = facing.slope(self.direction);
-        Met { side, facing, slope, t, u: AlongFace::AtLine(crossed), before }
+    /// The part of `bundle` in the first of `columns` whose rays have not ended, which are removed from
+    /// there.
+    pub(super) fn next_open(&self, bundle: &Bundle, columns: &mut Range<u32>) -> Option<Bundle> {
+        let is_open = |column: &u32| !self.memory.clips[bundle.clip(*column)].rows.is_empty();
+        let start = columns.clone().find(is_open)?;
+        let end = (start..columns.end).find(|column| !is_open(column)).unwrap_or(columns.end);
+        columns.start = end;
+        Some(bundle.part(start..end))
     }
 
-    /// Stores the ray for later, from the camera on.
-    fn start_at_camera(&mut self, ray: &Ray) {
-        let &Surroundings { scene, gaps, most_bounces, .. } = self.surroundings;
-        let grid = scene.world.grid();
-        let eye = scene.projection.eye();
-        let walk = MirroredWalk::new(grid, ray, most_bounces);
-        let place = walk.cell(grid);
-        let gap_in = |place| gaps.of(place).find(|&id| gaps.gap(id).gap.holds(eye));
-        // For an eye inside a solid part, the cell counts as the map's own floor.
-        let ground = place.map(|(cell, _)| (cell, TileId(0)));
-        let (place, gap) = match (gap_in(place), gap_in(ground)) {
-            (Some(gap), _) => (place, gap),
-            (None, Some(gap)) => (ground, gap),
-            (None, None) => (ground, GapId::BOTTOMLESS),
-        };
-        let rows = 0..scene.projection.rows();
-        let image = ImageId::NONE;
-        self.memory.rays.push(PortalRay { walk, place, gap, rows, from: 0.0, image });
-    }
-
-    /// Follows `ray` to its end, and stores its segment.
-    fn follow_one(&mut self, ray: &mut PortalRay) {
-        let start = ray.from;
-        self.follow_on(ray);
-        if self.surroundings.has_things {
-            let origin = self.surroundings.scene.projection.origin();
-            let transform = ray.walk.transform();
-            let end = |t: f64| transform.to_map(origin + self.direction * t);
-            self.memory
-                .segments
-                .push(RaySegment { ends: [start, ray.from].map(end), image: ray.image });
+    /// Follows all bundles that are stored.
+    pub(super) fn follow_stored(&mut self) {
+        while let Some(bundle) = self.memory.bundles.pop() {
+            self.memory.clips.truncate(bundle.clips_in_use);
+            self.follow(bundle);
         }
     }
 
-    /// Follows `ray` to its end.
-    fn follow_on(&mut self, ray: &mut PortalRay) {
+    /// Follows `bundle` until a ray ends, or to the end. The rays that continue then are stored.
+    fn follow(&mut self, mut bundle: Bundle) {
         let grid = self.surroundings.scene.world.grid();
         loop {
-            if self.surroundings.gaps.gap(ray.gap).holds == Holds::Standing {
-                self.meet_standing(ray);
-                if ray.rows.is_empty() {
+            let holds = self.surroundings.gaps.gap(bundle.gap).holds;
+            if holds == Holds::Standing && !bundle.has_met {
+                bundle.has_met = true;
+                self.meet_standing(&bundle);
+                if !self.is_open(&bundle) {
+                    self.store_open(&bundle);
                     return;
                 }
             }
-            let crossed = ray.walk.cross(grid);
-            self.memory.stats.cells += u64::from(crossed.into.is_some());
-            let tile = |(_, tile): (Cell, TileId)| tile;
-            if crossed.into.is_some() && crossed.into.map(tile) == ray.place.map(tile) {
-                // The next cell has the same heights.
-                ray.place = crossed.into;
-                continue;
+            let side = self.divide(&mut bundle);
+            let Some(crossed) = bundle.course.cross(grid, side) else { continue };
+            bundle.has_met = false;
+            if crossed.into.is_some() {
+                self.memory.stats.cells += bundle.columns.len() as u64;
+                let tile = |(_, tile): (Cell, TileId)| tile;
+                if crossed.into.map(tile) == bundle.place.map(tile) {
+                    // The next cell has the same heights.
+                    bundle.place = crossed.into;
+                    continue;
+                }
             }
-            let t = ray.walk.distance(&crossed);
-            self.close(ray, t);
-            if ray.rows.is_empty() {
-                return;
-            }
-            let into = crossed.into;
-            let met = self.met_at(crossed, t, ray.place);
-            if !self.cross_line(ray, into, &met) {
+            self.find_distances(&bundle, &crossed);
+            self.close(&bundle);
+            if !self.cross_line(&mut bundle, &crossed) {
                 return;
             }
         }
     }
 
-    /// Shows floor and ceiling of the cell of `ray`, which it leaves at `t`, and removes their rows
-    /// from its clip range.
-    pub(super) fn close(&mut self, ray: &mut PortalRay, t: f64) {
-        self.keep_part(ray, t, None);
+    /// Leaves in `bundle` the first rays, which cross a line of one kind next, and returns that kind. The
+    /// others are stored.
+    fn divide(&mut self, bundle: &mut Bundle) -> Side {
+        let (order, [x, y]) = (&self.surroundings.order, bundle.course.lines());
+        let directions = &self.memory.directions;
+        let side_of = |column: u32| order.next(directions[column as usize], x, y);
+        let Range { start, end } = bundle.columns;
+        let side = side_of(start);
+        if end - start > 1 && side_of(end - 1) != side {
+            let (mut last, mut split) = (start, end - 1);
+            while split - last > 1 {
+                let middle = u32::midpoint(last, split);
+                *(if side_of(middle) == side { &mut last } else { &mut split }) = middle;
+            }
+            self.store(bundle.part(split..end));
+            bundle.columns.end = split;
+        }
+        side
+    }
+
+    /// Finds the distances at which the rays of `bundle` have crossed a line.
+    fn find_distances(&mut self, bundle: &Bundle, crossed: &Crossed) {
+        let WalkMemory { directions, distances, .. } = &mut *self.memory;
+        let rays = directions[bundle.indices()].iter().zip(&mut distances[bundle.indices()]);
+        let origin = self.surroundings.scene.projection.origin();
+        match crossed.side {
+            Side::X => rays.for_each(|(it, t)| *t = crossed.distance(origin.x, it.x)),
+            Side::Y => rays.for_each(|(it, t)| *t = crossed.distance(origin.y, it.y)),
+        }
+    }
+
+    /// Finds the rows of the bottom and the top of `gap` at the distances of the rays of `bundle`.
+    pub(super) fn find_rows(&mut self, bundle: &Bundle, gap: &VisibleGap) {
         let projection = self.surroundings.scene.projection;
-        let (eye, gap) = (projection.eye(), self.surroundings.gaps.gap(ray.gap));
-        let Range { start, end } = ray.rows;
-        let tile = ray.place.map(|(_, tile)| tile);
-        let image = ray.image;
+        let WalkMemory { distances, bottoms, tops, .. } = &mut *self.memory;
+        let indices = bundle.indices();
+        let rows = (&mut bottoms[indices.clone()], &mut tops[indices.clone()]);
+        gap.find_rows(projection, &distances[indices], rows);
+    }
+
+    /// Shows floor and ceiling of the cell of `bundle`, which its rays leave at the distances found, and
+    /// removes their rows from the clip ranges.
+    pub(super) fn close(&mut self, bundle: &Bundle) {
+        let Surroundings { scene, gaps, has_things, .. } = *self.surroundings;
+        let (eye, gap) = (scene.projection.eye(), gaps.gap(bundle.gap));
+        self.find_rows(bundle, gap);
+        let tile = bundle.place.map(|(_, tile)| tile);
+        let image = bundle.image;
         let surface = |part| Shown::Plane(FlatSurface { tile, part, image });
-        let bottom = gap.row_of_bottom(projection, t);
-        let top = gap.row_of_top(projection, t);
-        if eye > gap.gap.bottom {
-            self.list.runs.show(bottom.max(start)..end, surface(gap.below));
+        let shows_bottom = eye > gap.gap.bottom;
+        let shows_top = eye < gap.gap.top && gap.gap.top < f64::INFINITY;
+        let WalkMemory { clips, passed, distances, bottoms, tops, .. } = &mut *self.memory;
+        let indices = bundle.indices();
+        let distances = &distances[indices.clone()];
+        let rows = bottoms[indices.clone()].iter().zip(&tops[indices.clone()]);
+        let reached = &mut self.list.columns[indices];
+        let clips = clips[bundle.clips()].iter_mut();
+        let clips = bundle.columns.clone().zip(clips).zip(distances.iter().zip(rows));
+        for ((column, clip), (&t, (&bottom, &top))) in clips {
+            if has_things {
+                let part = RayPart::new(bundle, column, clip, t, None);
+                passed.push(column, Passed::Billboards(part));
+            }
+            let Range { start, end } = clip.rows;
+            if shows_bottom {
+                self.list.runs.show(column, bottom.max(start)..end, surface(gap.below));
+            }
+            if shows_top {
+                self.list.runs.show(column, start..top.min(end), surface(Part::Ceiling));
+            }
+            (clip.rows, clip.from) = (start.max(top)..end.min(bottom), t);
         }
-        if eye < gap.gap.top && gap.gap.top < f64::INFINITY {
-            self.list.runs.show(start..top.min(end), surface(Part::Ceiling));
-        }
-        ray.rows = start.max(top)..end.min(bottom);
-        ray.from = t;
         if image == ImageId::NONE {
-            self.distance = self.distance.max(t);
+            for (column, t) in reached.iter_mut().zip(distances) {
+                column.distance = column.distance.max(*t);
+            }
+        }
+        self.end_covered(bundle);
+    }
+
+    /// Ends the rays of `bundle` whose rows are all covered.
+    fn end_covered(&mut self, bundle: &Bundle) {
+        for column in bundle.columns.clone() {
+            if self.memory.clips[bundle.clip(column)].rows.is_empty() {
+                self.end(bundle, column);
+            }
         }
     }
 
-    /// Stores the part of `ray` up to `to`, in which billboards may show, where they are higher than
-    /// the top of a pillar below it.
-    pub(super) fn keep_part(&mut self, ray: &PortalRay, to: f64, top_below: Option<f64>) {
-        if !self.surroundings.has_things {
-            return;
+    /// Ends the ray of `column`, unless it has ended, and stores its segment.
+    pub(super) fn end(&mut self, bundle: &Bundle, column: u32) {
+        let clip = &mut self.memory.clips[bundle.clip(column)];
+        clip.rows = 0..0;
+        let ends = [mem::replace(&mut clip.start, f64::INFINITY), clip.from];
+        if self.surroundings.has_things && ends[0] < ends[1] {
+            let (ray, transform) = (self.ray(column), bundle.course.transform());
+            let ends = ends.map(|t| transform.to_map(ray.at(t)));
+            self.memory.segments.push(RaySegment { ends, image: bundle.image });
         }
-        let &PortalRay { ref rows, gap, from, image, .. } = ray;
-        let (column, rows) = (self.column, rows.clone());
-        let part = RayPart { column, rows, from, to, gap, top_below, image };
-        self.memory.passed.push(Passed::Billboards(part));
     }
 }

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::cast::{Hit, Walk};
+use crate::cast::{CommonOrder, Hit, Walk};
 
 proptest! {
     /// Without mirrors, the walk is the one in the exact order, with the same distances.
@@ -14,14 +14,14 @@ proptest! {
         let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
         prop_assume!(ray.is_ok());
         let ray = ray.unwrap();
-        let mut mirrored = MirroredWalk::new(&grid, &ray, 0);
+        let mut mirrored = RayWalk::new(&grid, &ray);
         for crossing in Walk::new(&grid, &ray) {
             let crossed = mirrored.cross(&grid);
             let hit = Hit::entering(&ray, crossing.cell, crossing.side);
             prop_assert_eq!(crossed.into, Some((crossing.cell, crossing.tile)));
             prop_assert_eq!(crossed.side, crossing.side);
             prop_assert_eq!(mirrored.distance(&crossed), hit.t);
-            prop_assert_eq!(mirrored.along_face(&crossed), hit.u);
+            prop_assert_eq!(mirrored.course.face(ray.direction(), &crossed).u(&ray, hit.t), hit.u);
         }
         prop_assert!(mirrored.cross(&grid).into.is_none());
     }
@@ -36,19 +36,29 @@ proptest! {
         let grid = Grid::sketch(&["#..#", "#..#"]).unwrap();
         let ray = Ray::new(DVec2::from(origin), DVec2::from(direction));
         prop_assume!(ray.is_ok());
-        let mut walk = MirroredWalk::new(&grid, &ray.unwrap(), 100);
+        let ray = ray.unwrap();
+        let order = CommonOrder::new(&grid, ray.origin(), 100);
+        let cross = |course: &mut Course| loop {
+            let [x, y] = course.lines();
+            if let Some(crossed) = course.cross(&grid, order.next(ray.direction(), x, y)) {
+                return crossed;
+            }
+        };
+        let mut course = Course::new(&grid, &ray);
         let mut last = 0.0;
-        while let Some((cell, tile)) = walk.cross(&grid).into {
+        while let Some((cell, tile)) = cross(&mut course).into {
             if grid.is_solid_tile(tile) {
-                walk.reflect(Side::X);
-                let (before, _) = walk.cell(&grid).unwrap();
+                course.reflect(Side::X);
+                let (before, _) = course.cell(&grid).unwrap();
                 prop_assert_eq!(before.column, if cell.column == 0 { 1 } else { 2 });
             }
-            let crossed = walk.clone().cross(&grid);
-            let (t, u) = (walk.distance(&crossed), walk.along_face(&crossed));
+            let mut ahead = course.clone();
+            let crossed = cross(&mut ahead);
+            let (t, _) = meeting(&ray, crossed.side, ahead.corner(&crossed));
+            let u = ahead.face(ray.direction(), &crossed).u(&ray, t);
             prop_assert!(t >= last && (0.0..=1.0).contains(&u));
             last = t;
-            if walk.bounces() == 100 {
+            if course.bounces() == 100 {
                 break;
             }
         }

@@ -13,7 +13,7 @@ mod own_gap;
 
 use self::own_gap::Passage;
 use super::is_wall;
-use crate::cast::{Crossed, MirroredWalk, Ray, Walk};
+use crate::cast::{Crossed, Ray, RayWalk, Walk};
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// Cells in which fog leaves less than this share of light are not seen.
@@ -92,7 +92,7 @@ impl Observer<'_> {
             visible = self.slopes(gap, line.from);
             line
         } else {
-            Line { walk: MirroredWalk::new(grid, ray, 0), position, from: 0.0 }
+            Line { walk: RayWalk::new(grid, ray), position, from: 0.0 }
         };
         let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {
@@ -182,7 +182,7 @@ impl Observer<'_> {
     }
 
     /// The distance and the height of an opaque thing that the ray hits in `cell`.
-    fn standing(&self, walk: &MirroredWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
+    fn standing(&self, walk: &RayWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
         let tile = &self.world.tiles()[usize::from(tile.0)];
         if !is_opaque_inside(tile) {
             return None;
@@ -215,7 +215,7 @@ fn is_opaque_inside(tile: &Tile) -> bool {
 
 /// A line of sight as far as it has been followed.
 struct Line {
-    walk: MirroredWalk,
+    walk: RayWalk,
     /// The cell that it is in; `None` off the map.
     position: Option<(Cell, TileId)>,
     /// The distance at which it has entered that cell.

@@ -4,7 +4,7 @@
 //! another tile, and knows nothing of mirrors until then.
 
 use super::{Line, Observer, is_opaque_inside};
-use crate::cast::{Crossing, MirroredWalk, Ray, Side, Walk, distance_on_entry};
+use crate::cast::{Crossing, Ray, RayWalk, Side, Walk, distance_on_entry};
 use crate::tui::minimap::explored::is_wall;
 use crate::world::{Cell, TileId};
 
@@ -83,8 +83,8 @@ impl Observer<'_> {
     ) -> Line {
         let grid = self.world.grid();
         let walk = match entered {
-            Some(side) => MirroredWalk::entering(grid, ray, 0, (position.0, side)).0,
-            None => MirroredWalk::new(grid, ray, 0),
+            Some(side) => RayWalk::entering(grid, ray, (position.0, side)),
+            None => RayWalk::new(grid, ray),
         };
         Line { walk, position: Some(position), from }
     }

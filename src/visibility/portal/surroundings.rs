@@ -1,0 +1,53 @@
+//! The values that all rays of a frame share.
+
+use super::tile_gaps::TileGaps;
+use crate::cast::CommonOrder;
+use crate::visibility::Scene;
+use crate::visibility::projection::Rise;
+use crate::world::{Camera, Cell, Tile, TileId, TileKind};
+
+/// The most reflections of a ray. The mirror after the last one shows only its tint.
+pub(super) const MOST_BOUNCES: u32 = 8;
+
+/// The location of a ray: in a cell, or off the map.
+pub(super) type Place = Option<(Cell, TileId)>;
+
+/// The values that all rays of a frame share.
+pub(super) struct Surroundings<'a> {
+    pub(super) scene: Scene<'a>,
+    pub(super) gaps: &'a TileGaps,
+    /// The rise above which there is only sky.
+    pub(super) top: Rise,
+    /// Whether there is any thing or figure, or the player in a mirror.
+    pub(super) has_things: bool,
+    pub(super) order: CommonOrder,
+}
+
+impl<'a> Surroundings<'a> {
+    pub(super) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
+        let world = scene.world;
+        let has_figures = !world.figures().is_empty();
+        let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
+        let tallest_thing =
+            if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
+        let top_of = |tile: &Tile| match tile.kind {
+            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
+            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                tile.top_of_what_stands()
+            }
+        };
+        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
+        let top = tops.fold(world.top_of_figures(), f64::max);
+        let top = scene.projection.rise_to(top);
+        let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
+        let order = CommonOrder::new(world.grid(), scene.projection.origin(), most_bounces);
+        Self { scene, gaps, top, has_things, order }
+    }
+
+    pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
+        let (_, id) = place?;
+        self.scene.world.tiles().get(usize::from(id.0))
+    }
+}
