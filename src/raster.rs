@@ -15,6 +15,7 @@ mod column_batch;
 mod direct_columns;
 mod lanes;
 mod masked;
+mod pieces;
 mod sampling;
 mod shaded_texels;
 mod sky;

@@ -1,5 +1,6 @@
 //! Spans of floor and ceiling: inner loops for each kind of pattern and lighting.
 
+use super::pieces;
 use super::sampling::Sampling;
 use super::target::Target;
 use super::texel_runs::TexelRuns;
@@ -52,64 +53,23 @@ fn draw_lit<M: Sampling, L: Lighting, S: Stats>(
             }
         },
         Pattern::Checker(paints) => {
-            draw_pieces(
-                span,
-                &paints.map(|it| sampler.sample::<M>(it)),
-                lighting,
-                |x, y| x ^ y,
-                target,
-            );
+            let samples = paints.map(|it| sampler.sample::<M>(it));
+            pieces::draw::<true, _, _>(span, &samples, lighting, target);
         }
         Pattern::Stripes(paints) => {
-            draw_pieces(
-                span,
-                &paints.map(|it| sampler.sample::<M>(it)),
-                lighting,
-                |_, y| y,
-                target,
-            );
+            let samples = paints.map(|it| sampler.sample::<M>(it));
+            pieces::draw::<false, _, _>(span, &samples, lighting, target);
         }
-    }
-}
-
-/// Draws `span` in two samples: the uppermost bit of `piece`, applied to a position, selects the
-/// sample.
-fn draw_pieces<L: Lighting, S: Stats>(
-    span: &PlaneSpan<'_>,
-    samples: &[Sample<'_>; 2],
-    lighting: L,
-    piece: impl Fn(u64, u64) -> u64,
-    target: &mut Target<'_, S>,
-) {
-    let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
-    // The pattern repeats after two pieces: the uppermost bit of a position is the index of the
-    // piece, and the others are the position in it.
-    let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
-    let mut texels = 0;
-    if S::ARE_KEPT {
-        let sampled = places.clone().take(columns.len());
-        let sampled = sampled.map(|(x, y)| &samples[(piece(x, y) >> 63) as usize]);
-        texels = sampled.filter(|sample| matches!(sample, Sample::Level(_))).count();
-    }
-    target.count_texels(pass, texels);
-    let levels = samples.each_ref().map(Sample::by_shifts);
-    let pixels = target.span_mut(pass, row, columns.clone());
-    if let [Some(one), Some(other)] = levels {
-        let levels = [one, other];
-        for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-            let level = &levels[(piece(x, y) >> 63) as usize];
-            *pixel = lighting.apply(level.at_index(level.index(x << 1, y << 1)));
-        }
-        return;
-    }
-    for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-        let sample = &samples[(piece(x, y) >> 63) as usize];
-        *pixel = lighting.apply(sample.at_fraction(x << 1, y << 1));
     }
 }
 
 /// Draws `level` on `pixels`.
-fn draw_level<L: Lighting>(level: &MipLevel, lighting: L, places: TexelPlaces, pixels: &mut [Rgb]) {
+pub(super) fn draw_level<L: Lighting>(
+    level: &MipLevel,
+    lighting: L,
+    places: TexelPlaces,
+    pixels: &mut [Rgb],
+) {
     match level.by_shifts() {
         Some(level) => match TexelRuns::of(level, &places, pixels.len()) {
             Some(runs) => runs.draw(level, lighting, pixels),
@@ -206,7 +166,7 @@ pub(super) struct Sampler<'a> {
 }
 
 /// A paint at one distance.
-enum Sample<'a> {
+pub(super) enum Sample<'a> {
     Color(Rgb),
     Level(&'a MipLevel),
 }
@@ -252,23 +212,5 @@ impl<'a> Sampler<'a> {
     fn lod(self, texels: f64) -> usize {
         let area = self.mapping.pixel_area * self.per_cell * self.per_cell;
         self.scene.plan.filter.lod(area * texels)
-    }
-}
-
-impl Sample<'_> {
-    /// The mip level, if its lookup needs no multiplications.
-    fn by_shifts(&self) -> Option<MipLevelByShifts<'_>> {
-        match self {
-            Self::Color(_) => None,
-            Self::Level(level) => level.by_shifts(),
-        }
-    }
-
-    #[inline]
-    fn at_fraction(&self, x: u64, y: u64) -> Rgb {
-        match self {
-            Self::Color(color) => *color,
-            Self::Level(level) => level.at_fraction(x, y),
-        }
     }
 }

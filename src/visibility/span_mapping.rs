@@ -144,6 +144,13 @@ impl TexelPlaces {
         [self.x_step, self.y_step]
     }
 
+    /// The same positions in a pattern that repeats twice as often.
+    pub(crate) fn doubled(&self) -> Self {
+        let Self { x, y, x_step, y_step } = *self;
+        let [x, y, x_step, y_step] = [x, y, x_step, y_step].map(|it| it << 1);
+        Self { x, y, x_step, y_step }
+    }
+
     /// Advances by `count` pixels.
     pub(crate) fn skip_pixels(&mut self, count: u64) {
         self.x = self.x.wrapping_add(self.x_step.wrapping_mul(count));
