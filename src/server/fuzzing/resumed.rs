@@ -71,10 +71,8 @@ fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
                 .push((member, Command::Intents { seen: room.game().steps(), intents: wanted }));
             if random.one_in(100) {
                 let token = random.bits();
-                let command =
-                    [Command::Leave, Command::Keep, Command::Away, Command::Return { token }]
-                        .swap_remove(random.below(4));
-                commands.push((member, command));
+                let all = [Command::Leave, Command::Keep, Command::Away, Command::Return { token }];
+                commands.extend(all.into_iter().nth(random.below(4)).map(|it| (member, it)));
             }
         }
         for (member, command) in commands {
