@@ -40,6 +40,7 @@ use std::io;
 use std::sync::{Arc, Mutex};
 
 use tokio::sync::watch;
+use tokio::time::Instant;
 
 use self::bus::{Bus, Key};
 pub(super) use self::directory::{Entrant, SharedRooms};
@@ -104,6 +105,7 @@ impl Cluster {
         // A host has one name at most.
         _ = load.metrics().host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
+            begun: Instant::now(),
             bus,
             leases,
             visits,
@@ -131,6 +133,8 @@ fn shown_name(name: &str) -> &str {
 
 /// What the replicas of a host share.
 struct HostContext {
+    /// When the host was started.
+    begun: Instant,
     bus: Box<dyn Bus>,
     leases: LeaseWorker,
     visits: Visits,

@@ -6,7 +6,7 @@ use tokio::sync::oneshot::error::TryRecvError;
 use tokio::time::Instant;
 
 use super::Replica;
-use super::times::{SECOND, is_due, steps_due};
+use super::times::{is_due, steps_due};
 use crate::server::cluster::bus::{BusFault, Key};
 use crate::server::cluster::lease_worker::LEASE_TIME;
 use crate::server::cluster::peer_message::PeerMessage;
@@ -47,7 +47,7 @@ impl Replica {
         let leases = &self.context.leases;
         match &self.sequencer {
             Some(sequencer) if self.leasing.renewing.is_none() => {
-                if is_due(self.times.leased, now, SECOND) {
+                if self.is_next_second(now) {
                     self.leasing.renewing = Some(leases.renew(sequencer.lease()));
                     self.times.leased = Some(now);
                 }
@@ -65,6 +65,13 @@ impl Replica {
                 }
             }
         }
+    }
+
+    /// Whether a second of the host has begun since the lease was asked for. So all rooms of a host renew their
+    /// leases at the same time.
+    fn is_next_second(&self, now: Instant) -> bool {
+        let second = |time: Instant| time.duration_since(self.context.begun).as_secs();
+        self.times.leased.is_none_or(|leased| second(leased) < second(now))
     }
 
     /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
