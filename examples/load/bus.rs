@@ -1,7 +1,8 @@
 //! Rooms without hosts: what the bus of a cluster carries.
 //!
 //! Each room appends a message of the log thirty times a second, as its sequencer does: it names the number of the
-//! message before it, waits for the answer, and tells one other host.
+//! message before it, waits for the answer, and tells one other host. Every five seconds it keeps a checkpoint, and
+//! drops the messages before it.
 
 use std::error::Error;
 use std::time::Duration;
@@ -19,10 +20,15 @@ use crate::plan::Plan;
 use crate::process::{Usage, between};
 
 const STREAM: &str = "CELLCASTER_LOAD";
+const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
 /// The time from one message of a room to the next.
 const PERIOD: Duration = Duration::from_micros(33_333);
 /// In bytes: a message without entries.
 const MESSAGE: usize = 25;
+/// In bytes: a checkpoint of a room with eight members.
+const CHECKPOINT: usize = 15_000;
+/// The messages from one checkpoint to the next.
+const KEPT: usize = 150;
 const WARM_UP: Duration = Duration::from_secs(2);
 
 /// Runs so many rooms.
@@ -37,7 +43,13 @@ async fn load(rooms: usize, plan: &Plan) -> Result<(), Box<dyn Error>> {
     let config = stream::Config {
         name: STREAM.to_owned(),
         subjects: vec!["cellcaster.load.log.*".to_owned()],
-        max_messages_per_subject: 150,
+        ..stream::Config::default()
+    };
+    context.create_stream(config).await?;
+    let config = stream::Config {
+        name: CHECKPOINTS.to_owned(),
+        subjects: vec!["cellcaster.load.checkpoint.*".to_owned()],
+        max_messages_per_subject: 1,
         ..stream::Config::default()
     };
     context.create_stream(config).await?;
@@ -61,6 +73,7 @@ async fn load(rooms: usize, plan: &Plan) -> Result<(), Box<dyn Error>> {
         times.extend(written??);
     }
     context.delete_stream(STREAM).await?;
+    context.delete_stream(CHECKPOINTS).await?;
     report(rooms, plan.seconds, times);
     plan.print_others(&between(&before, &after));
     Ok(())
@@ -76,7 +89,11 @@ async fn write(
 ) -> Result<Vec<Duration>, Box<dyn Error + Send + Sync>> {
     let (log, peers) =
         (format!("cellcaster.load.log.{room}"), format!("cellcaster.load.peers.{room}"));
+    let checkpoint = format!("cellcaster.load.checkpoint.{room}");
+    let stream = context.get_stream_no_info(STREAM).await?;
     let (mut last, mut times) = (0, Vec::new());
+    // Rooms keep their checkpoints at different times.
+    let mut count = room;
     let mut ticks = interval(PERIOD);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
@@ -92,6 +109,11 @@ async fn write(
             times.push(due.elapsed());
         }
         client.publish(peers.clone(), vec![0; MESSAGE].into()).await?;
+        count += 1;
+        if count % KEPT == 0 {
+            context.publish(checkpoint.clone(), vec![0; CHECKPOINT].into()).await?.await?;
+            stream.purge().sequence(last).filter(log.clone()).await?;
+        }
     }
 }
 
