@@ -215,7 +215,7 @@ impl Replica {
             Some(sequencer) => {
                 let answers = sequencer.claim(&own, now);
                 sequencer.set_unclaimed_away(now);
-                self.tell_answers(answers).await;
+                self.send_answers(answers).await;
             }
             None if own.is_empty() => {}
             None => self.broadcast(&PeerMessage::Claim(own)).await,

@@ -28,7 +28,7 @@ impl Replica {
             }
             (PeerMessage::Claim(members), Some(sequencer)) => {
                 let answers = sequencer.claim(&members, now);
-                self.tell_answers(answers).await;
+                self.send_answers(answers).await;
             }
             (PeerMessage::Join(token, is_kept, name), Some(sequencer)) => {
                 if let Some(answer) = sequencer.request_join(token, &name, is_kept, now) {
@@ -42,8 +42,10 @@ impl Replica {
             }
             // Nobody has to wait until the room is silent.
             (PeerMessage::Released, None) => self.times.leased = None,
-            (answer @ (PeerMessage::Joined(..) | PeerMessage::Full(_)), _) => self.answer(&answer),
-            (PeerMessage::Taken(token), _) => self.refuse_return(token),
+            (
+                answer @ (PeerMessage::Joined(..) | PeerMessage::Full(_) | PeerMessage::Taken(_)),
+                _,
+            ) => self.answer(&answer),
             (
                 PeerMessage::Commands(_)
                 | PeerMessage::Claim(_)
@@ -60,13 +62,21 @@ impl Replica {
         _ = self.context.bus.broadcast(self.id, message.to_bytes()).await;
     }
 
-    /// Passes on answers of the sequencer that this host has.
-    pub(super) async fn tell_answers(&mut self, answers: Vec<PeerMessage>) {
+    /// Passes on answers of the sequencer, on all hosts.
+    pub(super) async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
         for answer in answers {
-            if let PeerMessage::Taken(token) = answer {
-                self.refuse_return(token);
-            }
+            self.answer(&answer);
             self.broadcast(&answer).await;
+        }
+    }
+
+    /// Passes on an answer of the sequencer, if the request was made here.
+    pub(super) fn answer(&mut self, answer: &PeerMessage) {
+        match *answer {
+            PeerMessage::Joined(token, member, color) => self.admit(token, member, color),
+            PeerMessage::Full(token) => self.refuse_join(token),
+            PeerMessage::Taken(token) => self.refuse_return(token),
+            _ => {}
         }
     }
 }

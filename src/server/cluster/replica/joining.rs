@@ -6,6 +6,7 @@ use tokio::sync::oneshot;
 use tokio::time::Instant;
 
 use super::Replica;
+use crate::game::PlayerColor;
 use crate::server::cluster::peer_message::PeerMessage;
 use crate::server::line::Line;
 use crate::server::room::MemberId;
@@ -89,20 +90,24 @@ impl Replica {
         }
     }
 
-    /// Passes on an answer of the sequencer, if the request was made here.
-    pub(super) fn answer(&mut self, answer: &PeerMessage) {
-        let (PeerMessage::Joined(token, ..) | PeerMessage::Full(token)) = answer else { return };
-        let index = self.pending_joins.iter().position(|pending| pending.token == *token);
-        let Some(index) = index else { return };
-        let PendingJoin { reply, .. } = self.pending_joins.swap_remove(index);
-        match *answer {
-            PeerMessage::Joined(_, member, color) => {
-                self.interface.inbox.admit(member, color);
-                if reply.send(Ok(member)).is_err() {
-                    self.interface.inbox.leave(member);
-                }
-            }
-            _ => _ = reply.send(Err(RoomRefusal::Full)),
+    /// Lets in whoever has asked for it here, as a member.
+    pub(super) fn admit(&mut self, token: u64, member: MemberId, color: PlayerColor) {
+        let Some(pending) = self.take_pending_join(token) else { return };
+        self.interface.inbox.admit(member, color);
+        if pending.reply.send(Ok(member)).is_err() {
+            self.interface.inbox.leave(member);
         }
+    }
+
+    /// Refuses whoever has asked here, since the room is full.
+    pub(super) fn refuse_join(&mut self, token: u64) {
+        if let Some(pending) = self.take_pending_join(token) {
+            _ = pending.reply.send(Err(RoomRefusal::Full));
+        }
+    }
+
+    fn take_pending_join(&mut self, token: u64) -> Option<PendingJoin> {
+        let index = self.pending_joins.iter().position(|pending| pending.token == token)?;
+        Some(self.pending_joins.swap_remove(index))
     }
 }

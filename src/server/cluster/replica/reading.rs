@@ -55,14 +55,6 @@ impl Replica {
         true
     }
 
-    /// Answers those who are in the room now, on all hosts.
-    pub(super) async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
-        for answer in answers {
-            self.answer(&answer);
-            self.broadcast(&answer).await;
-        }
-    }
-
     /// Applies a message, and shows the room after it. A fault ends the room on this host.
     pub(super) fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
