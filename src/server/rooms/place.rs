@@ -16,6 +16,9 @@ pub(crate) struct Place {
     room: RoomId,
     role: Role,
     interface: Arc<RoomInterface>,
+    /// The number of the member's seat. One who was removed and has returned by another connection has another one.
+    #[cfg(feature = "cluster")]
+    seat: Option<u64>,
     /// Whether the member is away, and does not leave, when the place is dropped.
     #[cfg(feature = "cluster")]
     is_kept: bool,
@@ -52,10 +55,17 @@ impl Place {
 
     fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
         let state = interface.shown.state();
+        #[cfg(feature = "cluster")]
+        let seat = match role {
+            Role::Member(member) => interface.inbox.seat_number(member),
+            Role::Watcher { .. } => None,
+        };
         Self {
             room,
             role,
             interface,
+            #[cfg(feature = "cluster")]
+            seat,
             #[cfg(feature = "cluster")]
             is_kept: false,
             state,
@@ -91,7 +101,9 @@ impl Place {
     /// Whether the member was removed from the room, which others have gone on with.
     #[cfg(feature = "cluster")]
     fn is_dismissed(&self) -> bool {
-        self.member_id().is_some_and(|member| !self.interface.inbox.seated().contains(&member))
+        self.member_id().is_some_and(|member| {
+            self.seat.is_none() || self.interface.inbox.seat_number(member) != self.seat
+        })
     }
 
     /// Sets whether the room keeps the place when it is dropped, since the host ends.
@@ -109,6 +121,10 @@ impl Place {
     /// Does something in the room.
     pub(crate) fn act(&self, command: Command) -> Result<(), CommandRefusal> {
         let member = self.member_id().ok_or(CommandRefusal::Impossible)?;
+        #[cfg(feature = "cluster")]
+        if self.is_dismissed() {
+            return Err(CommandRefusal::Impossible);
+        }
         self.interface.inbox.act(member, command)
     }
 
@@ -121,6 +137,8 @@ impl Place {
 impl Drop for Place {
     fn drop(&mut self) {
         match &self.role {
+            #[cfg(feature = "cluster")]
+            Role::Member(_) if self.is_dismissed() => {}
             #[cfg(feature = "cluster")]
             Role::Member(member) if self.is_kept => self.interface.inbox.part(*member),
             Role::Member(member) => self.interface.inbox.leave(*member),

@@ -166,3 +166,36 @@ fn the_end_of_a_round_is_an_event() {
     assert_eq!(ended.len(), 1, "{text}");
     assert!(ended[0].contains("winner="), "{text}");
 }
+
+#[cfg(feature = "cluster")]
+#[test]
+fn a_member_who_returns_by_another_connection_has_another_place() {
+    use tokio::sync::watch;
+
+    use crate::server::room::{CHAT_COLUMNS, Room};
+    use crate::server::sequencer::{Inbox, RoomInterface, Shown};
+    use crate::server::simulation;
+
+    let catalog = Arc::new(simulation::catalog(simulation::HALL));
+    let header = Header::new("hall", Mode::Roam, Difficulty::Normal, 7);
+    let room = Room::new(&catalog, header).unwrap();
+    let interface = Arc::new(RoomInterface {
+        inbox: Inbox::new(Mode::Roam, room.next_member()),
+        shown: Shown::new(room.view()),
+        closes_after: watch::Sender::new(None),
+    });
+    let member = interface.inbox.join(&Line::of("Mara", NAME_COLUMNS).unwrap()).unwrap();
+    let place = || Place::member(RoomId(1), member, Arc::clone(&interface));
+    let first = place();
+    assert!(first.closed().is_none());
+    interface.inbox.dismiss(member);
+    interface.inbox.admit(member, PlayerColor::ALL[0]);
+    let second = place();
+    assert!(first.closed().is_some() && second.closed().is_none());
+    let hello = Command::Say(Line::of("hello", CHAT_COLUMNS).unwrap());
+    assert!(first.act(hello.clone()).is_err());
+    drop(first);
+    assert!(second.closed().is_none() && second.act(hello).is_ok());
+    drop(second);
+    assert_eq!(interface.inbox.seated(), []);
+}

@@ -58,6 +58,9 @@ struct Waiting {
     next: u32,
     /// Those who have joined, whether the room knows it or not.
     seats: Vec<Seat>,
+    /// The seats that were ever taken.
+    #[cfg(feature = "cluster")]
+    seats_taken: u64,
     moves: VecDeque<(MemberId, Command)>,
     /// The number of steps so far, over all rounds.
     steps: u64,
@@ -67,6 +70,9 @@ struct Waiting {
 #[derive(Debug)]
 struct Seat {
     id: MemberId,
+    /// Who loses a seat and returns has another one.
+    #[cfg(feature = "cluster")]
+    number: u64,
     color: PlayerColor,
     intents: VecDeque<Command>,
     /// The step after which the next change of intents takes effect.
@@ -93,6 +99,8 @@ impl Inbox {
             most: mode.most(),
             next: next.0,
             seats: Vec::new(),
+            #[cfg(feature = "cluster")]
+            seats_taken: 0,
             moves: VecDeque::new(),
             steps: 0,
             finished: None,
@@ -112,8 +120,7 @@ impl Inbox {
     pub(crate) fn admit(&self, id: MemberId, color: PlayerColor) {
         locked(&self.waiting, |waiting| {
             waiting.next = waiting.next.max(id.0.saturating_add(1));
-            let seat = Seat::new(id, color, waiting.steps);
-            waiting.seats.push(seat);
+            waiting.seat(id, color);
         });
     }
 
@@ -221,24 +228,30 @@ impl Waiting {
         let id = MemberId(self.next);
         self.next += 1;
         self.moves.push_back((id, Command::Join { color, name: name.clone() }));
-        self.seats.push(Seat::new(id, color, self.steps));
+        self.seat(id, color);
         Ok(id)
     }
-}
 
-impl Seat {
-    fn new(id: MemberId, color: PlayerColor, steps: u64) -> Self {
-        Self {
+    fn seat(&mut self, id: MemberId, color: PlayerColor) {
+        #[cfg(feature = "cluster")]
+        {
+            self.seats_taken += 1;
+        }
+        self.seats.push(Seat {
             id,
+            #[cfg(feature = "cluster")]
+            number: self.seats_taken,
             color,
             intents: VecDeque::new(),
             next_intents: 0,
             talk: VecDeque::new(),
-            chat: Pace::new(4, steps),
-            emotes: Pace::new(1, steps),
-        }
+            chat: Pace::new(4, self.steps),
+            emotes: Pace::new(1, self.steps),
+        });
     }
+}
 
+impl Seat {
     fn act(&mut self, command: Command, steps: u64) -> Result<(), CommandRefusal> {
         let pace = match command {
             Command::Intents { .. } => {

@@ -61,9 +61,18 @@ impl Run {
             let members = there.entry(place.room()).or_default();
             assert!(members.insert(place.member_id().expect("a member")), "two are one member");
         }
-        for (host, place) in self.players.iter().flat_map(|player| &player.taken) {
-            let is_killed = self.hosts[*host].is_killed;
-            assert!(is_killed || place.closed().is_some(), "a place that was taken is open");
+        for player in &self.players {
+            for (host, place) in &player.taken {
+                let is_killed = self.hosts[*host].is_killed;
+                let at = |place: &Place| (place.room(), place.member_id());
+                let now = player.place.as_ref().map(at);
+                assert!(
+                    is_killed || place.closed().is_some(),
+                    "{:?} was taken from host {host} and is open; they are {now:?} on host {}",
+                    at(place),
+                    player.host
+                );
+            }
         }
         let now = Instant::now();
         for (room, members) in there {

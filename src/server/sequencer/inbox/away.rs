@@ -5,6 +5,13 @@ use crate::server::locked;
 use crate::server::room::{Command, MemberId};
 
 impl Inbox {
+    /// The number of a member's seat, which no other seat ever has; `None` if they have none.
+    pub(crate) fn seat_number(&self, id: MemberId) -> Option<u64> {
+        locked(&self.waiting, |waiting| {
+            waiting.seats.iter().find(|seat| seat.id == id).map(|seat| seat.number)
+        })
+    }
+
     /// Whether somebody is about to come or go.
     pub(crate) fn has_moves(&self) -> bool {
         locked(&self.waiting, |waiting| !waiting.moves.is_empty())
