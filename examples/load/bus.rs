@@ -110,7 +110,7 @@ async fn write(
         }
         client.publish(peers.clone(), vec![0; MESSAGE].into()).await?;
         count += 1;
-        if count % KEPT == 0 {
+        if count.is_multiple_of(KEPT) {
             context.publish(checkpoint.clone(), vec![0; CHECKPOINT].into()).await?.await?;
             stream.purge().sequence(last).filter(log.clone()).await?;
         }

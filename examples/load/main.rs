@@ -116,7 +116,7 @@ async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error
         plan.sessions,
         megabytes(&after)
     );
-    Report::new(&tallies, plan.seconds, process::between(&before, &after)).print();
+    Report::new(&tallies, plan.seconds, &process::between(&before, &after)).print();
     plan.print_others(&process::between(&others_before, &others_after));
     Ok(())
 }

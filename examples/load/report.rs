@@ -23,7 +23,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: Vec<Duration>) -> Self {
+    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: &[Duration]) -> Self {
         let seconds = seconds as f64;
         let mut frames: Vec<f64> = tallies.iter().map(|it| it.frames as f64 / seconds).collect();
         frames.sort_by(f64::total_cmp);
