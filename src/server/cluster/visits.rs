@@ -4,13 +4,13 @@
 //!
 //! - A visit begins in the database when it is known who the visitor is, and ends with their session.
 //! - A host announces itself each second. The visits of one that has not done so for [`THERE`] do not count.
-//! - Who is one too many may be so because of a host that was killed just now, as one who returns from there.
-//!   So they wait until the hosts of the visits in the way have announced themselves since, or count no more.
+//! - A visitor may be over a limit because of their own visit on a host that was just killed. So a visitor over a
+//!   limit waits until each host of the earlier visits has announced itself again, or its visits no longer count.
 //! - While the database is away nobody begins a visit, and those that run go on. What has ended meanwhile is
 //!   ended in the database later.
 //!
-//! That a visitor takes an earlier visit over was refused: two clients that connect again by themselves
-//! would end each other for ever.
+//! A new visit in place of an earlier one was refused: two clients that connect again by themselves would end
+//! each other's visits for ever.
 
 mod keeper;
 #[cfg(test)]
@@ -35,7 +35,7 @@ use crate::store::host::{
 pub(super) const ANNOUNCED: Duration = Duration::from_secs(1);
 /// The time in which a host that has announced itself is there.
 pub(super) const THERE: Duration = Duration::from_secs(5);
-/// The time after which a visitor who is one too many is counted again.
+/// The time after which a visitor over a limit is counted again.
 const AGAIN: Duration = Duration::from_millis(250);
 /// The most calls that wait.
 const MOST_CALLS: usize = 256;
