@@ -1,8 +1,10 @@
 //! Requests to return to a member, who may have a host.
 //!
-//! Who is away has none. Who was not claimed for [`UNHEARD`] since the request has none, almost certainly: the log
-//! does not show yet that their host is gone. If they have one nevertheless, it notices that the token is
-//! not its own, and lets them go. Who is claimed has a host: nobody takes the place of one who plays.
+//! - A member who is away has no host.
+//! - A member whom no host has claimed for [`UNHEARD`] since the request has none, almost certainly: the log does not
+//!   show yet that the host is gone. If there is one nevertheless, it sees that the token is not its own, and lets the
+//!   member go.
+//! - A member who is claimed has a host: nobody takes the place of a member who plays.
 
 use std::time::Duration;
 
