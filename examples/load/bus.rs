@@ -17,7 +17,8 @@ use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
 use crate::plan::Plan;
-use crate::process::{Usage, between};
+use crate::process::between;
+use crate::report::percentile;
 
 const STREAM: &str = "CELLCASTER_LOAD";
 const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
@@ -65,9 +66,9 @@ async fn load(rooms: usize, plan: &Plan) -> Result<(), Box<dyn Error>> {
         });
     }
     tokio::time::sleep_until(begin).await;
-    let before: Vec<Usage> = plan.beside.iter().map(|&it| Usage::of(it)).collect();
+    let before = plan.others();
     tokio::time::sleep_until(begin + seconds).await;
-    let after: Vec<Usage> = plan.beside.iter().map(|&it| Usage::of(it)).collect();
+    let after = plan.others();
     let mut times = Vec::new();
     while let Some(written) = writers.join_next().await {
         times.extend(written??);
@@ -119,11 +120,11 @@ async fn write(
 
 fn report(rooms: usize, seconds: u64, mut times: Vec<Duration>) {
     times.sort();
-    let percentile = |percent: usize| {
-        let time = times.get(times.len() * percent / 100).copied().unwrap_or_default();
-        time.as_secs_f64() * 1000.0
-    };
     let rate = times.len() as f64 / seconds as f64;
     println!("rooms         {rooms}, {:.1} messages a second and room", rate / rooms.max(1) as f64);
-    println!("append        p50 {:.1} ms, p99 {:.1} ms", percentile(50), percentile(99));
+    println!(
+        "append        p50 {:.1} ms, p99 {:.1} ms",
+        percentile(&times, 50),
+        percentile(&times, 99)
+    );
 }

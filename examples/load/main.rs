@@ -103,11 +103,11 @@ async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error
         silent.push(client::never_read(servers[0].address, &servers[0].access).await?);
     }
     sleep(Duration::from_secs(2)).await;
-    let (before, others_before) = (usage(servers), others(plan));
+    let (before, others_before) = (usage(servers), plan.others());
     counts.store(true, Ordering::Release);
     sleep(Duration::from_secs(plan.seconds)).await;
     counts.store(false, Ordering::Release);
-    let (after, others_after) = (usage(servers), others(plan));
+    let (after, others_after) = (usage(servers), plan.others());
     let tallies = ended(clients).await;
     println!(
         "memory        {:.1} MB empty, {:.1} MB with {} sessions, {:.1} MB at the end",
@@ -124,11 +124,6 @@ async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error
 /// What each of the servers has used so far.
 fn usage(servers: &[ServerProcess]) -> Vec<Usage> {
     servers.iter().map(ServerProcess::usage).collect()
-}
-
-/// What each of the other processes has used so far.
-fn others(plan: &Plan) -> Vec<Usage> {
-    plan.beside.iter().map(|&process| Usage::of(process)).collect()
 }
 
 fn megabytes(usage: &[Usage]) -> f64 {

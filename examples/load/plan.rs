@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::time::Duration;
 
+use crate::process::Usage;
+
 /// What to do.
 pub(crate) struct Plan {
     pub(crate) sessions: usize,
@@ -71,6 +73,11 @@ impl Plan {
     pub(crate) fn option(&self, name: &str) -> Option<&str> {
         let pair = self.options.chunks(2).find(|pair| pair[0] == name)?;
         Some(&pair[1])
+    }
+
+    /// What each of the other processes has used so far.
+    pub(crate) fn others(&self) -> Vec<Usage> {
+        self.beside.iter().map(|&process| Usage::of(process)).collect()
     }
 
     /// Prints the time that the other processes have used.

@@ -51,8 +51,8 @@ impl Report {
         println!("bytes         {:.1} KB a second and session", self.bytes / count / 1000.0);
         println!(
             "key to bytes  p50 {:.1} ms, p99 {:.1} ms, {} keys",
-            self.percentile(50),
-            self.percentile(99),
+            percentile(&self.delays, 50),
+            percentile(&self.delays, 99),
             self.delays.len()
         );
         let busy: f64 = self.busy.iter().sum();
@@ -63,9 +63,10 @@ impl Report {
             busy * 1e6 / (mean * count).max(1.0)
         );
     }
+}
 
-    fn percentile(&self, percent: usize) -> f64 {
-        let index = self.delays.len() * percent / 100;
-        self.delays.get(index).map_or(0.0, |delay| delay.as_secs_f64() * 1000.0)
-    }
+/// A percentile of times that are in order, in milliseconds; 0 if there is none.
+pub(crate) fn percentile(times: &[Duration], percent: usize) -> f64 {
+    let time = times.get(times.len() * percent / 100);
+    time.map_or(0.0, |time| time.as_secs_f64() * 1000.0)
 }
