@@ -36,7 +36,7 @@ pub(super) fn run(mut options: Serve) -> Result<(), Error> {
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
     let database = host_store::named(options.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
-    let place = cluster::place(&options, &database)?;
+    let cluster = cluster::pending(&options, &database)?;
     let (store, damage) =
         host_store::open(&database).map_err(|failure| Error::mistake(failure.to_string()))?;
     if let Some(sentence) = damage {
@@ -47,7 +47,8 @@ pub(super) fn run(mut options: Serve) -> Result<(), Error> {
         Database::Address(_) => Some(waiting(&folder)?),
     };
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
-    let parts = Parts { config, key, folder: &folder, format: options.log, store, waiting, place };
+    let parts =
+        Parts { config, key, folder: &folder, format: options.log, store, waiting, cluster };
     let ended = runtime.block_on(serve(configuration, parts));
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
@@ -65,11 +66,11 @@ struct Parts<'a> {
     /// With a store that may be away.
     waiting: Option<WaitingResults>,
     /// In a cluster.
-    place: Option<cluster::Place>,
+    cluster: Option<cluster::PendingCluster>,
 }
 
 async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
-    let Parts { config, key, folder, format, store, waiting, place } = parts;
+    let Parts { config, key, folder, format, store, waiting, cluster } = parts;
     let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
     let signals = Signals::catch().map_err(no_signals)?;
     let hangups = Hangups::catch().map_err(no_signals)?;
@@ -94,8 +95,8 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     if let Some(waiting) = waiting {
         host = host.with_waiting(waiting);
     }
-    if let Some(place) = place {
-        host = place.take(host, address).await?;
+    if let Some(cluster) = cluster {
+        host = cluster.join(host, address).await?;
     }
     let host = GameHost::start(host);
     // The rooms take a moment to make. Those who are invited, and operators, are answered at once.

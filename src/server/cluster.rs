@@ -50,7 +50,7 @@ pub(super) use self::operators::OtherHosts;
 use self::record::Record;
 use self::room_state::RoomState;
 use self::visits::Visits;
-pub(super) use self::visits::{CountedVisit, Newcomer, VisitRefusal};
+pub(super) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
 use super::load::Load;
 use super::locked;
 use super::room::Catalog;

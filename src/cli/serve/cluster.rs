@@ -1,4 +1,4 @@
-//! The place of the host in a cluster: what it needs, before anything runs.
+//! The cluster of a host: what joining it needs, before anything runs.
 
 use std::net::SocketAddr;
 
@@ -9,22 +9,22 @@ use crate::server::HostParts;
 #[cfg(feature = "cluster")]
 use crate::store::host::{HostNotice, PostgresStore};
 
-/// A place in a cluster that is still to be taken.
+/// A cluster that the host is going to join.
 #[cfg(feature = "cluster")]
-pub(super) struct Place {
+pub(super) struct PendingCluster {
     address: String,
     /// Each on a connection of its own, so that they wait for nothing else.
     leases: PostgresStore,
     presence: PostgresStore,
 }
 
-/// There is none.
+/// There is none in this program.
 #[cfg(not(feature = "cluster"))]
-pub(super) enum Place {}
+pub(super) enum PendingCluster {}
 
-/// The place that `options` name. The store is that of all hosts.
+/// The cluster that `options` name. The store is that of all hosts.
 #[cfg(feature = "cluster")]
-pub(super) fn place(options: &Serve, store: &Database) -> Result<Option<Place>, Error> {
+pub(super) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
     let Some(address) = &options.cluster else { return Ok(None) };
     let Database::Address(store) = store else {
         return Err(Error::mistake(
@@ -36,12 +36,12 @@ pub(super) fn place(options: &Serve, store: &Database) -> Result<Option<Place>, 
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
     let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
-    Ok(Some(Place { address: address.0.clone(), leases: open()?, presence: open()? }))
+    Ok(Some(PendingCluster { address: address.0.clone(), leases: open()?, presence: open()? }))
 }
 
 /// None, since this program cannot be in a cluster.
 #[cfg(not(feature = "cluster"))]
-pub(super) fn place(options: &Serve, _: &Database) -> Result<Option<Place>, Error> {
+pub(super) fn pending(options: &Serve, _: &Database) -> Result<Option<PendingCluster>, Error> {
     match &options.cluster {
         None => Ok(None),
         Some(_) => Err(Error::mistake(
@@ -50,10 +50,10 @@ pub(super) fn place(options: &Serve, _: &Database) -> Result<Option<Place>, Erro
     }
 }
 
-impl Place {
-    /// Takes the place, under a name that no other host has, with a host that listens at `address`.
+impl PendingCluster {
+    /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
     #[cfg(feature = "cluster")]
-    pub(super) async fn take(
+    pub(super) async fn join(
         self,
         host: HostParts,
         address: SocketAddr,
@@ -71,7 +71,7 @@ impl Place {
 
     #[cfg(not(feature = "cluster"))]
     #[expect(clippy::unused_async, reason = "as that of a program that can be in a cluster")]
-    pub(super) async fn take(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
+    pub(super) async fn join(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
         match self {}
     }
 }

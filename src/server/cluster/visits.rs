@@ -12,7 +12,7 @@
 //! A new visit in place of an earlier one was refused: two clients that connect again by themselves would end
 //! each other's visits for ever.
 
-mod keeper;
+mod registry;
 #[cfg(test)]
 mod tests;
 
@@ -25,7 +25,7 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-pub(super) use self::keeper::Keeper;
+pub(super) use self::registry::VisitRegistry;
 use crate::server::{Refusal, locked};
 use crate::store::host::{
     AccountKey, AddressPrefix, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor,
@@ -55,9 +55,9 @@ pub(in crate::server) struct CountedVisit {
     visits: Visits,
 }
 
-/// Somebody who begins a visit.
+/// A visit that is to begin, and the most there may be.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::server) struct Newcomer {
+pub(in crate::server) struct NewVisit {
     /// `None` for a guest.
     pub(in crate::server) key: Option<AccountKey>,
     /// The most visits with the key.
@@ -80,7 +80,7 @@ pub(in crate::server) enum VisitRefusal {
 #[derive(Debug)]
 pub(super) enum Call {
     /// To begin a visit; its guard has the sender.
-    Begin(Newcomer, Visits, oneshot::Sender<Begun>),
+    Begin(NewVisit, Visits, oneshot::Sender<Begun>),
     /// To end what has ended.
     End,
     /// To announce the host with so many visitors.
@@ -110,10 +110,10 @@ impl Visits {
     /// Starts the thread, for the host of `notice`.
     pub(super) fn start(mut presence: Box<dyn Presence>, notice: HostNotice) -> io::Result<Self> {
         let (visits, mut queue) = Self::new();
-        let mut keeper = Keeper::new(notice, &visits);
+        let mut registry = VisitRegistry::new(notice, &visits);
         thread::Builder::new().name("visits".to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
-                keeper.run(&mut *presence, call);
+                registry.run(&mut *presence, call);
             }
         })?;
         Ok(visits)
@@ -122,13 +122,13 @@ impl Visits {
     /// Begins a visit.
     pub(in crate::server) async fn begin(
         &self,
-        newcomer: Newcomer,
+        new_visit: NewVisit,
     ) -> Result<CountedVisit, VisitRefusal> {
         let came = Instant::now();
         loop {
             let waited = came.elapsed();
             let (reply, answer) = oneshot::channel();
-            self.call(Call::Begin(newcomer, self.clone(), reply));
+            self.call(Call::Begin(new_visit, self.clone(), reply));
             let begun = answer.await.map_err(|_| "too many calls wait".to_owned());
             let begun = begun.and_then(|begun| begun.map_err(|failure| failure.to_string()));
             match begun.map_err(VisitRefusal::NotNow)? {
@@ -166,7 +166,7 @@ impl Visits {
     }
 }
 
-impl Newcomer {
+impl NewVisit {
     /// As whom they count, with the most visits and the reason of a refusal.
     fn limits(&self) -> impl Iterator<Item = (Visitor, u32, Refusal)> {
         let by_key = self.key.map(|key| (Visitor::Key(key), self.per_key, Refusal::Key));

@@ -2,7 +2,7 @@
 
 use super::Shared;
 use super::account::NOT_KNOWN;
-use crate::server::cluster::{CountedVisit, Newcomer, VisitRefusal};
+use crate::server::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::server::logging::events;
 use crate::server::{Refusal, Visitor};
 use crate::store::host::AccountKey;
@@ -16,13 +16,13 @@ impl Shared {
     ) -> Result<Option<CountedVisit>, (&'static str, Option<Refusal>)> {
         let Some(rooms) = &self.cluster else { return Ok(None) };
         let limits = self.config.get().admission;
-        let newcomer = Newcomer {
+        let new_visit = NewVisit {
             key,
             per_key: limits.per_key,
             address: visitor.peer.ip(),
             per_address: limits.per_address,
         };
-        rooms.visits().begin(newcomer).await.map(Some).map_err(|refusal| match refusal {
+        rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
             VisitRefusal::TooMany(reason) => (reason.sentence(), Some(reason)),
             VisitRefusal::NotNow(failure) => {
                 self.metrics.store_errors.count();

@@ -10,7 +10,7 @@ use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, HostRequest, Key};
 use super::super::lease_worker::{self, Call, LeaseWorker};
-use super::super::visits::{Keeper, Visits};
+use super::super::visits::{VisitRegistry, Visits};
 use super::bus::SimulatedBus;
 use crate::rng::SplitMix64;
 use crate::server::locked;
@@ -122,13 +122,13 @@ impl World {
     /// The visits of a host, by the same clock.
     pub(super) fn visits(&self, host: usize) -> Visits {
         let (visits, mut queue) = Visits::new();
-        let mut keeper = Keeper::new(notice(host), &visits);
+        let mut registry = VisitRegistry::new(notice(host), &visits);
         let world = self.clone();
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
                 world.pass(host).await;
                 if !world.link(host).has_no_database {
-                    world.with(|inner| keeper.run(inner.presence(), call));
+                    world.with(|inner| registry.run(inner.presence(), call));
                 }
             }
         });

@@ -36,7 +36,7 @@ impl Hosts {
     fn add(&mut self, host: usize) {
         let (visits, mut queue) = Visits::new();
         let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
-        let mut keeper = Keeper::new(notice, &visits);
+        let mut registry = VisitRegistry::new(notice, &visits);
         let database = Arc::clone(&self.database);
         let announcing = visits.clone();
         let announces = tokio::spawn(async move {
@@ -47,14 +47,14 @@ impl Hosts {
         });
         let keeps = tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
-                locked(&database, |database| database.run(&mut keeper, call));
+                locked(&database, |database| database.run(&mut registry, call));
             }
         });
         self.running.push(Running { visits, tasks: [announces, keeps] });
     }
 
-    async fn begin(&self, host: usize, newcomer: Newcomer) -> Result<CountedVisit, VisitRefusal> {
-        self.running[host].visits.begin(newcomer).await
+    async fn begin(&self, host: usize, new_visit: NewVisit) -> Result<CountedVisit, VisitRefusal> {
+        self.running[host].visits.begin(new_visit).await
     }
 
     /// Nothing of a host reaches the database any more.
@@ -76,12 +76,12 @@ impl Hosts {
 }
 
 impl Database {
-    fn run(&mut self, keeper: &mut Keeper, call: Call) {
+    fn run(&mut self, registry: &mut VisitRegistry, call: Call) {
         self.pass();
         if self.is_away {
-            keeper.run(&mut Away, call);
+            registry.run(&mut Away, call);
         } else {
-            keeper.run(&mut self.presence, call);
+            registry.run(&mut self.presence, call);
         }
     }
 
@@ -136,9 +136,9 @@ fn run(test: impl AsyncFnOnce(Hosts)) {
     runtime.block_on(async { test(Hosts::new(2)).await });
 }
 
-fn newcomer(key: u8, last: u8) -> Newcomer {
+fn new_visit(key: u8, last: u8) -> NewVisit {
     let address = IpAddr::from([192, 0, 2, last]);
-    Newcomer { key: Some(AccountKey::new([key; 32])), per_key: 1, address, per_address: 2 }
+    NewVisit { key: Some(AccountKey::new([key; 32])), per_key: 1, address, per_address: 2 }
 }
 
 const TOO_MANY_KEYS: VisitRefusal = VisitRefusal::TooMany(Refusal::Key);
@@ -146,29 +146,29 @@ const TOO_MANY_KEYS: VisitRefusal = VisitRefusal::TooMany(Refusal::Key);
 #[test]
 fn a_key_and_an_address_are_limited_over_all_hosts() {
     run(async |hosts| {
-        let visit = hosts.begin(0, newcomer(1, 1)).await.unwrap();
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let came = Instant::now();
-        assert_eq!(hosts.begin(1, newcomer(1, 2)).await.unwrap_err(), TOO_MANY_KEYS);
+        assert_eq!(hosts.begin(1, new_visit(1, 2)).await.unwrap_err(), TOO_MANY_KEYS);
         assert!(came.elapsed() < ANNOUNCED * 2, "{:?}", came.elapsed());
-        let _other = hosts.begin(1, newcomer(2, 1)).await.unwrap();
+        let _other = hosts.begin(1, new_visit(2, 1)).await.unwrap();
         let refusal = VisitRefusal::TooMany(Refusal::Address);
-        assert_eq!(hosts.begin(1, newcomer(3, 1)).await.unwrap_err(), refusal);
+        assert_eq!(hosts.begin(1, new_visit(3, 1)).await.unwrap_err(), refusal);
         // Who is refused by one limit counts by none.
         assert_eq!(hosts.count(), 4);
         drop(visit);
-        hosts.begin(1, newcomer(1, 1)).await.unwrap();
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
     });
 }
 
 #[test]
 fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
     run(async |hosts| {
-        let visit = hosts.begin(0, newcomer(1, 1)).await.unwrap();
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         sleep(Duration::from_secs(10)).await;
         hosts.kill(0);
         drop(visit);
         let came = Instant::now();
-        let _visit = hosts.begin(1, newcomer(1, 1)).await.unwrap();
+        let _visit = hosts.begin(1, new_visit(1, 1)).await.unwrap();
         assert!(came.elapsed() < THERE + ANNOUNCED, "{:?}", came.elapsed());
         assert!(came.elapsed() + ANNOUNCED >= THERE, "{:?}", came.elapsed());
     });
@@ -177,18 +177,18 @@ fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
 #[test]
 fn what_ends_while_the_database_is_away_is_ended_later() {
     run(async |hosts| {
-        let visit = hosts.begin(0, newcomer(1, 1)).await.unwrap();
-        let other = hosts.begin(0, newcomer(2, 2)).await.unwrap();
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
+        let other = hosts.begin(0, new_visit(2, 2)).await.unwrap();
         hosts.set_away(true);
-        let refusal = hosts.begin(1, newcomer(3, 3)).await.unwrap_err();
+        let refusal = hosts.begin(1, new_visit(3, 3)).await.unwrap_err();
         assert!(matches!(refusal, VisitRefusal::NotNow(_)), "{refusal:?}");
         drop(visit);
         sleep(Duration::from_secs(20)).await;
         hosts.set_away(false);
         sleep(ANNOUNCED * 2).await;
         assert_eq!(hosts.count(), 2);
-        hosts.begin(1, newcomer(1, 1)).await.unwrap();
-        assert_eq!(hosts.begin(1, newcomer(2, 2)).await.unwrap_err(), TOO_MANY_KEYS);
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
+        assert_eq!(hosts.begin(1, new_visit(2, 2)).await.unwrap_err(), TOO_MANY_KEYS);
         drop(other);
     });
 }
@@ -196,24 +196,24 @@ fn what_ends_while_the_database_is_away_is_ended_later() {
 #[test]
 fn a_visitor_who_has_gone_before_the_answer_counts_no_more() {
     run(async |hosts| {
-        let begin = hosts.begin(0, newcomer(1, 1));
+        let begin = hosts.begin(0, new_visit(1, 1));
         assert!(tokio::time::timeout(Duration::ZERO, begin).await.is_err());
         sleep(Duration::from_millis(1)).await;
         assert_eq!(hosts.count(), 0);
-        hosts.begin(1, newcomer(1, 1)).await.unwrap();
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
     });
 }
 
 #[test]
 fn a_host_that_ends_has_nobody() {
     run(async |hosts| {
-        let visit = hosts.begin(0, newcomer(1, 1)).await.unwrap();
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
         let host = &hosts.running[0].visits;
         assert_eq!(host.hosts().await.unwrap().len(), 2);
         host.leave().await;
         drop(visit);
         sleep(ANNOUNCED * 2).await;
         assert_eq!((hosts.count(), host.hosts().await.unwrap().len()), (0, 1));
-        hosts.begin(1, newcomer(1, 1)).await.unwrap();
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
     });
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
-use super::{Call, CountedVisit, Newcomer, THERE, TooMany, Visits};
+use super::{Call, CountedVisit, NewVisit, THERE, TooMany, Visits};
 use crate::server::locked;
 use crate::server::logging::events;
 use crate::store::host::{HostNotice, Presence, StoreFailure, VisitBegin, VisitId};
 
 /// The visits of this host.
-pub(in crate::server::cluster) struct Keeper {
+pub(in crate::server::cluster) struct VisitRegistry {
     notice: HostNotice,
     /// Those that count, and that nobody has ended.
     counting: BTreeSet<VisitId>,
@@ -21,7 +21,7 @@ pub(in crate::server::cluster) struct Keeper {
     has_left: bool,
 }
 
-impl Keeper {
+impl VisitRegistry {
     pub(in crate::server::cluster) fn new(notice: HostNotice, visits: &Visits) -> Self {
         let (counting, ended) = (BTreeSet::new(), Arc::clone(&visits.ended));
         Self { notice, counting, ended, is_unsure: false, is_away: false, has_left: false }
@@ -31,8 +31,8 @@ impl Keeper {
     pub(in crate::server::cluster) fn run(&mut self, presence: &mut dyn Presence, call: Call) {
         self.end(presence);
         match call {
-            Call::Begin(newcomer, visits, reply) => {
-                let begun = self.begin(presence, &newcomer);
+            Call::Begin(new_visit, visits, reply) => {
+                let begun = self.begin(presence, &new_visit);
                 let begun = begun.map(|begun| begun.map(|ids| CountedVisit { ids, visits }));
                 // A visit that nobody waits for any more ends when it is dropped.
                 _ = reply.send(begun);
@@ -53,10 +53,10 @@ impl Keeper {
     fn begin(
         &mut self,
         presence: &mut dyn Presence,
-        newcomer: &Newcomer,
+        new_visit: &NewVisit,
     ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
         let mut ids = Vec::new();
-        for (visitor, most, reason) in newcomer.limits() {
+        for (visitor, most, reason) in new_visit.limits() {
             match presence.begin_visit(&self.notice.name, &visitor, most, THERE) {
                 Ok(VisitBegin::Begun(id)) => {
                     self.counting.insert(id);
