@@ -12,7 +12,7 @@ use super::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue,
     Recorded, Room, replayed,
 };
-use super::session::{HostFacts, Identity, IdleLimits, News, Request, Session};
+use super::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
 use super::summary::{RoomId, RoomSummary};
 use crate::app::Configuration;
 use crate::game::PlayerColor;
@@ -100,19 +100,19 @@ impl Hall {
     }
 
     /// The host tells a visitor something.
-    pub fn tell(&mut self, visitor: usize, seconds: u64) {
+    pub fn notify(&mut self, visitor: usize, seconds: u64) {
         let line = Line::of("The host speaks.", CHAT_COLUMNS).expect("it fits");
-        let news = match seconds % 5 {
-            0 => News::Draining { seconds, can_return: seconds % 10 == 0 },
-            1 => News::Said(line),
-            2 => News::Result("It was refused.".to_owned()),
+        let event = match seconds % 5 {
+            0 => SessionEvent::Draining { seconds, can_return: seconds % 10 == 0 },
+            1 => SessionEvent::Said(line),
+            2 => SessionEvent::Result("It was refused.".to_owned()),
             3 => {
                 self.leave(visitor);
-                News::Left("The room is closed.".to_owned())
+                SessionEvent::Left("The room is closed.".to_owned())
             }
-            _ => News::Refused("The room is full.".to_owned()),
+            _ => SessionEvent::Refused("The room is full.".to_owned()),
         };
-        self.visitors[visitor].session.tell(news, self.now);
+        self.visitors[visitor].session.notify(event, self.now);
         self.answer(visitor);
     }
 
@@ -188,30 +188,30 @@ impl Hall {
                 return;
             }
             for ask in requests {
-                if let Some(news) = self.grant(visitor, ask) {
-                    self.visitors[visitor].session.tell(news, self.now);
+                if let Some(event) = self.grant(visitor, ask) {
+                    self.visitors[visitor].session.notify(event, self.now);
                 }
             }
         }
     }
 
-    fn grant(&mut self, visitor: usize, ask: Request) -> Option<News> {
+    fn grant(&mut self, visitor: usize, ask: Request) -> Option<SessionEvent> {
         match ask {
             Request::Name(text) => {
                 let line = Line::of(&text, NAME_COLUMNS).ok_or("Take another one.".to_owned());
                 if let Ok(line) = &line {
                     self.visitors[visitor].name = line.clone();
                 }
-                Some(News::Named(line))
+                Some(SessionEvent::Named(line))
             }
-            Request::Rooms => Some(News::Rooms([self.summary()].into())),
+            Request::Rooms => Some(SessionEvent::Rooms([self.summary()].into())),
             Request::Enter { watches: true, .. } => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
-                Some(News::Entered { room: ROOM, member: None })
+                Some(SessionEvent::Entered { room: ROOM, member: None })
             }
             Request::Enter { .. } | Request::Open(_) if self.room.is_full() => {
-                Some(News::Refused("The room is full.".to_owned()))
+                Some(SessionEvent::Refused("The room is full.".to_owned()))
             }
             Request::Enter { .. } | Request::Open(_) => {
                 self.leave(visitor);
@@ -221,7 +221,7 @@ impl Hall {
                 self.apply(member, Command::Join { color, name });
                 let Visitor { member: own, is_inside, .. } = &mut self.visitors[visitor];
                 (*own, *is_inside) = (Some(member), true);
-                Some(News::Entered { room: ROOM, member: Some(member) })
+                Some(SessionEvent::Entered { room: ROOM, member: Some(member) })
             }
             Request::Command(command) => {
                 if let Some(member) = self.visitors[visitor].member {
@@ -234,10 +234,10 @@ impl Hall {
                 None
             }
             Request::Board { level, difficulty } => {
-                Some(News::Board { level, difficulty, rows: [].into() })
+                Some(SessionEvent::Board { level, difficulty, rows: [].into() })
             }
             Request::Ghosts { level, difficulty } => {
-                Some(News::Ghosts { level, difficulty, ghosts: [].into() })
+                Some(SessionEvent::Ghosts { level, difficulty, ghosts: [].into() })
             }
             Request::Save(settings) => {
                 assert!(settings.configuration.len() <= AccountSettings::MOST_BYTES);

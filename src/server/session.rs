@@ -1,10 +1,10 @@
 //! The session of a visitor: what they see, and what their keys do.
 //!
 //! A session has no connection, no clock and no room. The driver passes it what arrives and when,
-//! takes bytes and [wishes](Request) from it, brings it [news](News), and shows it the newest
+//! takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows it the newest
 //! [snapshot](RoomView) of the room. The order of calls:
 //!
-//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`tell`](Session::tell),
+//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`notify`](Session::notify),
 //!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and [`output`](Session::output);
 //! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
 //! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
@@ -15,6 +15,7 @@
 
 mod choice;
 mod draw;
+mod events;
 mod ghosts;
 mod idle;
 mod intent_queue;
@@ -22,7 +23,7 @@ mod keys;
 mod line_entry;
 mod look;
 mod menus;
-mod news;
+mod messages;
 mod pace;
 mod page;
 mod room_keys;
@@ -30,7 +31,6 @@ mod settings;
 mod shown_steps;
 mod stay;
 mod talk;
-mod tell;
 #[cfg(test)]
 mod tests;
 mod visit;
@@ -38,7 +38,7 @@ mod visit;
 use std::time::Duration;
 
 use self::look::Look;
-pub(crate) use self::news::{BoardRow, HostFacts, Identity, IdleLimits, News, Request};
+pub(crate) use self::messages::{BoardRow, HostFacts, Identity, IdleLimits, Request, SessionEvent};
 use self::pace::Pace;
 use self::visit::Visit;
 use super::room::RoomView;
@@ -115,13 +115,13 @@ impl Session {
     }
 
     /// Records what the driver brings.
-    pub(crate) fn tell(&mut self, news: News, now: Duration) {
+    pub(crate) fn notify(&mut self, event: SessionEvent, now: Duration) {
         self.visit.advance(now);
-        self.visit.tell(news);
+        self.visit.notify(event);
         self.finish(now);
     }
 
-    /// Does what is due at `now` without bytes and news.
+    /// Does what is due at `now` without bytes and events.
     pub(crate) fn wake(&mut self, now: Duration) {
         self.protocol.wake(now);
         self.handle_events(now);

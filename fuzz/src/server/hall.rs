@@ -70,7 +70,7 @@ pub(super) fn run(choices: &mut Bytes) {
                 terminal.screen.resize(size.columns.max(1), size.rows.max(1));
                 hall.resize(visitor, size);
             }
-            10 => hall.tell(visitor, choices.byte().into()),
+            10 => hall.notify(visitor, choices.byte().into()),
             11 => hall.pass(choices.byte().into()),
             _ => {
                 let answers = std::mem::take(&mut terminal.answers);

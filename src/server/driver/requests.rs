@@ -14,7 +14,7 @@ use crate::server::room::Command;
 #[cfg(feature = "cluster")]
 use crate::server::rooms::{Place, RoomRefusal};
 use crate::server::sequencer::{CommandRefusal, FinishedRun};
-use crate::server::session::{News, Request};
+use crate::server::session::{Request, SessionEvent};
 use crate::store::host::{Account, AccountSettings, Name, Origin};
 use crate::world::Difficulty;
 
@@ -22,7 +22,7 @@ use crate::world::Difficulty;
 pub(super) enum Reply {
     /// A name, with the account that has it now; `None` for a guest.
     Named(Name, Result<Option<Account>, String>),
-    News(News),
+    SessionEvent(SessionEvent),
     /// A place in a room of the cluster.
     #[cfg(feature = "cluster")]
     Place(Result<Place, RoomRefusal>),
@@ -58,7 +58,7 @@ impl Visit {
             Request::Rooms => {
                 self.in_lobby = true;
                 let rooms = self.rooms.borrow_and_update().clone();
-                self.tell(News::Rooms(rooms));
+                self.notify(SessionEvent::Rooms(rooms));
             }
             Request::Enter { room, watches: true } => self.go(Way::Watch(room)),
             Request::Enter { room, watches: false } => self.go(Way::Enter(room)),
@@ -73,37 +73,37 @@ impl Visit {
 
     /// Records an answer of the store.
     pub(super) fn hear(&mut self, reply: Reply) {
-        let news = match reply {
-            Reply::News(news) => news,
+        let event = match reply {
+            Reply::SessionEvent(event) => event,
             Reply::Named(name, Ok(account)) => self.take_name(name, account),
-            Reply::Named(_, Err(sentence)) => News::Named(Err(sentence)),
+            Reply::Named(_, Err(sentence)) => SessionEvent::Named(Err(sentence)),
             #[cfg(feature = "cluster")]
             Reply::Place(place) => return self.enter(place),
             #[cfg(feature = "cluster")]
             Reply::Returned(place) => return self.returned(place),
         };
-        self.tell(news);
+        self.notify(event);
     }
 
     /// Has a run verified and recorded.
     pub(super) fn submit(&mut self, run: FinishedRun) {
         let Some(account) = self.account.clone() else {
             let sentence = "A guest's result does not rank: come with a public key.";
-            return self.tell(News::Result(sentence.to_owned()));
+            return self.notify(SessionEvent::Result(sentence.to_owned()));
         };
         let (replies, recorder) = (self.replies.clone(), self.shared.recorder.clone());
         let is_accepted = self.shared.store.run(move |store| {
             let sentence = recorder.record(store, &account, &run);
-            _ = replies.try_send(Reply::News(News::Result(sentence)));
+            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Result(sentence)));
         });
         if !is_accepted {
-            self.tell(News::Result("The host can't check your result now.".to_owned()));
+            self.notify(SessionEvent::Result("The host can't check your result now.".to_owned()));
         }
     }
 
-    pub(super) fn tell(&mut self, news: News) {
+    pub(super) fn notify(&mut self, event: SessionEvent) {
         let now = self.shared.now();
-        self.session.tell(news, now);
+        self.session.notify(event, now);
     }
 
     fn choose_name(&mut self, text: &str) {
@@ -111,10 +111,10 @@ impl Visit {
             (self.key.is_none() && text == self.offer.as_str()).then(|| self.offer.clone());
         let name = match offered.map_or_else(|| Name::new(text), Ok) {
             Ok(name) => name,
-            Err(fault) => return self.tell(News::Named(Err(fault.to_string()))),
+            Err(fault) => return self.notify(SessionEvent::Named(Err(fault.to_string()))),
         };
         if self.name.as_ref() == Some(&name) {
-            return self.tell(News::Named(Ok(account::line(&name))));
+            return self.notify(SessionEvent::Named(Ok(account::line(&name))));
         }
         let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
         let origin = Origin::new(self.address, self.shared.config.get().accounts);
@@ -124,16 +124,18 @@ impl Visit {
             _ = replies.try_send(Reply::Named(name, result));
         });
         if !is_accepted {
-            self.tell(News::Named(Err("The host is busy; try again.".to_owned())));
+            self.notify(SessionEvent::Named(Err("The host is busy; try again.".to_owned())));
         }
     }
 
-    fn take_name(&mut self, name: Name, account: Option<Account>) -> News {
+    fn take_name(&mut self, name: Name, account: Option<Account>) -> SessionEvent {
         if account.is_none() {
             self.guest_name = None;
             self.guest_name = self.shared.names.reserve(&name);
             if self.guest_name.is_none() {
-                return News::Named(Err("Somebody here has this name; take another.".to_owned()));
+                return SessionEvent::Named(Err(
+                    "Somebody here has this name; take another.".to_owned()
+                ));
             }
         }
         let line = account::line(&name);
@@ -141,13 +143,13 @@ impl Visit {
         events::named(self.key.as_ref(), name.as_str());
         self.account = account.or(self.account.take());
         self.name = Some(name);
-        News::Named(Ok(line))
+        SessionEvent::Named(Ok(line))
     }
 
     fn act(&mut self, command: Command) {
         let Some(place) = &self.place else { return };
         if place.act(command) == Err(CommandRefusal::TooOften) {
-            self.tell(News::Result("Not so fast: wait a second.".to_owned()));
+            self.notify(SessionEvent::Result("Not so fast: wait a second.".to_owned()));
         }
     }
 
@@ -156,7 +158,11 @@ impl Visit {
         let replies = self.replies.clone();
         self.shared.store.run(move |store| {
             let rows = results::board(store, &level, difficulty, own).into();
-            _ = replies.try_send(Reply::News(News::Board { level, difficulty, rows }));
+            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Board {
+                level,
+                difficulty,
+                rows,
+            }));
         });
     }
 
@@ -172,7 +178,11 @@ impl Visit {
             match ghosts {
                 Ok(ghosts) => {
                     let ghosts = ghosts.into();
-                    _ = replies.try_send(Reply::News(News::Ghosts { level, difficulty, ghosts }));
+                    _ = replies.try_send(Reply::SessionEvent(SessionEvent::Ghosts {
+                        level,
+                        difficulty,
+                        ghosts,
+                    }));
                 }
                 Err(failure) => events::store_failed(failure),
             }

@@ -16,7 +16,7 @@ use super::visit::Visit;
 #[cfg(feature = "cluster")]
 use crate::server::cluster::Entrant;
 use crate::server::rooms::{Place, RoomRefusal};
-use crate::server::session::News;
+use crate::server::session::SessionEvent;
 use crate::server::summary::{RoomId, RoomWish};
 
 /// A way into a room.
@@ -79,11 +79,11 @@ impl Visit {
                 let place = self.kept_while_draining(place);
                 self.in_lobby = false;
                 self.presence.set_room(Some(place.room().place()));
-                let news = News::Entered { room: place.room(), member: place.member_id() };
+                let event = SessionEvent::Entered { room: place.room(), member: place.member_id() };
                 self.place = Some(place);
-                self.tell(news);
+                self.notify(event);
             }
-            Err(refusal) => self.tell(News::Refused(refusal.to_string())),
+            Err(refusal) => self.notify(SessionEvent::Refused(refusal.to_string())),
         }
     }
 
@@ -111,8 +111,9 @@ impl Visit {
         if let Some(place) = self.place.take() {
             self.place = Some(self.kept_while_draining(place));
         }
-        let news = News::Draining { seconds: time.as_secs(), can_return: self.can_return() };
-        self.session.tell(news, now);
+        let event =
+            SessionEvent::Draining { seconds: time.as_secs(), can_return: self.can_return() };
+        self.session.notify(event, now);
         self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
     }
 
@@ -141,7 +142,7 @@ impl Visit {
         let replies = self.replies.clone();
         tokio::spawn(async move {
             if let Some(at) = rooms.place_of(key).await {
-                _ = replies.send(Reply::News(News::Result(LOOKS.to_owned()))).await;
+                _ = replies.send(Reply::SessionEvent(SessionEvent::Result(LOOKS.to_owned()))).await;
                 _ = replies.send(Reply::Returned(rooms.resume(key, at).await)).await;
             }
         });
@@ -160,7 +161,7 @@ impl Visit {
             Err(RoomRefusal::Gone) => GONE.to_owned(),
             Err(refusal) => refusal.to_string(),
         };
-        self.tell(News::Result(sentence));
+        self.notify(SessionEvent::Result(sentence));
     }
 
     fn kept_while_draining(&self, mut place: Place) -> Place {

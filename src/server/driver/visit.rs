@@ -14,7 +14,7 @@ use super::terminal;
 use crate::app::Configuration;
 use crate::server::line::Line;
 use crate::server::rooms::Place;
-use crate::server::session::{HostFacts, Identity, IdleLimits, News, Session};
+use crate::server::session::{HostFacts, Identity, IdleLimits, Session, SessionEvent};
 use crate::server::summary::RoomSummary;
 use crate::server::{Arrival, Inbound, Link, Notice, Outbox, Presence, Visitor};
 use crate::store::host::{Account, AccountKey, Name};
@@ -62,7 +62,7 @@ pub(super) struct Visit {
 }
 
 /// What a driver waits for.
-enum Happening {
+enum DriverEvent {
     Arrived(Arrival),
     Drained,
     RoomsChanged,
@@ -167,40 +167,40 @@ impl Visit {
                 }
                 self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
             }
-            let happening = self.wait(inbound, outbox, wakes_at).await;
+            let event = self.wait(inbound, outbox, wakes_at).await;
             let now = self.shared.now();
-            match happening {
-                Happening::Arrived(Arrival::Bytes(bytes)) => {
+            match event {
+                DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
                     self.session.receive(&bytes, now);
                     if self.session.has_key() {
                         self.key_at.get_or_insert(now);
                     }
                 }
-                Happening::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
-                Happening::Arrived(Arrival::Drains) => self.drain(now),
-                Happening::Arrived(Arrival::Ended) => return 0,
-                Happening::Drained => {
+                DriverEvent::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
+                DriverEvent::Arrived(Arrival::Drains) => self.drain(now),
+                DriverEvent::Arrived(Arrival::Ended) => return 0,
+                DriverEvent::Drained => {
                     self.session.written(now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
                         self.shared.metrics.key_time.add(now.saturating_sub(key));
                     }
                 }
-                Happening::RoomsChanged => {
+                DriverEvent::RoomsChanged => {
                     let rooms = self.rooms.borrow_and_update().clone();
-                    self.session.tell(News::Rooms(rooms), now);
+                    self.session.notify(SessionEvent::Rooms(rooms), now);
                 }
-                Happening::Replied(reply) => self.hear(reply),
-                Happening::Notice(Notice::Removed(sentence)) => {
+                DriverEvent::Replied(reply) => self.hear(reply),
+                DriverEvent::Notice(Notice::Removed(sentence)) => {
                     self.leave();
-                    self.session.tell(News::Ended(sentence), now);
+                    self.session.notify(SessionEvent::Ended(sentence), now);
                 }
-                Happening::Notice(Notice::Said(text)) => {
+                DriverEvent::Notice(Notice::Said(text)) => {
                     if let Some(line) = Line::of(&text, MESSAGE_COLUMNS) {
-                        self.session.tell(News::Said(line), now);
+                        self.session.notify(SessionEvent::Said(line), now);
                     }
                 }
-                Happening::Time => self.wake(now),
+                DriverEvent::Time => self.wake(now),
             }
             if self.is_sending && self.session.output(now).len() > MOST_WAITING {
                 // A client that reads no frame, and sends what the session must answer.
@@ -238,7 +238,7 @@ impl Visit {
         inbound: &mut Inbound,
         outbox: &mut Outbox,
         wakes_at: Option<Duration>,
-    ) -> Happening {
+    ) -> DriverEvent {
         let is_sending = self.is_sending;
         let now = self.shared.now();
         let is_free = !is_sending && self.place.is_some();
@@ -254,13 +254,13 @@ impl Visit {
         let Self { place, rooms, replied, in_lobby, presence, .. } = self;
         tokio::select! {
             biased;
-            arrival = inbound.next() => Happening::Arrived(arrival),
-            () = outbox.drained(), if is_sending => Happening::Drained,
-            Some(reply) = replied.recv() => Happening::Replied(reply),
-            notice = presence.notice() => Happening::Notice(notice),
-            () = changed(place.as_mut()), if looks => Happening::Time,
-            Ok(()) = rooms.changed(), if *in_lobby => Happening::RoomsChanged,
-            () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => Happening::Time,
+            arrival = inbound.next() => DriverEvent::Arrived(arrival),
+            () = outbox.drained(), if is_sending => DriverEvent::Drained,
+            Some(reply) = replied.recv() => DriverEvent::Replied(reply),
+            notice = presence.notice() => DriverEvent::Notice(notice),
+            () = changed(place.as_mut()), if looks => DriverEvent::Time,
+            Ok(()) = rooms.changed(), if *in_lobby => DriverEvent::RoomsChanged,
+            () = sleep_until(begun + time.unwrap_or_default()), if time.is_some() => DriverEvent::Time,
         }
     }
 
@@ -269,7 +269,7 @@ impl Visit {
         self.woken_at = now;
         if let Some(sentence) = self.place.as_ref().and_then(Place::closed) {
             self.part();
-            self.session.tell(News::Left(sentence.to_string()), now);
+            self.session.notify(SessionEvent::Left(sentence.to_string()), now);
         }
         if let Some(place) = &self.place
             && let Some(run) = place.finished()
@@ -277,7 +277,7 @@ impl Visit {
             self.submit(run);
         }
         if self.ends_at.take_if(|end| *end <= now).is_some() {
-            self.session.tell(News::Ended(self.last_sentence().to_owned()), now);
+            self.session.notify(SessionEvent::Ended(self.last_sentence().to_owned()), now);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What the entries of menus do.
 
-use super::news::Request;
+use super::messages::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::news::Request;
+use super::messages::Request;
 use crate::game::PlayerColor;
 use crate::server::ghost::Ghost;
 use crate::server::room::RoomView;

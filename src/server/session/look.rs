@@ -1,6 +1,6 @@
 //! How pictures are drawn on the visitor's terminal.
 
-use super::news::Identity;
+use super::messages::Identity;
 use crate::app::parts::DrawOptions;
 use crate::color::palette::ColorDepth;
 use crate::render::Filter;

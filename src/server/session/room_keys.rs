@@ -1,7 +1,7 @@
 //! What keys do in a room, besides walking.
 
 use super::line_entry::LineEntry;
-use super::news::Request;
+use super::messages::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;

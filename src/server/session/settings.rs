@@ -4,7 +4,7 @@
 //! account, except the map and the chat, which are those of a stay in a room.
 
 use super::choice::Choice;
-use super::news::Request;
+use super::messages::Request;
 use super::visit::{Visit, bindings_of};
 use crate::app::parts::{COLORS, GLYPHS, Menu, after, name, on_or_off};
 use crate::store::host::AccountSettings;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::ghosts::{Ghosts, Seen};
 use super::intent_queue::IntentQueue;
 use super::look::Look;
-use super::news::Request;
+use super::messages::Request;
 use super::shown_steps::ShownSteps;
 use super::talk::Talk;
 use crate::app::MapDisplay;
@@ -104,7 +104,7 @@ impl Stay {
         let player = self.seen_through(room);
         self.is_airborne = player.is_some_and(|(_, player)| player.is_airborne());
         let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
-        self.dies_for_good = room.game.company().is_some_and(|company| !company.respawns);
+        self.dies_for_good = room.game.multiplayer_rules().is_some_and(|rules| !rules.respawns);
         self.is_dead = self.member.is_some() && player.is_some_and(|(_, it)| is_dead(it));
         begins.then(|| self.ghosts.begin(room)).flatten()
     }

@@ -7,7 +7,7 @@ use super::choice::Choice;
 use super::idle::{Idle, Patience};
 use super::line_entry::LineEntry;
 use super::look::Look;
-use super::news::{BoardRow, HostFacts, Identity, Request};
+use super::messages::{BoardRow, HostFacts, Identity, Request};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
 use crate::app::parts::{

@@ -13,15 +13,15 @@ const RUN: &str = "3 s forward\n2 s stand\n";
 fn race(ghosts: impl IntoIterator<Item = Ghost>) -> (Rig, usize) {
     let mut rig = Rig::new(Mode::Race);
     let mara = rig.member("Mara", (80, 24), Speaks::Plain);
-    tell(&rig, mara, "hall", ghosts);
+    notify(&rig, mara, "hall", ghosts);
     (rig, mara)
 }
 
 /// Brings a session ghosts, as its driver does.
-fn tell(rig: &Rig, index: usize, level: &str, ghosts: impl IntoIterator<Item = Ghost>) {
+fn notify(rig: &Rig, index: usize, level: &str, ghosts: impl IntoIterator<Item = Ghost>) {
     let (level, ghosts) = (level.to_owned(), ghosts.into_iter().collect());
-    let news = News::Ghosts { level, difficulty: Difficulty::Normal, ghosts };
-    rig.session(index, |session, _| session.tell(news, session.visit.now));
+    let event = SessionEvent::Ghosts { level, difficulty: Difficulty::Normal, ghosts };
+    rig.session(index, |session, _| session.notify(event, session.visit.now));
 }
 
 fn hall() -> Arc<World> {
@@ -87,10 +87,10 @@ fn a_ghost_is_of_the_level_that_is_played() {
     let (mut rig, mara) = race([]);
     let late = ghost(Some("Jon"));
     rig.pump(4_000);
-    tell(&rig, mara, "museum", [late.clone()]);
+    notify(&rig, mara, "museum", [late.clone()]);
     rig.pump(100);
     assert!(!rig.text(mara).contains("Jon's best"), "it is of another level");
-    tell(&rig, mara, "hall", [late]);
+    notify(&rig, mara, "hall", [late]);
     rig.pump(100);
     assert!(rig.text(mara).contains("Jon's best"), "{}", rig.text(mara));
 }

@@ -148,7 +148,7 @@ fn an_answer_to_a_forgotten_request_is_ignored() {
 
 /// An event in a program that shows frames.
 #[derive(Clone, Copy, Debug)]
-enum Happening {
+enum FlowEvent {
     Answer,
     FenceAnswer,
     Taken,
@@ -158,15 +158,15 @@ enum Happening {
     Time(u64),
 }
 
-fn happening() -> impl Strategy<Value = Happening> {
+fn event() -> impl Strategy<Value = FlowEvent> {
     prop_oneof![
-        4 => Just(Happening::Answer),
-        2 => Just(Happening::FenceAnswer),
-        2 => Just(Happening::Taken),
-        2 => Just(Happening::Key),
-        1 => Just(Happening::Forget),
-        8 => (0..200_000_usize).prop_map(Happening::Draw),
-        4 => (0..3000_u64).prop_map(Happening::Time),
+        4 => Just(FlowEvent::Answer),
+        2 => Just(FlowEvent::FenceAnswer),
+        2 => Just(FlowEvent::Taken),
+        2 => Just(FlowEvent::Key),
+        1 => Just(FlowEvent::Forget),
+        8 => (0..200_000_usize).prop_map(FlowEvent::Draw),
+        4 => (0..3000_u64).prop_map(FlowEvent::Time),
     ]
 }
 
@@ -175,27 +175,27 @@ proptest! {
     /// fence is sent within the longest timeout.
     #[test]
     fn the_window_is_never_exceeded_and_never_closed_for_ever(
-        happenings in prop::collection::vec(happening(), 0..200),
+        events in prop::collection::vec(event(), 0..200),
     ) {
         let mut flow = Flow::new(false);
         let mut now = Duration::ZERO;
-        for happening in happenings {
-            match happening {
-                Happening::Answer => flow.answered(now),
-                Happening::FenceAnswer => flow.fence_answered(now),
-                Happening::Taken => flow.written(now),
-                Happening::Key => flow.received_input(),
-                Happening::Forget => flow.forget(),
-                Happening::Draw(bytes) if flow.may_send(now) => {
+        for event in events {
+            match event {
+                FlowEvent::Answer => flow.answered(now),
+                FlowEvent::FenceAnswer => flow.fence_answered(now),
+                FlowEvent::Taken => flow.written(now),
+                FlowEvent::Key => flow.received_input(),
+                FlowEvent::Forget => flow.forget(),
+                FlowEvent::Draw(bytes) if flow.may_send(now) => {
                     let fidelity = flow.fidelity();
                     send(&mut flow, now, bytes);
                     flow.sent_motion(bytes, fidelity);
                 }
-                Happening::Draw(_) if flow.probe_is_due(now) => {
+                FlowEvent::Draw(_) if flow.probe_is_due(now) => {
                     flow.sent(now, 0, Request::Fence);
                 }
-                Happening::Draw(_) => {}
-                Happening::Time(milliseconds) => now += Duration::from_millis(milliseconds),
+                FlowEvent::Draw(_) => {}
+                FlowEvent::Time(milliseconds) => now += Duration::from_millis(milliseconds),
             }
             prop_assert!(flow.in_flight.frames() <= MAX_FRAMES + MAX_TIMEOUTS as usize);
             flow.received_input();

@@ -1,31 +1,33 @@
-//! What the driver brings, and its effect on each page.
+//! The events of the driver, and the effect of each on the page.
 
-use super::news::{News, Request};
+use super::messages::{Request, SessionEvent};
 use super::page::Page;
 use super::stay::Stay;
 use super::visit::Visit;
 use crate::server::line::Line;
 
 impl Visit {
-    /// Records what the driver brings.
-    pub(super) fn tell(&mut self, news: News) {
+    /// Records an event of the driver.
+    pub(super) fn notify(&mut self, event: SessionEvent) {
         self.is_stale = true;
-        match news {
-            News::Named(answer) => self.named(answer),
-            News::Rooms(rooms) => {
+        match event {
+            SessionEvent::Named(answer) => self.named(answer),
+            SessionEvent::Rooms(rooms) => {
                 self.rooms = rooms;
                 if self.stay.is_none() {
                     self.renew_menu();
                 }
             }
-            News::Entered { member, .. } => {
+            SessionEvent::Entered { member, .. } => {
                 self.note = None;
                 self.stay = Some(Stay::new(member, self.identity.configuration.minimap));
                 self.clock.skip_to(self.now);
                 self.show(Page::Room);
             }
-            News::Refused(sentence) | News::Left(sentence) => self.leave_room(Some(sentence)),
-            News::Board { level, difficulty, rows } => {
+            SessionEvent::Refused(sentence) | SessionEvent::Left(sentence) => {
+                self.leave_room(Some(sentence))
+            }
+            SessionEvent::Board { level, difficulty, rows } => {
                 let asked = self.host.catalog.names().get(self.board.level);
                 let is_asked = self.identity.preferences.difficulty == difficulty;
                 if asked == Some(&level) && is_asked {
@@ -33,20 +35,20 @@ impl Visit {
                     self.renew_menu();
                 }
             }
-            News::Ghosts { level, difficulty, ghosts } => {
+            SessionEvent::Ghosts { level, difficulty, ghosts } => {
                 if let Some(stay) = &mut self.stay {
                     stay.ghosts.receive(level, difficulty, ghosts);
                 }
             }
-            News::Result(sentence) => self.hear(sentence),
-            News::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
-            News::Draining { seconds, can_return } => {
+            SessionEvent::Result(sentence) => self.hear(sentence),
+            SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
+            SessionEvent::Draining { seconds, can_return } => {
                 let then =
                     if can_return { " Connect again, and you are where you were." } else { "" };
                 self.draining = Some(format!("The server ends in {seconds} seconds.{then}"));
                 self.renew_menu();
             }
-            News::Ended(sentence) => self.farewell = Some(sentence),
+            SessionEvent::Ended(sentence) => self.farewell = Some(sentence),
         }
     }
 

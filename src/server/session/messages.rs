@@ -68,21 +68,21 @@ impl Default for IdleLimits {
 /// A request of a session to its driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Request {
-    /// To have this name: [`News::Named`].
+    /// To have this name: [`SessionEvent::Named`].
     Name(String),
-    /// The rooms, now and whenever they change, until the session is in a room: [`News::Rooms`].
+    /// The rooms, now and whenever they change, until the session is in a room: [`SessionEvent::Rooms`].
     Rooms,
-    /// To be in a room, as a member or to watch: [`News::Entered`] or [`News::Refused`].
+    /// To be in a room, as a member or to watch: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
     Enter { room: RoomId, watches: bool },
-    /// To be a member of a new room: [`News::Entered`] or [`News::Refused`].
+    /// To be a member of a new room: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
     Open(RoomWish),
     /// To do something in the room: neither [`Command::Join`] nor [`Command::Leave`].
     Command(Command),
     /// To be in the room no more. Nothing is answered.
     Leave,
-    /// A board: [`News::Board`].
+    /// A board: [`SessionEvent::Board`].
     Board { level: String, difficulty: Difficulty },
-    /// The runs that walk along in a level: [`News::Ghosts`].
+    /// The runs that walk along in a level: [`SessionEvent::Ghosts`].
     Ghosts { level: String, difficulty: Difficulty },
     /// To keep the settings. Nothing is answered.
     Save(AccountSettings),
@@ -90,7 +90,7 @@ pub(crate) enum Request {
 
 /// What the driver tells a session.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum News {
+pub(crate) enum SessionEvent {
     /// The visitor has this name, or a sentence why they cannot have it.
     Named(Result<Line, String>),
     /// The rooms.
