@@ -7,7 +7,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use cellcaster::game::{Alarm, Company, Game, Input, Intent, Intents, PlayerColor, Rules};
+use cellcaster::game::{Alarm, Game, Input, Intent, Intents, MultiplayerRules, PlayerColor, Rules};
 use cellcaster::map::{self, builtin};
 use cellcaster::world::World;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -131,8 +131,8 @@ fn steps_of_several(criterion: &mut Criterion) {
         ("20 guards", 20, false),
         ("20 guards, colliding", 20, true),
     ] {
-        let company = Company { collides, ..Company::default() };
-        let mut game = Game::for_company(world(count, Deed::Chase), Rules::default(), company);
+        let rules = MultiplayerRules { collides, ..MultiplayerRules::default() };
+        let mut game = Game::for_players(world(count, Deed::Chase), Rules::default(), rules);
         let players = PlayerColor::ALL.map(|color| game.join(color).expect("there is room"));
         let step = |game: &mut Game| {
             let seen = game.steps();

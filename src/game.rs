@@ -11,7 +11,6 @@
 mod checkpoint;
 mod checksum;
 mod collision;
-mod company;
 mod crowding;
 mod doors;
 mod encounter;
@@ -26,6 +25,7 @@ mod intent;
 mod locks;
 mod look;
 mod mechanisms;
+mod multiplayer;
 mod noise;
 mod notice;
 mod pickups;
@@ -49,25 +49,26 @@ mod warnings;
 use crate::generate::{self, Site, Window};
 use crate::world::World;
 use checkpoint::Checkpoint;
-use company::Members;
 use doors::Doors;
 use guards::Guards;
 use hazards::Spikes;
 use mechanisms::Mechanisms;
+use multiplayer::Members;
 use player::{Player, RUN, STILL, WALK};
 use show::Sprites;
 use tools::{Missiles, Smoke, Supplies};
 
 pub use crate::world::sprite::builtin::PlayerColor;
-pub use company::{
-    Company, Input, MOST_LAG, MOST_PLAYERS, OtherPlayer, PlayerId, PlayerView, Sees, Strikes,
-};
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use guards::{Alarm, GuardView, Mood};
 pub use health::{Flash, FlashKind, Health};
 pub use intent::{Intent, Intents};
 pub use look::Look;
+pub use multiplayer::{
+    Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, OtherPlayer, PlayerId, PlayerView, Sees,
+    Strikes,
+};
 pub(crate) use player::FRICTION;
 pub use report::Outcome;
 pub use rules::Rules;

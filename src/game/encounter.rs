@@ -1,8 +1,8 @@
 //! Encounters: a step of the guards, and what they do to the rest of the game.
 
 use super::Game;
-use super::company::playing_mut;
 use super::guards::Act;
+use super::multiplayer::playing_mut;
 use super::tools::Missile;
 
 impl Game {

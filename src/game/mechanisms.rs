@@ -12,7 +12,7 @@ mod moving_cell;
 mod stored;
 
 use super::Game;
-use super::company::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::{MOST_PLAYERS, playing_mut};
 use super::noise::reach;
 use super::player::Motion;
 use super::sound::SoundKind;

@@ -2,8 +2,8 @@
 //! move.
 
 use super::Game;
-use super::company::playing;
 use super::guards::Target;
+use super::multiplayer::playing;
 use super::player::Player;
 use super::tools::{Missile, MissileKind, Puff};
 use crate::world::sprite::builtin;

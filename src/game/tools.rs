@@ -7,8 +7,8 @@ mod missiles;
 mod smoke;
 
 use super::Game;
-use super::company::playing;
 use super::intent::{Intent, Intents};
+use super::multiplayer::playing;
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
 use super::stored::{Reader, Stored, Unrestorable, Writer, check};

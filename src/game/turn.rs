@@ -1,8 +1,8 @@
 //! The parts of a step: what a player does in their turn, and what moves by itself.
 
 use super::Game;
-use super::company::playing;
 use super::intent::{Intent, Intents};
+use super::multiplayer::playing;
 
 impl Game {
     /// Moves the player, with what they meet on their way. Returns the intents, of which a jump in

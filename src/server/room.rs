@@ -82,7 +82,8 @@ impl Room {
         let world = catalog.world(&header.level)?.as_ref().clone();
         let rules =
             Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
-        let game = Game::for_company(header.mode.prepared(world), rules, header.mode.company());
+        let game =
+            Game::for_players(header.mode.prepared(world), rules, header.mode.multiplayer_rules());
         let round_seed = rng::hash(header.seed, [u64::from(header.round)]);
         Some(Self {
             catalog: Arc::clone(catalog),

@@ -1,7 +1,7 @@
 //! The memory that games for several take: counts, not times.
 
 use allocation_counter::measure;
-use cellcaster::game::{Company, Game, Input, Intent, Intents, PlayerColor, Rules};
+use cellcaster::game::{Game, Input, Intent, Intents, MultiplayerRules, PlayerColor, Rules};
 use cellcaster::map;
 
 #[test]
@@ -15,8 +15,8 @@ fn a_step_of_eight_players_allocates_nothing_after_a_while() {
     );
     for collides in [false, true] {
         let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
-        let company = Company { collides, ..Company::default() };
-        let mut game = Game::for_company(world, Rules::default(), company);
+        let rules = MultiplayerRules { collides, ..MultiplayerRules::default() };
+        let mut game = Game::for_players(world, Rules::default(), rules);
         let players = PlayerColor::ALL.map(|color| game.join(color).unwrap());
         // Ducking wakes nobody.
         let circling = [Intent::Forward, Intent::Duck, Intent::TurnRight];

@@ -3,7 +3,7 @@
 use super::Guards;
 use super::guard::{ALARMED, Guard};
 use super::state::State;
-use crate::game::company::MOST_PLAYERS;
+use crate::game::multiplayer::MOST_PLAYERS;
 use crate::game::stored::{Reader, Stored, StoredPart, Unrestorable, Writer, check, check_on_map};
 use crate::world::{Duty, World};
 

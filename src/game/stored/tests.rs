@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use self::crowd::Crowd;
 use super::*;
 use crate::game::tests::missions::EVERYTHING;
-use crate::game::{Company, Game, Intents, Rules, Script, Sees, Strikes};
+use crate::game::{Game, Intents, MultiplayerRules, Rules, Script, Sees, Strikes};
 use crate::generate::{Extent, Generator, Level};
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
@@ -71,10 +71,10 @@ fn every_script_that_wins_goes_on_from_any_step() {
     }
 }
 
-/// A company of at most four in a level, of whom one may follow the script that wins it.
+/// At most four players in a level, of whom one may follow the script that wins it.
 fn played(world: World, script: Vec<Intents>, seed: u64, steps: usize) {
     let mut random = SplitMix64::new(seed);
-    let company = Company {
+    let multiplayer = MultiplayerRules {
         collides: random.one_in(2),
         respawns: !random.one_in(3),
         sees: [Sees::Nobody, Sees::InSight, Sees::All][random.below(3)],
@@ -82,7 +82,7 @@ fn played(world: World, script: Vec<Intents>, seed: u64, steps: usize) {
     };
     let difficulty = Difficulty::ALL[random.below(3)];
     let rules = Rules { difficulty, seed: random.bits() };
-    let start = Game::for_company(world, rules, company);
+    let start = Game::for_players(world, rules, multiplayer);
     let (mut game, mut crowd) = (start.clone(), Crowd::new(script, 4, random));
     (0..steps).for_each(|_| crowd.step(&mut [&mut game]));
     let mut other = again(&start, &game);
@@ -100,7 +100,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn a_company_plays_on(
+    fn several_players_play_on(
         level in prop::sample::select(LEVELS),
         has_script: bool,
         has_guards in prop::bool::weighted(0.8),
@@ -114,7 +114,7 @@ proptest! {
     }
 
     #[test]
-    fn a_company_with_everything_plays_on(seed: u64, steps in 0..1200_usize) {
+    fn players_with_everything_play_on(seed: u64, steps in 0..1200_usize) {
         played(crate::map::parse_str(EVERYTHING).unwrap(), Vec::new(), seed, steps);
     }
 
@@ -149,7 +149,7 @@ fn other_games_are_refused_with_a_sentence() {
     assert_eq!(refused(Game::new(world(1)), &bytes), Unrestorable::OtherLevel);
     let hard = Rules { difficulty: Difficulty::Hard, seed: 0 };
     assert_eq!(refused(Game::with_rules(world(0), hard), &bytes), Unrestorable::OtherLevel);
-    let several = Game::for_company(world(0), Rules::default(), Company::default());
+    let several = Game::for_players(world(0), Rules::default(), MultiplayerRules::default());
     assert_eq!(refused(several, &bytes), Unrestorable::OtherLevel);
     let line = String::from_utf8_lossy(&bytes).lines().next().unwrap().to_owned();
     assert_eq!(line, format!("cellcaster-game 1 rules 1 version {}", env!("CARGO_PKG_VERSION")));

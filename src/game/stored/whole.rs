@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::codec::{Reader, Stored, StoredPart, Writer, check};
 use super::{Unrestorable, after_first_line, first_line};
 use crate::game::checksum::word_of;
-use crate::game::{Checkpoint, Company, Game, Rules};
+use crate::game::{Checkpoint, Game, MultiplayerRules, Rules};
 use crate::rng::hash;
 use crate::world::{Cell, Changes, Figure, Thing};
 
@@ -34,8 +34,8 @@ impl Game {
         Some(out.into_bytes())
     }
 
-    /// The game that `bytes` were stored from. This one is at its start, of the same level, rules and
-    /// company.
+    /// The game that `bytes` were stored from. This one is at its start, of the same level and
+    /// rules.
     ///
     /// # Errors
     /// If the bytes are not those of such a game, or are damaged. That they pass does not mean that the
@@ -167,8 +167,8 @@ impl Game {
     /// A number that differs, almost certainly, between levels, rules and companies.
     fn words_of_level(&self) -> u64 {
         let Rules { difficulty, seed } = self.rules;
-        let company = self.company().map_or(0, |company| {
-            let Company { collides, respawns, sees, strikes } = company;
+        let multiplayer = self.multiplayer_rules().map_or(0, |rules| {
+            let MultiplayerRules { collides, respawns, sees, strikes } = rules;
             1 | u64::from(collides) << 1
                 | u64::from(respawns) << 2
                 | (sees as u64) << 8
@@ -178,7 +178,7 @@ impl Game {
         let title = world.title().bytes().map(u64::from);
         let posts = world.guards().iter().flat_map(|it| [it.kind as u64, word_of(it.cell)]);
         let size = [world.grid().width(), world.grid().height(), world.tiles().len() as u32];
-        let words = [difficulty as u64, seed, company, word_of(world.start().cell)];
+        let words = [difficulty as u64, seed, multiplayer, word_of(world.start().cell)];
         let words = words.into_iter().chain(size.map(u64::from)).chain(title).chain(posts);
         hash(0, words)
     }

@@ -1,7 +1,7 @@
 //! Modes: what is played in a room, and the rules of each.
 
 use super::round::SECOND;
-use crate::game::{Company, Sees, Strikes};
+use crate::game::{MultiplayerRules, Sees, Strikes};
 use crate::world::World;
 
 /// What is played in a room.
@@ -95,14 +95,14 @@ impl Mode {
     }
 
     /// The rules among the players.
-    pub(super) fn company(self) -> Company {
-        let usual = Company::default();
+    pub(super) fn multiplayer_rules(self) -> MultiplayerRules {
+        let usual = MultiplayerRules::default();
         match self {
-            Self::Roam => Company { strikes: Strikes::Push, ..usual },
+            Self::Roam => MultiplayerRules { strikes: Strikes::Push, ..usual },
             Self::Together | Self::Race => usual,
-            Self::Alone => Company { respawns: false, ..usual },
-            Self::Tag => Company { sees: Sees::InSight, ..usual },
-            Self::Hide => Company { sees: Sees::Nobody, ..usual },
+            Self::Alone => MultiplayerRules { respawns: false, ..usual },
+            Self::Tag => MultiplayerRules { sees: Sees::InSight, ..usual },
+            Self::Hide => MultiplayerRules { sees: Sees::Nobody, ..usual },
         }
     }
 

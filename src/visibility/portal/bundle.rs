@@ -20,7 +20,7 @@ pub(super) struct Bundle {
     /// The number of clips in use when the bundle was stored.
     pub(super) clips_in_use: usize,
     /// Whether the rays have met what stands in the cell.
-    pub(super) has_met: bool,
+    pub(super) has_met_standing: bool,
 }
 
 /// The ray of a column, as far as it differs from the others of its bundle.

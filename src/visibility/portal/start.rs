@@ -145,5 +145,14 @@ impl BundleWalk<'_> {
 /// The bundle of `columns` that begins a walk.
 fn first_bundle(course: Course, place: Place, gap: GapId, columns: Range<u32>) -> Bundle {
     let image = ImageId::NONE;
-    Bundle { course, place, gap, image, columns, first_clip: 0, clips_in_use: 0, has_met: false }
+    Bundle {
+        course,
+        place,
+        gap,
+        image,
+        columns,
+        first_clip: 0,
+        clips_in_use: 0,
+        has_met_standing: false,
+    }
 }

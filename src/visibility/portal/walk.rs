@@ -146,8 +146,8 @@ impl<'a> BundleWalk<'a> {
         let grid = self.surroundings.scene.world.grid();
         loop {
             let holds = self.surroundings.gaps.gap(bundle.gap).holds;
-            if holds == Holds::Standing && !bundle.has_met {
-                bundle.has_met = true;
+            if holds == Holds::Standing && !bundle.has_met_standing {
+                bundle.has_met_standing = true;
                 self.meet_standing(&bundle);
                 if !self.is_open(&bundle) {
                     self.store_open(&bundle);
@@ -156,7 +156,7 @@ impl<'a> BundleWalk<'a> {
             }
             let side = self.divide(&mut bundle);
             let Some(crossed) = bundle.course.cross(grid, side) else { continue };
-            bundle.has_met = false;
+            bundle.has_met_standing = false;
             if crossed.into.is_some() {
                 self.memory.stats.cells += bundle.columns.len() as u64;
                 let tile = |(_, tile): (Cell, TileId)| tile;

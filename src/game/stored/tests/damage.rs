@@ -8,7 +8,7 @@ use super::*;
 fn stored(text: &str, seed: u64, steps: usize) -> (Game, Vec<u8>) {
     let world = crate::map::parse_str(text).unwrap();
     let rules = Rules { difficulty: Difficulty::Normal, seed };
-    let start = Game::for_company(world, rules, Company::default());
+    let start = Game::for_players(world, rules, MultiplayerRules::default());
     let (mut game, mut crowd) = (start.clone(), Crowd::new(Vec::new(), 3, SplitMix64::new(seed)));
     (0..steps).for_each(|_| crowd.step(&mut [&mut game]));
     (start, game.stored().unwrap())

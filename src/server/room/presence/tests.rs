@@ -4,7 +4,7 @@ use super::*;
 use crate::game::Intent;
 
 /// A room with two members, of whom the first has an account.
-fn company(mode: Mode) -> (Room, [MemberId; 2]) {
+fn room_of_two(mode: Mode) -> (Room, [MemberId; 2]) {
     let mut room = room(mode);
     let members = ["Mara", "Jon"].map(|name| join(&mut room, name));
     do_now(&mut room, members[0], Command::Keep);
@@ -17,7 +17,7 @@ fn last_line(room: &Room) -> String {
 
 #[test]
 fn one_who_is_away_stands_still_and_goes_on_from_there() {
-    let (mut room, [mara, _]) = company(Mode::Roam);
+    let (mut room, [mara, _]) = room_of_two(Mode::Roam);
     want(&mut room, mara, &[Intent::Forward]);
     advance(&mut room, 20);
     do_now(&mut room, mara, Command::Away);
@@ -40,7 +40,7 @@ fn one_who_is_away_stands_still_and_goes_on_from_there() {
 
 #[test]
 fn one_who_is_away_for_too_long_leaves() {
-    let (mut room, [mara, jon]) = company(Mode::Roam);
+    let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, mara, Command::Away);
     advance(&mut room, AWAY - 1);
     // It is counted once.
@@ -54,7 +54,7 @@ fn one_who_is_away_for_too_long_leaves() {
 
 #[test]
 fn a_guest_is_not_away_but_gone() {
-    let (mut room, [_, jon]) = company(Mode::Roam);
+    let (mut room, [_, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, jon, Command::Return { token: 7 });
     assert_eq!(room.kept_place(jon), None);
     do_now(&mut room, jon, Command::Away);
@@ -63,7 +63,7 @@ fn a_guest_is_not_away_but_gone() {
 
 #[test]
 fn a_round_waits_for_nobody_who_is_away() {
-    let (mut room, [mara, jon]) = company(Mode::Roam);
+    let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
     do_now(&mut room, mara, Command::Again);
     do_now(&mut room, mara, Command::Away);
     assert!(!room.is_over());
@@ -73,7 +73,7 @@ fn a_round_waits_for_nobody_who_is_away() {
 
 #[test]
 fn one_is_away_in_the_next_round_too() {
-    let (mut room, [mara, _]) = company(Mode::Tag);
+    let (mut room, [mara, _]) = room_of_two(Mode::Tag);
     do_now(&mut room, mara, Command::Return { token: 7 });
     advance(&mut room, 100);
     assert!(matches!(room.phase(), Phase::Countdown { .. }));

@@ -8,7 +8,7 @@ use crate::world::World;
 impl StoredPart for Members {
     fn write(&self, out: &mut Writer) {
         let Self {
-            company: _,
+            rules: _,
             slots,
             // Between steps, it is nobody's turn.
             turn: _,

@@ -25,13 +25,10 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-fn company() -> impl Strategy<Value = Company> {
+fn rules() -> impl Strategy<Value = MultiplayerRules> {
     let strikes = prop::sample::select(&[Strikes::Nobody, Strikes::Push, Strikes::Stun][..]);
-    (any::<bool>(), any::<bool>(), strikes).prop_map(|(collides, respawns, strikes)| Company {
-        collides,
-        respawns,
-        strikes,
-        ..Company::default()
+    (any::<bool>(), any::<bool>(), strikes).prop_map(|(collides, respawns, strikes)| {
+        MultiplayerRules { collides, respawns, strikes, ..MultiplayerRules::default() }
     })
 }
 
@@ -61,7 +58,7 @@ fn happen(game: &mut Game, event: &Event) {
 
 /// Nobody is inside anything, or, where they collide, in anybody.
 fn assert_is_valid(game: &Game) {
-    let collides = game.company().unwrap().collides;
+    let collides = game.multiplayer_rules().unwrap().collides;
     let least = 2.0 * RADIUS.cells();
     for (index, player) in game.playing() {
         assert!(player.motion.has_room(&game.world), "{index}: {:?}", player.motion);
@@ -85,10 +82,10 @@ proptest! {
 
     #[test]
     fn any_sequence_leaves_a_valid_state_and_the_same_one_again(
-        company in company(),
+        rules in rules(),
         events in prop::collection::vec(event(), 0..16),
     ) {
-        let mut games = [0; 2].map(|_| Game::for_company(world(EVERYTHING), RULES, company));
+        let mut games = [0; 2].map(|_| Game::for_players(world(EVERYTHING), RULES, rules));
         for game in &mut games {
             game.join(PlayerColor::Red);
             for event in &events {
@@ -100,9 +97,9 @@ proptest! {
     }
 
     #[test]
-    fn one_player_plays_as_in_a_game_for_one(company in company(), script in script()) {
+    fn one_player_plays_as_in_a_game_for_one(rules in rules(), script in script()) {
         let mut alone = Game::with_rules(world(EVERYTHING), RULES);
-        let (mut game, ids) = with_players(world(EVERYTHING), company, 1);
+        let (mut game, ids) = with_players(world(EVERYTHING), rules, 1);
         for (steps, held) in &script {
             for _ in 0..*steps {
                 if alone.outcome() != Outcome::Playing {
@@ -117,8 +114,8 @@ proptest! {
 
     #[test]
     fn those_who_have_left_change_nothing(script in script(), count in 1..6_usize) {
-        let company = Company { collides: true, ..Company::default() };
-        let mut games = [0; 2].map(|_| with_players(world(EVERYTHING), company, 1).0);
+        let rules = MultiplayerRules { collides: true, ..MultiplayerRules::default() };
+        let mut games = [0; 2].map(|_| with_players(world(EVERYTHING), rules, 1).0);
         for (steps, held) in &script {
             let guests: Vec<_> =
                 (0..count).filter_map(|_| games[1].join(PlayerColor::Pink)).collect();
@@ -133,7 +130,7 @@ proptest! {
 
     #[test]
     fn waiting_is_as_many_steps(steps in 0..200_u64, wins in any::<bool>()) {
-        let (mut game, ids) = with_players(level(&["@.X"], "", "X = { exit = true }"), Company::default(), 1);
+        let (mut game, ids) = with_players(level(&["@.X"], "", "X = { exit = true }"), MultiplayerRules::default(), 1);
         prop_assert_eq!(game.quiet_steps(Intents::new()), 0);
         if wins {
             play(&mut game, 120, &[(ids[0], &[Intent::Forward])]);

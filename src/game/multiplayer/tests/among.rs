@@ -4,15 +4,15 @@ use super::*;
 
 const HALL: [&str; 3] = ["##########", "#@.......#", "##########"];
 
-fn company(strikes: Strikes) -> Company {
-    Company { strikes, collides: true, ..Company::default() }
+fn rules(strikes: Strikes) -> MultiplayerRules {
+    MultiplayerRules { strikes, collides: true, ..MultiplayerRules::default() }
 }
 
 #[test]
 fn players_join_at_the_start_or_beside_it_until_the_game_is_full() {
     let hall = [".................", "........@........", "................."];
-    let company = Company { collides: true, ..Company::default() };
-    let (mut game, ids) = with_players(level(&hall, "", ""), company, MOST_PLAYERS);
+    let rules = MultiplayerRules { collides: true, ..MultiplayerRules::default() };
+    let (mut game, ids) = with_players(level(&hall, "", ""), rules, MOST_PLAYERS);
     assert_eq!(position(&game, ids[0]), DVec2::new(8.5, 1.5));
     assert_eq!(game.players().collect::<Vec<_>>(), ids);
     assert_eq!(game.join(PlayerColor::Red), None);
@@ -20,14 +20,14 @@ fn players_join_at_the_start_or_beside_it_until_the_game_is_full() {
     assert_eq!(game.seen_by(ids[3]).map(|view| view.id()), None);
     assert_eq!(game.join(PlayerColor::Green), Some(ids[3]));
     assert_eq!(game.seen_by(ids[3]).unwrap().color(), Some(PlayerColor::Green));
-    let (mut closet, _) = with_players(level(&["@"], "", ""), company, 1);
+    let (mut closet, _) = with_players(level(&["@"], "", ""), rules, 1);
     assert_eq!(closet.join(PlayerColor::Red), None);
     assert_eq!(Game::new(level(&["@."], "", "")).join(PlayerColor::Red), None);
 }
 
 #[test]
 fn players_push_against_each_other_and_slide_past() {
-    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Nobody), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Nobody), 2);
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
     let apart = position(&game, ids[1]).x - position(&game, ids[0]).x;
     assert!((0.5..0.5 + 1e-9).contains(&apart), "{apart}");
@@ -38,7 +38,7 @@ fn players_push_against_each_other_and_slide_past() {
 
 #[test]
 fn walking_through_each_other_is_a_rule() {
-    let rules = Company { collides: false, ..company(Strikes::Nobody) };
+    let rules = MultiplayerRules { collides: false, ..rules(Strikes::Nobody) };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
     assert_eq!(position(&game, ids[0]), position(&game, ids[1]));
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
@@ -47,9 +47,9 @@ fn walking_through_each_other_is_a_rule() {
 }
 
 #[test]
-fn a_blow_pushes_or_stuns_by_the_rules_of_the_company() {
+fn a_blow_pushes_or_stuns_by_the_rules() {
     for strikes in [Strikes::Nobody, Strikes::Push, Strikes::Stun] {
-        let (mut game, ids) = with_players(level(&HALL, "", ""), company(strikes), 2);
+        let (mut game, ids) = with_players(level(&HALL, "", ""), rules(strikes), 2);
         let before = position(&game, ids[1]);
         play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
         let blows: Vec<_> = game.blows().collect();
@@ -70,7 +70,7 @@ fn a_blow_pushes_or_stuns_by_the_rules_of_the_company() {
 
 #[test]
 fn a_stunned_player_is_spared_for_a_while() {
-    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Stun), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Stun), 2);
     play(&mut game, 1, &[(ids[0], &[Intent::Strike])]);
     assert_eq!(game.seen_by(ids[1]).unwrap().stunned(), 119);
     play(&mut game, 100, &[(ids[0], &[Intent::Forward])]);
@@ -85,7 +85,7 @@ fn a_stunned_player_is_spared_for_a_while() {
 #[test]
 fn acts_are_judged_by_the_step_that_the_player_saw() {
     for (lag, hits) in [(0, false), (15, true), (40, true)] {
-        let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Push), 2);
+        let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
         // They are one cell apart, and the other one runs away.
         let long_ago = game.steps();
         play(&mut game, 15, &[(ids[1], &[Intent::Forward, Intent::Run])]);
@@ -96,7 +96,7 @@ fn acts_are_judged_by_the_step_that_the_player_saw() {
         game.step_all(&[strike]);
         assert_eq!(game.blows().count() == 1, hits, "{lag}");
     }
-    let (mut game, ids) = with_players(level(&HALL, "", ""), company(Strikes::Push), 2);
+    let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
     play(&mut game, 10, &[(ids[0], &[Intent::Forward])]);
     play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
     play(&mut game, 16, &[]);
@@ -108,7 +108,7 @@ fn acts_are_judged_by_the_step_that_the_player_saw() {
 
 #[test]
 fn touching_is_judged_in_the_past_too() {
-    let rules = Company { collides: false, ..Company::default() };
+    let rules = MultiplayerRules { collides: false, ..MultiplayerRules::default() };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
     let now = game.steps();
     assert!(game.touches(ids[0], ids[1], now) && game.touches(ids[1], ids[0], now));
@@ -129,7 +129,7 @@ fn keys_fall_back_and_treasure_counts_for_all() {
                 t = { treasure = 20 }\nX = { exit = true }";
     let rows =
         text.replace("########\n#@", "##########\n#@").replace("X#\n########", "X#\n##########");
-    let (mut game, ids) = with_players(world(&rows), Company::default(), 2);
+    let (mut game, ids) = with_players(world(&rows), MultiplayerRules::default(), 2);
     let things = game.world().things().len();
     play(&mut game, 75, &[(ids[0], &[Intent::Forward])]);
     let keys = |game: &Game, id| game.seen_by(id).unwrap().keys().count();
@@ -154,11 +154,11 @@ fn keys_fall_back_and_treasure_counts_for_all() {
 }
 
 #[test]
-fn the_dead_go_on_from_their_own_checkpoint_where_the_company_respawns() {
+fn the_dead_go_on_from_their_own_checkpoint_where_the_rules_say_so() {
     let rows = ["###########", "#@.u...s..#", "###########"];
     let things = "u = { checkpoint = true }\ns = { spikes = 1.0 }";
     for respawns in [true, false] {
-        let rules = Company { respawns, ..Company::default() };
+        let rules = MultiplayerRules { respawns, ..MultiplayerRules::default() };
         let (mut game, ids) = with_players(level(&rows, "", things), rules, 2);
         play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
         for _ in 0..1200 {
@@ -189,7 +189,7 @@ fn plates_and_doors_feel_every_player() {
     let tiles =
         "p = { plate = 'gate', floor = '#808080' }\nG = { door = 'metal', switch = 'gate' }";
     let rows = ["########", "#@p...G.", "########"];
-    let (mut game, ids) = with_players(level(&rows, tiles, ""), Company::default(), 2);
+    let (mut game, ids) = with_players(level(&rows, tiles, ""), MultiplayerRules::default(), 2);
     let gate = Cell { column: 6, row: 1 };
     play(&mut game, 24, &[(ids[1], &[Intent::Forward])]);
     play(&mut game, 240, &[(ids[0], &[Intent::Forward])]);
@@ -201,7 +201,7 @@ fn plates_and_doors_feel_every_player() {
 fn players_hear_each_other_and_guards_chase_whom_they_see() {
     let rows = ["##############", "#@......G....#", "##############"];
     let things = "G = { guard = 'warden', heading = 180 }";
-    let (mut game, ids) = with_players(level(&rows, "", things), Company::default(), 2);
+    let (mut game, ids) = with_players(level(&rows, "", things), MultiplayerRules::default(), 2);
     play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
     let kinds = |id| -> Vec<_> {
         game.seen_by(id).unwrap().heard().iter().map(|heard| heard.kind).collect()
@@ -227,7 +227,7 @@ fn players_hear_each_other_and_guards_chase_whom_they_see() {
 fn the_map_shows_whom_the_rules_say() {
     let rows = ["@.#..", "..+..", "..#.."];
     for (sees, count) in [(Sees::Nobody, 0), (Sees::InSight, 1), (Sees::All, 2)] {
-        let rules = Company { sees, ..Company::default() };
+        let rules = MultiplayerRules { sees, ..MultiplayerRules::default() };
         let (mut game, ids) = with_players(level(&rows, "'+' = { door = 'oak' }", ""), rules, 3);
         let member = game.members.as_mut().unwrap().member_mut(2).unwrap();
         let behind = Cell { column: 4, row: 1 };

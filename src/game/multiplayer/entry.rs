@@ -45,7 +45,7 @@ impl Game {
 
     /// Whether nobody is in the way of a player who is at `motion`.
     fn is_free_of_players(&self, motion: &Motion) -> bool {
-        let collides = self.company().is_some_and(|company| company.collides);
+        let collides = self.multiplayer_rules().is_some_and(|rules| rules.collides);
         let least = 2.0 * RADIUS.cells();
         let is_far =
             |it: &Motion| it.position().distance_squared(motion.position()) >= least * least;

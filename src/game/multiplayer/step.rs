@@ -2,7 +2,7 @@
 
 use super::members::{Member, Members};
 use super::seen::Track;
-use super::{Company, Input, PlayerId};
+use super::{Input, MultiplayerRules, PlayerId};
 use crate::game::checkpoint::Checkpoint;
 use crate::game::player::Player;
 use crate::game::scratch::Scratch;
@@ -13,7 +13,7 @@ use crate::world::{ThingKind, World};
 
 impl Game {
     /// A game for several at its start, with nobody in it.
-    pub fn for_company(world: World, rules: Rules, company: Company) -> Self {
+    pub fn for_players(world: World, rules: Rules, multiplayer: MultiplayerRules) -> Self {
         let is_key = |kind| matches!(kind, ThingKind::Key(_));
         let keys = world.things().iter().filter(|thing| is_key(thing.kind)).copied().collect();
         // The sprites of guards come first, as in a game for one.
@@ -22,7 +22,7 @@ impl Game {
             .map(|color| builtin::player(color).map(|sprite| game.world.add_sprite(sprite)));
         game.checkpoint = Checkpoint::default();
         game.members = Some(Box::new(Members {
-            company,
+            rules: multiplayer,
             slots: Vec::new(),
             turn: None,
             treasure_of_the_gone: 0,
@@ -37,8 +37,8 @@ impl Game {
     }
 
     /// The rules among the players; `None` in a game for one.
-    pub fn company(&self) -> Option<Company> {
-        self.members.as_ref().map(|members| members.company)
+    pub fn multiplayer_rules(&self) -> Option<MultiplayerRules> {
+        self.members.as_ref().map(|members| members.rules)
     }
 
     /// Lets a player join, at the start or the nearest free place. `None` if no slot or no place is
@@ -158,7 +158,7 @@ impl Game {
 
     /// Lets dead players go on who want to, and finds out who plays.
     fn revive(&mut self) {
-        let respawns = self.company().is_some_and(|company| company.respawns);
+        let respawns = self.multiplayer_rules().is_some_and(|rules| rules.respawns);
         for index in 0..self.slot_count() {
             let member = self.members.as_ref().and_then(|members| members.member(index));
             let Some(member) = member else { continue };
@@ -206,7 +206,7 @@ impl Game {
         let now = self.steps;
         let has_reached_exit = self.in_turn(index, |game| game.is_finished());
         let Some(members) = self.members.as_deref_mut() else { return };
-        let respawns = members.company.respawns;
+        let respawns = members.rules.respawns;
         let Some(member) = members.member_mut(index) else { return };
         let is_dead = member.player.killed_by.is_some();
         let wins = has_reached_exit == Some(true) && !member.has_won;

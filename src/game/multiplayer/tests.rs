@@ -26,8 +26,8 @@ fn level(rows: &[&str], tiles: &str, things: &str) -> World {
 }
 
 /// A game for several with `count` players in it.
-fn with_players(world: World, company: Company, count: usize) -> (Game, Vec<PlayerId>) {
-    let mut game = Game::for_company(world, RULES, company);
+fn with_players(world: World, rules: MultiplayerRules, count: usize) -> (Game, Vec<PlayerId>) {
+    let mut game = Game::for_players(world, RULES, rules);
     let ids = (0..count).map(|index| game.join(PlayerColor::ALL[index % 8]).unwrap()).collect();
     (game, ids)
 }

@@ -55,7 +55,7 @@ impl PlayerId {
 
 /// The rules among the players of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Company {
+pub struct MultiplayerRules {
     /// Whether players are in each other's way. Otherwise they walk through each other.
     pub collides: bool,
     /// Whether a dead player goes on from their last checkpoint when they want to
@@ -67,7 +67,7 @@ pub struct Company {
     pub strikes: Strikes,
 }
 
-impl Default for Company {
+impl Default for MultiplayerRules {
     /// Players walk through each other, go on after death, see each other on the map, and cannot
     /// strike each other.
     fn default() -> Self {

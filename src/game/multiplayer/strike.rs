@@ -24,7 +24,7 @@ impl Game {
         let turn = members.turn?;
         let seen = members.member(turn)?.seen;
         let own = self.stood(turn, seen)?;
-        if members.company.strikes == Strikes::Nobody {
+        if members.rules.strikes == Strikes::Nobody {
             return None;
         }
         let is_open_to_it =
@@ -44,7 +44,7 @@ impl Game {
     pub(in crate::game) fn strike_player(&mut self, index: usize, direction: DVec2) {
         let degrees = libm::atan2(-direction.y, -direction.x).to_degrees();
         let Some(members) = self.members.as_deref_mut() else { return };
-        let (strikes, turn) = (members.company.strikes, members.turn);
+        let (strikes, turn) = (members.rules.strikes, members.turn);
         let Some(member) = members.member_mut(index) else { return };
         member.player.motion = member.player.motion.pushed(direction * PUSH);
         member.player.flash = Some(Flash::struck(Heading::from_degrees(degrees)));
@@ -64,7 +64,7 @@ impl Game {
 
     /// Whether players can strike in levels without guards, too: each other.
     pub(in crate::game) fn has_blows(&self) -> bool {
-        self.company().is_some_and(|company| company.strikes != Strikes::Nobody)
+        self.multiplayer_rules().is_some_and(|rules| rules.strikes != Strikes::Nobody)
     }
 }
 

@@ -215,7 +215,7 @@ impl<'a> PlayerView<'a> {
 
     /// Those of the [others](Self::others) whom the player's map shows.
     pub fn others_on_map(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
-        let sees = self.game.company().map_or(Sees::Nobody, |company| company.sees);
+        let sees = self.game.multiplayer_rules().map_or(Sees::Nobody, |rules| rules.sees);
         self.others().filter(move |other| match sees {
             Sees::Nobody => false,
             Sees::InSight => other.is_in_sight,

@@ -1,7 +1,7 @@
 //! The players of a game for several, by slot, and whose turn it is.
 
 use super::seen::Track;
-use super::{Company, MOST_PLAYERS};
+use super::{MOST_PLAYERS, MultiplayerRules};
 use crate::game::checksum::{word_of, words_of_player};
 use crate::game::guards::Target;
 use crate::game::player::Player;
@@ -15,7 +15,7 @@ use crate::world::{Cell, Figure, SpriteId, Thing};
 /// The players of a game for several.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::game) struct Members {
-    pub(super) company: Company,
+    pub(super) rules: MultiplayerRules,
     /// The last slot is taken, if there is any.
     pub(super) slots: Vec<Option<Member>>,
     /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.

@@ -42,7 +42,7 @@ impl Game {
     /// Finds out who is in the way of the player in turn.
     pub(in crate::game) fn find_those_in_the_way(&mut self) {
         let Some(members) = &mut self.members else { return };
-        if !members.company.collides {
+        if !members.rules.collides {
             return;
         }
         let turn = members.turn;
