@@ -48,9 +48,7 @@ use super::load::Load;
 use super::room::Catalog;
 use super::rooms::{RoomLimits, Rooms};
 use super::summary::RoomSummary;
-use super::{
-    Departure, Host, Link, LiveConfig, Metrics, Operator, Refusal, RoomRow, Visitor, Visitors,
-};
+use super::{Departure, Host, Link, LiveConfig, Metrics, Operator, RoomRow, Visitor, Visitors};
 use crate::store::host::UnixTime;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
@@ -184,16 +182,16 @@ impl Host for GameHost {
     async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
         if let Some(sentence) = terminal::refusal(&visitor) {
-            return refuse(link, &sentence, None).await;
+            return refuse(link, &sentence, Departure::REFUSED).await;
         }
         let known = match shared.log_in(&visitor).await {
             Ok(known) => known,
-            Err(sentence) => return refuse(link, &sentence, None).await,
+            Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
         };
         #[cfg(feature = "cluster")]
         let _counted = match shared.begin_visit(&visitor, known.key).await {
             Ok(counted) => counted,
-            Err((sentence, reason)) => return refuse(link, sentence, reason).await,
+            Err((sentence, departure)) => return refuse(link, sentence, departure).await,
         };
         let options = terminal::options(&visitor);
         let mut visit = Visit::new(shared, &visitor, known, options);
@@ -215,12 +213,12 @@ impl Shared {
     }
 }
 
-/// Tells somebody who may not play why; `refusal` is the limit that forbids it, if one does.
-async fn refuse(link: Link, sentence: &str, refusal: Option<Refusal>) -> Departure {
+/// Tells somebody who may not play why, and returns their `departure`.
+async fn refuse(link: Link, sentence: &str, departure: Departure) -> Departure {
     let Link { mut outbox, .. } = link;
     _ = outbox.try_send(format!("{sentence}\r\n").into_bytes());
     outbox.drained().await;
-    Departure { status: 1, refusal }
+    departure
 }
 
 /// Sets the frame rate as long as the host exists.

@@ -61,6 +61,13 @@ pub struct Departure {
     pub refusal: Option<Refusal>,
 }
 
+impl Departure {
+    /// That of a visitor who is refused: they have to change something, or to come later.
+    pub(super) const REFUSED: Self = Self { status: 2, refusal: None };
+    /// That of a visitor whom the host cannot serve.
+    pub(super) const FAILED: Self = Self { status: 1, refusal: None };
+}
+
 /// Counts of connections, for metrics and tests.
 #[derive(Debug, Default)]
 pub struct Counters {

@@ -6,7 +6,7 @@ use super::{Shared, unix_time};
 use crate::server::line::Line;
 use crate::server::logging::events;
 use crate::server::room::NAME_COLUMNS;
-use crate::server::{Visitor, locked};
+use crate::server::{Departure, Visitor, locked};
 use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
     Origin, Refusal, StoreFailure,
@@ -42,7 +42,7 @@ const NOT_NOW: &str = "The host can't keep this now; try again later.";
 
 impl Shared {
     /// What the store knows of a visitor, or a sentence why they may not play.
-    pub(super) async fn log_in(&self, visitor: &Visitor) -> Result<Known, String> {
+    pub(super) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
         let key = visitor.key.as_ref().and_then(|key| AccountKey::parse(key.fingerprint()));
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
@@ -65,12 +65,12 @@ impl Shared {
             failed => {
                 self.metrics.store_errors.count();
                 events::store_failed(format!("{failed:?}"));
-                return Err(NOT_KNOWN.to_owned());
+                return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
             }
         };
         if let Some(ban) = ban {
             events::banned_visitor(address, &ban.target);
-            return Err(banned(&ban));
+            return Err((banned(&ban), Departure::REFUSED));
         }
         let offer = match &account {
             Some(account) => account.name.clone(),

@@ -4,16 +4,16 @@ use super::Shared;
 use super::account::NOT_KNOWN;
 use crate::server::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::server::logging::events;
-use crate::server::{Refusal, Visitor};
+use crate::server::{Departure, Visitor};
 use crate::store::host::AccountKey;
 
 impl Shared {
-    /// Counts a visitor on all hosts, or tells why they may not play, and which limit forbids it.
+    /// Counts a visitor on all hosts, or tells why they may not play, and how they depart.
     pub(super) async fn begin_visit(
         &self,
         visitor: &Visitor,
         key: Option<AccountKey>,
-    ) -> Result<Option<CountedVisit>, (&'static str, Option<Refusal>)> {
+    ) -> Result<Option<CountedVisit>, (&'static str, Departure)> {
         let Some(rooms) = &self.cluster else { return Ok(None) };
         let limits = self.config.get().admission;
         let new_visit = NewVisit {
@@ -23,11 +23,14 @@ impl Shared {
             per_address: limits.per_address,
         };
         rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
-            VisitRefusal::TooMany(reason) => (reason.sentence(), Some(reason)),
+            VisitRefusal::TooMany(reason) => {
+                let refusal = Some(reason);
+                (reason.sentence(), Departure { refusal, ..Departure::REFUSED })
+            }
             VisitRefusal::NotNow(failure) => {
                 self.metrics.store_errors.count();
                 events::store_failed(failure);
-                (NOT_KNOWN, None)
+                (NOT_KNOWN, Departure::FAILED)
             }
         })
     }

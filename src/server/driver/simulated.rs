@@ -93,7 +93,7 @@ async fn serve(
 ) -> u8 {
     let known = match shared.log_in(&visitor).await {
         Ok(known) => known,
-        Err(sentence) => return refuse(link, &sentence, None).await.status,
+        Err((sentence, departure)) => return refuse(link, &sentence, departure).await.status,
     };
     let mut visit = Visit::new(shared, &visitor, known, options);
     loop {

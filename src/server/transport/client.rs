@@ -18,7 +18,7 @@ use super::connection::Shared;
 use super::inbound::{Inlet, inbound};
 use super::visitor::{self, MOST_VARIABLES};
 use super::wire::Line;
-use super::{KeyData, Link, Outbox, Visitor};
+use super::{Departure, KeyData, Link, Outbox, Visitor};
 use crate::server::logging::events;
 use crate::server::{Refusal, VisitId};
 use crate::terminal::WindowSize;
@@ -57,8 +57,6 @@ const GUEST: &str = "guest";
 const NO_TERMINAL: &str = "This is a game for a terminal: connect with ssh -t.";
 const NO_RSA: &str =
     "An RSA key is not an account here: make an ed25519 key with ssh-keygen -t ed25519.";
-/// The exit status of a refused session.
-const REFUSED: u32 = 2;
 const STANDARD_ERROR: u32 = 1;
 
 impl Client {
@@ -204,7 +202,7 @@ impl Client {
 /// Ends the channel with a sentence.
 fn refuse(channel: ChannelId, sentence: &str, session: &mut Session) -> Result<(), Error> {
     session.extended_data(channel, STANDARD_ERROR, format!("{sentence}\r\n").into_bytes())?;
-    session.exit_status_request(channel, REFUSED)?;
+    session.exit_status_request(channel, u32::from(Departure::REFUSED.status))?;
     session.eof(channel)?;
     session.close(channel)
 }

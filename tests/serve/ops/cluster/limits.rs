@@ -21,7 +21,7 @@ fn a_key_is_limited_over_all_hosts() {
     enter_room(&mara, "Mara");
     let mut other = player(1);
     other.wait_for(TOO_OFTEN);
-    assert_eq!(other.wait_for_end().status.code(), Some(1));
+    assert_eq!(other.wait_for_end().status.code(), Some(2));
     wait_until("the refusal to be counted", || {
         hosts.figure(1, "connections_refused_total{reason=\"key\"}") == 1.0
     });
