@@ -118,8 +118,8 @@ where
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>) {
         let Self { scene, batch, lighting, latest, latest_face } = self;
         let (column, t) = (wall.column, wall.t);
-        batch.count(Pass::Walls, rows.len(), wall.paint);
-        let texture = match wall.paint {
+        batch.count(Pass::Walls, rows.len(), wall.material);
+        let texture = match wall.material {
             Paint::Color(color) => {
                 batch.queue_color(column, rows, color, lighting(wall));
                 return;

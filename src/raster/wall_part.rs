@@ -58,7 +58,7 @@ fn draw_lit<'a, M: Sampling, L: Lighting, S: Stats>(
     // The wall of a column's ray has at most one wall on each side.
     let mut before = [None, None];
     list.for_each_wall_part(scene, is_lit, |part, wall| {
-        let texels = match wall.paint {
+        let texels = match wall.material {
             Paint::Color(color) => Texels::Color(color),
             Paint::Texture(id) => {
                 let WallLevel { level, texels, .. } =
@@ -67,7 +67,7 @@ fn draw_lit<'a, M: Sampling, L: Lighting, S: Stats>(
                 Texels::Level { level, u: wall.u, column: level.column(wall.u), stepper }
             }
         };
-        let part = LitPart { part, paint: wall.paint, texels, lighting: lighting(wall) };
+        let part = LitPart { part, paint: wall.material, texels, lighting: lighting(wall) };
         if part.part.is_alone {
             draw_alone(&part, &mut batch);
             return;

@@ -13,11 +13,11 @@ use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
 use super::wall_part::WallPart;
 use super::{
-    Billboard, Column, Facing, Scene, SpanMapping, Surface, WallColumn, WallRun, WallSink,
+    Billboard, Column, Scene, SeeThroughColumn, SpanMapping, Surface, WallColumn, WallRun, WallSink,
 };
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::world::{Covering, Glass, Light, Sprite, TextureId};
+use crate::world::{Covering, Light, Sprite};
 
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -94,39 +94,6 @@ pub(crate) struct SpanMemory {
     pub(super) plane_rows: Vec<PlaneRow>,
     /// The first column of the current span of each row.
     pub(super) starts: Vec<usize>,
-}
-
-/// A masked or translucent face as wide as a pixel, or the tint of a mirror.
-#[derive(Clone, Debug)]
-pub(crate) struct SeeThroughColumn {
-    pub(crate) column: u32,
-    pub(crate) rows: Range<u32>,
-    pub(crate) facing: Facing,
-    /// The approach of the ray, as in [`WallColumn`].
-    pub(crate) slope: f64,
-    pub(crate) t: f64,
-    pub(crate) u: f64,
-    pub(crate) light: Light,
-    pub(crate) material: Material,
-    pub(crate) extent: Extent,
-}
-
-/// The material of a see-through face.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Material {
-    /// A texture with holes.
-    Masked(TextureId),
-    /// A tint.
-    Translucent(Glass),
-}
-
-/// The heights between which a face extends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Extent {
-    /// From floor to ceiling of a level scene: from 0 to 1.
-    Level,
-    /// From `bottom` to `top`.
-    Heights { bottom: f64, top: f64 },
 }
 
 /// An item, as wide as a pixel, that is painted in front of the items before it.

@@ -44,8 +44,8 @@ pub(crate) fn for_each_wall_column(
             slope: facing.slope(direction),
             t: hit.t,
             u: hit.u,
-            paint: *paint,
             light: face.light.at(hit.u),
+            material: *paint,
             extent: Extent::Level,
         };
         sink.take(&wall, shown);
@@ -112,8 +112,8 @@ pub(crate) fn for_each_wall_part<'l>(
             slope: facing.slope(direction),
             t: hit.t,
             u: hit.u,
-            paint: *paint,
             light: if is_lit { face.light.at(hit.u) } else { Light::FULL },
+            material: *paint,
             extent: Extent::Level,
         };
         draw(part, &wall);

@@ -53,7 +53,7 @@ impl BundleWalk<'_> {
         self.list.runs.show(column, rows.clone(), Shown::Face(met.side));
         let light = self.light(place, met);
         let &Met { facing, slope, t, u, .. } = met;
-        let wall = WallColumn { column, rows, facing, slope, t, u, paint, light, extent };
+        let wall = WallColumn { column, rows, facing, slope, t, u, light, material: paint, extent };
         self.list.walls.push(wall);
     }
 

@@ -1,14 +1,14 @@
-//! Wall columns: upright faces as wide as a pixel, one by one or in runs.
+//! Face columns: upright faces as wide as a pixel, one by one or in runs.
 
 use std::ops::Range;
 
-use super::{Column, Extent, Facing};
+use super::{Column, Facing};
 use crate::cast::Side;
-use crate::world::{Light, Paint};
+use crate::world::{Glass, Light, Paint, TextureId};
 
-/// The visible part of an upright face that is as wide as a pixel.
+/// The visible part of an upright face that is as wide as a pixel, with a material of this kind.
 #[derive(Clone, Debug)]
-pub(crate) struct WallColumn {
+pub(crate) struct FaceColumn<M> {
     pub(crate) column: u32,
     pub(crate) rows: Range<u32>,
     pub(crate) facing: Facing,
@@ -16,9 +16,33 @@ pub(crate) struct WallColumn {
     pub(crate) slope: f64,
     pub(crate) t: f64,
     pub(crate) u: f64,
-    pub(crate) paint: Paint,
     pub(crate) light: Light,
+    pub(crate) material: M,
     pub(crate) extent: Extent,
+}
+
+/// A column of an opaque wall.
+pub(crate) type WallColumn = FaceColumn<Paint>;
+
+/// A column of a masked or translucent face, or the tint of a mirror.
+pub(crate) type SeeThroughColumn = FaceColumn<Material>;
+
+/// The material of a see-through face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Material {
+    /// A texture with holes.
+    Masked(TextureId),
+    /// A tint.
+    Translucent(Glass),
+}
+
+/// The heights between which a face extends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Extent {
+    /// From floor to ceiling of a level scene: from 0 to 1.
+    Level,
+    /// From `bottom` to `top`.
+    Heights { bottom: f64, top: f64 },
 }
 
 /// Neighbouring wall columns of a level scene that show one paint on one kind of side.
