@@ -23,6 +23,7 @@ mod billboard;
 mod chains;
 mod column;
 mod draw_list;
+mod face_column;
 mod facing;
 mod filter;
 mod flat;
@@ -39,7 +40,6 @@ mod span_mapping;
 mod stats;
 mod texture_stepper;
 mod visible_cells;
-mod wall_column;
 mod wall_part;
 
 pub(crate) use billboard::Billboard;
@@ -47,9 +47,9 @@ pub(crate) use billboard::Billboard;
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{
-    BillboardColumn, DrawList, DrawnPlane, Extent, Layer, Material, PlaneSpan, SeeThroughColumn,
-    Span, SpanMemory, SpanPair,
+    BillboardColumn, DrawList, DrawnPlane, Layer, PlaneSpan, Span, SpanMemory, SpanPair,
 };
+pub(crate) use face_column::{Extent, Material, SeeThroughColumn, WallColumn, WallRun, WallSink};
 pub(crate) use facing::Facing;
 pub use filter::Filter;
 pub use frame_size::{FrameSize, PixelAspect};
@@ -64,7 +64,6 @@ pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
 pub(crate) use texture_stepper::{FaceTexels, TextureStepper, WallTexels};
-pub(crate) use wall_column::{WallColumn, WallRun, WallSink};
 pub(crate) use wall_part::WallPart;
 
 use crate::cast::{Caster, ExactOnLevel};

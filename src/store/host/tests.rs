@@ -14,6 +14,7 @@ mod waiting;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 use std::{env, fs};
 
 use super::*;
@@ -47,7 +48,26 @@ fn with_each(test: impl Fn(&mut dyn HostStore)) {
     assert_eq!(sentence, None);
     test(&mut store);
     #[cfg(all(unix, feature = "cluster-tests"))]
-    test(&mut PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap());
+    test(&mut postgres_store());
+}
+
+/// A store in the database that all tests share.
+#[cfg(all(unix, feature = "cluster-tests"))]
+fn postgres_store() -> PostgresStore {
+    PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap()
+}
+
+/// What has a clock, which is set or that of a database.
+trait Timed {
+    /// Lets `time` pass.
+    fn wait(&mut self, time: Duration);
+}
+
+#[cfg(all(unix, feature = "cluster-tests"))]
+impl Timed for PostgresStore {
+    fn wait(&mut self, time: Duration) {
+        std::thread::sleep(time);
+    }
 }
 
 const DAY: u64 = 24 * 60 * 60;

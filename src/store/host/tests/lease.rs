@@ -1,34 +1,25 @@
 //! Leases, by a clock that is set and by that of a database.
 
-use std::time::Duration;
-
 use proptest::prelude::*;
 
 use super::*;
 
-/// Leases whose clock a test waits for, one way or another.
-trait Timed: Leases {
-    fn wait(&mut self, time: Duration);
+/// Runs a test with leases of each kind.
+fn with_each(test: impl Fn(&mut dyn TimedLeases)) {
+    test(&mut MemoryLeases::default());
+    #[cfg(all(unix, feature = "cluster-tests"))]
+    test(&mut postgres_store());
 }
+
+/// Leases whose clock a test can let run.
+trait TimedLeases: Leases + Timed {}
+
+impl<T: Leases + Timed> TimedLeases for T {}
 
 impl Timed for MemoryLeases {
     fn wait(&mut self, time: Duration) {
         self.pass(time);
     }
-}
-
-#[cfg(all(unix, feature = "cluster-tests"))]
-impl Timed for PostgresStore {
-    fn wait(&mut self, time: Duration) {
-        std::thread::sleep(time);
-    }
-}
-
-/// Runs a test with leases of each kind.
-fn with_each(test: impl Fn(&mut dyn Timed)) {
-    test(&mut MemoryLeases::default());
-    #[cfg(all(unix, feature = "cluster-tests"))]
-    test(&mut PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap());
 }
 
 /// Longer than any test asks for it.

@@ -1,32 +1,23 @@
 //! Visits and hosts, by a clock that is set and by that of a database.
 
-use std::time::Duration;
-
 use super::*;
 
-/// What a test waits for the clock of, one way or another.
-trait Timed: Presence {
-    fn wait(&mut self, time: Duration);
+/// Runs a test with a store of each kind.
+fn with_each(test: impl Fn(&mut dyn TimedPresence)) {
+    test(&mut MemoryPresence::default());
+    #[cfg(all(unix, feature = "cluster-tests"))]
+    test(&mut postgres_store());
 }
+
+/// The presence of hosts and visitors, whose clock a test can let run.
+trait TimedPresence: Presence + Timed {}
+
+impl<T: Presence + Timed> TimedPresence for T {}
 
 impl Timed for MemoryPresence {
     fn wait(&mut self, time: Duration) {
         self.pass(time);
     }
-}
-
-#[cfg(all(unix, feature = "cluster-tests"))]
-impl Timed for PostgresStore {
-    fn wait(&mut self, time: Duration) {
-        std::thread::sleep(time);
-    }
-}
-
-/// Runs a test with a store of each kind.
-fn with_each(test: impl Fn(&mut dyn Timed)) {
-    test(&mut MemoryPresence::default());
-    #[cfg(all(unix, feature = "cluster-tests"))]
-    test(&mut PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap());
 }
 
 const LONG: Duration = Duration::from_mins(1);
@@ -49,14 +40,14 @@ fn notice(name: &str, load: u32) -> HostNotice {
     }
 }
 
-fn announce(presence: &mut dyn Timed, hosts: &[&str]) {
+fn announce(presence: &mut dyn TimedPresence, hosts: &[&str]) {
     for host in hosts {
         presence.announce(&notice(host, 0)).unwrap();
     }
 }
 
 /// A visit that is let in.
-fn begin(presence: &mut dyn Timed, host: &str, visitor: &Visitor, most: u32) -> VisitId {
+fn begin(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> VisitId {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         VisitBegin::Begun(visit) => visit,
         VisitBegin::TooMany(ago) => panic!("too many on hosts that were there {ago:?} ago"),
@@ -64,7 +55,7 @@ fn begin(presence: &mut dyn Timed, host: &str, visitor: &Visitor, most: u32) -> 
 }
 
 /// How fresh a refusal is.
-fn refused(presence: &mut dyn Timed, host: &str, visitor: &Visitor, most: u32) -> Duration {
+fn refused(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> Duration {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         VisitBegin::TooMany(ago) => ago,
         VisitBegin::Begun(visit) => panic!("{visit:?} has begun"),
@@ -139,7 +130,7 @@ fn a_host_is_there_while_it_announces_itself() {
         presence.announce(&notice("other", 2)).unwrap();
         presence.wait(SHORT * 2);
         presence.announce(&notice("one", 3)).unwrap();
-        let told = |presence: &mut dyn Timed, time| -> Vec<HostNotice> {
+        let told = |presence: &mut dyn TimedPresence, time| -> Vec<HostNotice> {
             presence.hosts(time).unwrap().into_iter().map(|row| row.notice).collect()
         };
         assert_eq!(told(presence, LONG), [notice("one", 3), notice("other", 2)]);
