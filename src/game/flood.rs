@@ -34,13 +34,19 @@ pub(super) const NEIGHBORS: [(i32, i32); 8] =
 
 /// The costs of steps in a search.
 pub(super) trait Costs {
+    /// What all steps found from one cell have in common.
+    type Origin;
+
+    /// What the steps found from `cell` have in common.
+    fn origin(&self, cell: Cell) -> Self::Origin;
+
     /// The cost of a straight step between neighbours, found from `from` to `to`, at most
     /// [`MOST_COST`]; `None` if there is no way.
-    fn straight(&self, from: Cell, to: Cell) -> Option<u16>;
+    fn straight(&self, from: &Self::Origin, to: Cell) -> Option<u16>;
 
     /// Whether there is a diagonal step between `from` and `to`, past two cells to which there are
     /// straight steps from `from` or are not.
-    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool;
+    fn has_diagonal(&self, from: &Self::Origin, to: Cell, beside: [bool; 2]) -> bool;
 }
 
 /// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
@@ -112,10 +118,11 @@ impl Flood {
 
     /// Offers the neighbours of `cell` their distances.
     fn spread(&mut self, cell: Cell, costs: &impl Costs) {
+        let origin = costs.origin(cell);
         let mut is_open = [false; 4];
         for (side, open) in is_open.iter_mut().enumerate() {
             let Some(to) = self.neighbor(cell, side * 2) else { continue };
-            if let Some(cost) = costs.straight(cell, to) {
+            if let Some(cost) = costs.straight(&origin, to) {
                 *open = true;
                 self.offer(to, self.distance.saturating_add(cost.min(MOST_COST)));
             }
@@ -125,7 +132,7 @@ impl Flood {
             let Some(to) = self.neighbor(cell, side * 2 + 1) else { continue };
             let distance = self.distance.saturating_add(DIAGONAL);
             let is_farther = self.known(to).is_some_and(|known| known <= distance);
-            if !is_farther && costs.has_diagonal(cell, to, beside) {
+            if !is_farther && costs.has_diagonal(&origin, to, beside) {
                 self.offer(to, distance);
             }
         }
@@ -183,11 +190,15 @@ mod tests {
     }
 
     impl Costs for Open {
-        fn straight(&self, _: Cell, to: Cell) -> Option<u16> {
+        type Origin = ();
+
+        fn origin(&self, _: Cell) {}
+
+        fn straight(&self, (): &(), to: Cell) -> Option<u16> {
             self.at(to).then_some(STRAIGHT)
         }
 
-        fn has_diagonal(&self, _: Cell, to: Cell, beside: [bool; 2]) -> bool {
+        fn has_diagonal(&self, (): &(), to: Cell, beside: [bool; 2]) -> bool {
             self.at(to) && beside == [true, true]
         }
     }

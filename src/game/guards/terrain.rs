@@ -191,33 +191,66 @@ pub(super) struct Backwards<'a> {
     pub(super) gait: Gait,
 }
 
+/// A cell that guards walk to from its neighbours.
+pub(super) struct Destination {
+    cell: Cell,
+    tile: TileId,
+    footing: Footing,
+    /// The cost of a straight step to it.
+    cost: u16,
+}
+
+impl Backwards<'_> {
+    fn tile(&self, cell: Cell) -> Option<TileId> {
+        self.world.grid().tile(i64::from(cell.column), i64::from(cell.row))
+    }
+
+    /// Whether the step from the neighbour `start` to a cell that can be entered is possible.
+    #[inline]
+    fn leads_from(&self, start: Cell, to: &Destination) -> bool {
+        // A tile leads to itself wherever it can be entered.
+        self.tile(start).is_some_and(|start| {
+            let start_footing = &self.terrain.footings[usize::from(start.0)];
+            start == to.tile || to.footing.is_reached_from(start_footing, self.gait)
+        })
+    }
+}
+
 impl Costs for Backwards<'_> {
-    fn straight(&self, from: Cell, to: Cell) -> Option<u16> {
-        let is_door = |footing: Footing| footing.kind == FootingKind::Door;
-        let is_door = self.terrain.footing(self.world, from).is_some_and(is_door);
+    /// `None` for a cell that guards do not enter.
+    type Origin = Option<Destination>;
+
+    fn origin(&self, cell: Cell) -> Option<Destination> {
+        let Self { terrain, gait, .. } = *self;
+        let tile = self.tile(cell)?;
+        let footing = terrain.footings[usize::from(tile.0)];
+        let is_door = footing.kind == FootingKind::Door;
         let cost = if is_door { STRAIGHT + DOOR } else { STRAIGHT };
-        self.terrain.leads(self.world, self.gait, to, from).then_some(cost)
+        let is_entered = terrain.is_entered(gait, &footing, cell);
+        is_entered.then_some(Destination { cell, tile, footing, cost })
+    }
+
+    #[inline]
+    fn straight(&self, from: &Option<Destination>, to: Cell) -> Option<u16> {
+        let from = from.as_ref()?;
+        self.leads_from(to, from).then_some(from.cost)
     }
 
     /// Past two cells at the same height.
-    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool {
-        let Self { terrain, world, .. } = *self;
-        if beside != [true, true] {
-            return false;
-        }
+    fn has_diagonal(&self, from: &Option<Destination>, to: Cell, beside: [bool; 2]) -> bool {
+        let Some(from) = from.as_ref().filter(|_| beside == [true, true]) else { return false };
         let corners = [
             to,
-            Cell { column: from.column, row: to.row },
-            Cell { column: to.column, row: from.row },
+            Cell { column: from.cell.column, row: to.row },
+            Cell { column: to.column, row: from.cell.row },
         ];
-        terrain.footing(world, from).is_some_and(|here| {
-            let is_level = |cell| {
-                let there = terrain.footing(world, cell);
-                there.is_some_and(|there| here.is_level_with(there))
-            };
-            corners.into_iter().all(|cell| is_level(cell) && !terrain.has_thing(cell))
-                && terrain.leads(world, self.gait, to, from)
-        })
+        let is_level = |cell: Cell| {
+            self.tile(cell).is_some_and(|TileId(tile)| {
+                from.footing.is_level_with(self.terrain.footings[usize::from(tile)])
+            })
+        };
+        corners.into_iter().all(|cell| is_level(cell) && !self.terrain.has_thing(cell))
+            && self.leads_from(to, from)
     }
 }
 

@@ -203,12 +203,12 @@ impl Backwards<'_> {
     /// Whether the step from `from` to its neighbour `to` is possible now.
     fn leads(&self, from: Cell, to: Cell) -> bool {
         use crate::game::flood::Costs;
-        let straight = |from, to| self.straight(to, from).is_some();
+        let straight = |from, to| self.straight(&self.origin(to), from).is_some();
         if from.column == to.column || from.row == to.row {
             return straight(from, to);
         }
         let beside =
             [Cell { column: from.column, row: to.row }, Cell { column: to.column, row: from.row }];
-        self.has_diagonal(to, from, beside.map(|cell| straight(cell, to)))
+        self.has_diagonal(&self.origin(to), from, beside.map(|cell| straight(cell, to)))
     }
 }

@@ -90,13 +90,19 @@ impl Air<'_> {
 }
 
 impl Costs for Air<'_> {
-    fn straight(&self, from: Cell, to: Cell) -> Option<u16> {
+    type Origin = Cell;
+
+    fn origin(&self, cell: Cell) -> Cell {
+        cell
+    }
+
+    fn straight(&self, &from: &Cell, to: Cell) -> Option<u16> {
         let is_dampened = self.tile(to).is_some_and(dampens);
         let cost = if is_dampened { STRAIGHT + DAMPING } else { STRAIGHT };
         self.passes(from, to).then_some(cost)
     }
 
-    fn has_diagonal(&self, from: Cell, to: Cell, beside: [bool; 2]) -> bool {
+    fn has_diagonal(&self, &from: &Cell, to: Cell, beside: [bool; 2]) -> bool {
         let is_free = |cell| self.tile(cell).is_some_and(|tile| !dampens(tile));
         let corners =
             [Cell { column: to.column, row: from.row }, Cell { column: from.column, row: to.row }];
