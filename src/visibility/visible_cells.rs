@@ -119,7 +119,12 @@ impl VisibleCells {
     /// The indices of the cells, of `count`, whose middle is between `low` and `high` or within the
     /// margin.
     fn reached(&self, low: f64, high: f64, count: u32) -> Range<u32> {
-        let first_from = |place: f64| (place - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
+        // Rounding up is a function call on older processors.
+        let first_from = |place: f64| {
+            let place = (place - 0.5).clamp(0.0, f64::from(count));
+            let below = place as u32;
+            below + u32::from(f64::from(below) < place)
+        };
         first_from(low - self.margin)..first_from(high + self.margin)
     }
 }
