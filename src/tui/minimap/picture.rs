@@ -38,12 +38,18 @@ impl PixelRow<'_, '_> {
     /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
     #[inline]
     pub(super) fn point(&self, x: u32) -> MapPoint {
-        let Picture { top_view, window } = self.picture;
+        let window = &self.picture.window;
         let x = window.x_of(x);
-        let [columns, rows] = window.cells_per_pixel();
-        if (columns, rows) == (1, 1) {
-            return self.middle.point(x);
+        match window.cells_per_pixel() {
+            [1, 1] => self.middle.point(x),
+            cells => self.most_important(x, cells),
         }
+    }
+
+    /// The most important point of the pixel at `x`, which covers this number of cells.
+    #[inline(never)]
+    fn most_important(&self, x: f64, [columns, rows]: [u32; 2]) -> MapPoint {
+        let top_view = &self.picture.top_view;
         // The pixel covers this number of cells in each direction; each is sampled at its middle.
         let along = |middle: f64, count: u32| {
             let first = middle - f64::from(count - 1) / 2.0;
