@@ -53,6 +53,8 @@ pub(crate) use major_axis::MajorAxisTraversal;
 pub use ray::{Ray, RayError};
 pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
+#[cfg(feature = "tui")]
+pub(crate) use walk::WalkFromInside;
 #[cfg(feature = "lab")]
 pub(crate) use walk::first_line;
 pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};

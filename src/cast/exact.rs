@@ -113,6 +113,24 @@ impl ExactOrder {
         let furthest = size + ray.origin().abs();
         Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
     }
+
+    /// The same order for a ray of a camera, which is not scaled: where a product overflows, the difference
+    /// is in doubt, or infinite and correct.
+    #[cfg(feature = "tui")]
+    #[inline]
+    pub(super) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let rounded = RoundedOrder::of_direction(ray.origin(), ray.direction(), ray.direction());
+        let furthest = size + ray.origin().abs();
+        Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
+    }
+
+    /// The distances to the lines at `x` and `y`, in a common unit.
+    #[cfg(feature = "tui")]
+    #[inline]
+    pub(super) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+        self.rounded.distances(x, y)
+    }
 }
 
 /// A bound on the error of a difference of rounded distances to lines that are at most `furthest` away.

@@ -7,8 +7,12 @@
 //!
 //! A loop for each method was refused: each would have to guarantee all of that again.
 
+#[cfg(feature = "tui")]
+mod from_inside;
 mod mirrored;
 
+#[cfg(feature = "tui")]
+pub(crate) use from_inside::WalkFromInside;
 pub(crate) use mirrored::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 
 use super::{ExactOrder, Ray, Side};

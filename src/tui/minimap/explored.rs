@@ -64,13 +64,12 @@ impl Explored {
 
     fn look_by(&mut self, observer: &Observer, world: &World, camera: &Camera, rays: u32) {
         self.begin(world);
-        let plane = camera.direction().perp() * camera.field_of_view.half_width();
+        let forward = camera.direction();
+        let plane = forward.perp() * camera.field_of_view.half_width();
         for column in 0..rays {
             let across = 2.0 * (f64::from(column) + 0.5) / f64::from(rays) - 1.0;
-            let direction = camera.direction() + plane * across;
-            if let Ok(ray) = Ray::new(camera.position(), direction) {
-                observer.follow(&ray, |cell, is_open| self.insert(cell, is_open));
-            }
+            let ray = Ray::of_camera(camera.position(), forward + plane * across);
+            observer.follow(&ray, |cell, is_open| self.insert(cell, is_open));
         }
     }
 

@@ -13,7 +13,7 @@ mod own_gap;
 
 use self::own_gap::Passage;
 use super::is_wall;
-use crate::cast::{Crossed, Ray, RayWalk, Walk};
+use crate::cast::{Crossed, Ray, RayWalk, WalkFromInside};
 use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// Cells in which fog leaves less than this share of light are not seen.
@@ -76,23 +76,24 @@ impl Observer<'_> {
     /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
     pub(super) fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
-        let walk = Walk::new(grid, ray);
-        let position = walk.cell();
+        let walk = WalkFromInside::new(grid, ray);
+        let position = walk.as_ref().map(|&(_, cell, tile)| (cell, tile));
         if let Some((cell, tile)) = position {
             see(cell, self.is_open(tile));
         }
-        let mut gap = self.gap_around_eye(position);
         let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
-        let mut line = if let Some(start) = position
-            && self.passage(start.1) == Passage::Same
+        let (mut gap, mut line) = if let Some((walk, cell, tile)) = walk
+            && self.passage(tile) == Passage::Same
         {
+            let start = (cell, tile);
             let Some(line) = self.follow_through_own_gap(walk, ray, start, &mut see) else {
                 return;
             };
-            visible = self.slopes(gap, line.from);
-            line
+            visible = self.slopes(self.own_gap, line.from);
+            (self.own_gap, line)
         } else {
-            Line { walk: RayWalk::new(grid, ray), position, from: 0.0 }
+            let line = Line { walk: RayWalk::new(grid, ray), position, from: 0.0 };
+            (self.gap_around_eye(position), line)
         };
         let mut crossed = self.cross(&mut line, &mut visible, &mut see);
         loop {

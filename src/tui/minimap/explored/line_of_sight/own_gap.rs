@@ -4,7 +4,7 @@
 //! another tile, and knows nothing of mirrors until then.
 
 use super::{Line, Observer, is_opaque_inside};
-use crate::cast::{Crossing, Ray, RayWalk, Side, Walk, distance_on_entry};
+use crate::cast::{Crossing, Ray, RayWalk, Side, WalkFromInside, distance_on_entry};
 use crate::tui::minimap::explored::is_wall;
 use crate::world::{Cell, TileId};
 
@@ -16,6 +16,38 @@ pub(super) enum Passage {
     /// A block that ends the ray, which sees its face.
     Block,
     Other,
+}
+
+/// Beyond this distance, in cells, and so much farther, a slope is another one however it is rounded.
+const NEAR: f64 = 1e-9;
+const FARTHER: f64 = 1.0 + 1e-9;
+
+/// What rounded distances of a walk, in its unit, say for certain.
+struct Certain {
+    /// A distance up to which fog hides nothing, or less.
+    clear_to: f64,
+    /// A distance beyond [`NEAR`], or more.
+    near: f64,
+}
+
+impl Certain {
+    fn new(unit: f64, clear_to: f64) -> Self {
+        // More than enough for the errors of both distances.
+        const MARGIN: f64 = 1.0 + 1e-9;
+        /// The units of which no product has underflowed or overflowed.
+        const SOUND: std::ops::Range<f64> = 1e-150..1e150;
+        if SOUND.contains(&unit) {
+            Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }
+        } else {
+            Self { clear_to: 0.0, near: f64::INFINITY }
+        }
+    }
+
+    /// Whether [`Observer::rises`] is true for these distances.
+    #[inline]
+    fn rises(&self, from: f64, to: f64) -> bool {
+        from > self.near && to > from * (FARTHER * FARTHER)
+    }
 }
 
 impl Observer<'_> {
@@ -48,28 +80,34 @@ impl Observer<'_> {
     #[inline]
     pub(super) fn follow_through_own_gap(
         &self,
-        walk: Walk,
+        walk: WalkFromInside,
         ray: &Ray,
         mut position: (Cell, TileId),
         see: &mut impl FnMut(Cell, bool),
     ) -> Option<Line> {
+        let certain = Certain::new(walk.unit(), self.clear_to);
         let (mut from, mut entered) = (0.0, None);
-        for Crossing { cell: next, tile, side } in walk {
-            let t = distance_on_entry(ray, next, side);
+        let distance = |cell, entered: Option<Side>| {
+            entered.map_or(0.0, |side| distance_on_entry(ray, cell, side))
+        };
+        for (Crossing { cell: next, tile, side }, to) in walk {
             let passage = self.passage(tile);
-            if passage == Passage::Other || t > self.clear_to {
+            let is_clear = to < certain.clear_to || distance(next, Some(side)) <= self.clear_to;
+            if passage == Passage::Other || !is_clear {
                 break;
             }
-            if self.rises(from, t) {
+            if certain.rises(from, to)
+                || self.rises(distance(position.0, entered), distance(next, Some(side)))
+            {
                 see(position.0, true);
             }
             if passage == Passage::Block {
                 see(next, self.is_open(tile));
                 return None;
             }
-            (position, from, entered) = ((next, tile), t, Some(side));
+            (position, from, entered) = ((next, tile), to, Some(side));
         }
-        Some(self.line_in(ray, position, from, entered))
+        Some(self.line_in(ray, position, distance(position.0, entered), entered))
     }
 
     /// The line of `ray` in a cell that it has entered, or in which it begins.
@@ -93,9 +131,6 @@ impl Observer<'_> {
     /// a cell of which the ray meets a corner only.
     #[inline]
     fn rises(&self, from: f64, t: f64) -> bool {
-        /// Beyond this distance, in cells, and so much farther, a slope is another one however it is rounded.
-        const NEAR: f64 = 1e-9;
-        const FARTHER: f64 = 1.0 + 1e-9;
         let bottom = self.own_gap.bottom;
         from > NEAR && t > from * FARTHER || self.slope(bottom, from) < self.slope(bottom, t)
     }
