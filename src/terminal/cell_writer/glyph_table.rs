@@ -75,8 +75,14 @@ impl GlyphTable {
     /// The id of `glyph`, a new one if necessary; `None` if the table is full.
     #[inline]
     pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        self.recent_id(glyph).or_else(|| self.find(glyph))
+    }
+
+    /// The id of `glyph` if it was looked up recently.
+    #[inline]
+    pub(super) fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
         let (recent, id) = self.recent[glyph.place()];
-        if recent == glyph { Some(id) } else { self.find(glyph) }
+        (recent == glyph).then_some(id)
     }
 
     fn find(&mut self, glyph: Glyph) -> Option<GlyphId> {

@@ -146,10 +146,14 @@ impl PackedCell {
         let style = Style::in_colors(colors);
         let mut encoded = [0; 4];
         let symbol = &*character.encode_utf8(&mut encoded);
-        match BlockElement::of(symbol) {
-            Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(Symbol::of_text(symbol), style, glyph_table),
+        if let Some(element) = BlockElement::of(symbol) {
+            return Self::of_element(element, style, glyph_table);
         }
+        // Finding the width of a character takes ten times as long.
+        if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
+            return Self::of_text(id, colors.map(Shade::of));
+        }
+        Self::of_symbol(Symbol::of_text(symbol), style, glyph_table)
     }
 
     #[inline]
