@@ -194,8 +194,13 @@ impl Screen {
     /// Begins a whole frame, with blank targets.
     pub(super) fn begin_frame(&mut self) {
         self.targets_before = thread_memory::take(&BEFORE);
-        self.targets_before.clone_from(&self.targets);
-        self.targets.fill(PackedCell::BLANK);
+        let (count, capacity) = (self.targets.len(), self.targets.capacity());
+        if self.targets_before.capacity() != capacity {
+            self.targets_before = Vec::with_capacity(capacity);
+        }
+        std::mem::swap(&mut self.targets, &mut self.targets_before);
+        self.targets.clear();
+        self.targets.resize(count, PackedCell::BLANK);
     }
 
     /// Ends a whole frame: rows whose targets differ from those before it have changed.
