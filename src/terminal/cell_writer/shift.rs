@@ -127,7 +127,8 @@ impl Shift {
     fn best(by: Move, now: &[Loss], moved: &[Loss]) -> (Self, i32) {
         let (_, first) = by.places();
         let stretch = best_stretch(&now[first..], moved);
-        let spared = sum(&now[first..][stretch.clone()]) - sum(&moved[stretch.clone()]);
+        let losses = now[first..][stretch.clone()].iter().zip(&moved[stretch.clone()]);
+        let spared: i32 = losses.map(|(&now, &moved)| i32::from(now - moved)).sum();
         let Move { way, by } = by;
         let shift = Self { columns: stretch.start..stretch.end + by, by, way };
         // Uncovered cells must be sent, even if they were right before.
