@@ -14,6 +14,7 @@
 
 mod ascii;
 mod backend;
+mod block_element;
 mod bytes;
 mod control;
 mod exact;

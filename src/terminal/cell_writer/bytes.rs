@@ -18,14 +18,18 @@ pub(crate) struct Bytes {
 /// A piece in progress at the end of [`Bytes`]. It counts as written only after [`Piece::finish`].
 pub(super) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
-    /// The number of bytes in this piece.
+    /// The number of bytes in this piece, at most [`LONGEST`].
     end: usize,
     /// The length of all bytes before it.
     length: &'a mut usize,
 }
 
-/// The maximum length of a piece: a motion, a style with all its parameters, and a character.
-const ROOM: usize = 96;
+/// The maximum length of a piece, which a motion, a style with all its parameters and a character do not
+/// reach. All of its bits are set: masking an offset takes less time than checking it.
+const LONGEST: usize = 127;
+/// The bytes behind a piece that its last part may exceed it by.
+const EXCESS: usize = 8;
+const ROOM: usize = LONGEST + 1 + EXCESS;
 
 impl Bytes {
     /// The written bytes.
@@ -46,8 +50,8 @@ impl Bytes {
     #[inline]
     pub(super) fn piece(&mut self) -> Piece<'_> {
         self.make_room(ROOM);
-        let room = self.memory[self.length..].first_chunk_mut();
-        let room = room.expect("there is as much behind what is written");
+        let room = &mut self.memory[self.length..][..ROOM];
+        let room = room.try_into().expect("there is as much behind what is written");
         Piece { room, end: 0, length: &mut self.length }
     }
 
@@ -61,9 +65,8 @@ impl Bytes {
     /// Makes room for `count` bytes if there is less.
     #[inline]
     fn make_room(&mut self, count: usize) {
-        let needed = self.length + count;
-        if self.memory.len() < needed {
-            self.grow(needed);
+        if self.memory.len() - self.length < count {
+            self.grow(self.length + count);
         }
     }
 
@@ -89,14 +92,17 @@ impl Piece<'_> {
     /// Writes a byte at a place in this piece.
     #[inline]
     pub(super) fn put(&mut self, place: usize, byte: u8) {
-        self.room[place] = byte;
+        self.room[place & LONGEST] = byte;
     }
 
     /// Writes all of `text`, of which the first `count` bytes are part of the piece.
     #[inline]
     pub(super) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
-        self.room[self.end..self.end + LENGTH].copy_from_slice(&text);
-        self.end += count;
+        const { assert!(LENGTH <= EXCESS) };
+        debug_assert!(self.end <= LONGEST, "a piece is too long");
+        let start = self.end & LONGEST;
+        self.room[start..start + LENGTH].copy_from_slice(&text);
+        self.end = start + count;
     }
 
     /// Adds the piece to the written bytes.

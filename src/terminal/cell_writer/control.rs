@@ -4,8 +4,7 @@ use std::hint::select_unpredictable;
 
 use super::bytes::Piece;
 
-/// A control sequence in progress. It becomes part of the piece at the end, if it has a parameter
-/// by then; otherwise nothing is written.
+/// A control sequence in progress, with at least one parameter at its end.
 pub(super) struct ControlSequence<'a, 'b> {
     piece: &'a mut Piece<'b>,
     start: usize,
@@ -23,14 +22,14 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     /// Adds the parameter `number`.
     #[inline]
     pub(super) fn parameter(&mut self, number: u8) {
-        let Decimal { text, length } = DECIMALS[usize::from(number)];
-        self.piece.push(text, length.into());
+        let decimal = DECIMALS[usize::from(number)];
+        self.piece.push(decimal.text(), decimal.length());
     }
 
-    /// Adds parameters in decimal, each after a separator.
+    /// Adds parameters in decimal, each after a separator: the first `count` bytes of `text`.
     #[inline]
-    pub(super) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH]) {
-        self.piece.push(text, LENGTH);
+    pub(super) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
+        self.piece.push(text, count);
     }
 
     /// Adds several parameters.
@@ -50,9 +49,9 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
 
     #[cold]
     fn large_place(&mut self, number: u16) {
-        self.literal([SEPARATOR]);
+        self.literal([SEPARATOR], 1);
         for unit in [10_000, 1_000, 100, 10, 1].into_iter().filter(|&unit| unit <= number) {
-            self.literal([b'0' + (number / unit % 10) as u8]);
+            self.literal([b'0' + (number / unit % 10) as u8], 1);
         }
     }
 
@@ -69,12 +68,9 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     /// Ends the sequence with the final byte `last`.
     #[inline]
     pub(super) fn end(self, last: u8) {
-        let is_empty = self.piece.end() == self.start + 1;
         // Replace the separator before the first parameter.
         self.piece.put(self.start + 1, INTRODUCER[1]);
         self.piece.push([last], 1);
-        let end = self.piece.end();
-        self.piece.end_at(select_unpredictable(is_empty, self.start, end));
     }
 }
 
@@ -84,20 +80,32 @@ const SEPARATOR: u8 = b';';
 /// The number of digits of `number`.
 #[inline]
 pub(super) fn digits(number: u8) -> usize {
-    usize::from(DECIMALS[usize::from(number)].length) - 1
+    DECIMALS[usize::from(number)].length() - 1
 }
 
-/// A number in decimal, after a separator.
+/// A number in decimal, after a separator, in one word: four bytes of text, and the length of the text.
 #[derive(Clone, Copy)]
-struct Decimal {
-    text: [u8; 4],
-    /// The length of the text.
-    length: u8,
+struct Decimal(u64);
+
+impl Decimal {
+    const fn new(text: [u8; 4], length: u64) -> Self {
+        Self(length << u32::BITS | u32::from_le_bytes(text) as u64)
+    }
+
+    #[inline]
+    fn text(self) -> [u8; 4] {
+        (self.0 as u32).to_le_bytes()
+    }
+
+    #[inline]
+    fn length(self) -> usize {
+        (self.0 >> u32::BITS) as usize
+    }
 }
 
 /// The decimal text of every byte: a division would take longer than the rest of a cell's encoding.
 static DECIMALS: [Decimal; 256] = {
-    let mut table = [Decimal { text: [SEPARATOR; 4], length: 0 }; 256];
+    let mut table = [Decimal(0); 256];
     let mut number = 0;
     while number < table.len() {
         let [hundreds, tens, ones] = [
@@ -106,9 +114,9 @@ static DECIMALS: [Decimal; 256] = {
             b'0' + (number % 10) as u8,
         ];
         table[number] = match number {
-            0..10 => Decimal { text: [SEPARATOR, ones, 0, 0], length: 2 },
-            10..100 => Decimal { text: [SEPARATOR, tens, ones, 0], length: 3 },
-            _ => Decimal { text: [SEPARATOR, hundreds, tens, ones], length: 4 },
+            0..10 => Decimal::new([SEPARATOR, ones, 0, 0], 2),
+            10..100 => Decimal::new([SEPARATOR, tens, ones, 0], 3),
+            _ => Decimal::new([SEPARATOR, hundreds, tens, ones], 4),
         };
         number += 1;
     }

@@ -3,7 +3,8 @@
 use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
-use super::packed_cell::{self, PackedCell};
+use super::block_element;
+use super::packed_cell::PackedCell;
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{CELL, Loss, Shifts};
@@ -15,11 +16,10 @@ pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
         draw_intricate_row(pen, &mut row);
     } else {
         shift(pen, shifts, &mut row);
-        for (column, &loss) in shifts.losses().iter().enumerate() {
-            if loss > 0 {
-                draw_cell(pen, &mut row, column);
-            }
-        }
+        let cells = row.targets.iter().copied().enumerate().zip(shifts.losses());
+        let wrong = cells.filter(|&(_, &loss)| loss > 0).map(|(cell, _)| cell);
+        pen.draw_pixels(row.y, wrong, |pen, column, target| draw_target(pen, &row, column, target));
+        row.shown.copy_from_slice(row.targets);
     }
     *row.exact = true;
 }
@@ -45,20 +45,36 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
 }
 
 /// Draws one cell of a row.
+#[inline(never)]
 pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
+    let target = row.targets[column];
+    draw_target(pen, row, column, target);
+    row.shown[column] = target;
+}
+
+/// Draws the target of a cell of a row.
+#[inline(never)]
+fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
     let position = Position { x: column as u16, y: row.y };
-    if let Some(halves) = row.targets[column].halves() {
-        let (element, style) = packed_cell::cheapest(halves, pen.style());
+    if let Some(halves) = target.halves() {
+        let (element, style) = block_element::cheapest(halves, pen.style());
         pen.draw_block(position, element, style);
     } else {
-        let mut character = [0; 4];
-        let (text, style) = match row.targets[column].text(row.glyph_table) {
-            Some((text, style)) => (&*text.encode_utf8(&mut character), style),
-            None => (row.wanted[column].symbol(), Style::of(&row.wanted[column])),
-        };
-        pen.draw_text(position, text, style);
+        draw_text(pen, row, position, target);
     }
-    row.shown[column] = row.targets[column];
+}
+
+/// Draws a cell that is not a block.
+#[inline(never)]
+fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
+    let mut character = [0; 4];
+    let (text, style) = if let Some((text, style)) = target.text(row.glyph_table) {
+        (&*text.encode_utf8(&mut character), style)
+    } else {
+        let cell = &row.wanted[usize::from(position.x)];
+        (cell.symbol(), Style::of(cell))
+    };
+    pen.draw_text(position, text, style);
 }
 
 /// Moves the stretches of a row that have moved sideways.

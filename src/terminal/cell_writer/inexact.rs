@@ -10,10 +10,11 @@ use std::cell::Cell;
 
 use ratatui::layout::Position;
 
+use super::block_element::BlockElement;
 use super::exact;
 use super::glyph_table::{GlyphId, GlyphTable};
 use super::ink::{Ink, Inks, Notation, Price};
-use super::packed_cell::{BlockElement, Form, PackedCell};
+use super::packed_cell::{Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
 use super::shift::{BYTE, CELL, Loss, Shifts};

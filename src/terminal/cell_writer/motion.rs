@@ -11,8 +11,6 @@ use super::control::ControlSequence;
 
 /// Adds the motion from `cursor` to `target`, on a terminal of `size`. In the column after the last
 /// one, a cursor waits to wrap.
-#[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
-#[inline(always)]
 pub(super) fn push(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
     if cursor == Some(target) {
         return;
@@ -25,7 +23,6 @@ pub(super) fn push(cursor: Option<Position>, target: Position, size: Size, piece
     }
 }
 
-#[inline]
 fn push_right(by: u16, piece: &mut Piece) {
     if by == 1 {
         piece.push(*b"\x1b[C", 3);

@@ -1,77 +1,15 @@
-//! A cell in one word, and the cheapest block element that shows it.
-//!
-//! A cell of two pixels can be written as an upper or a lower half block with the colours swapped;
-//! one of two equal pixels as a space or a full block. All of them look the same, so the pen uses
-//! the one with the fewest bytes after the terminal's present style. A space has no foreground, so
-//! that it keeps the one of the cell before it.
+//! A cell in one word.
 
 use std::fmt;
 
 use ratatui::buffer::Cell;
 use ratatui::style::Color;
 
+use super::block_element::BlockElement;
 use super::glyph_table::{Glyph, GlyphId, GlyphTable};
 use super::style::{Shade, Style};
 use super::symbol::Symbol;
 use crate::color::Rgb;
-
-/// A character that shows at most two colours, each in a whole half of its cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BlockElement {
-    /// The upper half in the text colour, the lower half in the background colour.
-    Upper,
-    /// The upper half in the background colour, the lower half in the text colour.
-    Lower,
-    /// Both halves in the text colour.
-    Full,
-    /// Both halves in the background colour.
-    Space,
-}
-
-impl BlockElement {
-    /// The character in UTF-8, and the number of its bytes.
-    #[inline]
-    pub(super) const fn encoded(self) -> ([u8; 4], usize) {
-        match self {
-            Self::Upper => ([0xE2, 0x96, 0x80, 0], 3),
-            Self::Lower => ([0xE2, 0x96, 0x84, 0], 3),
-            Self::Full => ([0xE2, 0x96, 0x88, 0], 3),
-            Self::Space => ([b' ', 0, 0, 0], 1),
-        }
-    }
-
-    const fn character(self) -> char {
-        match self {
-            Self::Upper => '▀',
-            Self::Lower => '▄',
-            Self::Full => '█',
-            Self::Space => ' ',
-        }
-    }
-
-    /// Finds the element by its bytes in UTF-8, since this runs for every changed cell.
-    #[inline]
-    fn of(symbol: &str) -> Option<Self> {
-        match *symbol.as_bytes() {
-            [b' '] => Some(Self::Space),
-            [0xE2, 0x96, 0x80] => Some(Self::Upper),
-            [0xE2, 0x96, 0x84] => Some(Self::Lower),
-            [0xE2, 0x96, 0x88] => Some(Self::Full),
-            _ => None,
-        }
-    }
-
-    /// The colours of the upper and the lower half.
-    #[inline]
-    pub(super) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {
-        match self {
-            Self::Upper => [text, ground],
-            Self::Lower => [ground, text],
-            Self::Full => [text; 2],
-            Self::Space => [ground; 2],
-        }
-    }
-}
 
 /// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,6 +190,16 @@ impl PackedCell {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
+    /// The colours of the upper and the lower half of a block of two pixels.
+    #[inline]
+    pub(super) fn pixels(self) -> Option<[Shade; 2]> {
+        const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
+        const PIXELS: u64 = PIXEL << Shade::BITS | PIXEL;
+        const BOTH_KINDS: u64 = 3 * (PIXELS / 2);
+        const MASK: u64 = u64::MAX << PackedCell::KIND | BOTH_KINDS;
+        (self.0 & MASK == PIXELS).then(|| self.colors())
+    }
+
     /// The two colours of any cell.
     #[inline]
     pub(super) fn colors(self) -> [Shade; 2] {
@@ -264,29 +212,6 @@ const _: () = assert!(PackedCell::LAST_GLYPH <= u64::MAX >> PackedCell::KIND);
 impl fmt::Debug for PackedCell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:x}", self.0)
-    }
-}
-
-/// The block element and style with the fewest bytes after `current` that show these two halves.
-pub(super) fn cheapest([top, bottom]: [Shade; 2], current: Option<Style>) -> (BlockElement, Style) {
-    let block = |element, text, ground| (element, Style::plain(text, ground));
-    let Some(current) = current else { return block(BlockElement::Upper, top, bottom) };
-    let (text, ground) = (current.foreground, current.background);
-    let is_told = current.has_no_modifiers();
-    if top == bottom {
-        return if is_told && text == top && ground != top {
-            block(BlockElement::Full, text, ground)
-        } else if !is_told && top.bytes() < text.bytes() {
-            block(BlockElement::Space, top, top)
-        } else {
-            block(BlockElement::Space, text, top)
-        };
-    }
-    let told = |new_text, new_ground| u8::from(new_text == text) + u8::from(new_ground == ground);
-    if told(bottom, top) > told(top, bottom) {
-        block(BlockElement::Lower, bottom, top)
-    } else {
-        block(BlockElement::Upper, top, bottom)
     }
 }
 

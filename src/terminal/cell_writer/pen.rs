@@ -1,15 +1,17 @@
 //! The pen: the bytes of a frame, and the state of the terminal after them.
 
+mod pixels;
+
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
 use ratatui::layout::{Position, Size};
 
+use super::block_element::BlockElement;
 use super::bytes::Bytes;
 use super::control::ControlSequence;
 use super::ink::Price;
 use super::motion;
-use super::packed_cell::BlockElement;
 use super::packed_position::PackedPosition;
 use super::palette::Palette;
 use super::screen::Screen;
@@ -133,6 +135,7 @@ impl Pen {
     }
 
     /// Moves the cursor to `target`, or to the nearest cell of the screen, as the terminal would.
+    #[inline(never)]
     pub(super) fn move_to(&mut self, target: Position) {
         let (cursor, size) = (self.cursor(), self.size);
         let target = Position {
@@ -158,11 +161,11 @@ impl Pen {
     }
 
     /// Draws a block at a position on the screen.
-    #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
-    #[inline(always)]
     pub(super) fn draw_block(&mut self, position: Position, element: BlockElement, style: Style) {
-        let (cursor, size, current) = (self.cursor(), self.size, self.style);
-        if self.last == Some(element) && cursor == Some(position) && current == Some(style) {
+        let current = self.style;
+        if self.cursor != Some(PackedPosition::of(position)) {
+            self.move_to(position);
+        } else if self.last == Some(element) && current == Some(style) {
             self.repeated += 1;
             self.advance(position);
             return;
@@ -170,7 +173,6 @@ impl Pen {
         self.frame();
         let Self { frame, palette, .. } = self;
         let mut piece = frame.piece();
-        motion::push(cursor, position, size, &mut piece);
         if current != Some(style) {
             style.push_from(current, |shade| palette.told(shade), &mut piece);
         }

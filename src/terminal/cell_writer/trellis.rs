@@ -24,8 +24,8 @@ mod survivors;
 use self::branches::Branches;
 use self::lanes::{Labs, Lanes};
 use self::survivors::{Survivors, Turn, colors_of, key};
+use super::block_element::BlockElement;
 use super::ink::{Ink, Inks, Price};
-use super::packed_cell::BlockElement;
 use super::palette::Palette;
 use super::style::{Shade, Style};
 

@@ -1,7 +1,7 @@
 //! Branches: the glyphs and colours in which a cell may be drawn after each path.
 
+use super::super::block_element::BlockElement;
 use super::super::ink::Price;
-use super::super::packed_cell::BlockElement;
 use super::super::palette::{Palette, Telling};
 use super::lanes::{
     Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min, plus, sum,
