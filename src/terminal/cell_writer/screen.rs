@@ -1,8 +1,7 @@
 //! The model of the screen: the cells that the terminal shows, and their targets.
 
 mod canvas;
-
-use std::cell::Cell as Place;
+mod whole_frame;
 
 use ratatui::backend::ClearType;
 use ratatui::buffer::{Cell, CellWidth};
@@ -13,7 +12,6 @@ use super::glyph_table::GlyphTable;
 use super::packed_cell::PackedCell;
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
-use crate::terminal::thread_memory;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
@@ -42,11 +40,6 @@ pub struct Screen {
     exact: Vec<bool>,
     /// The number of frames for which a row has not changed.
     rested: Vec<u8>,
-}
-
-thread_local! {
-    /// The memory of the targets before a frame.
-    static BEFORE: Place<Vec<PackedCell>> = const { Place::new(Vec::new()) };
 }
 
 /// A row of the screen.
@@ -189,28 +182,6 @@ impl Screen {
             self.wanted[place].clone_from(cell);
             self.changed[y] = true;
         }
-    }
-
-    /// Begins a whole frame, with blank targets.
-    pub(super) fn begin_frame(&mut self) {
-        self.targets_before = thread_memory::take(&BEFORE);
-        let (count, capacity) = (self.targets.len(), self.targets.capacity());
-        if self.targets_before.capacity() != capacity {
-            self.targets_before = Vec::with_capacity(capacity);
-        }
-        std::mem::swap(&mut self.targets, &mut self.targets_before);
-        self.targets.clear();
-        self.targets.resize(count, PackedCell::BLANK);
-    }
-
-    /// Ends a whole frame: rows whose targets differ from those before it have changed.
-    pub(super) fn end_frame(&mut self) {
-        let width = self.width.max(1);
-        let rows = self.targets.chunks(width).zip(self.targets_before.chunks(width));
-        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
-            *changed |= targets != before;
-        }
-        thread_memory::put_back(&BEFORE, std::mem::take(&mut self.targets_before));
     }
 
     /// Whether any target has changed since the rows were drawn.
