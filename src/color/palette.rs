@@ -7,8 +7,10 @@
 pub(crate) mod mixture;
 mod nearest;
 
+use std::sync::LazyLock;
+
 use super::Rgb;
-use nearest::{NearestColors, palette};
+use nearest::{NearestColors, Palette, palette};
 
 /// How many colours a terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -55,14 +57,16 @@ const NAMED: [Rgb; 16] = [
 ///
 /// The first 16 of the 256 are left out, because users redefine them.
 pub fn nearest_of_256(color: Rgb) -> u8 {
-    static TABLE: NearestColors = NearestColors::among(|| palette(CUBE..=u8::MAX));
-    TABLE.of(color)
+    static NEAREST: NearestColors = NearestColors::new();
+    static PALETTE: LazyLock<Palette> = LazyLock::new(|| palette(CUBE..=u8::MAX));
+    NEAREST.of(color, &PALETTE)
 }
 
 /// The index of the colour nearest to `color` in Oklab, among the 16 named colours.
 pub fn nearest_of_16(color: Rgb) -> u8 {
-    static TABLE: NearestColors = NearestColors::among(|| palette(0..=CUBE - 1));
-    TABLE.of(color)
+    static NEAREST: NearestColors = NearestColors::new();
+    static PALETTE: LazyLock<Palette> = LazyLock::new(|| palette(0..=CUBE - 1));
+    NEAREST.of(color, &PALETTE)
 }
 
 /// The colour with that index among the 256, by xterm's defaults.
