@@ -37,7 +37,7 @@ pub(crate) use sky::{SkyColumn, SkyView};
 pub(crate) use surface_buffer::SurfaceBuffer;
 pub(crate) use target::Target;
 
-use crate::visibility::{DrawList, Filter, Layer, Material, Scene, Span, SpanMemory, Stats};
+use crate::visibility::{DrawList, Filter, Layer, Material, Scene, Span, SpanMemory};
 use sampling::{Means, MipLevels, Sampling};
 use span_pair::SpanPairs;
 use translucent::Tints;
@@ -50,36 +50,36 @@ pub(crate) struct RasterMemory {
 }
 
 /// Draws the rows of `list` that `target` covers.
-pub(crate) fn draw<S: Stats>(
+pub(crate) fn draw(
     scene: Scene<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
     memory: &mut RasterMemory,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     match scene.plan.filter {
         Filter::Mip | Filter::Nearest => {
-            draw_surfaces::<MipLevels, S>(scene, list, sky, memory, target);
+            draw_surfaces::<MipLevels>(scene, list, sky, memory, target);
         }
-        Filter::Area => draw_surfaces::<Means, S>(scene, list, sky, memory, target),
+        Filter::Area => draw_surfaces::<Means>(scene, list, sky, memory, target),
     }
     draw_layers(scene, list, target);
 }
 
 /// Draws what is behind the layers of `list`.
-fn draw_surfaces<M: Sampling, S: Stats>(
+fn draw_surfaces<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     sky: &SkyView<'_>,
     memory: &mut RasterMemory,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let RasterMemory { spans, batch } = memory;
     let rows = target.rows();
     let mut pairs = SpanPairs::<M>::new();
     list.for_each_span(scene, &rows, spans, |span| match span {
         Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
-        Span::Plane(span) => span::draw::<M, S>(scene, &span, target),
+        Span::Plane(span) => span::draw::<M>(scene, &span, target),
         Span::Pair(pair) => pairs.draw(scene, &pair, target),
         Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
     });
@@ -87,7 +87,7 @@ fn draw_surfaces<M: Sampling, S: Stats>(
 }
 
 /// Paints the layers of `list` in their order.
-fn draw_layers<S: Stats>(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_, S>) {
+fn draw_layers(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_>) {
     let mut tints = Tints::default();
     for layer in &list.layers {
         match layer {

@@ -132,7 +132,8 @@ impl Renderer {
     /// Draws the view of `camera` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
         let Self { caster, filter, seconds, threads, memory } = self;
-        let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut ());
+        let (filter, seconds, threads, stats) =
+            (*filter, *seconds, *threads, &mut Stats::default());
         caster.draw(Picture { world, camera, filter, seconds, threads, memory, frame, stats });
     }
 
@@ -145,7 +146,8 @@ impl Renderer {
         frame: &mut Frame,
     ) {
         let Self { filter, seconds, threads, memory, .. } = self;
-        let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut ());
+        let (filter, seconds, threads, stats) =
+            (*filter, *seconds, *threads, &mut Stats::default());
         Picture { world, camera, filter, seconds, threads, memory, frame, stats }.draw(caster);
     }
 
@@ -153,13 +155,14 @@ impl Renderer {
     /// along exact rays, whatever the caster.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
         let Self { caster, filter, seconds, threads, memory } = self;
-        let mut counted = FrameStats::default();
+        let mut counted = Stats::kept();
         let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut counted);
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, stats };
-        let (plan, threads) = caster.draw_counted(picture);
+        let (plan, threads) = caster.draw(picture);
+        let mut stats = counted.counts();
         let size = u64::from(frame.width()) * u64::from(frame.height());
-        counted.overwritten = counted.pixels() - size;
-        Explanation { plan, threads, stats: counted }
+        stats.overwritten = stats.pixels() - size;
+        Explanation { plan, threads, stats }
     }
 
     /// Whether `figure` may be seen in `frame`, the last that was drawn, wherever the figure was then.
@@ -194,7 +197,7 @@ impl Renderer {
 }
 
 /// The arguments of a drawing, for any caster.
-struct Picture<'a, S> {
+struct Picture<'a> {
     world: &'a World,
     camera: &'a Camera,
     filter: Filter,
@@ -202,10 +205,10 @@ struct Picture<'a, S> {
     threads: Option<NonZero<usize>>,
     memory: &'a mut Memory,
     frame: &'a mut Frame,
-    stats: &'a mut S,
+    stats: &'a mut Stats,
 }
 
-impl<S: Stats> Picture<'_, S> {
+impl Picture<'_> {
     fn draw<C: Caster>(self, caster: &C) -> (FramePlan, Threads) {
         let mut plan = FramePlan::new(self.world, self.camera, self.filter);
         if self.memory.surfaces.are_kept() {

@@ -79,12 +79,12 @@ pub(crate) struct VisibilityMemory {
 
 /// Fills `list` with the contents of `scene`. If the flat way serves alone, `caster` finds the
 /// walls. Returns the time at which a thing in view next changes its appearance; `None` for never.
-pub(crate) fn fill<C: Caster, S: Stats>(
+pub(crate) fn fill<C: Caster>(
     scene: Scene<'_>,
     caster: &C,
     memory: &mut VisibilityMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
 ) -> Option<f64> {
     let VisibilityMemory { flat, portal } = memory;
     let world = scene.world;

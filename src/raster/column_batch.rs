@@ -12,7 +12,7 @@ use super::lanes::{LANES, Lanes, QueuedColumn};
 use super::shaded_texels::{ShadedRange, ShadedTexels};
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, Pass, Stats, TextureStepper};
+use crate::visibility::{Lighting, Pass, TextureStepper};
 use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
@@ -30,9 +30,9 @@ pub(crate) struct BatchMemory {
 }
 
 /// Columns of texels in a lighting `L`, queued until they are drawn.
-pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
+pub(super) struct ColumnBatch<'m, 't, 'a, L> {
     memory: &'m mut BatchMemory,
-    target: &'m mut Target<'t, S>,
+    target: &'m mut Target<'t>,
     /// The texels and the lighting of the latest shaded range.
     latest: Option<(&'a [Rgb], L, ShadedRange)>,
     /// Columns before this one can no longer be queued: those of a batch do not overlap.
@@ -41,10 +41,10 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L, S> {
     are_direct: bool,
 }
 
-impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
+impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     pub(super) fn new(
         memory: &'m mut BatchMemory,
-        target: &'m mut Target<'t, S>,
+        target: &'m mut Target<'t>,
         are_direct: bool,
     ) -> Self {
         let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
@@ -56,7 +56,7 @@ impl<'m, 't, 'a, L: Lighting, S: Stats> ColumnBatch<'m, 't, 'a, L, S> {
     }
 
     /// The target, for pixels that no queued column has.
-    pub(super) fn target_mut(&mut self) -> &mut Target<'t, S> {
+    pub(super) fn target_mut(&mut self) -> &mut Target<'t> {
         self.target
     }
 

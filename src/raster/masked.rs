@@ -3,15 +3,15 @@
 use super::target::Target;
 use super::wall_column::lighting_of;
 use crate::cast::Side;
-use crate::visibility::{Extent, Facing, Lighting, Pass, Scene, SeeThroughColumn, Stats, Surface};
+use crate::visibility::{Extent, Facing, Lighting, Pass, Scene, SeeThroughColumn, Surface};
 use crate::world::TextureId;
 
 /// Draws `column`, which has `texture`, over the pixels behind it.
-pub(super) fn draw<S: Stats>(
+pub(super) fn draw(
     scene: Scene<'_>,
     column: &SeeThroughColumn,
     texture: TextureId,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let SeeThroughColumn { column: x, facing, slope, t, u, light, extent, .. } = *column;
     let rows = target.clip(&column.rows);

@@ -9,7 +9,7 @@ use std::mem;
 use super::span::{Sample, draw_level};
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, PlaneSpan, Stats, TexelPlaces};
+use crate::visibility::{Lighting, PlaneSpan, TexelPlaces};
 use crate::world::texture::MipLevelByShifts;
 
 /// The least mean width of pieces, in pixels, that are drawn one by one.
@@ -19,16 +19,16 @@ const LEAST_WIDTH: u64 = 8;
 const PIECE: u64 = 1 << 63;
 
 /// Draws `span` in two samples: as a checker, or else in stripes along the x axis.
-pub(super) fn draw<const IS_CHECKER: bool, L: Lighting, S: Stats>(
+pub(super) fn draw<const IS_CHECKER: bool, L: Lighting>(
     span: &PlaneSpan<'_>,
     samples: &[Sample<'_>; 2],
     lighting: L,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
     let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
     let mut texels = 0;
-    if S::ARE_KEPT {
+    if target.counts() {
         let sampled = places.clone().take(columns.len());
         let sampled = sampled.map(|place| &samples[index::<IS_CHECKER>(place)]);
         texels = sampled.filter(|sample| matches!(sample, Sample::Level(_))).count();

@@ -8,7 +8,7 @@ use std::fmt;
 use super::column_batch::BatchMemory;
 use super::target::Target;
 use super::{wall_column, wall_part};
-use crate::visibility::{DrawList, Scene, SpanMapping, Stats};
+use crate::visibility::{DrawList, Scene, SpanMapping};
 use crate::world::Texture;
 use crate::world::texture::{AreaLod, MipLevel, Repeat};
 
@@ -18,11 +18,11 @@ pub(super) trait Sampling: Copy {
     type Lod: Copy + PartialEq + fmt::Debug;
 
     /// Draws all walls of `list`.
-    fn draw_walls<S: Stats>(
+    fn draw_walls(
         scene: Scene<'_>,
         list: &DrawList,
         memory: &mut BatchMemory,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     );
 
     /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
@@ -56,13 +56,13 @@ impl Sampling for MipLevels {
     type Lod = usize;
 
     #[inline]
-    fn draw_walls<S: Stats>(
+    fn draw_walls(
         scene: Scene<'_>,
         list: &DrawList,
         memory: &mut BatchMemory,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     ) {
-        wall_column::draw::<Self, S>(scene, list, memory, target);
+        wall_column::draw::<Self>(scene, list, memory, target);
     }
 
     #[inline]
@@ -95,14 +95,14 @@ impl Sampling for MipLevels {
 impl Sampling for Means {
     type Lod = AreaLod;
 
-    fn draw_walls<S: Stats>(
+    fn draw_walls(
         scene: Scene<'_>,
         list: &DrawList,
         memory: &mut BatchMemory,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     ) {
-        wall_part::draw::<Self, S>(scene, list, memory, target);
-        wall_column::draw::<Self, S>(scene, list, memory, target);
+        wall_part::draw::<Self>(scene, list, memory, target);
+        wall_column::draw::<Self>(scene, list, memory, target);
     }
 
     #[inline]

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::visibility::{Pass, Projection, Scene, Stats};
+use crate::visibility::{Pass, Projection, Scene};
 use crate::world::{Sky, SkyGradient, Texture};
 
 /// The sky as seen by a camera.
@@ -63,12 +63,12 @@ impl<'a> SkyView<'a> {
     }
 
     /// Draws the sky in `columns` of `row`, seen in the mirrors of `image` if there is one.
-    pub(super) fn draw<S: Stats>(
+    pub(super) fn draw(
         &self,
         row: u32,
         columns: Range<usize>,
         image: Option<MirrorTransform>,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     ) {
         let across = columns.clone();
         match *self {

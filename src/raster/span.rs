@@ -6,29 +6,23 @@ use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::color::srgb::mean_of_two;
-use crate::visibility::{
-    Faded, FullyLit, Lighting, PlaneSpan, Scene, SpanMapping, Stats, TexelPlaces,
-};
+use crate::visibility::{Faded, FullyLit, Lighting, PlaneSpan, Scene, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevel, MipLevelByShifts};
 use crate::world::{Paint, Pattern, Texture};
 
 /// Draws `span`.
-pub(super) fn draw<M: Sampling, S: Stats>(
-    scene: Scene<'_>,
-    span: &PlaneSpan<'_>,
-    target: &mut Target<'_, S>,
-) {
+pub(super) fn draw<M: Sampling>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_>) {
     match Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance) {
-        None => draw_lit::<M, _, _>(scene, span, FullyLit, target),
-        Some(faded) => draw_lit::<M, _, _>(scene, span, faded, target),
+        None => draw_lit::<M, _>(scene, span, FullyLit, target),
+        Some(faded) => draw_lit::<M, _>(scene, span, faded, target),
     }
 }
 
-fn draw_lit<M: Sampling, L: Lighting, S: Stats>(
+fn draw_lit<M: Sampling, L: Lighting>(
     scene: Scene<'_>,
     span: &PlaneSpan<'_>,
     lighting: L,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
     let x = columns.start;
@@ -54,11 +48,11 @@ fn draw_lit<M: Sampling, L: Lighting, S: Stats>(
         },
         Pattern::Checker(paints) => {
             let samples = paints.map(|it| sampler.sample::<M>(it));
-            pieces::draw::<true, _, _>(span, &samples, lighting, target);
+            pieces::draw::<true, _>(span, &samples, lighting, target);
         }
         Pattern::Stripes(paints) => {
             let samples = paints.map(|it| sampler.sample::<M>(it));
-            pieces::draw::<false, _, _>(span, &samples, lighting, target);
+            pieces::draw::<false, _>(span, &samples, lighting, target);
         }
     }
 }

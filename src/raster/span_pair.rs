@@ -9,7 +9,7 @@ use super::span::{self, AT_ONCE, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
-use crate::visibility::{DrawnPlane, Faded, Scene, SpanPair, Stats, TexelPlaces};
+use crate::visibility::{DrawnPlane, Faded, Scene, SpanPair, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
@@ -46,12 +46,7 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
     }
 
     /// Draws `pair`, whose planes are those of the pairs before.
-    pub(super) fn draw<S: Stats>(
-        &mut self,
-        scene: Scene<'a>,
-        pair: &SpanPair<'_>,
-        target: &mut Target<'_, S>,
-    ) {
+    pub(super) fn draw(&mut self, scene: Scene<'a>, pair: &SpanPair<'_>, target: &mut Target<'_>) {
         if !self.is_begun {
             self.is_begun = true;
             self.textures = TexturePair::new(scene, pair.planes);
@@ -59,7 +54,7 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
         let drawn = self.textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
             for span in pair.spans() {
-                span::draw::<M, S>(scene, &span, target);
+                span::draw::<M>(scene, &span, target);
             }
         }
     }
@@ -80,11 +75,11 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
     }
 
     /// Draws `pair`; `None` if its spans are better drawn each by itself.
-    fn draw<S: Stats>(
+    fn draw(
         &mut self,
         scene: Scene<'_>,
         pair: &SpanPair<'_>,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     ) -> Option<()> {
         let (mapping, per_cell) = (pair.mapping, self.per_cell);
         if Faded::of_plane(self.light, scene.world.fog(), mapping.distance).is_some() {
@@ -100,14 +95,14 @@ impl<'a, M: Sampling> TexturePair<'a, M> {
             return None;
         }
         match levels.lower.len() {
-            16384 => draw_texels::<_, _, 16384>(levels, places, pair, target),
-            4096 => draw_texels::<_, _, 4096>(levels, places, pair, target),
-            1024 => draw_texels::<_, _, 1024>(levels, places, pair, target),
-            256 => draw_texels::<_, _, 256>(levels, places, pair, target),
-            64 => draw_texels::<_, _, 64>(levels, places, pair, target),
-            16 => draw_texels::<_, _, 16>(levels, places, pair, target),
-            4 => draw_texels::<_, _, 4>(levels, places, pair, target),
-            1 => draw_texels::<_, _, 1>(levels, places, pair, target),
+            16384 => draw_texels::<_, 16384>(levels, places, pair, target),
+            4096 => draw_texels::<_, 4096>(levels, places, pair, target),
+            1024 => draw_texels::<_, 1024>(levels, places, pair, target),
+            256 => draw_texels::<_, 256>(levels, places, pair, target),
+            64 => draw_texels::<_, 64>(levels, places, pair, target),
+            16 => draw_texels::<_, 16>(levels, places, pair, target),
+            4 => draw_texels::<_, 4>(levels, places, pair, target),
+            1 => draw_texels::<_, 1>(levels, places, pair, target),
             _ => None,
         }
     }
@@ -122,11 +117,11 @@ impl<'a, M: Sampling> LevelPair<'a, M> {
 }
 
 /// Draws `pair` in `levels` with `N` texels.
-fn draw_texels<M: Sampling, S: Stats, const N: usize>(
+fn draw_texels<M: Sampling, const N: usize>(
     levels: LevelPair<'_, M>,
     places: TexelPlaces,
     pair: &SpanPair<'_>,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) -> Option<()> {
     let upper = levels.upper.texels().first_chunk::<N>()?;
     let lower = levels.lower.first_chunk::<N>()?;

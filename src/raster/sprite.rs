@@ -2,15 +2,15 @@
 
 use super::target::Target;
 use crate::visibility::{
-    Billboard, BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Stats, Surface,
+    Billboard, BillboardColumn, DrawList, FullyLit, Lighting, Pass, Scene, Surface,
 };
 
 /// Draws `column` of a billboard of `list` over the pixels behind it.
-pub(super) fn draw<S: Stats>(
+pub(super) fn draw(
     scene: Scene<'_>,
     list: &DrawList,
     column: &BillboardColumn,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let Billboard { lighting, opacity, .. } = list.billboards[column.billboard];
     let solid = |alpha: u8| alpha;
@@ -29,13 +29,13 @@ fn share_of(alpha: u8, opacity: u8) -> u8 {
     ((u32::from(alpha) * u32::from(opacity) + most / 2) / most) as u8
 }
 
-fn draw_lit<L: Lighting, S: Stats>(
+fn draw_lit<L: Lighting>(
     scene: Scene<'_>,
     list: &DrawList,
     column: &BillboardColumn,
     lighting: L,
     alpha_shown: impl Fn(u8) -> u8,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let billboard = &list.billboards[column.billboard];
     let Some(level) = billboard.level(scene, list.player.as_ref()) else { return };

@@ -10,20 +10,26 @@ use crate::visibility::{Pass, Stats, Surface};
 /// A band of a frame with its part of the surface buffer, and the cost of drawing it.
 ///
 /// Callers must [clip](Target::clip) the rows of an item to the band before they draw it.
-pub(crate) struct Target<'a, S> {
+pub(crate) struct Target<'a> {
     band: Band<'a>,
     surfaces: SurfaceRows<'a>,
-    stats: S,
+    stats: Stats,
 }
 
-impl<'a, S: Stats> Target<'a, S> {
-    pub(crate) fn new(band: Band<'a>, surfaces: SurfaceRows<'a>) -> Self {
-        Self { band, surfaces, stats: S::default() }
+impl<'a> Target<'a> {
+    /// A target that counts in `stats`.
+    pub(crate) fn new(band: Band<'a>, surfaces: SurfaceRows<'a>, stats: Stats) -> Self {
+        Self { band, surfaces, stats }
     }
 
     /// The cost of the drawing so far.
-    pub(crate) fn into_stats(self) -> S {
+    pub(crate) fn into_stats(self) -> Stats {
         self.stats
+    }
+
+    /// Whether it counts.
+    pub(super) fn counts(&self) -> bool {
+        self.stats.are_kept()
     }
 
     /// The indices of its rows in the frame.

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::target::Target;
 use super::wall_column::lighting_of;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, Pass, Scene, SeeThroughColumn, Stats};
+use crate::visibility::{Lighting, Pass, Scene, SeeThroughColumn};
 use crate::world::Glass;
 
 /// The most columns that are drawn together.
@@ -27,12 +27,12 @@ pub(super) struct Tints {
 impl Tints {
     /// Adds `column`, which is made of `glass`. Draws the others first, if it cannot be drawn with
     /// them.
-    pub(super) fn add<S: Stats>(
+    pub(super) fn add(
         &mut self,
         scene: Scene<'_>,
         column: &SeeThroughColumn,
         glass: Glass,
-        target: &mut Target<'_, S>,
+        target: &mut Target<'_>,
     ) {
         let rows = target.clip(&column.rows);
         target.count_pixels(Pass::SeeThrough, rows.len());
@@ -54,14 +54,14 @@ impl Tints {
     /// Draws the collected columns, if `column` is one of them, before another layer is painted
     /// over it.
     #[inline]
-    pub(super) fn draw_before<S: Stats>(&mut self, column: u32, target: &mut Target<'_, S>) {
+    pub(super) fn draw_before(&mut self, column: u32, target: &mut Target<'_>) {
         if self.columns.contains(&column) {
             self.draw(target);
         }
     }
 
     /// Draws the collected columns.
-    pub(super) fn draw<S: Stats>(&mut self, target: &mut Target<'_, S>) {
+    pub(super) fn draw(&mut self, target: &mut Target<'_>) {
         let &mut Self { color, opacity, ref rows, .. } = self;
         let columns = std::mem::take(&mut self.columns);
         let rows_of = |x: u32| &rows[x as usize % COLUMNS_AT_ONCE];

@@ -14,17 +14,17 @@ use super::wall_level::WallLevel;
 use super::wall_run;
 use crate::cast::Side;
 use crate::visibility::{
-    DrawList, Extent, FaceTexels, Facing, Faded, Lighting, Pass, Projection, Scene, SideLit, Stats,
+    DrawList, Extent, FaceTexels, Facing, Faded, Lighting, Pass, Projection, Scene, SideLit,
     WallColumn, WallSink,
 };
 use crate::world::{Light, Paint};
 
 /// Draws all wall columns of `list`.
-pub(super) fn draw<M: Sampling, S: Stats>(
+pub(super) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let are_direct = direct_columns::are_for(scene, target.band_mut());
     let rows = target.rows();
@@ -32,16 +32,16 @@ pub(super) fn draw<M: Sampling, S: Stats>(
         let batch = ColumnBatch::new(memory, target, are_direct);
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
         let mut queue =
-            Queue::<M, _, _, _> { scene, batch, lighting, latest: None, latest_face: None };
+            Queue::<M, _, _> { scene, batch, lighting, latest: None, latest_face: None };
         list.for_each_flat_wall_column(scene, &rows, &mut queue);
         list.for_each_portal_wall_column(&rows, &mut queue);
         queue.batch.draw();
     } else {
         let mut batch = ColumnBatch::new(memory, target, are_direct);
-        list.for_each_wall_run(scene, |run| wall_run::draw::<M, _>(scene, &run, &mut batch));
+        list.for_each_wall_run(scene, |run| wall_run::draw::<M>(scene, &run, &mut batch));
         let lighting = |wall: &WallColumn| SideLit(side_of(wall));
         let mut queue =
-            Queue::<M, _, _, _> { scene, batch, lighting, latest: None, latest_face: None };
+            Queue::<M, _, _> { scene, batch, lighting, latest: None, latest_face: None };
         list.for_each_portal_wall_column(&rows, &mut queue);
         queue.batch.draw();
     }
@@ -96,9 +96,9 @@ impl KnownFace {
 }
 
 /// Queues wall columns in a lighting that depends on each column.
-struct Queue<'m, 't, 'a, M: Sampling, L, S, F> {
+struct Queue<'m, 't, 'a, M: Sampling, L, F> {
     scene: Scene<'a>,
-    batch: ColumnBatch<'m, 't, 'a, L, S>,
+    batch: ColumnBatch<'m, 't, 'a, L>,
     lighting: F,
     /// The level of the column before.
     latest: Option<WallLevel<'a, M>>,
@@ -106,11 +106,10 @@ struct Queue<'m, 't, 'a, M: Sampling, L, S, F> {
     latest_face: Option<KnownFace>,
 }
 
-impl<M, L, S, F> WallSink for Queue<'_, '_, '_, M, L, S, F>
+impl<M, L, F> WallSink for Queue<'_, '_, '_, M, L, F>
 where
     M: Sampling,
     L: Lighting,
-    S: Stats,
     F: Fn(&WallColumn) -> L,
 {
     #[expect(clippy::inline_always, reason = "elsewhere every wall column would go through memory")]

@@ -16,22 +16,22 @@ use super::wall_level::WallLevel;
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
 use crate::visibility::{
-    DrawList, Lighting, Pass, Scene, SideLit, Stats, TextureStepper, WallColumn, WallPart,
+    DrawList, Lighting, Pass, Scene, SideLit, TextureStepper, WallColumn, WallPart,
 };
 use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// Draws all parts of walls of `list`.
-pub(super) fn draw<M: Sampling, S: Stats>(
+pub(super) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,
-    target: &mut Target<'_, S>,
+    target: &mut Target<'_>,
 ) {
     let are_direct = direct_columns::are_for(scene, target.band_mut());
     if scene.plan.walls.faded || scene.world.has_shapes() {
         let lighting = |wall: &WallColumn| lighting_of(scene, wall.facing, wall.light, wall.t);
-        draw_lit::<M, _, _>(
+        draw_lit::<M, _>(
             scene,
             (list, true),
             ColumnBatch::new(memory, target, are_direct),
@@ -39,7 +39,7 @@ pub(super) fn draw<M: Sampling, S: Stats>(
         );
     } else {
         let lighting = |wall: &WallColumn| SideLit(side_of(wall));
-        draw_lit::<M, _, _>(
+        draw_lit::<M, _>(
             scene,
             (list, false),
             ColumnBatch::new(memory, target, are_direct),
@@ -48,10 +48,10 @@ pub(super) fn draw<M: Sampling, S: Stats>(
     }
 }
 
-fn draw_lit<'a, M: Sampling, L: Lighting, S: Stats>(
+fn draw_lit<'a, M: Sampling, L: Lighting>(
     scene: Scene<'a>,
     (list, is_lit): (&DrawList, bool),
-    mut batch: ColumnBatch<'_, '_, 'a, L, S>,
+    mut batch: ColumnBatch<'_, '_, 'a, L>,
     lighting: impl Fn(&WallColumn) -> L,
 ) {
     let mut latest: Option<WallLevel<'_, M>> = None;
@@ -114,10 +114,7 @@ impl<L: Lighting> LitPart<'_, '_, L> {
 
 /// Draws the only wall of a column.
 #[inline]
-fn draw_alone<'a, L: Lighting, S: Stats>(
-    lit: &LitPart<'_, 'a, L>,
-    batch: &mut ColumnBatch<'_, '_, 'a, L, S>,
-) {
+fn draw_alone<'a, L: Lighting>(lit: &LitPart<'_, 'a, L>, batch: &mut ColumnBatch<'_, '_, 'a, L>) {
     let &WallPart { column: x, ref rows, ref covered, .. } = lit.part;
     let rows = batch.target_mut().clip(rows);
     if rows.is_empty() {
@@ -146,9 +143,9 @@ fn draw_alone<'a, L: Lighting, S: Stats>(
 }
 
 /// Draws the walls of one column, from left to right.
-fn draw_divided<'a, const N: usize, L: Lighting, S: Stats>(
+fn draw_divided<'a, const N: usize, L: Lighting>(
     parts: &[LitPart<'_, 'a, L>; N],
-    batch: &mut ColumnBatch<'_, '_, 'a, L, S>,
+    batch: &mut ColumnBatch<'_, '_, 'a, L>,
 ) {
     let &WallPart { column: x, ref covered, .. } = parts[0].part;
     let rows = parts.iter().map(|lit| lit.part.rows.clone()).reduce(both).unwrap_or_default();

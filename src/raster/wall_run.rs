@@ -9,16 +9,16 @@ use super::column_batch::ColumnBatch;
 use super::direct_columns::{self, DirectColumn};
 use super::sampling::Sampling;
 use super::wall_level::WallLevel;
-use crate::visibility::{Column, Facing, Pass, Scene, SideLit, Stats, WallRun};
+use crate::visibility::{Column, Facing, Pass, Scene, SideLit, WallRun};
 use crate::world::{Paint, TextureId};
 
 /// Draws the part of `run` in the rows of `batch`.
-pub(super) fn draw<'a, M: Sampling, S: Stats>(
+pub(super) fn draw<'a, M: Sampling>(
     scene: Scene<'a>,
     run: &WallRun<'_>,
-    batch: &mut ColumnBatch<'_, '_, 'a, SideLit, S>,
+    batch: &mut ColumnBatch<'_, '_, 'a, SideLit>,
 ) {
-    if S::ARE_KEPT {
+    if batch.target_mut().counts() {
         for column in shown_columns(run, batch.target_mut().rows()) {
             batch.count(Pass::Walls, column.rows.len(), run.paint);
         }
@@ -29,16 +29,16 @@ pub(super) fn draw<'a, M: Sampling, S: Stats>(
                 batch.queue_color(column.x, column.rows, color, SideLit(run.side));
             }
         }
-        Paint::Texture(id) => draw_texture::<M, S>(scene, run, id, batch),
+        Paint::Texture(id) => draw_texture::<M>(scene, run, id, batch),
     }
 }
 
 /// Draws `run`, which shows the texture `id`, level by level.
-fn draw_texture<'a, M: Sampling, S: Stats>(
+fn draw_texture<'a, M: Sampling>(
     scene: Scene<'a>,
     run: &WallRun<'_>,
     id: TextureId,
-    batch: &mut ColumnBatch<'_, '_, 'a, SideLit, S>,
+    batch: &mut ColumnBatch<'_, '_, 'a, SideLit>,
 ) {
     let texture = scene.world.texture(id);
     let facing = Facing::Side(run.side);
@@ -56,7 +56,7 @@ fn draw_texture<'a, M: Sampling, S: Stats>(
             side,
             paint,
         };
-        draw_level::<M, S>(scene, &part, WallLevel::new(scene, id, lod), batch);
+        draw_level::<M>(scene, &part, WallLevel::new(scene, id, lod), batch);
     };
     for (index, next) in (1..).zip(lods) {
         if next != lod {
@@ -68,11 +68,11 @@ fn draw_texture<'a, M: Sampling, S: Stats>(
 }
 
 /// Draws `run`, which shows one level.
-fn draw_level<'a, M: Sampling, S: Stats>(
+fn draw_level<'a, M: Sampling>(
     scene: Scene<'a>,
     run: &WallRun<'_>,
     WallLevel { level, texels, .. }: WallLevel<'a, M>,
-    batch: &mut ColumnBatch<'_, '_, 'a, SideLit, S>,
+    batch: &mut ColumnBatch<'_, '_, 'a, SideLit>,
 ) {
     let lighting = SideLit(run.side);
     let columns =

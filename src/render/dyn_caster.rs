@@ -6,7 +6,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::{FramePlan, FrameStats, Picture, Threads};
+use super::{FramePlan, Picture, Threads};
 use crate::cast::{Caster, Exact};
 
 /// A caster whose type is erased: [`Exact`] by default.
@@ -19,12 +19,8 @@ impl DynCaster {
         Self(Arc::new(caster))
     }
 
-    pub(super) fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads) {
+    pub(super) fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads) {
         self.0.draw(picture)
-    }
-
-    pub(super) fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads) {
-        self.0.draw_counted(picture)
     }
 }
 
@@ -34,19 +30,13 @@ impl Default for DynCaster {
     }
 }
 
-/// The functions that are compiled for each caster.
+/// The function that is compiled for each caster.
 trait Pictures: Debug + Send + Sync {
-    fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads);
-
-    fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads);
+    fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads);
 }
 
 impl<C: Caster + Debug + Send + Sync> Pictures for C {
-    fn draw(&self, picture: Picture<'_, ()>) -> (FramePlan, Threads) {
-        picture.draw(self)
-    }
-
-    fn draw_counted(&self, picture: Picture<'_, FrameStats>) -> (FramePlan, Threads) {
+    fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads) {
         picture.draw(self)
     }
 }

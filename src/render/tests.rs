@@ -43,7 +43,7 @@ fn both(world: &World, camera: &Camera, filter: Filter, size: FrameSize) -> [Fra
     [plan.visibility, Visibility::Portals(WhyPortals::Heights)].map(|visibility| {
         let plan = FramePlan { visibility, ..plan };
         let mut drawn = Frame::new(size, PixelAspect::SQUARE);
-        let (memory, frame, stats) = (&mut Memory::default(), &mut drawn, &mut ());
+        let (memory, frame, stats) = (&mut Memory::default(), &mut drawn, &mut Stats::default());
         let (seconds, threads) = (0.0, None);
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, stats };
         picture.draw_planned(&Exact, plan, Threads::new(size, None));

@@ -92,12 +92,12 @@ impl fmt::Display for Threads {
 
 /// Draws all bands of `frame` and its surface buffer by these threads, each with its own memory.
 /// Adds the counts to `stats`.
-pub(super) fn draw_bands<M: Default + Send, S: Stats>(
+pub(super) fn draw_bands<M: Default + Send>(
     threads: Threads,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
     memories: &mut Vec<M>,
-    stats: &mut S,
-    draw: impl Fn(&mut M, &mut Target<'_, S>) + Sync,
+    stats: &mut Stats,
+    draw: impl Fn(&mut M, &mut Target<'_>) + Sync,
 ) {
     let count = threads.count();
     if memories.len() < count {
@@ -106,11 +106,12 @@ pub(super) fn draw_bands<M: Default + Send, S: Stats>(
     surfaces.begin(frame.width(), frame.height());
     let rows = threads.rows_of_band(frame.size().height);
     let bands = frame.bands(rows).zip(surfaces.bands(rows));
+    let of_band = stats.of_band();
     let stats = Mutex::new(stats);
     share_out(bands, &mut memories[..count], |(band, surfaces), memory| {
-        let mut target = Target::new(band, surfaces);
+        let mut target = Target::new(band, surfaces, of_band.clone());
         draw(memory, &mut target);
-        stats.lock().unwrap_or_else(PoisonError::into_inner).add(target.into_stats());
+        stats.lock().unwrap_or_else(PoisonError::into_inner).add(&target.into_stats());
     });
 }
 

@@ -26,17 +26,17 @@ pub(super) use wall::{for_each_wall_column, for_each_wall_part, for_each_wall_ru
 
 /// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and the starts of the
 /// columns that are left to the portal way.
-pub(super) fn find_columns<C: Caster, S: Stats>(
+pub(super) fn find_columns<C: Caster>(
     scene: Scene<'_>,
     (caster, grid): (&C, &Grid),
     memory: &mut FlatMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
 ) {
     list.clear();
     list.is_flat = true;
     let (columns, passed) = (&mut list.columns, &mut memory.passed);
-    if S::ARE_KEPT {
+    if stats.are_kept() {
         let counter = RayCounter::new(caster, grid);
         cast(&counter, grid, scene, columns, passed);
         stats.change(|stats| counter.add_to(stats));
@@ -53,11 +53,11 @@ pub(super) fn find_columns<C: Caster, S: Stats>(
 
 /// Fills the layers of `list`, whose columns are known, in front of the layers already in it.
 /// Returns the time at which a thing in view next changes its appearance; `None` for never.
-pub(super) fn fill_layers<S: Stats>(
+pub(super) fn fill_layers(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
 ) -> Option<f64> {
     if list.is_flat { layers::fill(scene, memory, list, stats) } else { None }
 }

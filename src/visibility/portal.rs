@@ -55,11 +55,11 @@ pub(super) struct PortalMemory {
 
 /// Fills all of `list` by exact rays. Returns the time at which a thing in view next changes its
 /// appearance; `None` for never.
-pub(super) fn fill<S: Stats>(
+pub(super) fn fill(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
 ) -> Option<f64> {
     let width = scene.projection.columns();
     memory.make_room(scene.world, width, list);
@@ -69,11 +69,11 @@ pub(super) fn fill<S: Stats>(
 
 /// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns the time
 /// at which a thing in view next changes its appearance; `None` for never.
-pub(super) fn fill_columns<S: Stats>(
+pub(super) fn fill_columns(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
     start: impl FnMut(&Column) -> Option<PortalStart>,
 ) -> Option<f64> {
     let PortalMemory { gaps, starts, walk, finder, layers } = memory;

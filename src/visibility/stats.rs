@@ -1,7 +1,8 @@
 //! Frame stats: the cost of a frame, counted where it arises.
 //!
-//! Drawing is generic over [`Stats`]. A frame without an explanation is drawn with `()`, which
-//! counts nothing and compiles to no code.
+//! Whether the counts are kept is asked once for each span and each wall column, never for a pixel. Compiling
+//! all of drawing a second time, for counting, was refused: a fifth of the code of drawing was for
+//! explanations.
 
 /// A kind of surface that pixels are written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,26 +21,47 @@ pub enum Pass {
     Things,
 }
 
-/// Counts the cost of a frame or of a band.
-pub(crate) trait Stats: Default + Send {
-    /// Whether the counts are kept.
-    const ARE_KEPT: bool;
-
-    /// Applies `change` to the counts, if they are kept.
-    fn change(&mut self, change: impl FnOnce(&mut FrameStats));
-
-    /// Adds all counts of `other`.
-    fn add(&mut self, other: Self);
+/// The cost of a frame or of a band, if it is counted.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stats {
+    counts: Option<FrameStats>,
 }
 
-impl Stats for () {
-    const ARE_KEPT: bool = false;
+impl Stats {
+    /// Counts from zero.
+    pub(crate) fn kept() -> Self {
+        Self { counts: Some(FrameStats::default()) }
+    }
 
-    #[inline]
-    fn change(&mut self, _: impl FnOnce(&mut FrameStats)) {}
+    /// Zeros, kept if these counts are.
+    pub(crate) fn of_band(&self) -> Self {
+        Self { counts: self.counts.map(|_| FrameStats::default()) }
+    }
 
+    /// Whether the counts are kept.
     #[inline]
-    fn add(&mut self, (): Self) {}
+    pub(crate) fn are_kept(&self) -> bool {
+        self.counts.is_some()
+    }
+
+    /// The counts; zeros if they are not kept.
+    pub(crate) fn counts(&self) -> FrameStats {
+        self.counts.unwrap_or_default()
+    }
+
+    /// Applies `change` to the counts, if they are kept.
+    #[inline]
+    pub(crate) fn change(&mut self, change: impl FnOnce(&mut FrameStats)) {
+        if let Some(counts) = &mut self.counts {
+            change(counts);
+        }
+    }
+
+    /// Adds the counts of a band. Visibility, which is found once a frame, is not among them.
+    pub(crate) fn add(&mut self, band: &Self) {
+        let Self { counts: Some(band) } = band else { return };
+        self.change(|counts| counts.add(band));
+    }
 }
 
 /// The texels read and the pixels written by a pass.
@@ -131,17 +153,9 @@ impl FrameStats {
             Pass::Things => &mut self.things,
         }
     }
-}
 
-impl Stats for FrameStats {
-    const ARE_KEPT: bool = true;
-
-    fn change(&mut self, change: impl FnOnce(&mut FrameStats)) {
-        change(self);
-    }
-
-    /// Adds the counts of a band. Visibility, which is found once a frame, is not among them.
-    fn add(&mut self, band: Self) {
+    /// Adds the counts of a band.
+    fn add(&mut self, band: &Self) {
         for pass in Pass::ALL {
             let (sum, of_band) = (self.of_mut(pass), band.of(pass));
             sum.texels += of_band.texels;

@@ -58,11 +58,11 @@ struct PassedLeft {
 
 /// Fills the layers of `list`, whose columns are known. Returns the time at which one of the
 /// billboards next changes its appearance; `None` for never.
-pub(super) fn fill<S: Stats>(
+pub(super) fn fill(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
-    stats: &mut S,
+    stats: &mut Stats,
 ) -> Option<f64> {
     let FlatMemory { passed, left, visible, by_column } = memory;
     if scene.plan.things == ThingLoop::None {

@@ -102,7 +102,8 @@ mod tests {
     use crate::visibility::portal::layers::Passed;
     use crate::visibility::portal::{self, PortalMemory};
     use crate::visibility::{
-        DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Visibility, WhyPortals,
+        DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Stats, Visibility,
+        WhyPortals,
     };
     use crate::world::{Camera, FieldOfView, Heading};
 
@@ -147,7 +148,7 @@ mod tests {
             };
             let scene = Scene { world, camera: &camera, seconds: 0.0, projection, plan };
             let (mut memory, mut list) = (PortalMemory::default(), DrawList::default());
-            portal::fill(scene, &mut memory, &mut list, &mut ());
+            portal::fill(scene, &mut memory, &mut list, &mut Stats::default());
             let mut in_view = ImagesInView::default();
             let images = list.runs.images();
             in_view.look(scene, images.len(), &memory.walk.segments);

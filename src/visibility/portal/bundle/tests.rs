@@ -4,8 +4,8 @@ use crate::map;
 use crate::visibility::portal::{self, PortalMemory, PortalStart};
 use crate::visibility::runs::{FlatSurface, ImageId, Shown};
 use crate::visibility::{
-    Column, DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Scene, Visibility,
-    WhyPortals,
+    Column, DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Scene, Stats,
+    Visibility, WhyPortals,
 };
 use crate::world::{Camera, FieldOfView, Heading, World};
 
@@ -89,7 +89,7 @@ proptest! {
             memory.make_room(world, COLUMNS as usize, &mut list);
             list.columns.resize(COLUMNS as usize, Column::UNKNOWN);
             let mut starts = (0..COLUMNS).map(of_column);
-            portal::fill_columns(scene, &mut memory, &mut list, &mut (), |_| starts.next()?);
+            portal::fill_columns(scene, &mut memory, &mut list, &mut Stats::default(), |_| starts.next()?);
             list
         };
         let together = fill(&|_| Some(PortalStart::Camera));
