@@ -28,9 +28,9 @@
 //! finds with integers, and with longer integers where those cannot decide. A caster without its
 //! own [`Caster::cast_through`] treats all of these cells as walls.
 //!
-//! Callers are generic over the [`Caster`]. Choosing a caster by dynamic dispatch for each ray was
-//! refused: the call would cost as much as a short ray.
+//! Callers for which speed counts are generic over the [`Caster`], and compiled for few of them.
 
+mod any;
 mod door;
 mod exact;
 mod hit;
@@ -41,6 +41,7 @@ mod shape;
 mod through;
 mod walk;
 
+pub(crate) use any::AnyCaster;
 pub(crate) use exact::{CommonOrder, ExactOnLevel};
 pub use exact::{Exact, ExactOrder};
 pub(crate) use hit::HitFace;

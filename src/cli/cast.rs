@@ -8,41 +8,29 @@ use serde::Serialize;
 use super::arguments::Cast;
 use super::{Error, level};
 use crate::cast::{Caster, Ray, Side};
-use crate::lab::casters::Visitor;
+use crate::render::DynCaster;
 use crate::world::World;
 
-/// Answers every line of standard input until it ends.
+/// Reads rays from standard input until it ends, and writes hits to standard output.
 pub(super) fn run(options: &Cast) -> Result<(), Error> {
     let world = level::load_grid(options.map.as_deref())?;
-    options.method.accept(RayLoop { world: &world })
-}
-
-/// Reads rays from standard input and writes hits to standard output.
-struct RayLoop<'a> {
-    world: &'a World,
-}
-
-impl Visitor for RayLoop<'_> {
-    type Output = Result<(), Error>;
-
-    fn visit<C: Caster>(self, caster: &C) -> Result<(), Error> {
-        let mut input = BufReader::new(io::stdin().lock());
-        let mut output = BufWriter::new(io::stdout().lock());
-        let mut line = Vec::new();
-        loop {
-            line.clear();
-            let length = input.read_until(b'\n', &mut line).map_err(|error| {
-                Error::machine(format!("standard input can't be read: {error}"))
-            })?;
-            if length == 0 {
-                return output.flush().map_err(|error| Error::of_output(&error));
-            }
-            let answer = answer(self.world, caster, &line);
-            write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
-            // The other program may wait for this answer before it sends the next ray.
-            if input.buffer().is_empty() {
-                output.flush().map_err(|error| Error::of_output(&error))?;
-            }
+    let caster = options.method.caster();
+    let mut input = BufReader::new(io::stdin().lock());
+    let mut output = BufWriter::new(io::stdout().lock());
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let length = input
+            .read_until(b'\n', &mut line)
+            .map_err(|error| Error::machine(format!("standard input can't be read: {error}")))?;
+        if length == 0 {
+            return output.flush().map_err(|error| Error::of_output(&error));
+        }
+        let answer = answer(&world, &caster, &line);
+        write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
+        // The other program may wait for this answer before it sends the next ray.
+        if input.buffer().is_empty() {
+            output.flush().map_err(|error| Error::of_output(&error))?;
         }
     }
 }
@@ -56,7 +44,7 @@ enum Answer {
     Error { error: String },
 }
 
-fn answer<C: Caster>(world: &World, caster: &C, line: &[u8]) -> Answer {
+fn answer(world: &World, caster: &DynCaster, line: &[u8]) -> Answer {
     let ray = match read_ray(line) {
         Ok(ray) => ray,
         Err(error) => return Answer::Error { error },

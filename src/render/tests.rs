@@ -10,7 +10,7 @@ use super::{
 };
 use crate::cast::Exact;
 use crate::map::{self, Level, builtin};
-use crate::visibility::Projection;
+use crate::visibility::{Projection, Stats};
 use crate::world::{Camera, Cell, FieldOfView, Heading, Opening, Pitch, World};
 
 /// All maps, with doors ajar if there are any.

@@ -3,21 +3,21 @@
 use std::cell::Cell;
 
 use super::FrameStats;
-use crate::cast::{Caster, Hit, MajorAxisTraversal, Ray, Walk};
+use crate::cast::{AnyCaster, Caster, Hit, MajorAxisTraversal, Ray, Walk};
 use crate::world::{Grid, World};
 
 /// Casts as another caster does, and counts the cells of the exact rays, whatever that caster's
 /// method.
-pub(super) struct RayCounter<'a, C> {
-    caster: &'a C,
+pub(super) struct RayCounter<'a> {
+    caster: &'a dyn AnyCaster,
     grid: &'a Grid,
     rays: Cell<u64>,
     cells: Cell<u64>,
     looks: Cell<u64>,
 }
 
-impl<'a, C> RayCounter<'a, C> {
-    pub(super) fn new(caster: &'a C, grid: &'a Grid) -> Self {
+impl<'a> RayCounter<'a> {
+    pub(super) fn new(caster: &'a dyn AnyCaster, grid: &'a Grid) -> Self {
         Self { caster, grid, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
     }
 
@@ -47,18 +47,18 @@ impl<'a, C> RayCounter<'a, C> {
     }
 }
 
-impl<C: Caster> Caster for RayCounter<'_, C> {
+impl Caster for RayCounter<'_> {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
         self.count(ray);
-        self.caster.cast(grid, ray)
+        self.caster.cast_any(grid, ray)
     }
 
     fn is_exact(&self) -> bool {
-        self.caster.is_exact()
+        self.caster.is_exact_any()
     }
 
-    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
+    fn cast_through(&self, world: &World, ray: &Ray, mut passed: impl FnMut(Hit)) -> Option<Hit> {
         self.count(ray);
-        self.caster.cast_through(world, ray, passed)
+        self.caster.cast_through_any(world, ray, &mut passed)
     }
 }

@@ -149,7 +149,7 @@ mod tests {
     use crate::map;
     use crate::visibility::flat::FlatMemory;
     use crate::visibility::{
-        Billboard, DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, flat,
+        Billboard, DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Stats, flat,
     };
     use crate::world::{Camera, FieldOfView, Heading};
 
@@ -196,7 +196,7 @@ mod tests {
             let scene = Scene { world, camera: &camera, seconds: 0.0, projection, plan };
             let mut list = DrawList::default();
             let memory = &mut FlatMemory::default();
-            flat::find_columns(scene, (&Exact, world.grid()), memory, &mut list, &mut ());
+            flat::find_columns(scene, (&Exact, world.grid()), memory, &mut list, &mut Stats::default());
             let columns = &list.columns;
 
             let mut visible = VisibleCells::default();

@@ -2,8 +2,8 @@
 
 use super::cast;
 use crate::cast::{Caster, Hit, Ray};
-use crate::lab::casters::{Method, Visitor};
-use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
+use crate::lab::casters::Method;
+use crate::render::{DynCaster, Frame, FrameSize, PixelAspect, Renderer};
 use crate::rng::SplitMix64;
 use crate::world::{Camera, Cell, FieldOfView, Grid, Heading, World};
 
@@ -29,15 +29,25 @@ impl<'world> Gallery<'world> {
     /// `count` pictures of `world` in this size: one from its start, the others from random
     /// positions.
     pub fn new(world: &'world World, size: FrameSize, count: usize, seed: u64) -> Self {
+        let reference = DynCaster::new(Reference);
         let pictures = cameras(world, seed)
             .take(count)
-            .map(|camera| (camera, draw(world, &camera, size, &Reference)));
+            .map(|camera| (camera, draw(world, &camera, size, &reference)));
         Self { world, pictures: pictures.collect() }
     }
 
     /// The fraction of pixels that differ if `method` casts the rays, from 0 to 1.
     pub fn share_wrong(&self, method: &Method) -> f64 {
-        method.accept(Comparison { gallery: self })
+        let Self { world, pictures } = self;
+        let caster = method.caster();
+        let (mut wrong, mut all) = (0_usize, 0_usize);
+        for (camera, truth) in pictures {
+            let picture = draw(world, camera, truth.size(), &caster);
+            let pairs = picture.rows().flatten().zip(truth.rows().flatten());
+            wrong += pairs.filter(|(shown, truth)| shown != truth).count();
+            all += picture.rows().flatten().count();
+        }
+        wrong as f64 / all.max(1) as f64
     }
 }
 
@@ -63,39 +73,21 @@ fn random_camera(world: &World, random: &mut SplitMix64) -> Camera {
     Camera::in_cell(cell.unwrap_or(world.start().cell), heading, FieldOfView::default())
 }
 
-fn draw<C: Caster>(world: &World, camera: &Camera, size: FrameSize, caster: &C) -> Frame {
+fn draw(world: &World, camera: &Camera, size: FrameSize, caster: &DynCaster) -> Frame {
     let mut frame = Frame::new(size, PixelAspect::SQUARE);
-    Renderer::new().render_with(&OnlyWalls(caster), world, camera, &mut frame);
+    let caster = DynCaster::new(OnlyWalls(caster.clone()));
+    Renderer::with_caster(caster).render(world, camera, &mut frame);
     frame
 }
 
 /// Treats doors and transparent cubes as walls, as most methods do. The pictures then differ only
 /// by where rays end.
-struct OnlyWalls<'a, C>(&'a C);
+#[derive(Debug)]
+struct OnlyWalls(DynCaster);
 
-impl<C: Caster> Caster for OnlyWalls<'_, C> {
+impl Caster for OnlyWalls {
     fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
         self.0.cast(grid, ray)
-    }
-}
-
-struct Comparison<'a> {
-    gallery: &'a Gallery<'a>,
-}
-
-impl Visitor for Comparison<'_> {
-    type Output = f64;
-
-    fn visit<C: Caster>(self, caster: &C) -> f64 {
-        let Gallery { world, pictures } = self.gallery;
-        let (mut wrong, mut all) = (0_usize, 0_usize);
-        for (camera, truth) in pictures {
-            let picture = draw(world, camera, truth.size(), caster);
-            let pairs = picture.rows().flatten().zip(truth.rows().flatten());
-            wrong += pairs.filter(|(shown, truth)| shown != truth).count();
-            all += picture.rows().flatten().count();
-        }
-        wrong as f64 / all.max(1) as f64
     }
 }
 

@@ -65,16 +65,8 @@ impl Trial {
 
     /// The errors of `method`.
     pub fn errors(&self, method: &Method) -> Errors {
-        method.accept(ErrorsVisitor { trial: self })
-    }
-
-    /// The time of `method` for one ray, in nanoseconds.
-    pub(super) fn nanoseconds(&self, method: &Method) -> f64 {
-        method.accept(TimingVisitor { set: &self.set })
-    }
-
-    fn errors_of<C: Caster>(&self, caster: &C) -> Errors {
         const TEXELS: f64 = 64.0;
+        let caster = method.caster();
         let mut errors = Errors { rays: self.set.rays.len(), ..Errors::default() };
         let (mut distances, mut texels) = (Mean::default(), Mean::default());
         let mut ulps = Vec::new();
@@ -98,6 +90,11 @@ impl Trial {
         errors.worst_texel = texels.worst;
         errors.mean_texel = texels.root_mean_square();
         errors
+    }
+
+    /// The time of `method` for one ray, in nanoseconds.
+    pub(super) fn nanoseconds(&self, method: &Method) -> f64 {
+        method.accept(TimingVisitor { set: &self.set })
     }
 }
 
@@ -145,18 +142,6 @@ impl Mean {
 
     fn root_mean_square(&self) -> f64 {
         (self.sum_of_squares / self.count.max(1) as f64).sqrt()
-    }
-}
-
-struct ErrorsVisitor<'a> {
-    trial: &'a Trial,
-}
-
-impl Visitor for ErrorsVisitor<'_> {
-    type Output = Errors;
-
-    fn visit<C: Caster>(self, caster: &C) -> Errors {
-        self.trial.errors_of(caster)
     }
 }
 
