@@ -20,6 +20,8 @@ pub(super) struct Landmarks {
 
 /// The farthest detected move: content that moves faster has usually changed in other ways too.
 const FARTHEST: usize = 16;
+/// The number of places around a cell, with its own, at which a mark is looked for.
+const PLACES: usize = FARTHEST + 1 + FARTHEST;
 /// The number of moves that are tried for a row. Twice as many save half a byte in a hundred.
 const MOST_TRIED: usize = 2;
 /// This number of landmarks may agree by chance.
@@ -58,8 +60,8 @@ impl Landmarks {
 
     /// Counts, for each distance, the landmarks that have an equal previous mark there.
     fn votes(&self) -> Votes {
-        let mut votes = Votes::default();
-        let around = self.before.windows(FARTHEST + 1 + FARTHEST);
+        let mut votes = Votes([0; PLACES]);
+        let around = self.before.windows(PLACES);
         let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
         for _ in 0..self.now.len().div_ceil(MOST_AT_ONCE) {
             votes.add(places.by_ref().take(MOST_AT_ONCE));
@@ -79,12 +81,9 @@ impl Landmarks {
     }
 }
 
-/// The number of landmarks with an equal previous mark at each distance, from left to right.
-#[derive(Default)]
-struct Votes {
-    on_the_left: [u16; FARTHEST],
-    on_the_right: [u16; FARTHEST],
-}
+/// The number of landmarks with an equal previous mark at each distance, from left to right. The one in the
+/// middle is their own place.
+struct Votes([u16; PLACES]);
 
 /// The number of votes that can be counted in eight bits.
 const MOST_AT_ONCE: usize = u8::MAX as usize;
@@ -93,40 +92,34 @@ impl Votes {
     /// Adds the votes of at most [`MOST_AT_ONCE`] landmarks, each with the previous marks around
     /// it.
     fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
-        let (mut on_the_left, mut on_the_right) = ([0_u8; FARTHEST], [0_u8; FARTHEST]);
+        // One loop for both sides: the compiler would unroll a shorter one instead of counting sixteen
+        // places at once.
+        let mut votes = [0_u8; PLACES];
         for (now, around) in places {
-            let sides = around.first_chunk().zip(around.last_chunk());
-            let (left, right) = sides.expect("there is as much on either side of every cell");
-            count(&mut on_the_left, left, now);
-            count(&mut on_the_right, right, now);
+            let around = around.first_chunk::<PLACES>();
+            let around = around.expect("there is as much on either side of every cell");
+            for (votes, &before) in votes.iter_mut().zip(around) {
+                *votes += u8::from(before == now);
+            }
         }
-        widen(&mut self.on_the_left, &on_the_left);
-        widen(&mut self.on_the_right, &on_the_right);
+        widen(&mut self.0, &votes);
     }
 
     /// The number of landmarks that have moved to the left by this number of cells.
     fn left(&self, by: usize) -> u16 {
-        self.on_the_right[by - 1]
+        self.0[FARTHEST + by]
     }
 
     /// The number of landmarks that have moved to the right by this number of cells.
     fn right(&self, by: usize) -> u16 {
-        self.on_the_left[FARTHEST - by]
-    }
-}
-
-/// Adds a vote for each place with an equal previous mark.
-#[inline]
-fn count(votes: &mut [u8; FARTHEST], before: &[Mark; FARTHEST], now: Mark) {
-    for (votes, &before) in votes.iter_mut().zip(before) {
-        *votes += u8::from(before == now);
+        self.0[FARTHEST - by]
     }
 }
 
 /// Adds votes to sums. When this was inlined, the compiler counted eight places at once instead of
 /// sixteen.
 #[inline(never)]
-fn widen(sums: &mut [u16; FARTHEST], votes: &[u8; FARTHEST]) {
+fn widen(sums: &mut [u16; PLACES], votes: &[u8; PLACES]) {
     for (sum, &votes) in sums.iter_mut().zip(votes) {
         *sum += u16::from(votes);
     }
