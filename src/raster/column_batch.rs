@@ -7,6 +7,7 @@
 use std::ops::Range;
 use std::{iter, ptr};
 
+use super::band::Band;
 use super::direct_columns::{self, DirectColumn};
 use super::lanes::{LANES, Lanes, QueuedColumn};
 use super::shaded_texels::{ShadedRange, ShadedTexels};
@@ -211,8 +212,22 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
 
     /// Draws the queued columns.
     pub(super) fn draw(&mut self) {
-        let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
-        let band = self.target.band_mut();
+        self.memory.draw(self.target.band_mut());
+        self.clear();
+    }
+
+    fn clear(&mut self) {
+        self.memory.clear();
+        self.latest = None;
+        self.next = 0;
+    }
+}
+
+impl BatchMemory {
+    /// Draws the queued columns on `band`. It does not depend on the lighting, so that there is one copy of it.
+    #[inline(never)]
+    fn draw(&mut self, band: &mut Band<'_>) {
+        let Self { shaded, columns, lanes } = self;
         let mut rest = columns.as_slice();
         while let [column, more @ ..] = rest {
             let Some(together) = rest.first_chunk().and_then(Lanes::new) else {
@@ -235,16 +250,13 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
                 lanes.draw(shaded, first..end.min(first + ROWS_AT_ONCE), band);
             }
         }
-        self.clear();
     }
 
     fn clear(&mut self) {
-        let BatchMemory { shaded, columns, lanes } = &mut *self.memory;
+        let Self { shaded, columns, lanes } = self;
         shaded.clear();
         columns.clear();
         lanes.clear();
-        self.latest = None;
-        self.next = 0;
     }
 }
 
