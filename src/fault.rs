@@ -10,6 +10,7 @@ mod excerpt;
 mod printable;
 mod words;
 
+use crate::sort;
 use std::fmt;
 use std::ops::Range;
 
@@ -36,7 +37,9 @@ impl Faults {
     /// The faults of the file `name` with the contents `text`. `faults` is not empty.
     pub(crate) fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
-        faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.start, place.end)));
+        sort::by_key(&mut faults, |fault| {
+            fault.place.as_ref().map(|place| (place.start, place.end))
+        });
         Self { name: printable(name), text: text.to_owned(), list: faults }
     }
 

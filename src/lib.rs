@@ -39,7 +39,7 @@
 //!
 //! | module | is | feature |
 //! |---|---|---|
-//! | `numeric`, [`color`], [`rng`] | exact arithmetic and damped motion; sRGB, L\*a\*b\*, Oklab, palettes; seeded random numbers | |
+//! | `sort`, `numeric`, [`color`], [`rng`] | sorting; exact arithmetic and damped motion; sRGB, L\*a\*b\*, Oklab, palettes; seeded random numbers | |
 //! | [`world`] | grid, tiles, things, sprites, textures, cameras | |
 //! | [`fault`], [`map`] | diagnostics; the map file: read, validate, diagnose | |
 //! | [`cast`] | a ray and a grid: where it hits, exactly | |
@@ -80,6 +80,7 @@ pub mod render;
 pub mod rng;
 #[cfg(feature = "serve")]
 pub mod server;
+mod sort;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod store;

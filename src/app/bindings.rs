@@ -3,6 +3,7 @@
 mod presets;
 
 use crate::game::Intent;
+use crate::sort;
 use crate::terminal::{Key, KeyEvent};
 pub(super) use presets::PRESETS;
 
@@ -151,7 +152,7 @@ impl Bindings {
     /// Sorts the keys by their actions.
     fn in_order(mut self) -> Self {
         let index = |action| Action::ALL.iter().position(|&(.., known)| known == action);
-        self.keys.sort_by_key(|&(_, action)| index(action));
+        sort::by_key(&mut self.keys, |&(_, action)| index(action));
         self
     }
 

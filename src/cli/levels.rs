@@ -9,6 +9,7 @@ use super::data_folder::data_folder;
 use super::{Error, verify};
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
+use crate::sort;
 use crate::store::{Best, Store};
 use crate::world::{Difficulty, World};
 
@@ -90,6 +91,6 @@ fn object(entry: &Entry) -> Value {
         "name": entry.name,
         "title": entry.world.title(),
         "par": entry.world.par(),
-        "best": Value::Object(bests.collect()),
+        "best": Value::Object(sort::gathered(bests)),
     })
 }

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 
 use crate::app::{OwnLevel, OwnMap};
 use crate::map;
+use crate::sort;
 use crate::store::map_key;
 
 /// The map files in `folders`, sorted by name. Folders that cannot be read have none.
 pub(super) fn find(folders: &[PathBuf]) -> Vec<OwnMap> {
     let entries = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    paths.sort();
+    sort::by(&mut paths, PathBuf::cmp);
     paths.into_iter().filter_map(own_map).collect()
 }
 

@@ -15,6 +15,7 @@ use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 
 use super::{Fault, nearest, quoted};
+use crate::sort;
 
 /// The largest number of tokens of a document, white space and line breaks included: some twenty for
 /// each of ten thousand definitions.
@@ -57,9 +58,11 @@ impl FaultList {
     /// the parser guesses what such lines mean.
     pub(crate) fn extend_by_broken_lines(&self, not_toml: Vec<Fault>, text: &str) {
         let found = self.take();
-        let starts: BTreeSet<usize> = found.iter().chain(&not_toml).map(Fault::start).collect();
+        let starts: BTreeSet<usize> =
+            sort::gathered(found.iter().chain(&not_toml).map(Fault::start));
         let lines = line_numbers(text, starts);
-        let broken: BTreeSet<usize> = not_toml.iter().map(|fault| lines[&fault.start()]).collect();
+        let broken: BTreeSet<usize> =
+            sort::gathered(not_toml.iter().map(|fault| lines[&fault.start()]));
         let sound = found.into_iter().filter(|fault| !broken.contains(&lines[&fault.start()]));
         self.extend(sound.chain(not_toml));
     }
@@ -74,7 +77,7 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
         counted = place;
         (place, line)
     });
-    numbered.collect()
+    sort::gathered(numbered)
 }
 
 /// Parses `text` as TOML as far as possible; adds faults to `faults`.

@@ -17,6 +17,7 @@ use super::switches::{self, SwitchSymbol};
 use super::textures::Surface;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
+use crate::sort;
 use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
 use reach::{Opener, Openers, Reach};
 
@@ -91,7 +92,7 @@ impl Keys {
     /// Collects the keys of the doors in the grid. There are at most as many as kinds of tile.
     pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
         let doors = locked_doors(drawing, legend);
-        let names: BTreeSet<&str> = doors.map(|(_, key)| key.name).collect();
+        let names: BTreeSet<&str> = sort::gathered(doors.map(|(_, key)| key.name));
         Self { names: names.into_iter().map(str::to_owned).collect() }
     }
 
@@ -194,7 +195,8 @@ fn is_between_jambs(cells: &Cells<'_>, cell: Cell) -> bool {
 
 /// The faults of keys that no door in the grid needs.
 fn useless_keys(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
-    let asked: BTreeSet<&str> = locked_doors(drawing, legend).map(|(_, key)| key.name).collect();
+    let asked: BTreeSet<&str> =
+        sort::gathered(locked_doors(drawing, legend).map(|(_, key)| key.name));
     let useless = drawn_keys(drawing, legend).filter(|(_, key)| !asked.contains(key.name));
     useless
         .map(|(_, key)| {

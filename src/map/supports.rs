@@ -6,6 +6,7 @@ use super::drawing::Drawing;
 use super::heights::LEAST_HEADROOM;
 use super::legend::{Legend, Meaning, Support};
 use crate::fault::Fault;
+use crate::sort;
 use crate::world::{Cell, Grid, Sprite, Start, Thing, Tile};
 
 /// The faults of things whose support is not open floor.
@@ -53,7 +54,7 @@ pub(super) fn low_things(
         let has_room = tile.gaps().any(|gap| gap.holds(top) && gap.top - top >= DUCKING);
         sprite.blocks && has_room
     };
-    things.iter().filter(is_low).map(|thing| thing.cell).collect()
+    sort::gathered(things.iter().filter(is_low).map(|thing| thing.cell))
 }
 
 /// The fault that the player has no room to stand at the start.

@@ -14,6 +14,7 @@ use super::items::ItemSymbol;
 use super::legend::{Legend, Meaning, Symbol};
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest, quoted};
+use crate::sort;
 use crate::world::SwitchId;
 
 /// The largest number of levers.
@@ -56,7 +57,7 @@ pub(super) struct Switches {
 impl Switches {
     /// Collects the switches of the tiles in the grid.
     pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
-        let names: BTreeSet<&str> = driven(drawing, legend).map(|it| it.name).collect();
+        let names: BTreeSet<&str> = sort::gathered(driven(drawing, legend).map(|it| it.name));
         Self { names: names.into_iter().map(str::to_owned).collect() }
     }
 
@@ -76,8 +77,8 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     if !legend.is_clear() {
         return Vec::new();
     }
-    let driven_names: BTreeSet<&str> = driven(drawing, legend).map(|it| it.name).collect();
-    let setting_names: BTreeSet<&str> = setting(drawing, legend).map(|it| it.name).collect();
+    let driven_names: BTreeSet<&str> = sort::gathered(driven(drawing, legend).map(|it| it.name));
+    let setting_names: BTreeSet<&str> = sort::gathered(setting(drawing, legend).map(|it| it.name));
     let without_effect = setting(drawing, legend).filter(|it| !driven_names.contains(it.name));
     let without_driver = driven(drawing, legend).filter(|it| !setting_names.contains(it.name));
     let without_effect = without_effect.enumerate().map(|(index, switch)| {

@@ -13,6 +13,7 @@ use super::supports;
 use super::switches::{SwitchSymbol, Switches};
 use super::textures::Surface;
 use crate::fault::Fault;
+use crate::sort;
 use crate::world::{Door, Driver, Heights, MovingTile, Paint, Tile, TileEffect, TileId, TileKind};
 
 /// The largest number of kinds of tile, the map's own floor and the states of moving tiles
@@ -50,7 +51,7 @@ impl TileList {
         let mut builder = Builder::new(common);
         let drawn = drawing.characters().map(|(character, _)| character);
         let stood_on = supports::of(drawing, legend).map(|(_, support)| support.tile);
-        for character in drawn.chain(stood_on).collect::<BTreeSet<char>>() {
+        for character in sort::gathered::<char, BTreeSet<char>>(drawn.chain(stood_on)) {
             let Some(symbol) = legend.symbols.get(&character) else { continue };
             builder.add(character, symbol, reader);
             if builder.count() > MAX_TILES {

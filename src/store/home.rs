@@ -9,6 +9,7 @@ use super::disk::Disk;
 use super::progress::Progress;
 use super::read::{self, Content};
 use crate::fault::printable_path;
+use crate::sort;
 
 /// A folder of a store.
 #[derive(Debug)]
@@ -155,7 +156,7 @@ impl Home {
         for change in changes {
             progress.apply(change);
         }
-        let after: BTreeSet<String> = progress.scripts().collect();
+        let after: BTreeSet<String> = sort::gathered(progress.scripts());
         let scripts = changes.iter().filter_map(Change::written);
         for (name, text) in scripts.filter(|(name, _)| after.contains(name)) {
             self.write_whole(&Path::new(RUNS).join(name), text.as_bytes())?;

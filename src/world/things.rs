@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::{Cell, KeyId, SpriteId, SwitchId, World};
+use crate::sort;
 
 /// Something that stands in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +154,7 @@ pub(super) struct Things {
 
 impl Things {
     pub(super) fn new(mut things: Vec<Thing>) -> Self {
-        things.sort_by_key(place);
+        sort::by_key(&mut things, place);
         let mut new = Self { sorted: things, before_row: Vec::new() };
         new.find_rows();
         new

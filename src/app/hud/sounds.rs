@@ -13,6 +13,7 @@ use ratatui::text::Line;
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::{Heard, SoundKind};
+use crate::sort;
 use crate::world::Heading;
 
 /// The most marks that are shown.
@@ -35,7 +36,7 @@ pub(in crate::app) fn draw(
     }
     let ring = Rect { y: picture.y + ROWS_ABOVE, height: picture.height - ROWS_ABOVE, ..picture };
     let mut loudest: Vec<&Heard> = heard.iter().collect();
-    loudest.sort_by_key(|heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
+    sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
     let mut taken: Vec<Rect> = Vec::new();
     for heard in loudest.into_iter().take(MOST) {
         let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);

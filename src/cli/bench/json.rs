@@ -9,6 +9,7 @@ use super::footprint::Footprint;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
 use crate::lab::speed::{CrowdRow, DrawingRow, MapRow, Scene};
 use crate::lab::wire::PipelineRow;
+use crate::sort;
 
 pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let value = json!({
@@ -83,6 +84,6 @@ fn pipeline(report: &Report, row: &PipelineRow) -> Value {
         "microseconds": row.time.as_secs_f64() * 1e6,
         "ratio": share_of_stock(report, row),
         "bytes": row.bytes,
-        "frames_per_second_over_megabits": LINKS.into_iter().map(rate).collect::<Map<_, _>>(),
+        "frames_per_second_over_megabits": sort::gathered::<_, Map<_, _>>(LINKS.into_iter().map(rate)),
     })
 }

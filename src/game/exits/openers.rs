@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::sort;
 use crate::world::{Cell, Driver, KeyId, SwitchId, ThingKind, Tile, TileEffect, World};
 
 /// What the player has found that opens doors and moves tiles.
@@ -52,5 +53,5 @@ pub(super) fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
         _ => None,
     };
     let has_guards = !world.guards().is_empty();
-    world.tiles().iter().filter(|_| has_guards).filter_map(plate).collect()
+    sort::gathered(world.tiles().iter().filter(|_| has_guards).filter_map(plate))
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use super::Unrestorable;
 use super::codec::{Reader, Stored, Writer, check};
+use crate::sort;
 
 fn write_list<'a, T: Stored + 'a>(list: impl ExactSizeIterator<Item = &'a T>, out: &mut Writer) {
     out.number(list.len() as u64);
@@ -45,7 +46,7 @@ impl<T: Stored + Ord> Stored for BTreeSet<T> {
     fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
         let list: Vec<T> = read_list(input)?;
         check(list.is_sorted_by(|one, other| one < other), "the order of a set")?;
-        Ok(list.into_iter().collect())
+        Ok(sort::gathered(list))
     }
 }
 
@@ -61,7 +62,7 @@ impl<K: Stored + Ord, V: Stored> Stored for BTreeMap<K, V> {
     fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
         let list: Vec<(K, V)> = read_list(input)?;
         check(list.is_sorted_by(|one, other| one.0 < other.0), "the order of a map")?;
-        Ok(list.into_iter().collect())
+        Ok(sort::gathered(list))
     }
 }
 

@@ -4,6 +4,7 @@ use super::GUARD_DISTANCE;
 use super::ground::Ground;
 use super::items::{Items, apart};
 use crate::rng::SplitMix64;
+use crate::sort;
 use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading};
 
 /// The guards on the first floor at the least difficulty, and on the deepest ones.
@@ -50,7 +51,7 @@ pub(super) fn place(
         let heading = heading(&duty, cell, random);
         posts.push(GuardPost { kind, cell, heading, duty, from });
     }
-    posts.sort_by_key(|post| (post.cell.row, post.cell.column));
+    sort::by_key(&mut posts, |post| (post.cell.row, post.cell.column));
     posts
 }
 

@@ -28,6 +28,7 @@ use super::table::{Column, Diagram, Row, Table, Value};
 use super::timing::time_in_rounds;
 use crate::color::palette::ColorDepth;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use crate::sort;
 use crate::tui::GlyphMode;
 use crate::world::{Camera, World};
 use cells::Window;
@@ -110,7 +111,7 @@ pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
             rows.push(Row { keys, values });
         }
     }
-    rows.sort_by_key(|row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
+    sort::by_key(&mut rows, |row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
     Table {
         name: "areas",
         title: "What a window shows, compared with the mean light over each half of a cell (64 samples)",

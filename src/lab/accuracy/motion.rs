@@ -37,7 +37,7 @@ const RATES: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 pub(super) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Table {
     let mut steps = STEPS.to_vec();
     steps.push(1.0 / steps_per_second);
-    steps.sort_by(f64::total_cmp);
+    steps.sort_unstable_by(f64::total_cmp);
     steps.dedup();
     let mut rates = vec![friction];
     rates.extend(RATES.iter().filter(|&&rate| rate != friction));

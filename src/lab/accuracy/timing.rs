@@ -15,7 +15,7 @@ pub struct Timing {
 
 impl Timing {
     fn of(mut times: Vec<f64>) -> Option<Self> {
-        times.sort_by(f64::total_cmp);
+        times.sort_unstable_by(f64::total_cmp);
         let last = times.len().checked_sub(1)?;
         let at = |share: f64| times[(share * last as f64).round() as usize];
         Some(Self { median: at(0.5), lower_quartile: at(0.25), upper_quartile: at(0.75) })

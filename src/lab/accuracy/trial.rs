@@ -82,7 +82,7 @@ impl Trial {
                 _ => errors.wrong += 1,
             }
         }
-        ulps.sort_by(f64::total_cmp);
+        ulps.sort_unstable_by(f64::total_cmp);
         errors.worst_distance = distances.worst;
         errors.mean_distance = distances.root_mean_square();
         errors.median_ulps = ulps.get(ulps.len() / 2).copied().unwrap_or_default();

@@ -219,6 +219,6 @@ pub(super) fn seconds(work: impl FnOnce()) -> f64 {
 
 /// The median of `values`; 0 if there are none.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or_default()
 }

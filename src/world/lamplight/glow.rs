@@ -12,6 +12,7 @@
 use glam::DVec2;
 
 use super::Lamp;
+use crate::sort;
 use crate::world::{Cell, Grid, Light, TileId};
 
 /// The cells that a kind of lamp lights where nothing stands around it.
@@ -39,7 +40,7 @@ impl Glow {
     pub(super) fn of(lamp: &Lamp) -> Self {
         let mut lines = lines(lamp);
         // Lines that share their first cells are neighbours, and shorter ones come first.
-        lines.sort_by(|one, other| one.cells.cmp(&other.cells));
+        sort::by(&mut lines, |one, other| one.cells.cmp(&other.cells));
         let mut branches: Vec<Branch> = Vec::new();
         let mut open: Vec<usize> = Vec::new();
         let mut before: &[Offset] = &[];

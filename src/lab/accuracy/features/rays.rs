@@ -10,6 +10,7 @@ use super::Feature;
 use crate::cast::{Caster, Exact, Hit, Ray, Side};
 use crate::map;
 use crate::rng::SplitMix64;
+use crate::sort;
 use crate::world::{Cell, Grid, Line, Opening, Outline, TileKind, World};
 
 const RAYS: usize = 2000;
@@ -78,7 +79,7 @@ struct Truth {
 
 impl Truth {
     fn new(mut places: Vec<Met>) -> Self {
-        places.sort_by(|one, other| one.t.cmp(&other.t));
+        sort::by(&mut places, |one, other| one.t.cmp(&other.t));
         let certain = places.iter().position(|met| !met.is_end);
         if let Some(certain) = certain {
             let equal = places[certain..].iter().take_while(|met| met.t == places[certain].t);

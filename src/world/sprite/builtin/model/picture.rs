@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use super::solid::{Hit, Paint, Seen, Solid};
 use super::view::View;
 use crate::color::Rgb;
+use crate::sort;
 use crate::world::sprite::builtin::INK;
 
 /// The size of a picture, in texels. The body's axis is in the middle, and the floor is one texel
@@ -47,7 +48,7 @@ impl Studio {
     pub(super) fn draw_all(&mut self, solids: &[Solid], view: View) {
         // From the nearest on, so that most of what is hidden is refused by its depth.
         let mut seen: Vec<_> = solids.iter().map(|solid| (solid.seen(view), solid.paint)).collect();
-        seen.sort_by(|(one, _), (other, _)| other.nearest.total_cmp(&one.nearest));
+        sort::by(&mut seen, |(one, _), (other, _)| other.nearest.total_cmp(&one.nearest));
         for (seen, paint) in &seen {
             self.draw(seen, *paint);
         }
