@@ -5,7 +5,6 @@
 
 mod picture;
 
-use std::fmt;
 use std::ops::{Deref, DerefMut};
 
 use glam::DVec3;
@@ -24,8 +23,9 @@ pub(super) enum Played {
     Space(Box<Flight>),
 }
 
-/// A game that advances in steps.
-pub(super) trait Simulation: fmt::Debug {
+/// A game that advances in steps. It cannot be formatted for debugging: the program would contain that code for
+/// all of a game.
+pub(super) trait Simulation {
     /// The level's title, or a substitute if the map gives none.
     fn title(&self) -> &str;
 
