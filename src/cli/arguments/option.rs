@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, TypedValueParser};
+use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
 
@@ -83,14 +83,11 @@ where
     }
 
     fn usage(&self) -> String {
-        format!("--{} <{}>", self.name, self.value)
+        usage(self.name, self.value)
     }
 
     fn help(&self) -> String {
-        match self.default {
-            "" => self.help.to_owned(),
-            default => format!("{} [default: {default}]", self.help),
-        }
+        help(self.help, self.default)
     }
 
     fn choices(&self) -> &'static [&'static str] {
@@ -98,21 +95,52 @@ where
     }
 
     fn argument(&self) -> Arg {
-        let action = if self.repeats { ArgAction::Append } else { ArgAction::Set };
-        Arg::new(self.name)
-            .long(self.name)
-            .value_name(self.value)
-            .help(self.help())
-            .action(action)
-            // A value may be negative. A text that looks like an option is then refused as a value.
-            .allow_hyphen_values(true)
-            .value_parser(ValueReader {
-                name: self.name,
-                takes: self.takes,
-                choices: self.choices,
-                read: self.read.clone(),
-            })
+        let Self { name, takes, choices, .. } = *self;
+        let reader = ValueReader { name, takes, choices, read: self.read.clone() };
+        argument(name, self.value, self.help(), self.repeats, ValueParser::new(reader))
     }
+}
+
+/// An argument with a value of any type. It is apart from [`ValueOption`], so that there is one copy of it.
+#[inline(never)]
+fn argument(
+    name: &'static str,
+    value: &'static str,
+    help: String,
+    repeats: bool,
+    parser: ValueParser,
+) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name(value)
+        .help(help)
+        .action(if repeats { ArgAction::Append } else { ArgAction::Set })
+        // A value may be negative. A text that looks like an option is then refused as a value.
+        .allow_hyphen_values(true)
+        .value_parser(parser)
+}
+
+/// The usage of an option with a value.
+#[inline(never)]
+fn usage(name: &str, value: &str) -> String {
+    format!("--{name} <{value}>")
+}
+
+/// The help of an option with this default, which may be empty.
+#[inline(never)]
+fn help(help: &str, default: &str) -> String {
+    match default {
+        "" => help.to_owned(),
+        default => format!("{help} [default: {default}]"),
+    }
+}
+
+/// The error of a value that was refused with this sentence.
+#[inline(never)]
+fn refused(sentence: String, command: &Command) -> clap::Error {
+    let mut error = clap::Error::new(ErrorKind::ValueValidation).with_cmd(command);
+    error.insert(ContextKind::Custom, ContextValue::String(sentence));
+    error
 }
 
 /// Parses a value for clap.
@@ -144,11 +172,7 @@ where
             }
             Parser::Fallible(read) => read(&text),
         };
-        read.map_err(|sentence| {
-            let mut error = clap::Error::new(ErrorKind::ValueValidation).with_cmd(command);
-            error.insert(ContextKind::Custom, ContextValue::String(sentence));
-            error
-        })
+        read.map_err(|sentence| refused(sentence, command))
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
