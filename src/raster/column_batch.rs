@@ -64,10 +64,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     /// Counts a column of `pixels` pixels in `paint`.
     #[inline]
     pub(super) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
-        self.target.count_pixels(pass, pixels);
-        if let Paint::Texture(_) = paint {
-            self.target.count_texels(pass, pixels);
-        }
+        self.target.count_painted(pass, pixels, paint);
     }
 
     /// Queues `rows` of column `x` for a fill with one colour.

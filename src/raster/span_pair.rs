@@ -126,9 +126,6 @@ fn draw_texels<M: Sampling, const N: usize>(
     let upper = levels.upper.texels().first_chunk::<N>()?;
     let lower = levels.lower.first_chunk::<N>()?;
     let passes = pair.planes.each_ref().map(|plane| plane.pass);
-    for pass in passes {
-        target.count_texels(pass, pair.columns.len());
-    }
     let [above, below] = target.two_spans_mut(passes, pair.rows, &pair.columns);
     let blocks = above.chunks_mut(AT_ONCE).zip(below.chunks_mut(AT_ONCE));
     let blocks = blocks.map(|(above, below)| (above.len(), [above, below]));

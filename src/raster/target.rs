@@ -6,6 +6,7 @@ use super::band::Band;
 use super::surface_buffer::SurfaceRows;
 use crate::color::Rgb;
 use crate::visibility::{Pass, Stats, Surface};
+use crate::world::Paint;
 
 /// A band of a frame with its part of the surface buffer, and the cost of drawing it.
 ///
@@ -60,20 +61,24 @@ impl<'a> Target<'a> {
         &mut self.band.row_mut(row)[columns]
     }
 
-    /// The pixels of `columns` in two rows, the first one further up, to be written for two passes.
-    #[inline]
+    /// The pixels of `columns` in two rows, the first one further up, to be written for two passes, from a texel
+    /// each.
+    #[expect(clippy::inline_always, reason = "a call would cost a fiftieth of a small picture")]
+    #[inline(always)]
     pub(super) fn two_spans_mut(
         &mut self,
         passes: [Pass; 2],
         rows: [u32; 2],
         columns: &Range<usize>,
     ) -> [&mut [Rgb]; 2] {
-        for pass in passes {
-            self.stats.change(|stats| {
+        self.stats.change(|stats| {
+            for pass in passes {
                 stats.spans += 1;
-                stats.of_mut(pass).pixels += columns.len() as u64;
-            });
-        }
+                let stats = stats.of_mut(pass);
+                stats.pixels += columns.len() as u64;
+                stats.texels += columns.len() as u64;
+            }
+        });
         self.band.two_rows_mut(rows).map(|row| &mut row[columns.clone()])
     }
 
@@ -97,6 +102,18 @@ impl<'a> Target<'a> {
     #[inline]
     pub(super) fn count_pixels(&mut self, pass: Pass, count: usize) {
         self.stats.change(|stats| stats.of_mut(pass).pixels += count as u64);
+    }
+
+    /// Counts `count` pixels in `paint` that are written for `pass`.
+    #[inline]
+    pub(super) fn count_painted(&mut self, pass: Pass, count: usize, paint: Paint) {
+        self.stats.change(|stats| {
+            let stats = stats.of_mut(pass);
+            stats.pixels += count as u64;
+            if let Paint::Texture(_) = paint {
+                stats.texels += count as u64;
+            }
+        });
     }
 
     /// Counts `count` texels that are read for `pass`.

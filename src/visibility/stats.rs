@@ -52,8 +52,14 @@ impl Stats {
     /// Applies `change` to the counts, if they are kept.
     #[inline]
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut FrameStats)) {
-        if let Some(counts) = &mut self.counts {
+        /// A call keeps what is left out of most frames small.
+        #[cold]
+        #[inline(never)]
+        fn call(change: impl FnOnce(&mut FrameStats), counts: &mut FrameStats) {
             change(counts);
+        }
+        if let Some(counts) = &mut self.counts {
+            call(change, counts);
         }
     }
 
