@@ -71,6 +71,10 @@ impl Controls {
         if wants.is_some_and(walks) {
             self.toggles.keeps_walking = false;
         }
+        if wants == Some(Intent::LookAhead) {
+            let tilts = |key| bindings.action(key).is_some_and(tilts);
+            self.held.release_each(tilts);
+        }
         if wants == Some(Intent::Jump) && context.plays && !context.is_airborne {
             self.held.join_newest();
         }
@@ -110,6 +114,11 @@ impl Controls {
         ];
         wanted(keys.chain(others.into_iter().flatten().map(|intent| (intent, Hold::Held))))
     }
+}
+
+/// Whether `action` is to look up or down.
+fn tilts(action: Action) -> bool {
+    matches!(action, Action::Want(Intent::LookUp | Intent::LookDown))
 }
 
 /// Whether `intent` is to walk.

@@ -136,6 +136,24 @@ grid = '''
 "##;
 
 #[test]
+fn who_looks_ahead_does_so_whatever_was_pressed_before() {
+    let pitch = |rig: &Rig| rig.game().camera(FieldOfView::default()).pitch.slope();
+    for rate in [None, Some((250, 40)), Some((500, 30)), Some((660, 15))] {
+        for (held, between) in [(10, 0), (10, 60), (10, 200), (900, 0), (900, 60)] {
+            let mut rig = Rig::new(floor(), rate);
+            rig.tap(Key::PageUp, held);
+            rig.wait(between);
+            rig.tap(Key::Home, 10);
+            rig.wait(2000);
+            assert_eq!(pitch(&rig), 0.0, "{rate:?}: {held} ms, {between} ms before");
+            rig.tap(Key::PageUp, 10);
+            rig.wait(1000);
+            assert!(pitch(&rig) > 0.0, "{rate:?}: {held} ms, {between} ms before");
+        }
+    }
+}
+
+#[test]
 fn walking_and_turning_is_a_circle() {
     for (delay, rate) in [(250, 40), (500, 30), (660, 15)] {
         let mut rig = Rig::new(floor(), Some((delay, rate)));

@@ -181,7 +181,12 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// Releases all keys, for example when the window loses the focus. A key that continues to
     /// repeat is up until it is pressed again.
     pub fn release_all(&mut self) {
-        self.keys.iter_mut().for_each(HeldKey::suppress);
+        self.release_each(|_| true);
+    }
+
+    /// Releases each key for which `is_meant` is true in the same way, and ends its taps.
+    pub fn release_each(&mut self, is_meant: impl Fn(K) -> bool) {
+        self.keys.iter_mut().filter(|held| is_meant(held.key)).for_each(HeldKey::suppress);
     }
 
     /// Releases the keys whose repetition has not come by `now`.
