@@ -25,7 +25,7 @@ impl Visit {
                 self.show(Page::Room);
             }
             SessionEvent::Refused(sentence) | SessionEvent::Left(sentence) => {
-                self.leave_room(Some(sentence))
+                self.leave_room(Some(sentence));
             }
             SessionEvent::Board { level, difficulty, rows } => {
                 let asked = self.host.catalog.names().get(self.board.level);
