@@ -5,7 +5,7 @@
 //! tolerance step by step was refused: cells were sent twice, and the last frame had most of the
 //! bytes.
 
-use std::cell::Cell as Place;
+use std::cell;
 
 use super::exact;
 use super::glyph_table::GlyphTable;
@@ -47,7 +47,7 @@ const FRAMES: usize = 10;
 const PATIENCE: usize = 10;
 
 thread_local! {
-    static INEXACT: Place<Option<Box<Inexact>>> = const { Place::new(None) };
+    static INEXACT: cell::Cell<Option<Box<Inexact>>> = const { cell::Cell::new(None) };
 }
 
 impl Refinement {

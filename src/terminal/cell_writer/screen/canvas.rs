@@ -1,6 +1,6 @@
 //! The canvas: draws the targets of a screen.
 
-use std::cell::Cell as Place;
+use std::cell;
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -15,7 +15,7 @@ use crate::terminal::thread_memory;
 
 thread_local! {
     /// The buffer into which widgets are drawn first.
-    static SCRATCH: Place<Buffer> = Place::default();
+    static SCRATCH: cell::Cell<Buffer> = cell::Cell::default();
 }
 
 impl Canvas for Screen {

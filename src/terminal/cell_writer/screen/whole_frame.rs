@@ -1,6 +1,6 @@
 //! Whole frames: the targets begin blank, and those before them tell which rows have changed.
 
-use std::cell::Cell as Place;
+use std::cell;
 
 use super::super::packed_cell::PackedCell;
 use super::Screen;
@@ -8,7 +8,7 @@ use crate::terminal::thread_memory;
 
 thread_local! {
     /// The memory of the targets before a frame.
-    static BEFORE: Place<Vec<PackedCell>> = const { Place::new(Vec::new()) };
+    static BEFORE: cell::Cell<Vec<PackedCell>> = const { cell::Cell::new(Vec::new()) };
 }
 
 impl Screen {
