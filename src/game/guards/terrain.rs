@@ -90,8 +90,7 @@ impl Terrain {
 
     /// The floor of `cell`; `None` outside the map and where nobody walks.
     pub(super) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
-        let TileId(tile) = world.grid().tile(i64::from(cell.column), i64::from(cell.row))?;
-        let footing = self.footings[usize::from(tile)];
+        let footing = self.footing_of(tile(world, cell)?);
         (footing.kind != FootingKind::Blocked).then_some(footing)
     }
 
@@ -103,12 +102,33 @@ impl Terrain {
 
     /// Whether a guard walks from `from` to its neighbour `to`.
     pub(super) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
-        let tile = |cell: Cell| world.grid().tile(i64::from(cell.column), i64::from(cell.row));
-        let (Some(TileId(start)), Some(TileId(end))) = (tile(from), tile(to)) else { return false };
-        let footing = &self.footings[usize::from(end)];
+        let to = self.destination(world, gait, to);
+        to.is_some_and(|to| self.leads_to(world, gait, &to, from))
+    }
+
+    /// `cell` as a destination; `None` for a cell that guards do not enter.
+    #[inline]
+    fn destination(&self, world: &World, gait: Gait, cell: Cell) -> Option<Destination> {
+        let tile = tile(world, cell)?;
+        let footing = self.footing_of(tile);
+        let is_door = footing.kind == FootingKind::Door;
+        let cost = if is_door { STRAIGHT + DOOR } else { STRAIGHT };
+        let is_entered = self.is_entered(gait, &footing, cell);
+        is_entered.then_some(Destination { cell, tile, footing, cost })
+    }
+
+    /// Whether a guard walks to `to` from its neighbour `from`.
+    #[inline]
+    fn leads_to(&self, world: &World, gait: Gait, to: &Destination, from: Cell) -> bool {
         // A tile leads to itself wherever it can be entered.
-        self.is_entered(gait, footing, to)
-            && (start == end || footing.is_reached_from(&self.footings[usize::from(start)], gait))
+        tile(world, from).is_some_and(|start| {
+            start == to.tile || to.footing.is_reached_from(&self.footing_of(start), gait)
+        })
+    }
+
+    #[inline]
+    fn footing_of(&self, TileId(tile): TileId) -> Footing {
+        self.footings[usize::from(tile)]
     }
 
     /// Whether guards choose to go to `cell`.
@@ -200,40 +220,18 @@ pub(super) struct Destination {
     cost: u16,
 }
 
-impl Backwards<'_> {
-    fn tile(&self, cell: Cell) -> Option<TileId> {
-        self.world.grid().tile(i64::from(cell.column), i64::from(cell.row))
-    }
-
-    /// Whether the step from the neighbour `start` to a cell that can be entered is possible.
-    #[inline]
-    fn leads_from(&self, start: Cell, to: &Destination) -> bool {
-        // A tile leads to itself wherever it can be entered.
-        self.tile(start).is_some_and(|start| {
-            let start_footing = &self.terrain.footings[usize::from(start.0)];
-            start == to.tile || to.footing.is_reached_from(start_footing, self.gait)
-        })
-    }
-}
-
 impl Costs for Backwards<'_> {
     /// `None` for a cell that guards do not enter.
     type Origin = Option<Destination>;
 
     fn origin(&self, cell: Cell) -> Option<Destination> {
-        let Self { terrain, gait, .. } = *self;
-        let tile = self.tile(cell)?;
-        let footing = terrain.footings[usize::from(tile.0)];
-        let is_door = footing.kind == FootingKind::Door;
-        let cost = if is_door { STRAIGHT + DOOR } else { STRAIGHT };
-        let is_entered = terrain.is_entered(gait, &footing, cell);
-        is_entered.then_some(Destination { cell, tile, footing, cost })
+        self.terrain.destination(self.world, self.gait, cell)
     }
 
     #[inline]
     fn straight(&self, from: &Option<Destination>, to: Cell) -> Option<u16> {
         let from = from.as_ref()?;
-        self.leads_from(to, from).then_some(from.cost)
+        self.terrain.leads_to(self.world, self.gait, from, to).then_some(from.cost)
     }
 
     /// Past two cells at the same height.
@@ -244,14 +242,19 @@ impl Costs for Backwards<'_> {
             Cell { column: from.cell.column, row: to.row },
             Cell { column: to.column, row: from.cell.row },
         ];
-        let is_level = |cell: Cell| {
-            self.tile(cell).is_some_and(|TileId(tile)| {
-                from.footing.is_level_with(self.terrain.footings[usize::from(tile)])
-            })
+        let Self { terrain, world, gait } = *self;
+        let is_level = |cell| {
+            let tile = tile(world, cell);
+            tile.is_some_and(|tile| from.footing.is_level_with(terrain.footing_of(tile)))
         };
-        corners.into_iter().all(|cell| is_level(cell) && !self.terrain.has_thing(cell))
-            && self.leads_from(to, from)
+        corners.into_iter().all(|cell| is_level(cell) && !terrain.has_thing(cell))
+            && terrain.leads_to(world, gait, from, to)
     }
+}
+
+#[inline]
+fn tile(world: &World, cell: Cell) -> Option<TileId> {
+    world.grid().tile(i64::from(cell.column), i64::from(cell.row))
 }
 
 /// The cost of the step between two neighbours, in half cells.
