@@ -1,8 +1,8 @@
 //! Sorting where speed does not count.
 //!
 //! The sort of the standard library is compiled for each type and each comparison, and takes seven kilobytes
-//! each time. Here, one sort of indices serves all. A set or a map that is collected is sorted first, by that
-//! sort; small ones are gathered item by item instead.
+//! each time. Here, one sort of indices serves all. To collect a set or a map compiles that sort as well: small
+//! ones are gathered item by item instead.
 
 use std::cmp::Ordering;
 

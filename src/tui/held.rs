@@ -184,7 +184,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.release_each(|_| true);
     }
 
-    /// Releases each key for which `is_meant` is true in the same way, and ends its taps.
+    /// Releases in this way each key for which `is_meant` is true, and ends its taps.
     pub fn release_each(&mut self, is_meant: impl Fn(K) -> bool) {
         self.keys.iter_mut().filter(|held| is_meant(held.key)).for_each(HeldKey::suppress);
     }
