@@ -151,25 +151,3 @@ fn maps_in_the_documents_are_right() {
     }
     assert!(maps > 0);
 }
-
-#[test]
-fn source_files_are_short() {
-    /// Files are read from top to bottom; one that is longer is two.
-    const MOST_LINES: usize = 300;
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
-    let mut long = Vec::new();
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let lines = fs::read_to_string(&path).unwrap().lines().count();
-            if lines > MOST_LINES {
-                long.push(format!("{} has {lines} lines", path.display()));
-            }
-        }
-    }
-    assert!(long.is_empty(), "{long:#?}");
-}

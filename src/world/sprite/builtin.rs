@@ -40,6 +40,8 @@ pub const EXIT: &str = "portal";
 pub const KEY: &str = "key";
 /// The sprite of the player, seen in mirrors.
 pub const PLAYER: &str = "player";
+/// Its height, in cells.
+pub(crate) const PLAYER_HEIGHT: f64 = 0.68;
 
 /// The built-in sprite of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {

@@ -1,6 +1,6 @@
 //! The player, as seen in a mirror: a traveller with a hat and a cloak.
 
-use super::{Design, INK, Palette, drawn, mirrored};
+use super::{Design, INK, PLAYER_HEIGHT, Palette, drawn, mirrored};
 use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
@@ -90,7 +90,7 @@ pub(super) fn player() -> Design {
         drawn(&BACK, COLORS),
         drawn(&SIDE, COLORS),
     ];
-    Design { facings: Facings::Four, ..Design::standing(0.68, pictures) }
+    Design { facings: Facings::Four, ..Design::standing(PLAYER_HEIGHT, pictures) }
 }
 
 const COLORS: &Palette = &[
