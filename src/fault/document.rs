@@ -13,6 +13,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
 
 use super::{Fault, nearest, quoted};
 use crate::sort;
@@ -81,6 +82,9 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
 }
 
 /// Parses `text` as TOML as far as possible; adds faults to `faults`.
+///
+/// A bracket that is never closed ends the document at its line. The parser takes the rest of the text for the
+/// content of the bracket, and finds a fault in almost every line of it.
 pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut tokens = Source::new(text).lex();
     let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
@@ -89,7 +93,7 @@ pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
         return DeTable::new();
     }
     let (table, errors) = if is_recovered {
-        DeTable::parse_recoverable(text)
+        DeTable::parse_recoverable(&text[..end_of_unclosed_line(text).unwrap_or(text.len())])
     } else {
         match DeTable::parse(text) {
             Ok(table) => (table, Vec::new()),
@@ -105,6 +109,25 @@ pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
         }
     }
     table.into_inner()
+}
+
+/// The end of the line that opens the outermost bracket without an end, if a value of `text` has one.
+fn end_of_unclosed_line(text: &str) -> Option<usize> {
+    let mut open = Vec::new();
+    let mut is_value = false;
+    for token in Source::new(text).lex() {
+        match token.kind() {
+            TokenKind::Equals => is_value = true,
+            TokenKind::Newline if open.is_empty() => is_value = false,
+            TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket if is_value => {
+                open.push(token.span().start());
+            }
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => _ = open.pop(),
+            _ => {}
+        }
+    }
+    let start = *open.first()?;
+    Some(start + text[start..].find('\n')?)
 }
 
 fn too_many_tokens(place: Range<usize>) -> Fault {

@@ -51,6 +51,25 @@ fn every_bad_map_is_refused_with_a_report() -> Outcome {
 }
 
 #[test]
+fn a_missing_quote_or_bracket_is_one_fault_at_its_line() -> Outcome {
+    let definition = r##""#" = { wall = "brick", height = 2.0 }"##;
+    let map = format!(
+        "grid = \"\"\"\n####\n#@k#\n####\n\"\"\"\n[tiles]\n{definition}\n\"x\" = {{ wall = \"moss\" }}\n\n\
+         [things]\n\"@\" = {{ start = 0 }}\n\"k\" = {{ key = \"brass\" }}\n"
+    );
+    // Without the first quote, the line is a comment.
+    for (place, _) in definition.match_indices(['"', '}', ']']).skip(1) {
+        let mut broken = definition.to_owned();
+        broken.remove(place);
+        let text = map.replace(definition, &broken);
+        let faults = map::parse_str(&text).err().ok_or("a broken map was accepted")?;
+        assert_eq!(faults.len(), 1, "{broken}\n{faults}");
+        assert!(faults.to_string().contains(":7:"), "{broken}\n{faults}");
+    }
+    Ok(())
+}
+
+#[test]
 fn no_such_file() -> Outcome {
     insta::assert_snapshot!(faults(Path::new("tests/bad_maps/absent.toml"))?, @"error: there is no file tests/bad_maps/absent.toml");
     Ok(())
