@@ -43,6 +43,7 @@ pub(super) use self::accuracy::{Accuracy, ReportFormat};
 pub(super) use self::admin::{Admin, AdminAction};
 pub(super) use self::bench::{Bench, BenchFormat};
 pub(super) use self::cast::Cast;
+pub(super) use self::check::Check;
 pub(super) use self::config::Config;
 #[cfg(feature = "serve")]
 pub(super) use self::database::Database;
@@ -71,7 +72,7 @@ pub(super) enum Command {
     Play(Play),
     Snapshot(Snapshot),
     Cast(Cast),
-    Check(Vec<OsString>),
+    Check(Check),
     Config(Config),
     Levels(Levels),
     Accuracy(Accuracy),

@@ -12,27 +12,42 @@ use crate::render::DynCaster;
 use crate::world::World;
 
 /// Reads rays from standard input until it ends, and writes hits to standard output.
+///
+/// # Errors
+/// A mistake if a line was no ray, after all lines are answered.
 pub(super) fn run(options: &Cast) -> Result<(), Error> {
     let world = level::load_grid(options.map.as_deref())?;
     let caster = options.method.caster();
     let mut input = BufReader::new(io::stdin().lock());
     let mut output = BufWriter::new(io::stdout().lock());
     let mut line = Vec::new();
+    let mut wrong_lines = 0_u64;
     loop {
         line.clear();
         let length = input
             .read_until(b'\n', &mut line)
             .map_err(|error| Error::machine(format!("standard input can't be read: {error}")))?;
         if length == 0 {
-            return output.flush().map_err(|error| Error::of_output(&error));
+            output.flush().map_err(|error| Error::of_output(&error))?;
+            return verdict(wrong_lines);
         }
         let answer = answer(&world, &caster, &line);
+        wrong_lines += u64::from(matches!(answer, Answer::Error { .. }));
         write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
         // The other program may wait for this answer before it sends the next ray.
         if input.buffer().is_empty() {
             output.flush().map_err(|error| Error::of_output(&error))?;
         }
     }
+}
+
+fn verdict(wrong_lines: u64) -> Result<(), Error> {
+    let lines = match wrong_lines {
+        0 => return Ok(()),
+        1 => "1 line of the input is".to_owned(),
+        count => format!("{count} lines of the input are"),
+    };
+    Err(Error::mistake(format!("{lines} not a ray; each has its reason in the output")))
 }
 
 /// The line of output for one ray.

@@ -1,21 +1,24 @@
 //! `cellcaster check`: all faults of maps.
 
-use std::ffi::OsString;
 use std::io::{self, Write};
 
+use super::arguments::Check;
 use super::{Error, level};
 use crate::fault::printable;
 use crate::game::is_exit_out_of_reach;
 use crate::map::Level;
 
-/// Checks all `maps`, even after a fault, and lists the valid ones.
-pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
-    let mut wrong = 0_usize;
-    for map in maps {
+/// Checks all maps, even after a fault, and lists the valid ones.
+pub(super) fn run(options: &Check) -> Result<(), Error> {
+    let (mut wrong, mut remarks) = (0_usize, 0_usize);
+    for map in &options.maps {
         match level::load(Some(map)) {
             Ok(level) => {
                 let name = printable(&map.to_string_lossy());
-                writeln!(io::stdout(), "{name}: right, {}", summary(&level))
+                let (size, remark) = (size(&level), remark(&level));
+                remarks += usize::from(remark.is_some());
+                let note = remark.map(|it| format!("; {it}")).unwrap_or_default();
+                writeln!(io::stdout(), "{name}: right, {size}{note}")
                     .map_err(|error| Error::of_output(&error))?;
             }
             Err(error) => {
@@ -24,23 +27,33 @@ pub(super) fn run(maps: &[OsString]) -> Result<(), Error> {
             }
         }
     }
-    match (wrong, maps.len()) {
+    match (wrong, options.maps.len()) {
+        (0, _) if options.deny_remarks && remarks > 0 => Err(denied(remarks)),
         (0, _) => Ok(()),
         (1, 1) => Err(Error::reported()),
         (_, all) => Err(Error::mistake(format!("{wrong} of {all} maps are wrong, as said above"))),
     }
 }
 
-/// The size of a level, and remarks that are not faults.
-fn summary(level: &Level) -> String {
-    let world = match level {
-        Level::Grid(world) => world,
-        Level::Space(scene) => return format!("{} bodies", scene.bodies.len()),
-    };
-    let (width, height) = (world.grid().width(), world.grid().height());
-    let note = if is_exit_out_of_reach(world) { UNREACHABLE_EXIT } else { "" };
-    format!("{width}×{height} cells{note}")
+fn size(level: &Level) -> String {
+    match level {
+        Level::Grid(world) => format!("{}×{} cells", world.grid().width(), world.grid().height()),
+        Level::Space(scene) => format!("{} bodies", scene.bodies.len()),
+    }
 }
 
-const UNREACHABLE_EXIT: &str =
-    "; but nobody can reach an exit: no way leads there from the start, not even by jumps";
+/// A remark on a level that can be shown, but not won.
+fn remark(level: &Level) -> Option<&'static str> {
+    let Level::Grid(world) = level else { return None };
+    if !world.has_exit() {
+        return Some("it has no exit");
+    }
+    is_exit_out_of_reach(world).then_some(
+        "but nobody can reach an exit: no way leads there from the start, not even by jumps",
+    )
+}
+
+fn denied(remarks: usize) -> Error {
+    let maps = if remarks == 1 { "1 map has" } else { &format!("{remarks} maps have") };
+    Error::mistake(format!("{maps} a remark, as said above, and --deny remarks allows none"))
+}

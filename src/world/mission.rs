@@ -47,6 +47,11 @@ impl World {
         self
     }
 
+    /// Whether the map has an exit.
+    pub fn has_exit(&self) -> bool {
+        self.things().iter().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
     /// The same world without exits.
     #[must_use]
     pub fn without_exits(mut self) -> Self {

@@ -3,7 +3,7 @@
 //! Rendering and collision use them to leave out what a world does not have. They depend on the
 //! kinds of tile and sprite, of which there are few, and not on the cells.
 
-use super::{Heights, Sprite, Tile, TileKind, World};
+use super::{Anchor, Ceiling, Heights, Sprite, Thing, Tile, TileKind, World};
 
 impl World {
     /// Whether all floors are at 0, and all ceilings, walls and shapes reach 1, so that every ray
@@ -38,9 +38,38 @@ impl World {
         self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
     }
 
-    /// The height of the highest sprite, in cells; 0 if there is none.
-    pub(crate) fn tallest_sprite(&self) -> f64 {
-        self.sprites.iter().map(|sprite| sprite.height.cells()).fold(0.0, f64::max)
+    /// Whether the sky is above any cell but walls.
+    pub(crate) fn has_open_sky(&self) -> bool {
+        let is_open =
+            |tile: &Tile| tile.ceiling == Ceiling::Sky && !matches!(tile.kind, TileKind::Wall(_));
+        self.tiles.iter().any(is_open)
+    }
+
+    /// A height that no thing reaches above, wherever it stands or hangs; −∞ if there are no sprites.
+    pub(crate) fn limit_of_things(&self) -> f64 {
+        let tallest = |anchor: Anchor| {
+            let sprites = self.sprites.iter().filter(|sprite| sprite.anchor == anchor);
+            sprites.map(|sprite| sprite.height.cells()).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (standing, hanging) = (tallest(Anchor::Floor), tallest(Anchor::Ceiling));
+        let holds_things =
+            |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let top_in = |Tile { heights, .. }: &Tile| {
+            let ceiling = if hanging > 0.0 { heights.ceiling() } else { f64::NEG_INFINITY };
+            ceiling.max(heights.floor() + standing)
+        };
+        self.tiles.iter().filter(holds_things).map(top_in).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The things that reach above `height`.
+    pub(crate) fn things_above(&self, height: f64) -> impl Iterator<Item = &Thing> {
+        self.things().iter().filter(move |thing| self.is_above(thing, height))
+    }
+
+    /// Whether `thing` reaches above `height`.
+    pub(crate) fn is_above(&self, thing: &Thing, height: f64) -> bool {
+        let sprite = self.sprite(thing.sprite);
+        sprite.base(self.room_in(thing.cell)) + sprite.height.cells() > height
     }
 }
 

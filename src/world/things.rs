@@ -121,7 +121,7 @@ impl World {
     /// Removes the things in `cell` for which `is_taken` is true, and their light.
     pub(crate) fn take_things(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         self.put_out(cell, &is_taken);
-        self.things.remove(|thing| thing.cell == cell && is_taken(thing.kind));
+        self.things.remove(cell, is_taken);
     }
 
     /// Adds a thing that has no light.
@@ -133,6 +133,11 @@ impl World {
     pub(crate) fn set_frame(&mut self, cell: Cell, is_it: impl Fn(ThingKind) -> bool, frame: u8) {
         let wanted = self.things.in_cell_mut(cell).iter_mut().filter(|thing| is_it(thing.kind));
         wanted.for_each(|thing| thing.frame = Some(frame));
+    }
+
+    /// The worth of all treasure.
+    pub(crate) fn treasure(&self) -> u64 {
+        self.things.treasure
     }
 
     /// The text of the note `id`.
@@ -150,12 +155,15 @@ pub(super) struct Things {
     sorted: Vec<Thing>,
     /// The number of things before each row, up to the last row with any.
     before_row: Vec<usize>,
+    /// The worth of all treasure.
+    treasure: u64,
 }
 
 impl Things {
     pub(super) fn new(mut things: Vec<Thing>) -> Self {
         sort::by_key(&mut things, place);
-        let mut new = Self { sorted: things, before_row: Vec::new() };
+        let treasure = things.iter().map(|thing| worth(thing.kind)).sum();
+        let mut new = Self { sorted: things, before_row: Vec::new(), treasure };
         new.find_rows();
         new
     }
@@ -188,23 +196,39 @@ impl Things {
     }
 
     fn insert(&mut self, thing: Thing) {
+        self.treasure += worth(thing.kind);
         let index = self.sorted.partition_point(|other| place(other) <= place(&thing));
         self.sorted.insert(index, thing);
         self.find_rows();
     }
 
-    fn remove(&mut self, is_gone: impl Fn(&Thing) -> bool) {
-        self.sorted.retain(|thing| !is_gone(thing));
-        self.find_rows();
+    /// Removes the things in `cell` for which `is_gone` is true. Other things are moved, and not looked
+    /// at: a map may have a million.
+    fn remove(&mut self, cell: Cell, is_gone: impl Fn(ThingKind) -> bool) {
+        let range = self.range(cell.row, cell.column, cell.column);
+        let Self { sorted, before_row, treasure } = self;
+        let mut gone = 0;
+        for index in range.rev() {
+            if is_gone(sorted[index].kind) {
+                *treasure -= worth(sorted.remove(index).kind);
+                gone += 1;
+            }
+        }
+        before_row.truncate(sorted.last().map_or(0, |last| last.cell.row as usize + 1));
+        before_row.iter_mut().skip(cell.row as usize + 1).for_each(|before| *before -= gone);
     }
 
     fn find_rows(&mut self) {
-        let Self { sorted, before_row } = self;
+        let Self { sorted, before_row, .. } = self;
         before_row.clear();
         for (index, thing) in sorted.iter().enumerate() {
             before_row.resize(before_row.len().max(thing.cell.row as usize + 1), index);
         }
     }
+}
+
+fn worth(kind: ThingKind) -> u64 {
+    if let ThingKind::Treasure(worth) = kind { worth.into() } else { 0 }
 }
 
 fn place(thing: &Thing) -> (u32, u32) {
@@ -232,18 +256,18 @@ mod tests {
         #[test]
         fn a_stretch_of_a_row_holds_what_stands_there(
             places in prop::collection::vec((0..SIDE, 0..SIDE), 0..20),
-            gone_row in 0..SIDE,
+            gone in (0..SIDE, 0..SIDE),
             row in prop_oneof![0..SIDE + 2, Just(u32::MAX)],
             first in 0..SIDE,
             length in 0..SIDE,
         ) {
             let last = first + length;
             let mut things = Things::new(places.iter().copied().map(thing).collect());
-            things.remove(|thing| thing.cell.row == gone_row);
-            let mut expected: Vec<(u32, u32)> = places
-                .into_iter()
-                .filter(|&place| place.0 == row && row != gone_row)
-                .filter(|place| (first..=last).contains(&place.1))
+            things.remove(thing(gone).cell, |_| true);
+            let left = places.into_iter().filter(|&place| place != gone);
+            prop_assert_eq!(&things, &Things::new(left.clone().map(thing).collect()));
+            let mut expected: Vec<(u32, u32)> = left
+                .filter(|&place| place.0 == row && (first..=last).contains(&place.1))
                 .collect();
             expected.sort_unstable();
             let found: Vec<_> = things.between(row, first, last).iter().map(place).collect();

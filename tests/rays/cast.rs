@@ -7,10 +7,16 @@ use crate::support::{cellcaster, run_with_input};
 
 const MAP: &str = "tests/maps/cross.toml";
 
-fn answers(rays: &str) -> String {
+/// The output for `rays`, of which `wrong` lines are not rays.
+fn answers(rays: &str, wrong: usize) -> String {
     let output = run_with_input(&["cast", MAP], rays.as_bytes());
-    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
-    assert!(output.status.success());
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    if wrong == 0 {
+        assert_eq!((output.status.code(), complaint.as_str()), (Some(0), ""));
+    } else {
+        assert_eq!((output.status.code(), complaint.lines().count()), (Some(2), 1), "{complaint}");
+        assert!(complaint.starts_with(&format!("cellcaster: {wrong} line")), "{complaint}");
+    }
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -33,7 +39,7 @@ fn every_line_gets_an_answer() {
         "",
         "0.1 1e-1 5e-324 1e308",
     ];
-    let answers = answers(&(rays.join("\n") + "\n"));
+    let answers = answers(&(rays.join("\n") + "\n"), 7);
     assert_eq!(answers.lines().count(), rays.len());
     let dialogue: Vec<String> = rays
         .iter()
@@ -45,8 +51,8 @@ fn every_line_gets_an_answer() {
 
 #[test]
 fn a_last_line_without_an_end_counts() {
-    assert_eq!(answers("2.5 2.5 1 0").lines().count(), 1);
-    assert_eq!(answers(""), "");
+    assert_eq!(answers("2.5 2.5 1 0", 0).lines().count(), 1);
+    assert_eq!(answers("", 0), "");
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
 
 {"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}  what the ray hits
 {"escaped":true}   for a ray that leaves the map
-{"error":"..."}    for a line that is no ray"##,
+{"error":"..."}    for a line that is not a ray; the exit status is then 2"##,
     examples: r#"echo "1.5 1.5 1 0" | cellcaster cast my.toml"#,
     positionals: &[map::OPTIONAL],
     options: &[&value::CASTER],
