@@ -34,7 +34,7 @@ pub use threads::{Threads, WhyOne};
 use crate::cast::Caster;
 use crate::raster::{self, RasterMemory, SkyColumn, SkyView, SurfaceBuffer};
 use crate::visibility::{self, DrawList, Projection, Scene, Stats, VisibilityMemory};
-#[cfg(feature = "tui")]
+#[cfg(feature = "terminal")]
 use crate::world::Figure;
 use crate::world::{Camera, World};
 use threads::draw_bands;
@@ -167,7 +167,7 @@ impl Renderer {
 
     /// Whether `figure` may be seen in `frame`, the last that was drawn, wherever the figure was then.
     /// `world` and `camera` are those of the frame.
-    #[cfg(feature = "tui")]
+    #[cfg(feature = "terminal")]
     pub(crate) fn may_show(
         &self,
         world: &World,

@@ -43,7 +43,7 @@ mod visible_cells;
 mod wall_part;
 
 pub(crate) use billboard::Billboard;
-#[cfg(feature = "tui")]
+#[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
 pub(crate) use draw_list::{

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-#[cfg(feature = "tui")]
+#[cfg(feature = "terminal")]
 use super::{Column, Projection};
 use super::{Faded, Scene};
 use crate::cast::MirrorTransform;
-#[cfg(feature = "tui")]
-use crate::world::World;
 use crate::world::texture::MipLevel;
 use crate::world::{Camera, Cell, Figure, Heading, Light, Sprite, SpriteId, Thing};
+#[cfg(feature = "terminal")]
+use crate::world::{Heights, World};
 
 /// Things nearer to the camera plane, in cells, are not drawn: they would contain the player.
 const NEAREST: f64 = 0.2;
@@ -51,8 +51,9 @@ pub(crate) struct Billboard {
 }
 
 /// Whether `figure`, or a mark for it on a map of what is in view, may be seen in a picture whose rays
-/// are `columns`, if it has no mirrors: a part of it is nearer than the end of a ray.
-#[cfg(feature = "tui")]
+/// are `columns`, if it has no mirrors: a part of it is nearer than the end of a ray, or rises above level walls
+/// under the sky.
+#[cfg(feature = "terminal")]
 pub(crate) fn may_show(
     world: &World,
     projection: &Projection,
@@ -69,7 +70,9 @@ pub(crate) fn may_show(
     let half = projection.columns_for(sprite.width(), place.depth) / 2.0 + MARGIN;
     let covered = projection.columns_between(place.column - half, place.column + half);
     let rays = columns.get(covered.start as usize..covered.end as usize);
-    rays.is_none_or(|rays| rays.iter().any(|ray| place.depth <= ray.distance))
+    let top = figure.base + sprite.height.cells();
+    world.has_open_sky() && top > Heights::LEVEL.ceiling()
+        || rays.is_none_or(|rays| rays.iter().any(|ray| place.depth <= ray.distance))
 }
 
 /// The frame and the heading that a billboard shows.

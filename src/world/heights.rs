@@ -48,7 +48,7 @@ impl Heights {
 
     /// The height of the ceiling, or under the sky where it would be. Doors, glass and masks reach
     /// up to it.
-    pub fn ceiling(self) -> f64 {
+    pub const fn ceiling(self) -> f64 {
         self.ceiling
     }
 

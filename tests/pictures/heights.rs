@@ -177,7 +177,8 @@ fn map_of(scene: &Scene, look: Look) -> String {
         };
     }
     text + "[things]\n\"@\" = { start = 0 }\n\
-            t = { sprite = \"thing.png\", height = 0.8, on = \"a\" }\n"
+            t = { sprite = \"thing.png\", on = \"a\", "
+        + &format!("height = {:?}, anchor = \"{}\" }}\n", scene.thing.0, scene.thing.1)
 }
 
 /// The line through a point of a picture.
@@ -218,6 +219,8 @@ struct Scene {
     lights: Vec<f64>,
     is_covered: bool,
     ceiling_height: f64,
+    /// The height and the anchor of the things.
+    thing: (f64, &'static str),
     figures: Vec<Standing>,
     position: DVec2,
     is_on_a_roof: bool,
@@ -243,6 +246,10 @@ prop_compose! {
             prop::collection::vec(0.0..=1.0, KINDS),
         ],
         is_covered in any::<bool>(),
+        thing in (
+            prop_oneof![Just(0.8), 0.1..3.0],
+            prop::sample::select(vec!["floor", "ceiling"]),
+        ),
         figures in prop_oneof![Just(Vec::new()), prop::collection::vec(standing(), 1..6)],
         position in (0.0..6.0, 0.0..5.0),
         is_on_a_roof in any::<bool>(),
@@ -255,14 +262,14 @@ prop_compose! {
         let position = DVec2::from(position);
         let ceiling_height = 1.25;
         Scene {
-            kinds, cells, lights, is_covered, ceiling_height, figures, position,
+            kinds, cells, lights, is_covered, ceiling_height, thing, figures, position,
             is_on_a_roof, up, degrees, pitch, size,
         }
     }
 }
 
 prop_compose! {
-    /// A world in which all is level. Figures may be partly in the floor, or above the ceiling.
+    /// A world in which all is level. Things and figures may be partly in the floor, or above the ceiling.
     fn level_scene(of: Look)(
         scene in scene(of),
         up in prop_oneof![0.01..0.99, prop::sample::select(vec![1e-12, 0.001, 0.015, 0.99, 0.999])],
@@ -273,12 +280,24 @@ prop_compose! {
             Kind::Covered { .. } => Kind::Covered { floor: 0.0, room: 1.0, rock: 0.0 },
         };
         let kinds: Vec<Kind> = scene.kinds.into_iter().map(level).collect();
-        let is_open = !scene.is_covered || kinds.iter().any(|kind| matches!(kind, Kind::Open { .. }));
-        // Above a wall under the sky, the flat way shows nothing that is behind it.
-        let highest = if is_open { 0.2 } else { f64::INFINITY };
-        let lowered = |it: Standing| Standing { base: it.base.min(highest), ..it };
-        let figures = scene.figures.into_iter().map(lowered).collect();
-        Scene { kinds, figures, up, ceiling_height: 1.0, is_on_a_roof: false, ..scene }
+        Scene { kinds, up, ceiling_height: 1.0, is_on_a_roof: false, ..scene }
+    }
+}
+
+prop_compose! {
+    /// A world of level floors and walls under the sky. The walls are as high as those of a level scene, or of
+    /// any height, and so is the ceiling from which things hang.
+    fn walled_scene()(
+        scene in level_scene(Look::Colors),
+        heights in prop::collection::vec(prop_oneof![1 => Just(1.0), 2 => 0.01..2.0], KINDS),
+        ceiling_height in prop_oneof![Just(1.0), 0.75..3.0],
+    ) -> Scene {
+        let walled = |(kind, height): (Kind, f64)| match kind {
+            Kind::Wall { .. } => Kind::Wall { height },
+            _ => Kind::Open { floor: 0.0 },
+        };
+        let kinds = scene.kinds.into_iter().zip(heights).map(walled).collect();
+        Scene { kinds, ceiling_height, is_covered: false, ..scene }
     }
 }
 
@@ -318,6 +337,10 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let mut renderer = Renderer::new();
     renderer.set_filter(Filter::Nearest);
     renderer.render(&world, &camera, &mut frame);
+    // With surfaces, the portal way alone draws what is partly level under the sky.
+    let mut by_portals = Frame::new(size, PixelAspect::SQUARE);
+    renderer.keep_surfaces(true);
+    renderer.render(&world, &camera, &mut by_portals);
     for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
         let meet_beside = |right: f64, down: f64| {
             let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
@@ -325,8 +348,9 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
         };
         let met = meet_beside(0.0, 0.0);
         let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
-        if beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
+        if !met.is_tied && beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
             prop_assert_eq!(frame.pixel(x, y), met.color, "at ({}, {}): {:?}", x, y, met);
+            prop_assert_eq!(by_portals.pixel(x, y), met.color, "by portals at ({}, {})", x, y);
         }
     }
     Ok(())
@@ -353,5 +377,14 @@ proptest! {
     #[test]
     fn every_texel_of_a_level_scene_is_where_geometry_says(scene in level_scene(Look::Textures)) {
         compare(&scene, Look::Textures)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn every_pixel_behind_walls_under_the_sky_is_where_geometry_says(scene in walled_scene()) {
+        compare(&scene, Look::Colors)?;
     }
 }

@@ -163,6 +163,26 @@ fn an_unreachable_exit_is_reported() {
     for level in ["cellar", "museum", "cistern", "observatory", "citadel"] {
         assert!(!check(level).contains("exit"), "{level}");
     }
+    assert!(check("tests/maps/cross.toml").contains("right, 5×5 cells; it has no exit"));
+}
+
+#[test]
+fn remarks_can_be_denied() {
+    let status = |maps: &[&str]| {
+        let output =
+            cellcaster(&[&["check", "--deny", "remarks"], maps].concat()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(status(&["cellar", "tests/maps/way_out.toml"]), (Some(0), String::new()));
+    for (maps, count) in [
+        (&["tests/maps/cross.toml"][..], "1 map has a remark"),
+        (&["cellar", "tests/maps/walled_in.toml"], "1 map has a remark"),
+        (&["tests/maps/cross.toml", "tests/maps/walled_in.toml"], "2 maps have a remark"),
+    ] {
+        let (code, complaint) = status(maps);
+        assert_eq!(code, Some(2), "{maps:?}");
+        assert!(complaint.contains(count), "{complaint}");
+    }
 }
 
 #[test]

@@ -339,3 +339,40 @@ fn a_picture_changes_when_its_next_frame_is_due_and_not_before() {
     assert!(draw(change - 0.01).0 == first);
     assert!(draw(change + 0.01).0 != first);
 }
+
+/// The number of pixels in which a thing shows behind a tile, under the sky.
+fn pixels_behind(tile: &str, thing: &str, ceiling_height: f64) -> usize {
+    let [with, without] = ["B", "."].map(|cell| {
+        let text = format!(
+            "ceiling = 'sky'\nceiling_height = {ceiling_height}\ngrid = '''\n.........\n@..%..{cell}..\n.........\n'''\n\
+             [tiles]\n'%' = {{ {tile} }}\n[things]\n'@' = {{ start = 0 }}\n'B' = {{ {thing}, on = '.' }}\n"
+        );
+        let world = map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"));
+        frame_of(&world, &world.start_camera(FieldOfView::default()))
+    });
+    with.rows().flatten().zip(without.rows().flatten()).filter(|(one, other)| one != other).count()
+}
+
+/// It hangs as high as the ceiling would be.
+#[test]
+fn a_thing_hangs_above_a_low_wall_under_the_sky() {
+    let thing = "sprite = 'column', height = 0.5, anchor = 'ceiling'";
+    let behind = |height| pixels_behind(&format!("wall = 'brick', height = {height}"), thing, 2.0);
+    let all = behind(0.01);
+    assert!(all > 5, "{all} pixels");
+    for height in [0.2, 0.6, 0.9] {
+        assert_eq!(behind(height), all, "{height}");
+    }
+}
+
+/// It does whatever the height of the ceiling is, which nobody sees.
+#[test]
+fn a_tall_thing_shows_above_a_wall_under_the_sky() {
+    let column = "sprite = 'column', height = 3";
+    let [level, uneven] =
+        [1.0, 1.2].map(|it| pixels_behind("wall = 'brick', height = 1", column, it));
+    assert!(uneven > 20, "{uneven} pixels");
+    assert_eq!(level, uneven);
+    let behind_pillar = pixels_behind("pillar = 'brick', radius = 0.5, height = 1", column, 1.0);
+    assert!(behind_pillar > 20, "{behind_pillar} pixels");
+}

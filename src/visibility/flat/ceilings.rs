@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use crate::visibility::Scene;
-use crate::world::{Ceiling, Heights, Tile, TileKind};
+use crate::world::{Ceiling, Heights};
 
 /// The ceilings of a level scene.
 #[derive(Clone, Copy)]
@@ -20,9 +20,18 @@ pub(super) struct Ceilings<'a> {
 
 impl<'a> Ceilings<'a> {
     pub(super) fn new(scene: Scene<'a>) -> Self {
-        let is_open =
-            |tile: &Tile| tile.ceiling == Ceiling::Sky && !matches!(tile.kind, TileKind::Wall(_));
-        Self { scene, is_any_open: scene.world.tiles().iter().any(is_open) }
+        Self { scene, is_any_open: scene.world.has_open_sky() }
+    }
+
+    /// Whether some part of `rows` of a billboard at `depth` is above the ceilings, and may show there under
+    /// the sky.
+    pub(super) fn let_past(self, depth: f64, rows: &Range<u32>) -> bool {
+        self.is_any_open && rows.start < self.row_of_top(depth)
+    }
+
+    /// The row of the height of the ceilings at `depth`.
+    fn row_of_top(self, depth: f64) -> u32 {
+        self.scene.projection.row_of_height(Heights::LEVEL.ceiling(), depth)
     }
 
     /// Calls `show` for each part of `rows` of a billboard at `depth` that no ceiling hides in `column`, of which
@@ -34,7 +43,7 @@ impl<'a> Ceilings<'a> {
         rows: Range<u32>,
         mut show: impl FnMut(Range<u32>),
     ) {
-        let top = self.scene.projection.row_of_height(Heights::LEVEL.ceiling(), depth);
+        let top = self.row_of_top(depth);
         let is_closed = is_at_wall && !self.is_any_open;
         let is_hidden = |&row: &u32| row < top && (is_closed || self.is_ceiling(column, row));
         let mut next = if is_closed { rows.start.max(top) } else { rows.start };

@@ -1,10 +1,11 @@
 //! The layers of a level scene: the faces that rays passed, and the billboards between them.
 //!
 //! The ends of the rays are known, and with them the visible part of the map: only things there are
-//! considered. They are painted from far to near, in each column as far as no wall covers them. A
-//! face that a ray passed, such as a grate, is painted before the first thing that is nearer. A
-//! depth for each pixel was refused: one for each column is equivalent, since walls extend from
-//! floor to ceiling.
+//! considered, and those that are higher than walls. They are painted from far to near, in each column as far
+//! as no wall covers them. Under the sky, a billboard shows in the rows above the wall, too: all walls are
+//! equally high and higher than the eye, so that the first one hides the most. A face that a ray passed, such
+//! as a grate, is painted before the first thing that is nearer. Rejected: a depth for each pixel. One for each
+//! column is equivalent.
 //!
 //! Colours are mixed as sRGB values, as in the frame. Mixing linear light was refused: it needs a
 //! table in each direction for every pixel, and tints looked no more like glass.
@@ -13,6 +14,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::ceilings::Ceilings;
+use super::distance_to_edge;
 use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
 use crate::visibility::layer_order::put_in_order;
@@ -21,11 +23,14 @@ use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
     SeeThroughColumn, Stats, ThingLoop,
 };
-use crate::world::{Cell, Light, Tile, TileKind};
+use crate::world::{Cell, Heights, Light, Thing, Tile, TileKind};
 
 /// The number of things in view for which memory is reserved in advance, so that a turn of the
 /// camera towards more of them allocates nothing.
 const MOST_AT_FIRST: usize = 4096;
+
+/// The height of everything solid in a level scene, in cells.
+const WALL_TOP: f64 = Heights::LEVEL.ceiling();
 
 /// The number of layers in each column for which memory is reserved in advance.
 const LAYERS_OF_A_COLUMN: usize = 16;
@@ -81,24 +86,30 @@ pub(super) fn fill(
         return None;
     }
     let first = list.billboards.len();
-    let considered = find_billboards(scene, visible, list);
+    let ceilings = Ceilings::new(scene);
+    let considered = find_billboards(scene, ceilings, visible, list);
     stats.change(|stats| {
         stats.things_considered += considered;
         stats.things_drawn += (list.billboards.len() - first) as u64;
     });
-    let ceilings = Ceilings::new(scene);
     left.begin(passed, list.columns.len());
     list.make_room_for_layers(passed.list.capacity());
     for index in first..list.billboards.len() {
         let Billboard { depth, ref columns, ref rows, .. } = list.billboards[index];
+        let is_past_ceilings = ceilings.let_past(depth, rows);
         let rows = rows.clone();
         for x in columns.clone() {
-            if depth >= list.flat_columns()[x as usize].distance {
-                continue;
+            let column = &list.flat_columns()[x as usize];
+            let is_at_wall = column.hit.is_some();
+            let mut rows = rows.clone();
+            if depth >= column.distance {
+                if !(is_past_ceilings && shows_above_wall(scene, x, column, depth)) {
+                    continue;
+                }
+                rows.end = rows.end.min(column.rows.start);
             }
             push_behind(depth, x as usize, scene, (passed, left), list);
-            let is_at_wall = list.flat_columns()[x as usize].hit.is_some();
-            ceilings.for_each_open((x, is_at_wall), depth, rows.clone(), |rows| {
+            ceilings.for_each_open((x, is_at_wall), depth, rows, |rows| {
                 let column = BillboardColumn { column: x, rows, billboard: index };
                 list.layers.push(Layer::Billboard(column));
             });
@@ -112,7 +123,12 @@ pub(super) fn fill(
 
 /// Finds the billboards in view, from far to near. Returns the number of things and figures
 /// considered.
-fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut DrawList) -> u64 {
+fn find_billboards(
+    scene: Scene<'_>,
+    ceilings: Ceilings<'_>,
+    visible: &mut VisibleCells,
+    list: &mut DrawList,
+) -> u64 {
     let world = scene.world;
     let first = list.billboards.len();
     if first == 0 {
@@ -125,15 +141,26 @@ fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut Draw
     let DrawList { billboards, columns, flat_columns, .. } = list;
     let columns = if flat_columns.is_empty() { columns } else { flat_columns };
     let is_in_view = |billboard: &Billboard| {
-        let is_before = |column: &Column| billboard.depth < column.distance;
-        let Range { start, end } = billboard.columns;
-        columns[start as usize..end as usize].iter().any(is_before)
+        let &Billboard { depth, ref rows, columns: Range { start, end }, .. } = billboard;
+        let covered = &columns[start as usize..end as usize];
+        covered.iter().any(|column| depth < column.distance)
+            || ceilings.let_past(depth, rows)
+                && (start..).zip(covered).any(|(x, column)| {
+                    rows.start < column.rows.start && shows_above_wall(scene, x, column, depth)
+                })
     };
     let direct = MirrorTransform::default();
     let mut considered = world.figures().len() as u64;
-    for &thing in visible.things(world) {
+    let mut consider = |thing: &Thing| {
         considered += 1;
-        billboards.extend(Billboard::of_thing(scene, direct, thing).filter(is_in_view));
+        billboards.extend(Billboard::of_thing(scene, direct, *thing).filter(is_in_view));
+    };
+    if world.has_open_sky() && world.limit_of_things() > WALL_TOP {
+        // They show above walls, and need not be in a visible cell.
+        world.things_above(WALL_TOP).for_each(&mut consider);
+        visible.things(world).filter(|thing| !world.is_above(thing, WALL_TOP)).for_each(consider);
+    } else {
+        visible.things(world).for_each(consider);
     }
     billboards.extend(Billboard::of_figures(scene, direct).filter(is_in_view));
     let found = &mut list.billboards[first..];
@@ -145,6 +172,13 @@ fn find_billboards(scene: Scene<'_>, visible: &mut VisibleCells, list: &mut Draw
     }
     found.sort_unstable_by(from_far_to_near);
     considered
+}
+
+/// Whether a billboard at `depth`, behind the end of the ray of `column`, shows above that end: the flat way
+/// fills the column up to a wall, and the billboard is not behind the edge of the map.
+fn shows_above_wall(scene: Scene<'_>, x: u32, column: &Column, depth: f64) -> bool {
+    let ends_at_wall = column.hit.is_some_and(|hit| hit.t >= 0.0);
+    ends_at_wall && depth < distance_to_edge(scene.world.grid(), &scene.projection.ray(x))
 }
 
 fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {

@@ -3,6 +3,7 @@
 //! That is the part behind the first line into a cell that is not level. The flat way fills floor
 //! and ceiling up to that line, as before a wall, and the things and see-through faces there. Under the
 //! sky, what is higher than a level wall shows above it, so that such a wall is left to the portal way, too.
+//! If only things are higher, the flat way shows them above the wall.
 
 use crate::cast::Hit;
 use crate::visibility::portal::PortalStart;

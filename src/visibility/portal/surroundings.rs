@@ -4,7 +4,8 @@ use super::tile_gaps::TileGaps;
 use crate::cast::CommonOrder;
 use crate::visibility::Scene;
 use crate::visibility::projection::Rise;
-use crate::world::{Camera, Cell, Tile, TileId, TileKind};
+use crate::world::sprite::builtin;
+use crate::world::{Camera, Cell, Tile, TileId};
 
 /// The most reflections of a ray. The mirror after the last one shows only its tint.
 pub(super) const MOST_BOUNCES: u32 = 8;
@@ -28,18 +29,14 @@ impl<'a> Surroundings<'a> {
         let world = scene.world;
         let has_figures = !world.figures().is_empty();
         let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
-        let tallest_thing =
-            if has_things { world.tallest_sprite().max(Camera::STANDING) } else { 0.0 };
-        let top_of = |tile: &Tile| match tile.kind {
-            TileKind::Open | TileKind::Doorway(_) => tile.heights.floor() + tallest_thing,
-            TileKind::Wall(_) | TileKind::Mirror(_) => tile.heights.floor(),
-            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
-                tile.top_of_what_stands()
-            }
-        };
-        let roof_of = |tile: &Tile| tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
-        let tops = world.tiles().iter().map(|tile| top_of(tile).max(roof_of(tile)));
-        let top = tops.fold(world.top_of_figures(), f64::max);
+        let mut top = world.tiles().iter().map(Tile::top).fold(world.top_of_figures(), f64::max);
+        if !world.things().is_empty() {
+            top = top.max(world.limit_of_things());
+        }
+        if world.has_mirrors() {
+            let feet = scene.projection.eye() - Camera::STANDING;
+            top = top.max(feet + builtin::PLAYER_HEIGHT);
+        }
         let top = scene.projection.rise_to(top);
         let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
         let order = CommonOrder::new(world.grid(), scene.projection.origin(), most_bounces);
