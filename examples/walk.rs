@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use cellcaster::game::{Game, Intent, STEP};
 use cellcaster::map::builtin;
-use cellcaster::tui::{FirstPerson, HeldKeys, View, tap_steps, wanted};
+use cellcaster::tui::{FirstPerson, HeldKeys, Press, View, tap_steps, wanted};
 use cellcaster::world::FieldOfView;
 use ratatui::crossterm::event::{self, Event, KeyCode};
 
@@ -31,7 +31,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let Event::Key(key) = event::read()? else { continue };
             let Some(wish) = intent(key.code) else { break 'steps };
             let opposes = |other| intent(other).is_some_and(|other| wish.opposes(other));
-            held.press(key.code, tap_steps(wish), start.elapsed(), opposes);
+            let press = held.press(key.code, tap_steps(wish), start.elapsed(), opposes);
+            if press == Press::Fresh {
+                held.release_lingering(|other| intent(other).is_some_and(Intent::turns));
+            }
         }
         held.advance(now);
         game.step(wanted(held.iter().filter_map(|(key, hold)| Some((intent(key)?, hold)))));

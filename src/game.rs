@@ -55,6 +55,7 @@ use hazards::Spikes;
 use mechanisms::Mechanisms;
 use multiplayer::Members;
 use player::{Player, RUN, STILL, WALK};
+use scratch::Scratch;
 use show::Sprites;
 use tools::{Missiles, Smoke, Supplies};
 
@@ -125,9 +126,16 @@ pub struct Game {
     revision: u64,
     /// Grows with every change of figures.
     figure_revision: u64,
+    /// See [`Game::work`].
+    work: Scratch<u64>,
 }
 
 impl Game {
+    /// More than [`Game::work`] is in any step on any map that is accepted: what a step can do in about
+    /// a millisecond.
+    #[doc(hidden)]
+    pub const MOST_WORK: u64 = 1 << 20;
+
     /// A game at its start with the usual rules: the player stands still at the world's start.
     pub fn new(world: World) -> Self {
         Self::with_rules(world, Rules::default())
@@ -161,6 +169,7 @@ impl Game {
             steps: 0,
             revision: 0,
             figure_revision: 0,
+            work: Scratch::default(),
             world,
         };
         game.shown().with_start()
@@ -199,6 +208,7 @@ impl Game {
             let seen = self.steps;
             return self.step_all(&[Input { player: PlayerId::FIRST, intents, seen }]);
         }
+        *self.work = 0;
         if self.is_finished() {
             return;
         }

@@ -85,6 +85,11 @@ impl Doors {
         door.is_none_or(|door| matches!(door.phase, Phase::Closing(_)))
     }
 
+    /// The number of doors that are not closed.
+    pub(super) fn count(&self) -> usize {
+        self.moving.len()
+    }
+
     /// Advances the doors of `world` by one step; `is_occupied` says which cells a player touches.
     /// Returns whether any door has moved.
     pub(super) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {

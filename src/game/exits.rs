@@ -35,8 +35,7 @@ use ways::{Way, Ways, high_enough, of_tiles, open_in, without};
 /// assert!(cellcaster::game::is_exit_out_of_reach(&level("@#X").unwrap()));
 /// ```
 pub fn is_exit_out_of_reach(world: &World) -> bool {
-    let has_exit = world.things().iter().any(|thing| thing.kind == ThingKind::Exit);
-    has_exit && !Reach::new(world).an_exit_that_opens()
+    world.has_exit() && !Reach::new(world).an_exit_that_opens()
 }
 
 /// The search with a set of keys and switches.

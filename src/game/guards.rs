@@ -56,6 +56,9 @@ const FAR: f64 = 26.0;
 const FAR_STRIDE: u16 = 8;
 /// The steps from one look for fallen guards to the next.
 const FALLEN_EACH: u64 = 30;
+/// The number of cells over which sounds spread to guards in one step. Guards do not hear the sounds
+/// that come after them in the same step.
+const MOST_AIR_CELLS: usize = 16_384;
 
 /// All guards of a level.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +73,10 @@ pub(crate) struct Guards {
     air: SoundField,
     trails: Vec<Trail>,
     others: Scratch<Vec<Other>>,
+    /// The cells over which sounds have spread in this step.
+    air_cells: Scratch<usize>,
+    /// The guards, sounds and cells that the last step has looked at.
+    work: Scratch<u64>,
     acts: Vec<Act>,
     /// The sounds that guards have made in the last step.
     spoken: Vec<Sound>,
@@ -98,6 +105,8 @@ impl Guards {
             air: SoundField::default(),
             trails: Vec::new(),
             others: Scratch::default(),
+            air_cells: Scratch::default(),
+            work: Scratch::default(),
             acts: Vec::new(),
             spoken: Vec::new(),
             woken: Vec::new(),
@@ -107,6 +116,11 @@ impl Guards {
         };
         guards.find_awake();
         guards
+    }
+
+    /// Whether a guard who is awake could see `point`, however dark it is there, once they look that way.
+    pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
+        self.list.iter().any(|guard| guard.may_see(world, point))
     }
 
     /// Advances all guards by one step. Each target is the player with that index; `sounds` are
@@ -119,6 +133,7 @@ impl Guards {
         clouds: &[Cloud],
     ) -> &[Act] {
         self.acts.clear();
+        (*self.work, *self.air_cells) = (0, 0);
         if self.list.is_empty() {
             return &self.acts;
         }
@@ -128,8 +143,11 @@ impl Guards {
         self.record_trails(world, targets);
         let mut spoken = std::mem::take(&mut self.spoken);
         for sound in sounds.iter().chain(&spoken) {
-            self.spread(world, targets, clouds, sound);
+            if *self.air_cells < MOST_AIR_CELLS {
+                self.spread(world, targets, clouds, sound);
+            }
         }
+        let heard = (sounds.len() + spoken.len()) * self.list.len();
         spoken.clear();
         self.has_changed = false;
         for place in 0..self.awake.indices.len() {
@@ -145,6 +163,7 @@ impl Guards {
         spoken.extend(made);
         self.spoken = spoken;
         self.update_alarm();
+        *self.work = (self.awake.indices.len() + heard + *self.air_cells) as u64;
         &self.acts
     }
 
@@ -203,7 +222,7 @@ impl Guards {
             if sound.by == Source::Guard(index) {
                 continue;
             }
-            self.air.reach_out(world, sound.cell, earshot, self.steps);
+            *self.air_cells += self.air.reach_out(world, sound.cell, earshot, self.steps);
             let distance = self.air.distance(guard.mover.cell());
             if let Some(distance) = distance.filter(|&distance| distance <= earshot) {
                 let (guard, mut context) = self.with_context(world, targets, clouds, index, 1);

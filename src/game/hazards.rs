@@ -89,6 +89,7 @@ impl Game {
     }
 
     fn step_on_spikes(&mut self) {
+        *self.work += self.spikes.count() as u64;
         let Self { spikes, world, sounds, steps, .. } = self;
         if spikes.show(world, *steps, sounds) {
             self.revision += 1;

@@ -90,6 +90,18 @@ impl Intent {
         ONCE & bit(self) != 0
     }
 
+    /// Whether it walks or strafes.
+    pub fn walks(self) -> bool {
+        use Intent::{Back, Forward, StrafeLeft, StrafeRight};
+        matches!(self, Forward | Back | StrafeLeft | StrafeRight)
+    }
+
+    /// Whether it turns or tilts the camera for as long as it is wanted.
+    pub fn turns(self) -> bool {
+        use Intent::{LookDown, LookUp, TurnLeft, TurnRight};
+        matches!(self, TurnLeft | TurnRight | LookUp | LookDown)
+    }
+
     /// Whether the two exclude each other.
     pub fn opposes(self, other: Self) -> bool {
         use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};

@@ -78,7 +78,7 @@ impl Game {
             ThingKind::Exit => {
                 let missing = self.treasure_missing();
                 if missing > 0 {
-                    Some(format!("The exit is closed: {missing} treasure missing."))
+                    Some(format!("The exit is closed: {missing} gold missing."))
                 } else {
                     let text = "The exit is closed while the alarm is raised.";
                     self.alarm_closes_exits().then(|| text.to_owned())
@@ -110,7 +110,7 @@ impl Game {
 fn name_of_treasure(worth: u16) -> &'static str {
     match worth {
         CROWN.. => "A golden crown",
-        CUP.. => "A silver cup",
+        CUP.. => "A golden cup",
         _ => "Coins",
     }
 }

@@ -4,7 +4,6 @@ use std::fmt;
 
 use super::{Game, STEPS_PER_SECOND};
 use crate::game::stored::stored;
-use crate::world::ThingKind;
 
 /// A part of a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -107,17 +106,14 @@ stored! { struct Counts { alarms, deaths, stunned } }
 impl Game {
     /// The worth of the treasure found, by all players together, and of all in the level.
     pub fn treasure(&self) -> Share {
-        let left = self.world.things().iter().map(|thing| match thing.kind {
-            ThingKind::Treasure(worth) => u32::from(worth),
-            _ => 0,
-        });
         let found = self.treasure_found();
-        Share { found, total: left.fold(found, u32::saturating_add) }
+        let left = u32::try_from(self.world.treasure()).unwrap_or(u32::MAX);
+        Share { found, total: found.saturating_add(left) }
     }
 
     /// The secret walls found, and all in the level.
     pub fn secrets(&self) -> Share {
-        self.mechanisms.secrets(&self.world)
+        self.mechanisms.secrets()
     }
 
     /// What the player has done so far.

@@ -80,6 +80,7 @@ impl Game {
     }
 
     pub(super) fn move_doors(&mut self) {
+        *self.work += (self.doors.count() * (1 + self.guards.count())) as u64;
         let Self { player, members, guards, doors, world, .. } = self;
         let is_touched =
             |cell| playing(player, members.as_deref()).any(|(_, it)| it.motion.touches(cell));

@@ -19,6 +19,8 @@ use crate::world::SwitchId;
 
 /// The largest number of levers.
 const MOST_LEVERS: usize = 256;
+/// The largest number of cells that switches move. One press may move all of them in a step.
+const MOST_DRIVEN: usize = 512;
 
 /// The name of a switch, and its place in the map.
 #[derive(Clone)]
@@ -99,11 +101,8 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
             )
         }))
     });
-    too_many_levers(drawing, legend)
-        .into_iter()
-        .chain(without_effect)
-        .chain(without_driver)
-        .collect()
+    let too_many = [too_many_levers(drawing, legend), too_many_driven(drawing, legend)];
+    too_many.into_iter().flatten().chain(without_effect).chain(without_driver).collect()
 }
 
 /// The fault of the levers after the first [`MOST_LEVERS`].
@@ -116,6 +115,23 @@ fn too_many_levers(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> 
         let message =
             format!("the grid has {count} levers, and {MOST_LEVERS} at most can be there");
         Fault::new(drawing.key_place.clone(), message).help("draw fewer of them")
+    })
+}
+
+/// The fault of more than [`MOST_DRIVEN`] cells that switches move.
+fn too_many_driven(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
+    let driven = legend.used_in(drawing).filter_map(|(character, symbol)| {
+        Some((driver_of(symbol)?.place.clone(), drawing.sightings(character).count))
+    });
+    let driven: Vec<_> = driven.collect();
+    let count: usize = driven.iter().map(|(_, count)| count).sum();
+    let (place, most) = driven.into_iter().max_by_key(|&(_, count)| count)?;
+    (count > MOST_DRIVEN).then(|| {
+        let message =
+            format!("switches move {count} cells of the grid, and {MOST_DRIVEN} at most can move");
+        Fault::new(place, message)
+            .label(format!("{most} of them here"))
+            .help("draw fewer of them, and plain floor or wall in their place")
     })
 }
 

@@ -16,6 +16,8 @@ use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
 const MOST_KINDS: usize = 1000;
 /// The largest number of things.
 const MOST_THINGS: usize = 1 << 20;
+/// The largest number of spikes. All of them may come out in one step, and each is heard.
+const MOST_SPIKES: usize = 512;
 
 /// The things in a drawing except the start, with what they refer to.
 #[derive(Default)]
@@ -70,6 +72,7 @@ impl ThingList {
             }
             *thing_of.get_mut(character) = thing;
         }
+        reader.faults.extend(too_many_spikes(drawing, legend));
         if count > MOST_THINGS {
             reader.faults.push(too_many_things(drawing, count));
             return list;
@@ -144,4 +147,22 @@ fn first_frame(kind: ThingKind) -> Option<u8> {
     let shows_its_state =
         matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
     shows_its_state.then_some(0)
+}
+
+/// The fault of more than [`MOST_SPIKES`].
+fn too_many_spikes(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
+    let is_it =
+        |symbol: &&Symbol<'_>| matches!(symbol.meaning, Meaning::Item(ItemSymbol::Spikes(_)));
+    let spikes = legend.used_in(drawing).filter(|(_, symbol)| is_it(symbol));
+    let spikes = spikes.map(|(character, symbol)| (symbol, drawing.sightings(character).count));
+    let spikes: Vec<_> = spikes.collect();
+    let count: usize = spikes.iter().map(|(_, count)| count).sum();
+    let (symbol, most) = spikes.into_iter().max_by_key(|&(_, count)| count)?;
+    (count > MOST_SPIKES).then(|| {
+        let message =
+            format!("the grid has {count} spikes, and {MOST_SPIKES} at most can be there");
+        Fault::new(symbol.place.clone(), message)
+            .label(format!("{most} of them here"))
+            .help("draw fewer of them")
+    })
 }

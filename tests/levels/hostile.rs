@@ -173,6 +173,22 @@ fn the_number_of_things_is_limited() {
     insta::assert_snapshot!(read(&map, SMALL_MAP).unwrap_err().summary(), @"map:2: the grid has 1050624 things, and 1048576 at most can be there");
 }
 
+/// A map in which one switch moves `lifts` floors, and that many spikes come out.
+fn lifts_and_spikes(lifts: usize, spikes: usize) -> String {
+    let (lifts, spikes) = ("m".repeat(lifts), "s".repeat(spikes));
+    format!(
+        "ceiling = 'sky'\ngrid = '@{lifts}{spikes}p'\n[tiles]\np.plate = 'a'\n\
+         m = {{ moves_to = 1, switch = 'a' }}\n[things]\n'@'.start = 0\ns.spikes = 1\n"
+    )
+}
+
+#[test]
+fn the_cells_that_one_step_of_a_game_moves_are_limited() {
+    assert!(read(&lifts_and_spikes(512, 512), SMALL_MAP).is_ok());
+    insta::assert_snapshot!(read(&lifts_and_spikes(513, 0), SMALL_MAP).unwrap_err());
+    insta::assert_snapshot!(read(&lifts_and_spikes(1, 513), SMALL_MAP).unwrap_err());
+}
+
 #[test]
 fn the_search_for_keys_takes_a_few_bytes_for_each_cell() {
     const SIDE: usize = 990;

@@ -8,6 +8,7 @@ mod growth;
 mod hostile;
 mod landing;
 mod map;
+mod mechanisms;
 mod playing;
 mod several;
 mod steps;

@@ -1,4 +1,4 @@
-//! A step of the game allocates nothing once its memory has grown.
+//! A step of the game allocates nothing once its memory has grown, and takes as long as what moves needs.
 
 use allocation_counter::measure;
 use cellcaster::game::{Alarm, Game, Intent, Intents, Outcome};
@@ -76,4 +76,53 @@ fn guards_who_search_allocate_two_lists_for_each_search() {
     });
     assert!(has_been_wary, "nobody searches");
     assert!(counted.count_total <= 36, "{}", counted.count_total);
+}
+
+/// A hall of `rows` rows of the characters of `row` in turn, and before them one in which the player
+/// starts beside `first`.
+fn hall(rows: usize, first: &str, row: &str, legend: &str) -> Game {
+    let row = row.repeat(40);
+    let grid = format!("@{first}.{row}\n{}", format!("...{row}\n").repeat(rows));
+    let text = format!("ceiling = 'sky'\ngrid = '''\n{grid}'''\n{legend}");
+    Game::new(map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}")))
+}
+
+/// The most work of a step in ten seconds of running ahead.
+fn most_work(mut game: Game) -> u64 {
+    let run = [Intent::Forward, Intent::Run, Intent::Open].into_iter().collect();
+    let work = (0..600).map(|_| {
+        game.step(run);
+        game.work()
+    });
+    work.max().unwrap()
+}
+
+#[test]
+fn cells_that_nobody_touches_cost_a_step_nothing() {
+    let kinds = [
+        ("m", "p", "p.plate = 'a'\nm = { moves_to = 1, switch = 'a' }\n"),
+        (".", "c", "c.crumbles = -3\n"),
+        (".", "S.", "S.secret = 'brick'\n"),
+    ];
+    for (first, row, tiles) in kinds {
+        let legend = format!("[tiles]\n{tiles}[things]\n'@'.start = 0\n");
+        let work = |rows| most_work(hall(rows, first, row, &legend));
+        assert_eq!(work(4), work(400), "{row}");
+    }
+}
+
+#[test]
+fn the_largest_crowd_of_all_that_moves_stays_within_the_work_of_a_step() {
+    let rows = ["GGms".repeat(128), "ms".repeat(192), "p".repeat(512)];
+    let width = 520;
+    let rows = rows.map(|row| format!("{row:.<width$}")).join("\n");
+    let text = format!(
+        "ceiling = 'sky'\ngrid = '''\n{:.<width$}\n{rows}\n'''\n[tiles]\np.plate = 'a'\n\
+         m = {{ moves_to = 1, switch = 'a' }}\n[things]\n'@'.start = 0\ns.spikes = 1\n\
+         G = {{ guard = 'hound', heading = 0, wander = 8 }}\n",
+        "@"
+    );
+    let game = Game::new(map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}")));
+    let work = most_work(game);
+    assert!((50_000..=Game::MOST_WORK).contains(&work), "{work}");
 }

@@ -1,4 +1,4 @@
-//! Whether a player is inside anything: an independent predicate, from the tiles and things of a world.
+//! Whether a body is inside anything: an independent predicate, from the tiles and things of a world.
 
 use cellcaster::world::{Anchor, Ceiling, Cell, Gap, ShapeHeight, TileKind, World};
 use glam::DVec2;
@@ -9,6 +9,11 @@ const DUCKING: f64 = 0.5;
 
 /// Whether the whole player, at the least height, is in gaps of the cells around the position.
 pub(crate) fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool {
+    is_open_for(world, position, feet, DUCKING)
+}
+
+/// Whether a body of this height is in gaps of the cells around the position.
+pub(crate) fn is_open_for(world: &World, position: DVec2, feet: f64, height: f64) -> bool {
     let (column, row) = (position.x.floor() as i64, position.y.floor() as i64);
     let around =
         (row - 1..=row + 1).flat_map(|row| (column - 1..=column + 1).map(move |c| (c, row)));
@@ -18,7 +23,7 @@ pub(crate) fn is_in_the_open(world: &World, position: DVec2, feet: f64) -> bool 
             position.distance_squared(position.clamp(corner, corner + 1.0)) < RADIUS * RADIUS
         })
         .all(|(column, row)| {
-            let holds = |gap: &Gap| gap.bottom <= feet && feet <= gap.top - DUCKING;
+            let holds = |gap: &Gap| gap.bottom <= feet && feet <= gap.top - height;
             gaps(world, column, row).iter().any(holds)
                 && is_beside_shape(world, column, row, position, feet)
         })

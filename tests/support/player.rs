@@ -2,9 +2,12 @@
 #![allow(dead_code, reason = "every test file uses its own share of this")]
 
 use std::ffi::OsStr;
+use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -28,6 +31,8 @@ pub(crate) struct Player {
     terminal: Pts,
     attributes_before: Termios,
     shared: Arc<Shared>,
+    /// What the program keeps, unless `environment` names another folder.
+    data: PathBuf,
 }
 
 struct Shared {
@@ -52,7 +57,7 @@ struct Stall {
 
 impl Player {
     /// Starts `program` in a terminal of `columns` by `rows` that answers as `speaks`. The
-    /// environment of the program consists of `TERM` and `environment`.
+    /// environment of the program consists of `TERM`, an empty folder for what it keeps, and `environment`.
     pub(crate) fn start<A: AsRef<OsStr>>(
         size: (u16, u16),
         speaks: Speaks,
@@ -87,10 +92,12 @@ impl Player {
         let (pty, terminal) = pty_process::blocking::open().unwrap();
         pty.resize(Size::new(rows, columns)).unwrap();
         let attributes_before = tcgetattr(&pty).unwrap();
+        let data = new_data_folder();
         let child = Command::new(program.as_ref())
             .args(arguments)
             .env_clear()
             .env("TERM", "xterm-256color")
+            .env("CELLCASTER_DATA", &data)
             .envs(environment.iter().copied())
             .spawn_borrowed(&terminal)
             .unwrap();
@@ -106,7 +113,7 @@ impl Player {
             let (pty, shared) = (Arc::clone(&pty), Arc::clone(&shared));
             move || receive(&pty, &shared)
         });
-        Self { child, pty, terminal, attributes_before, shared }
+        Self { child, pty, terminal, attributes_before, shared, data }
     }
 
     /// Sends `bytes`, as the terminal would for keys.
@@ -212,6 +219,14 @@ impl Player {
     pub(crate) fn signal(&self, signal: Signal) {
         let id = Pid::from_raw(self.child.id().cast_signed()).unwrap();
         kill_process(id, signal).unwrap();
+    }
+
+    /// Sends the program a signal that has a number only.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn signal_number(&self, number: i32) {
+        let (number, id) = (format!("-{number}"), self.child.id().to_string());
+        let kill = std::process::Command::new("kill").args([number, id]).status();
+        assert!(kill.unwrap().success());
     }
 
     /// Waits until the program has ended and the terminal has read its output. Returns how it
@@ -326,11 +341,23 @@ impl State {
     }
 }
 
+/// A folder that no other player has; the program creates it with the first change.
+fn new_data_folder() -> PathBuf {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("player-{}-{number}", std::process::id());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // A process with the same number may have been ended early.
+    _ = fs::remove_dir_all(&folder);
+    folder
+}
+
 impl Drop for Player {
     fn drop(&mut self) {
         // The program has ended, unless the test has failed.
         _ = self.child.kill();
         _ = self.child.wait();
+        _ = fs::remove_dir_all(&self.data);
     }
 }
 

@@ -69,6 +69,8 @@ pub(crate) struct Met {
     faces: Vec<(usize, Face)>,
     /// The colour that is seen.
     pub(crate) color: Rgb,
+    /// Whether two pictures are equally far away, but for rounding.
+    pub(crate) is_tied: bool,
 }
 
 /// The face that a line enters by.
@@ -130,6 +132,13 @@ impl<'a> Solids<'a> {
             _ => true,
         };
         let seen = entries.iter().position(|&(_, index, _)| hides(index));
+        // One more may be as near as the last one.
+        entries.truncate(seen.map_or(entries.len(), |last| last + 2));
+        let is_picture = |index: usize| matches!(self.all[index], Solid::Picture { .. });
+        let is_tied = entries.windows(2).any(|pair| {
+            let [(near, one, _), (far, other, _)] = [pair[0], pair[1]];
+            is_picture(one) && is_picture(other) && far - near < 1e-9
+        });
         entries.truncate(seen.map_or(entries.len(), |last| last + 1));
         let color = entries.iter().rev().fold(sky, |behind, &(t, index, face)| {
             let solid = &self.all[index];
@@ -139,7 +148,8 @@ impl<'a> Solids<'a> {
                 _ => color,
             }
         });
-        Met { faces: entries.into_iter().map(|(_, index, face)| (index, face)).collect(), color }
+        let faces = entries.into_iter().map(|(_, index, face)| (index, face)).collect();
+        Met { faces, color, is_tied }
     }
 
     /// Whether a position is inside of a pillar, from where nothing is seen.

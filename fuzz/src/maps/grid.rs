@@ -51,6 +51,7 @@ fn play(game: &mut Game, Stretch { steps, intents }: &Stretch) {
     check_wait(game, *intents);
     for _ in 0..*steps {
         game.step(*intents);
+        assert!(game.work() <= Game::MOST_WORK, "a step looks at {} things", game.work());
         check_place(game);
     }
 }

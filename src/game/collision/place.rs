@@ -125,6 +125,18 @@ impl Place<'_> {
         is_clear(self, center, radius)
     }
 
+    /// The height to which floors that have risen around the feet lift a body whose circle is around `center`, by
+    /// a step at most; `None` if there are no such floors, or no room.
+    pub(in crate::game) fn lifted(&self, center: DVec2, radius: Radius) -> Option<f64> {
+        let Stature { feet, .. } = self.stature;
+        let tiles = overlapped(center, radius).filter_map(|(column, row)| self.tile(column, row));
+        let floors = tiles.flat_map(|tile| tile.gaps()).map(|gap| gap.bottom);
+        let above = |&floor: &f64| feet < floor && floor <= feet + self.step;
+        let feet = floors.filter(above).reduce(f64::max)?;
+        let lifted = Self { stature: Stature { feet, ..self.stature }, ..*self };
+        lifted.is_clear(center, radius).then_some(feet)
+    }
+
     /// The lowest and the highest position of the feet of a player whose circle around `center` is
     /// clear.
     pub(in crate::game) fn room(&self, center: DVec2, radius: Radius) -> Room {

@@ -112,14 +112,23 @@ impl Mover {
         }
     }
 
-    /// Stays on the floor, which has moved by at most a step.
-    pub(super) fn ride(&mut self, ground: &Ground) {
-        let Some(feet) = ground.highest_floor(self.body.position) else { return };
-        let ridden = Self { feet, ..*self };
+    /// The guard after a floor under them has moved: on the floor if it `carries` and they stood on it, unchanged
+    /// if they have room, and else lifted. `None` if they have no room then, either.
+    pub(super) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
+        let ridden = if carries { self.ridden(ground) } else { None };
+        let has_room = |mover: &Self| ground.has_room_for(mover);
+        ridden.filter(has_room).or_else(|| Some(*self).filter(has_room)).or_else(|| {
+            let place = Place { step: STEP_HEIGHT, ..ground.place(self) };
+            let feet = place.lifted(self.body.position, RADIUS)?;
+            Some(Self { feet, rising: 0.0, ..*self })
+        })
+    }
+
+    /// On the floor, if that has moved by at most a step.
+    fn ridden(&self, ground: &Ground) -> Option<Self> {
+        let feet = ground.highest_floor(self.body.position)?;
         let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
-        if self.is_on_floor() && is_a_step && ground.has_room_for(&ridden) {
-            *self = ridden;
-        }
+        (self.is_on_floor() && is_a_step).then_some(Self { feet, ..*self })
     }
 
     fn slide(&mut self, ground: &Ground, displacement: DVec2) {

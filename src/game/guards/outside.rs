@@ -113,6 +113,21 @@ impl Guards {
         guard.is_some_and(|it| it.mover.facing.dot(from - it.mover.position()) < 0.0)
     }
 
+    /// The number of guards.
+    pub(crate) fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The guards, sounds and cells that the last step looked at.
+    pub(crate) fn work(&self) -> u64 {
+        *self.work
+    }
+
+    /// The cells of all guards.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.list.iter().map(|guard| guard.mover.cell())
+    }
+
     /// Whether any guard would overlap `cell` if it were solid: a door does not close on them.
     pub(crate) fn touches(&self, cell: Cell) -> bool {
         self.list.iter().any(|guard| overlaps(guard.mover.position(), cell, RADIUS))
@@ -227,16 +242,23 @@ impl Guards {
         }
     }
 
+    /// Whether a guard has no room after the floor of `cell` has moved.
+    pub(crate) fn are_crushed(&self, world: &World, cell: Cell, carries: bool) -> bool {
+        self.list.iter().any(|guard| {
+            let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+            overlaps(guard.mover.position(), cell, RADIUS)
+                && guard.mover.after_floor(&ground, carries).is_none()
+        })
+    }
+
     /// Records that the floor of `cell` has just moved. If it carries, the guards who stand on it stay
     /// on it.
     pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
         let mut has_unsettled = false;
         for guard in &mut self.list {
             if overlaps(guard.mover.position(), cell, RADIUS) {
-                let gait = guard.gait();
-                if carries {
-                    guard.mover.ride(&Ground { world, terrain: &self.terrain, gait });
-                }
+                let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+                guard.mover = guard.mover.after_floor(&ground, carries).unwrap_or(guard.mover);
                 has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
                 guard.is_unsettled = true;
             }

@@ -12,7 +12,7 @@ use super::guard::{ALARMED, Guard, WONDERS};
 use super::sight::{Point, is_in_sight};
 use super::state::{Quarry, State};
 use crate::game::sound::SoundKind;
-use crate::world::GuardKind;
+use crate::world::{GuardKind, World};
 
 /// A guard looks around in every fourth step.
 pub(super) const LOOK_EACH: u64 = 4;
@@ -131,6 +131,16 @@ impl Guard {
     pub(super) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
         let point = Point { position: target.position, height: target.middle() };
         is_in_sight(context.world, context.clouds, self.eye(), point)
+    }
+
+    /// Whether this guard is awake and could see `point`, however dark it is there, once they look that way.
+    pub(super) fn may_see(&self, world: &World, point: Point) -> bool {
+        let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
+        let is_awake = !self.state.is_down() && self.state != State::Asleep;
+        let eye = self.eye();
+        is_awake
+            && eye.position.distance(point.position) <= range
+            && is_in_sight(world, &[], eye, point)
     }
 
     pub(super) fn eye(&self) -> Point {

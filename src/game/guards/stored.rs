@@ -26,6 +26,8 @@ impl StoredPart for Guards {
             trails,
             // Filled in each step.
             others: _,
+            air_cells: _,
+            work: _,
             acts,
             spoken,
             // Empty between steps.

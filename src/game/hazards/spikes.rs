@@ -71,6 +71,11 @@ impl Spikes {
         Self { each }
     }
 
+    /// The number of spikes.
+    pub(in crate::game) fn count(&self) -> usize {
+        self.each.len()
+    }
+
     /// Shows the spikes as they are in the step `now`, and adds a sound for those that begin to rise.
     /// Returns whether any has changed.
     pub(in crate::game) fn show(

@@ -45,7 +45,7 @@ impl Game {
             }
             Handle::Secret(index) => {
                 let cell = self.mechanisms.moving[index].cell();
-                self.mechanisms.moving[index].drive();
+                self.mechanisms.open_secret(index);
                 self.sound_in(cell, SoundKind::Mechanism, reach::MECHANISM);
                 self.say("You have found a secret.".to_owned());
             }
@@ -116,7 +116,7 @@ impl Game {
         let motion = &self.player.motion;
         let ray = Ray::new(motion.position(), motion.heading().direction()).ok()?;
         let cell = Walk::new(self.world.grid(), &ray).first_solid()?.cell;
-        let index = self.mechanisms.moving.iter().position(|moving| moving.cell() == cell)?;
+        let index = self.mechanisms.moving_in(cell)?;
         let moving = &self.mechanisms.moving[index];
         let is_secret = moving.driver(&self.world) == Driver::Hand && !moving.is_driven();
         let is_near = to_cell(motion.position(), cell) <= REACH;

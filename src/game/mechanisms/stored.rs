@@ -6,14 +6,40 @@ use crate::world::World;
 
 impl StoredPart for Mechanisms {
     fn write(&self, out: &mut Writer) {
-        let Self { switches, plates, moving, doors: _, has_handles: _ } = self;
+        let Self {
+            switches,
+            plates,
+            moving,
+            // Found anew.
+            down: _,
+            active: _,
+            secrets: _,
+            // Given by the level.
+            first_cells: _,
+            doors: _,
+            has_handles: _,
+            has_crumbling: _,
+        } = self;
         out.parts(switches);
         out.parts(plates);
         out.parts(moving);
     }
 
     fn read_over(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
-        let Self { switches, plates, moving, doors: _, has_handles: _ } = self;
+        let Self {
+            switches,
+            plates,
+            moving,
+            // Found anew.
+            down: _,
+            active: _,
+            secrets: _,
+            // Given by the level.
+            first_cells: _,
+            doors: _,
+            has_handles: _,
+            has_crumbling: _,
+        } = self;
         input.parts(switches)?;
         input.parts(plates)?;
         input.parts(moving)
@@ -25,7 +51,7 @@ impl Mechanisms {
     ///
     /// # Errors
     /// If one is beyond its last state.
-    pub(in crate::game) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
+    pub(in crate::game) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
         for moving in &self.moving {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell(), moving.shown(world));
@@ -33,6 +59,7 @@ impl Mechanisms {
                 world.set_state(cell, shown);
             }
         }
+        self.recollect(world);
         Ok(())
     }
 }

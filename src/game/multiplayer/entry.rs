@@ -1,27 +1,53 @@
-//! Where players come into a game: the nearest free place.
+//! Where players come into a game: in the nearest cell that is free, where each of them sees the level as its
+//! author has meant it.
 
 use crate::game::Game;
+use crate::game::guards::Point;
 use crate::game::player::{Motion, RADIUS, STEP_HEIGHT};
-use crate::world::{Cell, ThingKind, World};
+use crate::world::{Cell, Heading, ThingKind, World};
 
 /// The cells that are considered, from the nearest on.
 const MOST_CELLS: usize = 64;
 
+/// What is asked of the cell in which a player begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Demand {
+    /// The floor is as high as that of the start, no guard sees the cell, and the way there meets neither doors nor
+    /// hazards.
+    Safe,
+    /// The same, but guards may see it.
+    Level,
+    /// One can walk there.
+    Reachable,
+}
+
 impl Game {
-    /// A player who stands still in the cell nearest to `start` where there is room; `None` if there
-    /// is none near it. Only ways that can be walked count.
+    /// A player who stands still in the cell nearest to `start` where there is room. Nobody stands in anybody, and
+    /// only if no cell is free, players share the start. `None` if they may not do that, or if nobody fits there.
     pub(super) fn free_place(&self, start: Cell) -> Option<Motion> {
+        let demands = [Demand::Safe, Demand::Level, Demand::Reachable];
+        let free = demands.into_iter().find_map(|demand| self.nearest_place(start, demand));
+        let collides = self.multiplayer_rules().is_some_and(|rules| rules.collides);
+        let shared = || self.place_in(start).filter(|_| !collides);
+        free.or_else(shared)
+    }
+
+    /// The nearest place that meets `demand`.
+    fn nearest_place(&self, start: Cell, demand: Demand) -> Option<Motion> {
         let mut cells = [start; MOST_CELLS];
         let (mut next, mut found) = (0, 1);
+        let ahead = self.world.start().heading;
         while next < found {
             let cell = cells[next];
             next += 1;
-            if let Some(motion) = self.place_in(cell, start) {
+            let is_fit = cell == start || self.meets(cell, demand);
+            let place = is_fit.then(|| self.place_in(cell)).flatten();
+            if let Some(motion) = place.filter(|motion| self.is_free_of_players(motion)) {
                 return Some(motion);
             }
-            for neighbor in neighbors(cell) {
+            for neighbor in neighbors(cell, ahead) {
                 let is_new = !cells[..found].contains(&neighbor);
-                if is_new && found < MOST_CELLS && leads(&self.world, cell, neighbor) {
+                if is_new && found < MOST_CELLS && self.leads(cell, neighbor, demand) {
                     cells[found] = neighbor;
                     found += 1;
                 }
@@ -30,26 +56,47 @@ impl Game {
         None
     }
 
-    /// A player in the middle of `cell`, unless they would be in anything, be hurt, or take or reach
-    /// something there.
-    fn place_in(&self, cell: Cell, start: Cell) -> Option<Motion> {
-        let is_harmless = |kind| matches!(kind, ThingKind::Ornament | ThingKind::Flame);
-        let is_plain = self.world.effect_in(cell).is_none()
-            && self.world.things_in(cell).iter().all(|thing| is_harmless(thing.kind));
-        if cell != start && !is_plain {
-            return None;
-        }
-        let motion = Motion::new(&self.world).moved_to(&self.world, cell)?;
-        self.is_free_of_players(&motion).then_some(motion)
+    /// Whether a player may begin in a cell beside the start.
+    fn meets(&self, cell: Cell, demand: Demand) -> bool {
+        self.is_plain(cell) && (demand != Demand::Safe || !self.is_seen_by_guards(cell))
     }
 
-    /// Whether nobody is in the way of a player who is at `motion`.
+    /// Whether a player walks from one cell into the next.
+    fn leads(&self, from: Cell, to: Cell, demand: Demand) -> bool {
+        let climb = (self.world.floor_at(from) - self.world.floor_at(to)).abs();
+        let is_level_and_plain =
+            || climb == 0.0 && self.is_plain(to) && self.place_in(to).is_some();
+        is_open(&self.world, to)
+            && climb <= STEP_HEIGHT
+            && (demand == Demand::Reachable || is_level_and_plain())
+    }
+
+    /// Whether nobody is hurt in a cell, takes or reaches something there, or is in the way of a door.
+    fn is_plain(&self, cell: Cell) -> bool {
+        let is_harmless = |kind| matches!(kind, ThingKind::Ornament | ThingKind::Flame);
+        self.world.effect_in(cell).is_none()
+            && self.world.door(cell).is_none()
+            && self.world.things_in(cell).iter().all(|thing| is_harmless(thing.kind))
+    }
+
+    /// Whether a guard could see somebody in a cell.
+    fn is_seen_by_guards(&self, cell: Cell) -> bool {
+        let Some(motion) = self.place_in(cell) else { return false };
+        let height = f64::midpoint(motion.feet(), motion.head());
+        self.guards.may_see(&self.world, Point { position: cell.center(), height })
+    }
+
+    /// A player in the middle of `cell`, if they fit there.
+    fn place_in(&self, cell: Cell) -> Option<Motion> {
+        Motion::new(&self.world).moved_to(&self.world, cell)
+    }
+
+    /// Whether a player who is at `motion` is in nobody.
     fn is_free_of_players(&self, motion: &Motion) -> bool {
-        let collides = self.multiplayer_rules().is_some_and(|rules| rules.collides);
         let least = 2.0 * RADIUS.cells();
         let is_far =
             |it: &Motion| it.position().distance_squared(motion.position()) >= least * least;
-        !collides || self.playing().all(|(_, player)| is_far(&player.motion))
+        self.playing().all(|(_, player)| is_far(&player.motion))
     }
 
     /// Lets the player whose turn it is go on from their last checkpoint, if there is room.
@@ -71,18 +118,25 @@ impl Game {
     }
 }
 
-/// The cells beside `cell`.
-fn neighbors(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
-    let west = column.checked_sub(1).map(|column| Cell { column, row });
-    let north = row.checked_sub(1).map(|row| Cell { column, row });
-    let east = Cell { column: column.saturating_add(1), row };
-    let south = Cell { column, row: row.saturating_add(1) };
-    [Some(east), Some(south), west, north].into_iter().flatten()
+/// The cells beside `cell`: the one ahead, the one behind, and those at the sides. So whoever begins at the start
+/// has others in view.
+fn neighbors(cell: Cell, heading: Heading) -> impl Iterator<Item = Cell> {
+    let facing = heading.direction();
+    let ahead = if facing.x.abs() >= facing.y.abs() {
+        [facing.x.signum(), 0.0]
+    } else {
+        [0.0, facing.y.signum()]
+    };
+    let [x, y] = ahead.map(|way| way as i64);
+    [[x, y], [-x, -y], [-y, x], [y, -x]].into_iter().filter_map(move |[x, y]| {
+        let column = u32::try_from(i64::from(cell.column) + x).ok()?;
+        let row = u32::try_from(i64::from(cell.row) + y).ok()?;
+        Some(Cell { column, row })
+    })
 }
 
-/// Whether a player walks from one cell into the next.
-fn leads(world: &World, from: Cell, to: Cell) -> bool {
-    let (column, row) = (i64::from(to.column), i64::from(to.row));
-    let is_open = world.grid().tile(column, row).is_some() && !world.grid().is_solid(column, row);
-    is_open && (world.floor_at(from) - world.floor_at(to)).abs() <= STEP_HEIGHT
+/// Whether a cell is on the map and not solid.
+fn is_open(world: &World, Cell { column, row }: Cell) -> bool {
+    let (column, row) = (i64::from(column), i64::from(row));
+    world.grid().tile(column, row).is_some() && !world.grid().is_solid(column, row)
 }

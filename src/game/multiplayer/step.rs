@@ -98,6 +98,7 @@ impl Game {
             let own = inputs.iter().rfind(|input| input.player == PlayerId::FIRST);
             return self.step(own.map_or_else(Intents::new, |input| input.intents));
         }
+        *self.work = 0;
         self.take_inputs(inputs);
         self.revive();
         if self.playing().next().is_none() {

@@ -25,8 +25,8 @@ pub(crate) struct SoundField {
 
 impl SoundField {
     /// Finds the distances of the cells within `reach` around `center`. `now` is the number of the
-    /// step.
-    pub(crate) fn reach_out(&mut self, world: &World, center: Cell, reach: u16, now: u64) {
+    /// step. Returns the number of cells that were not known before.
+    pub(crate) fn reach_out(&mut self, world: &World, center: Cell, reach: u16, now: u64) -> usize {
         let grid = world.grid();
         let is_old = now.saturating_sub(self.begun) > OLD;
         if self.center != Some(center) || is_old {
@@ -34,7 +34,11 @@ impl SoundField {
             (self.center, self.begun) = (Some(center), now);
         }
         let reach = reach.min(half_cells(Sound::FARTHEST));
-        while self.flood.radius() <= reach && self.flood.advance(&Air { world }) {}
+        let mut found = 0;
+        while self.flood.radius() <= reach && self.flood.advance(&Air { world }) {
+            found += 1;
+        }
+        found
     }
 
     /// The distance of `cell` from the centre, in half cells; `None` if that is beyond the reach.

@@ -69,6 +69,8 @@ impl Game {
             steps,
             revision,
             figure_revision,
+            // Counted in each step.
+            work: _,
         } = self;
         if window.is_some() {
             return None;

@@ -12,8 +12,8 @@ fn treasure_says_its_worth_and_opens_the_exit() {
         Stage::with_header("treasure_needed = 60", &rows, "", things, Difficulty::Normal);
     assert_eq!(stage.game.treasure(), Share { found: 0, total: 160 });
     assert_eq!(stage.walk_to(1).message(), "Coins: 10.");
-    assert_eq!(stage.walk_to(2).message(), "The exit is closed: 50 treasure missing.");
-    assert_eq!(stage.walk_to(4).message(), "A silver cup: 50.");
+    assert_eq!(stage.walk_to(2).message(), "The exit is closed: 50 gold missing.");
+    assert_eq!(stage.walk_to(4).message(), "A golden cup: 50.");
     assert_eq!(stage.game.flash().map(|flash| flash.kind), Some(FlashKind::Gain));
     assert_eq!(stage.walk_to(6).message(), "A golden crown: 100.");
     assert_eq!(stage.game.treasure(), Share { found: 160, total: 160 });

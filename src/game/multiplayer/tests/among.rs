@@ -25,6 +25,65 @@ fn players_join_at_the_start_or_beside_it_until_the_game_is_full() {
     assert_eq!(Game::new(level(&["@."], "", "")).join(PlayerColor::Red), None);
 }
 
+/// The cells of players, in the order of their slots.
+fn cells(game: &Game, ids: &[PlayerId]) -> Vec<(u32, u32)> {
+    let cell = |id: &PlayerId| position(game, *id);
+    ids.iter().map(cell).map(|place| (place.x as u32, place.y as u32)).collect()
+}
+
+fn assert_apart(game: &Game, ids: &[PlayerId]) {
+    let places: Vec<DVec2> = ids.iter().map(|&id| position(game, id)).collect();
+    for (index, place) in places.iter().enumerate() {
+        let is_apart = |other: &DVec2| other.distance(*place) >= 2.0 * RADIUS.cells();
+        assert!(places[..index].iter().all(is_apart), "{places:?}");
+    }
+}
+
+#[test]
+fn players_begin_apart_and_look_where_the_level_looks() {
+    let hall = ["#########", "#.......#", "#...@...#", "#.......#", "#########"];
+    let mut game = Game::for_players(level(&hall, "", ""), RULES, MultiplayerRules::default());
+    let ids = [(); 8].map(|()| game.join(PlayerColor::Red).unwrap());
+    assert_apart(&game, &ids);
+    assert_eq!(cells(&game, &ids)[..2], [(4, 2), (5, 2)], "the second one is in view");
+    for id in ids {
+        let camera = game.seen_by(id).unwrap().camera(crate::world::FieldOfView::default());
+        assert_eq!(camera.heading.degrees(), 0.0);
+    }
+}
+
+#[test]
+fn players_begin_on_this_side_of_doors_and_hazards_as_far_as_possible() {
+    let rows = ["###########", "#...D@s...#", "#####.#####", "####..._###", "###########"];
+    let tiles = "D = { door = 'oak' }\n_ = { floor_height = 0.3 }";
+    let things = "s = { spikes = 1.0 }";
+    let (mut game, mut ids) =
+        with_players(level(&rows, tiles, things), MultiplayerRules::default(), 5);
+    let mut begun = cells(&game, &ids);
+    begun.sort_unstable();
+    assert_eq!(begun, [(4, 3), (5, 1), (5, 2), (5, 3), (6, 3)]);
+    // There is no better place for more of them.
+    ids.extend([(); 4].map(|()| game.join(PlayerColor::Red).unwrap()));
+    assert_apart(&game, &ids);
+    assert!(!cells(&game, &ids).contains(&(6, 1)));
+    // Where no cell is free, they share the start.
+    let (closet, ids) = with_players(level(&["@"], "", ""), MultiplayerRules::default(), 2);
+    assert_eq!(cells(&closet, &ids), [(0, 0); 2]);
+}
+
+#[test]
+fn players_begin_out_of_the_sight_of_guards_as_far_as_possible() {
+    let rows = ["########", "####..G#", "####.###", "#...@###", "########"];
+    let things = "G = { guard = 'warden', heading = 180 }";
+    let (mut game, mut ids) =
+        with_players(level(&rows, "", things), MultiplayerRules::default(), 5);
+    let mut begun = cells(&game, &ids);
+    begun.sort_unstable();
+    assert_eq!(begun, [(1, 3), (2, 3), (3, 3), (4, 2), (4, 3)]);
+    ids.push(game.join(PlayerColor::Red).unwrap());
+    assert_eq!(cells(&game, &ids)[5], (4, 1));
+}
+
 #[test]
 fn players_push_against_each_other_and_slide_past() {
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Nobody), 2);
@@ -40,8 +99,8 @@ fn players_push_against_each_other_and_slide_past() {
 fn walking_through_each_other_is_a_rule() {
     let rules = MultiplayerRules { collides: false, ..rules(Strikes::Nobody) };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
-    assert_eq!(position(&game, ids[0]), position(&game, ids[1]));
     play(&mut game, 60, &[(ids[0], &[Intent::Forward])]);
+    assert!(position(&game, ids[0]).x > position(&game, ids[1]).x + 1.0);
     play(&mut game, 120, &[(ids[1], &[Intent::Forward, Intent::Run])]);
     assert!(position(&game, ids[1]).x > position(&game, ids[0]).x + 1.0);
 }
@@ -110,6 +169,9 @@ fn acts_are_judged_by_the_step_that_the_player_saw() {
 fn touching_is_judged_in_the_past_too() {
     let rules = MultiplayerRules { collides: false, ..MultiplayerRules::default() };
     let (mut game, ids) = with_players(level(&HALL, "", ""), rules, 2);
+    assert!(!game.touches(ids[0], ids[1], game.steps()), "they begin apart");
+    play(&mut game, 15, &[(ids[0], &[Intent::Forward])]);
+    play(&mut game, 30, &[]);
     let now = game.steps();
     assert!(game.touches(ids[0], ids[1], now) && game.touches(ids[1], ids[0], now));
     assert!(!game.touches(ids[0], ids[0], now));
@@ -124,11 +186,11 @@ fn touching_is_judged_in_the_past_too() {
 
 #[test]
 fn keys_fall_back_and_treasure_counts_for_all() {
-    let text = "treasure_needed = 20\ngrid = '''\n########\n#@k.t.D.X#\n########\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
+    let text = "treasure_needed = 20\ngrid = '''\n########\n#.@k.t.D.X#\n########\n'''\n[tiles]\n'#' = { wall = 'brick' }\n\
                 D = { door = 'oak', key = 'brass' }\n[things]\n'@' = { start = 0 }\nk = { key = 'brass' }\n\
                 t = { treasure = 20 }\nX = { exit = true }";
     let rows =
-        text.replace("########\n#@", "##########\n#@").replace("X#\n########", "X#\n##########");
+        text.replace("########\n#.", "###########\n#.").replace("X#\n########", "X#\n###########");
     let (mut game, ids) = with_players(world(&rows), MultiplayerRules::default(), 2);
     let things = game.world().things().len();
     play(&mut game, 75, &[(ids[0], &[Intent::Forward])]);
@@ -188,13 +250,14 @@ fn the_dead_go_on_from_their_own_checkpoint_where_the_rules_say_so() {
 fn plates_and_doors_feel_every_player() {
     let tiles =
         "p = { plate = 'gate', floor = '#808080' }\nG = { door = 'metal', switch = 'gate' }";
-    let rows = ["########", "#@p...G.", "########"];
+    let rows = ["#########", "#.@p...G.", "#########"];
     let (mut game, ids) = with_players(level(&rows, tiles, ""), MultiplayerRules::default(), 2);
-    let gate = Cell { column: 6, row: 1 };
-    play(&mut game, 24, &[(ids[1], &[Intent::Forward])]);
+    let gate = Cell { column: 7, row: 1 };
+    // From behind the other one.
+    play(&mut game, 40, &[(ids[1], &[Intent::Forward])]);
     play(&mut game, 240, &[(ids[0], &[Intent::Forward])]);
     assert_eq!(game.world().opening(gate).part(), 1.0);
-    assert!(position(&game, ids[0]).x > 7.0, "{}", position(&game, ids[0]));
+    assert!(position(&game, ids[0]).x > 8.0, "{}", position(&game, ids[0]));
 }
 
 #[test]

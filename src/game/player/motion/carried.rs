@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Body, Motion, RADIUS, STEP_HEIGHT, slide};
+use super::{Body, Motion, Place, RADIUS, STEP_HEIGHT, slide};
 use crate::game::stored::{Unrestorable, check_on_map};
 use crate::world::{Cell, World};
 
@@ -57,15 +57,7 @@ impl Motion {
     /// The height to which floors that have risen around the feet lift them; `None` if there are no
     /// such floors, or no room.
     pub(in crate::game) fn lifted(&self, world: &World) -> Option<f64> {
-        let Cell { column, row } = self.cell();
-        let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
-        let cells = near(row).flat_map(|row| near(column).map(move |column| Cell { column, row }));
-        let floors = cells.filter(|&cell| self.touches(cell)).flat_map(|cell| {
-            let id = world.grid().tile(cell.column.into(), cell.row.into());
-            id.into_iter().flat_map(|id| world.tile(id).gaps()).map(|gap| gap.bottom)
-        });
-        let above = |&floor: &f64| self.feet < floor && floor <= self.feet + STEP_HEIGHT;
-        let feet = floors.filter(above).reduce(f64::max)?;
-        Self { feet, ..*self }.has_room(world).then_some(feet)
+        let place = Place { step: STEP_HEIGHT, ..self.place(world) };
+        place.lifted(self.body.position, RADIUS)
     }
 }
