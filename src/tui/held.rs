@@ -12,9 +12,10 @@
 //!   sooner than people tap, the key is held. The repeat delay and interval are learned from that.
 //! - A held key is released when no repetition comes for a few of its intervals.
 //! - A held key whose repetition is ended by another key stays held while the other key may be
-//!   held, and for [`LINGER`] after that. It is released earlier if it is pressed again, or if an
-//!   opposing key is pressed.
-//! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats.
+//!   held, and for [`LINGER`] after that. It is released earlier if it is pressed again, if an
+//!   opposing key is pressed, or by [`HeldKeys::release_lingering`].
+//! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats. Any other
+//!   key that has not repeated stays a tap.
 //!
 //! Taking a byte at the learned delay for a repetition at once was refused: it gains one interval,
 //! and people who tap at that rate keep walking. Counting a tap as held until the first repetition
@@ -36,8 +37,9 @@ use repeat_timing::RepeatTiming;
 
 /// How long a key stays held after the newer key that ended its repetition is released.
 pub const LINGER: Duration = Duration::from_millis(300);
-/// Two keys pressed within this time are meant to be held together.
-pub const CHORD: Duration = Duration::from_millis(150);
+/// Two keys pressed within this time are meant to be held together. People who tap one key and then
+/// hold another take longer.
+pub const CHORD: Duration = Duration::from_millis(50);
 
 /// The most keys that are stored: more than there are fingers.
 const MOST_KEYS: usize = 16;
@@ -138,7 +140,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
         let is_newest = self.keys.last().is_some_and(|newest| newest.key == key);
         let mut held = self.take(key);
         if self.reports_releases {
-            let press = held.press_until_release(steps);
+            let press = held.press_until_release(steps, now);
             self.keys.push(held);
             return press;
         }
@@ -214,14 +216,25 @@ impl<K: Copy + Eq> HeldKeys<K> {
         self.lingers_until = self.lingers_until.max(now + LINGER);
     }
 
-    /// Holds the keys that were pressed so shortly before the newest one that they could not have
-    /// repeated yet. A player who presses a direction and then jumps wants to jump in that
-    /// direction.
-    pub fn join_newest(&mut self) {
+    /// Holds the last key before the newest one for which `is_meant` is true, if it could not have
+    /// repeated yet, and the keys pressed together with it. A player who presses a direction and then
+    /// jumps wants to jump in that direction. Does nothing if one of those keys is held already.
+    pub fn join_newest(&mut self, is_meant: impl Fn(K) -> bool) {
         let Some((newest, others)) = self.keys.split_last_mut() else { return };
-        for other in others {
-            other.join_before_repetition(newest, self.timing);
+        let mut meant: Vec<_> = others.iter_mut().filter(|held| is_meant(held.key)).collect();
+        let Some(last) = meant.last().map(|last| (*last).clone()) else { return };
+        let is_any_held = meant.iter().any(|held| held.is_held());
+        if !is_any_held && last.may_be_down_at(newest, self.timing) {
+            meant.iter_mut().for_each(|held| held.join(&last));
         }
+    }
+
+    /// Releases each key for which `is_meant` is true and which is held only because a newer key ended
+    /// its repetition. Call it when another key is pressed, for keys that should not outlast it:
+    /// somebody who turns and then walks wants to walk straight on.
+    pub fn release_lingering(&mut self, is_meant: impl Fn(K) -> bool) {
+        let lingering = self.keys.iter_mut().filter(|held| held.state == State::Lingers);
+        lingering.filter(|held| is_meant(held.key)).for_each(HeldKey::mark_as_up);
     }
 
     /// When the next key expires if no event of it comes until then.
@@ -236,6 +249,11 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// Whether any key is in the steps of its tap, so that its state may change with the next step.
     pub fn has_taps(&self) -> bool {
         self.keys.iter().any(HeldKey::has_taps)
+    }
+
+    /// Whether a key that was pressed at or before `time` may have been down ever since.
+    pub fn is_any_down_since(&self, time: Duration) -> bool {
+        self.keys.iter().any(|held| held.is_down_since(time))
     }
 
     /// The state of `key`.

@@ -7,16 +7,12 @@
 use super::held::Hold;
 use crate::game::{Intent, Intents};
 
-/// The intents that turn the camera.
-const TURNS: [Intent; 4] = [Intent::TurnLeft, Intent::TurnRight, Intent::LookUp, Intent::LookDown];
-const WALKS: [Intent; 4] = [Intent::Forward, Intent::Back, Intent::StrafeLeft, Intent::StrafeRight];
-
 /// The number of steps for which a tap of a key wants `intent`, as an argument of
 /// [`HeldKeys::press`](super::HeldKeys::press).
 pub fn tap_steps(intent: Intent) -> u32 {
     match intent {
         once if once.acts_once() => 1,
-        Intent::TurnLeft | Intent::TurnRight | Intent::LookUp | Intent::LookDown => 10,
+        turn if turn.turns() => 10,
         Intent::Open | Intent::LookAhead => 1,
         Intent::Run | Intent::Aim => 0,
         _ => 5,
@@ -42,11 +38,9 @@ pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
             held.insert(intent);
         }
     }
-    let taps = |intents: [Intent; 4]| {
-        intents.iter().any(|&one| wanted.contains(one))
-            && !intents.iter().any(|&one| held.contains(one))
-    };
-    let (turns_by_taps, walks_by_taps) = (taps(TURNS), taps(WALKS));
+    let taps =
+        |is_meant: fn(Intent) -> bool| wanted.iter().any(is_meant) && !held.iter().any(is_meant);
+    let (turns_by_taps, walks_by_taps) = (taps(Intent::turns), taps(Intent::walks));
     if turns_by_taps {
         wanted.insert(Intent::Aim);
     }

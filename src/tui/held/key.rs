@@ -106,10 +106,11 @@ impl<K: Copy + Eq> HeldKey<K> {
     }
 
     /// Handles a press where releases are reported.
-    pub(super) fn press_until_release(&mut self, steps: u32) -> Press {
+    pub(super) fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
         let was_held = self.hold() == Hold::Held;
         self.tap.add(steps, was_held);
         self.state = State::Down;
+        self.pressed = now;
         Press::Fresh
     }
 
@@ -176,18 +177,23 @@ impl<K: Copy + Eq> HeldKey<K> {
         }
     }
 
-    /// Holds this key if it was pressed together with `newer`, which repeats.
+    /// Holds this key if it was pressed together with `newer`, which is held.
     pub(super) fn join(&mut self, newer: &Self) {
         if self.was_pressed_within(CHORD, newer) {
-            self.hold_without_repetition();
+            self.state = State::Lingers;
+            self.tap = Tap::default();
         }
     }
 
-    /// Holds this key if it could not have repeated before `newer` was pressed.
-    pub(super) fn join_before_repetition(&mut self, newer: &Self, prior: RepeatTiming) {
-        if self.was_pressed_within(self.timing.or(prior).delay_or_default(), newer) {
-            self.hold_without_repetition();
-        }
+    /// Whether this key may have been down without a repetition when `newer` was pressed.
+    pub(super) fn may_be_down_at(&self, newer: &Self, prior: RepeatTiming) -> bool {
+        self.was_pressed_within(self.timing.or(prior).delay_or_default(), newer)
+    }
+
+    /// Whether this key was pressed at or before `time` and may have been down ever since.
+    pub(super) fn is_down_since(&self, time: Duration) -> bool {
+        let may_be_down = !matches!(self.state, State::Up | State::Suppressed);
+        may_be_down && self.pressed <= time
     }
 
     /// Whether this key was pressed once, at most `most` before `newer`.
@@ -195,11 +201,6 @@ impl<K: Copy + Eq> HeldKey<K> {
         let apart = newer.pressed.checked_sub(self.pressed);
         let is_single = self.last_byte == Some(self.pressed) && !self.is_held();
         is_single && apart.is_some_and(|apart| apart <= most)
-    }
-
-    fn hold_without_repetition(&mut self) {
-        self.state = State::Lingers;
-        self.tap = Tap::default();
     }
 
     /// Marks the key as up. Its tap continues to its end, so that two opposing taps lead back to

@@ -163,7 +163,7 @@ fn an_opposing_key_ends_a_hold_at_once_but_not_a_tap() {
 #[test]
 fn two_keys_pressed_together_are_held_together_once_one_repeats() {
     for keyboard in KEYBOARDS {
-        for (apart, joins) in [(0, true), (140, true), (200, false)] {
+        for (apart, joins) in [(0, true), (40, true), (60, false), (140, false), (240, false)] {
             let mut typist = Typist::new(keyboard);
             typist.press('w');
             typist.wait(apart, []);
@@ -182,7 +182,7 @@ fn a_jump_holds_keys_that_could_not_have_repeated_yet() {
     typist.wait(300, []);
     typist.press(' ');
     typist.release(' ');
-    typist.held.join_newest();
+    typist.held.join_newest(|_| true);
     assert_eq!(typist.held.hold('w'), Hold::Held);
     // In the air, the player keeps holding the key.
     for _ in 0..40 {
@@ -199,8 +199,53 @@ fn a_jump_holds_keys_that_could_not_have_repeated_yet() {
     tapped.release('w');
     tapped.wait(600, []);
     tapped.press(' ');
-    tapped.held.join_newest();
+    tapped.held.join_newest(|_| true);
     assert_eq!(tapped.held.hold('w'), Hold::Unknown);
+}
+
+#[test]
+fn a_jump_holds_no_other_key_than_the_one_that_gives_its_direction() {
+    let typed = |keys: &[(char, u64)]| {
+        let mut typist = Typist::new((500, 30));
+        for &(key, wait) in keys {
+            typist.press(key);
+            typist.wait(wait, []);
+        }
+        typist.press(' ');
+        typist.held.join_newest(|key| key != 'e');
+        ['a', 'w', 'e'].map(|key| typist.held.hold(key) == Hold::Held)
+    };
+    assert_eq!(typed(&[('a', 150), ('w', 200)]), [false, true, false]);
+    assert_eq!(typed(&[('a', 30), ('w', 200)]), [true, true, false]);
+    assert_eq!(typed(&[('w', 100), ('e', 100)]), [false, true, false]);
+    // It runs already.
+    assert_eq!(typed(&[('w', 900), ('a', 200)]), [false, true, false]);
+}
+
+#[test]
+fn a_key_that_should_not_outlast_a_newer_one_is_released() {
+    let mut typist = Typist::new((500, 30));
+    typist.press('w');
+    typist.wait(900, []);
+    typist.press('d');
+    typist.held.release_lingering(|key| key == 'd');
+    assert_eq!(typist.held.hold('w'), Hold::Held);
+    typist.held.release_lingering(|key| key == 'w');
+    assert_eq!(typist.wait(2000, ['w']), [0]);
+}
+
+#[test]
+fn a_key_is_down_since_its_press_until_its_release() {
+    for reports_releases in [false, true] {
+        let mut held = HeldKeys::default();
+        held.set_reports_releases(reports_releases);
+        press(&mut held, 'w', 500);
+        assert!(held.is_any_down_since(at(500)));
+        assert!(!held.is_any_down_since(at(499)), "it was pressed later");
+        held.release('w');
+        held.advance(at(1300));
+        assert!(!held.is_any_down_since(at(500)));
+    }
 }
 
 /// Each byte is up to 60 ms late, so that some come in pairs.

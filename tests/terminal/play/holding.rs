@@ -11,7 +11,8 @@ use cellcaster::map;
 use cellcaster::world::FieldOfView;
 use glam::DVec2;
 
-use super::game::{Arrow, Game, Key, test_map};
+use super::clock::{CLOCK, Typist};
+use super::game::{Arrow, ENVIRONMENT, Game, Key, PROGRAM, test_map};
 use crate::emulator::Speaks;
 
 const LARGE: (u16, u16) = (120, 40);
@@ -135,6 +136,31 @@ fn two_taps_are_twice_one_tap() {
         assert_eq!(names(&steps, Intent::Forward), 5 * taps);
         assert_eq!(names(&steps, Intent::TurnRight), 10 * taps);
         assert_eq!(names(&steps, Intent::Aim), 10 * taps);
+    }
+}
+
+/// A turn is tapped, and a key to walk is held 80 to 140 ms later.
+#[test]
+fn to_adjust_and_then_go_turns_by_one_tap() {
+    let map = test_map("floor");
+    for steps_apart in 5..=8 {
+        let name = format!("adjust_{steps_apart}.script");
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name);
+        // The file of an earlier run.
+        _ = fs::remove_file(&path);
+        let arguments = ["play", "--record", path.to_str().unwrap(), map.to_str().unwrap()];
+        let environment = [&ENVIRONMENT[..], &[CLOCK]].concat();
+        let mut typist = Typist::start(PROGRAM, &arguments, &environment);
+        typist.wait_to_see("? help");
+        typist.tap("\x1b[C", steps_apart);
+        typist.hold("w", 90);
+        typist.pass(60);
+        typist.send("q\r");
+        typist.wait_for_end().assert_given_back();
+        let script = Script::parse(&fs::read_to_string(&path).unwrap(), &name).unwrap();
+        let count = |intent| script.iter().filter(|(_, it)| it.contains(intent)).count();
+        assert_eq!(count(Intent::TurnRight), 10, "{steps_apart} steps apart");
+        assert!(count(Intent::Forward) > 60, "{steps_apart} steps apart");
     }
 }
 
