@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `progress.toml` | best results, the saved games, preferences, daily runs |
 //! | `runs/LEVEL.DIFFICULTY.STEPS.script` | the fastest run of a level |
-//! | `runs/saved.HASH.script` | the run of a saved game so far |
+//! | `runs/saved.HASH.script` | the run of a saved game so far; there are at most [`MOST_SAVES`] |
 //! | `runs/daily.DATE.REACHED.script` | the daily run of a date, up to the last exit it reached |
 //! | `runs/descent.REACHED.script` | the best descent without an end, up to the same |
 //! | `progress.lock` | nothing; it is locked while a game writes |
@@ -19,7 +19,10 @@
 //!   are written before the file that names them, under a name that is not in use. So a power cut
 //!   leaves the state before or the state after a change.
 //! - **A damaged file is kept.** It is renamed to `progress.toml.damaged-1`, everything in it that can be
-//!   read is kept in force, and a sentence says so. A file of a newer version is left alone.
+//!   read is kept in force, and a sentence says so. The newest three such files stay. A file of a newer
+//!   version is left alone.
+//! - **Nobody else reads it.** Folders and files are made for their owner alone. What is no regular file,
+//!   such as a named pipe, is not opened.
 //! - **A failure does not stop the game.** Changes that can't be written stay in memory, are tried
 //!   again with the next change, and [`Store::trouble`] is one sentence about them.
 //!
@@ -34,8 +37,7 @@ mod home;
 #[cfg(feature = "serve")]
 pub mod host;
 mod names;
-#[cfg(feature = "serve")]
-mod private;
+pub(crate) mod private;
 mod progress;
 mod read;
 #[cfg(feature = "cli")]
@@ -47,12 +49,12 @@ use std::path::Path;
 
 pub use best::{Best, Improved, Reached, Run};
 use change::Change;
-use home::Home;
+use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
 #[cfg(feature = "serve")]
 pub(crate) use names::name_in_map_key;
 use progress::Progress;
-pub use progress::{Daily, Descent, Preferences, SavedGame, Slot};
+pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
 #[cfg(feature = "cli")]
 pub(crate) use replayed::{DescentRun, replayed};
 
@@ -132,21 +134,46 @@ impl Store {
         self.progress.won(difficulty)
     }
 
-    /// The saved game, if there is one and its script can be read.
-    pub fn saved(&self, slot: Slot) -> Option<SavedGame> {
-        let script = self.text_in(|progress| Some(progress.saved_in(slot)?.script.clone()))?;
-        Some(self.progress.saved_in(slot)?.with_script(script))
+    /// The saved games, the newest first.
+    pub fn saves(&self) -> impl Iterator<Item = &Save> {
+        self.progress.saves.iter().rev().map(|entry| &entry.save)
     }
 
-    /// Saves a game in place of the one before in its slot.
-    pub fn save(&mut self, game: &SavedGame) {
+    /// Whether there is a saved game `id`.
+    pub fn has_saved(&self, id: SaveId) -> bool {
+        self.progress.saved(id).is_some()
+    }
+
+    /// The saved game `id`, if there is one and its script can be read.
+    pub fn saved(&self, id: SaveId) -> Option<SavedGame> {
+        let script = self.text_in(|progress| Some(progress.saved(id)?.script.clone()))?;
+        Some(SavedGame { save: self.progress.saved(id)?.save.clone(), script })
+    }
+
+    /// Whether a game with this identity can be saved: there is room, or it takes the place of another.
+    pub fn has_room_for(&self, id: SaveId) -> bool {
+        self.progress.saves.len() < MOST_SAVES || self.has_saved(id)
+    }
+
+    /// Saves a game, in place of the one with the same identity if there is one.
+    ///
+    /// # Errors
+    /// If there is no room for another game, or if its script is too long to be read again.
+    pub fn save(&mut self, game: &SavedGame) -> Result<(), NotSaved> {
+        if !self.has_room_for(game.save.id()) {
+            return Err(NotSaved::Full);
+        }
+        if game.script.len() as u64 > LARGEST_SCRIPT {
+            return Err(NotSaved::TooLong);
+        }
         self.change(Change::Saved(game.clone()));
+        Ok(())
     }
 
-    /// Removes the saved game.
-    pub fn clear_saved(&mut self, slot: Slot) {
-        if self.progress.saved_in(slot).is_some() {
-            self.change(Change::Cleared(slot));
+    /// Removes the saved game `id`, if there is one.
+    pub fn remove_saved(&mut self, id: SaveId) {
+        if self.has_saved(id) {
+            self.change(Change::Removed(id));
         }
     }
 

@@ -1,8 +1,10 @@
 //! Changes of the progress, which are applied to whatever the file holds at that time.
 
+use std::mem;
+
 use super::best::{Best, Reached, Run};
 use super::names;
-use super::progress::{Daily, Preferences, Progress, SavedEntry, SavedGame, Slot};
+use super::progress::{Daily, Preferences, Progress, SaveId, SavedEntry, SavedGame};
 use crate::world::Difficulty;
 
 /// A change.
@@ -12,8 +14,8 @@ pub(super) enum Change {
     Won { level: String, difficulty: Difficulty, run: Run },
     /// A game was saved.
     Saved(SavedGame),
-    /// The saved game was removed.
-    Cleared(Slot),
+    /// A saved game was removed.
+    Removed(SaveId),
     /// The player has chosen what differs.
     Preferences { before: Preferences, after: Preferences },
     /// The daily run of a date has come this far.
@@ -34,7 +36,7 @@ impl Change {
                 Some((names::of_daily(*date, *reached)?, script))
             }
             Self::Descent { reached, script } => Some((names::of_descent(*reached)?, script)),
-            Self::Cleared(_) | Self::Preferences { .. } => None,
+            Self::Removed(_) | Self::Preferences { .. } => None,
         }
     }
 
@@ -51,8 +53,8 @@ impl Progress {
             Change::Won { level, difficulty, run } => {
                 self.add_best((level.clone(), *difficulty), Best::of(run));
             }
-            Change::Saved(game) => *self.saved_in_mut(game.slot()) = Some(SavedEntry::of(game)),
-            Change::Cleared(slot) => *self.saved_in_mut(*slot) = None,
+            Change::Saved(game) => self.add_save(SavedEntry::of(game)),
+            Change::Removed(id) => self.remove_save(*id),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
             Change::Daily { date, reached, .. } => {
                 self.add_daily(*date, Daily { reached: *reached });
@@ -66,9 +68,9 @@ impl Progress {
         known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
         known.dailies.iter().for_each(|(date, daily)| self.add_daily(*date, *daily));
         self.descent = self.descent.max(known.descent);
-        for slot in [Slot::Level, Slot::Descent] {
-            let saved = self.saved_in_mut(slot);
-            *saved = saved.take().or_else(|| known.saved_in(slot).cloned());
+        let readable = mem::replace(&mut self.saves, known.saves.clone());
+        for entry in readable {
+            self.add_save(entry);
         }
         self.preferences.choose(Preferences::default(), known.preferences);
     }

@@ -2,11 +2,13 @@
 
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
 use std::path::Path;
 use std::thread;
 use std::time::Duration;
+
+use super::private;
 
 /// File operations.
 pub(super) trait Disk: fmt::Debug + Send {
@@ -47,20 +49,16 @@ const PAUSE: Duration = Duration::from_millis(2);
 
 impl Disk for Real {
     fn create_folder(&self, folder: &Path) -> io::Result<()> {
-        fs::create_dir_all(folder)
+        private::create_folder(folder)
     }
 
     fn read(&self, file: &Path, most: u64) -> io::Result<Vec<u8>> {
-        let mut content = Vec::new();
-        File::open(file)?.take(most + 1).read_to_end(&mut content)?;
-        if content.len() as u64 > most {
-            return Err(io::ErrorKind::FileTooLarge.into());
-        }
-        Ok(content)
+        private::read(file, most)
     }
 
     fn write(&self, file: &Path, content: &[u8]) -> io::Result<()> {
-        let mut file = File::create(file)?;
+        let mut file = private::open_to_write(file)?;
+        file.set_len(0)?;
         file.write_all(content)?;
         file.sync_all()
     }
@@ -82,7 +80,7 @@ impl Disk for Real {
     }
 
     fn lock(&self, file: &Path, attempts: u32) -> io::Result<Option<File>> {
-        let file = OpenOptions::new().create(true).truncate(false).write(true).open(file)?;
+        let file = private::open_to_write(file)?;
         for _ in 1..attempts {
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),

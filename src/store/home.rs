@@ -1,6 +1,7 @@
 //! The store's folder: reading, and replacing files under a lock.
 
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +46,9 @@ const RUNS: &str = "runs";
 /// In bytes.
 const LARGEST_PROGRESS: u64 = 4 << 20;
 /// In bytes: that is more than a day of play.
-const LARGEST_SCRIPT: u64 = 4 << 20;
+pub(super) const LARGEST_SCRIPT: u64 = 4 << 20;
+/// The number of damaged files that are kept, the newest ones.
+const MOST_DAMAGED: usize = 3;
 /// They take two seconds.
 const ATTEMPTS: u32 = 1000;
 
@@ -173,9 +176,15 @@ impl Home {
     /// returns a sentence about it.
     fn put_aside(&self, content: Option<&[u8]>) -> io::Result<String> {
         let names = self.disk.names(&self.folder)?;
-        let mut free = (1_u64..).map(|number| format!("{PROGRESS}.damaged-{number}"));
-        let is_free = |name: &String| !names.iter().any(|known| known == name.as_str());
-        let name = free.find(is_free).unwrap_or_default();
+        let aside = |number: u64| format!("{PROGRESS}.damaged-{number}");
+        let number_of = |name: &OsString| {
+            let number = name.to_str()?.rsplit_once('-')?.1.parse().ok()?;
+            (*name == *aside(number)).then_some(number)
+        };
+        let mut numbers: Vec<u64> = names.iter().filter_map(number_of).collect();
+        sort::by_key(&mut numbers, |&number| number);
+        let number = numbers.last().map_or(1, |last| last.saturating_add(1));
+        let name = aside(number);
         let kept = if let Some(content) = content {
             self.write_whole(Path::new(&name), content)?;
             "everything in it that can be read stays in force"
@@ -183,6 +192,11 @@ impl Home {
             self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
             "it is too large to be read"
         };
+        numbers.retain(|&known| known != number);
+        for &old in numbers.iter().rev().skip(MOST_DAMAGED - 1) {
+            // One too many does no harm.
+            _ = self.disk.remove(&self.folder.join(aside(old)));
+        }
         let file = printable_path(&self.folder.join(PROGRESS));
         Ok(format!("{file} was damaged and is kept as {name}; {kept}"))
     }

@@ -241,6 +241,14 @@ pub trait HostStore: Send {
         account: AccountId,
         board: &LevelBoard,
     ) -> Result<Option<String>, StoreFailure>;
+
+    /// Brings what is kept into the form in which it rests while no host runs.
+    ///
+    /// # Errors
+    /// If it can't be written. Nothing is lost then.
+    fn checkpoint(&mut self) -> Result<(), StoreFailure> {
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Progress: the content of the store's file.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::num::NonZeroU32;
 
 use super::best::{Best, Improved, Reached, Run};
@@ -15,28 +16,58 @@ use crate::world::Difficulty;
 pub(super) struct Progress {
     /// By the key of the level.
     pub(super) bests: BTreeMap<(String, Difficulty), Best>,
-    pub(super) saved: Option<SavedEntry>,
-    pub(super) saved_descent: Option<SavedEntry>,
+    /// The saved games, the newest last. No two have the same [`SaveId`].
+    pub(super) saves: Vec<SavedEntry>,
     pub(super) preferences: Preferences,
     pub(super) dailies: BTreeMap<u32, Daily>,
     pub(super) descent: Option<Reached>,
 }
 
-/// A game to be continued: its script is played again up to its end.
+/// A saved game without its script.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SavedGame {
+pub struct Save {
     /// The level, as in the header of a script.
     pub level: String,
+    /// The absolute path of the map file; `None` if the level is not in one, and in old files.
+    pub file: Option<String>,
     /// The rules that it began with.
     pub rules: Rules,
-    /// The script so far.
-    pub script: String,
+    /// The kind of the descent; `None` for a level.
+    pub descent: Option<Descent>,
+    /// The steps that were played. Old files have none.
+    pub steps: Option<u64>,
     /// The checksum of the game at the end of the script. Where it differs, the level or the rules have
     /// changed since. Old files have none.
     pub checksum: Option<u64>,
-    /// The kind of the descent; `None` for a level.
-    pub descent: Option<Descent>,
 }
+
+/// A game to be continued: its script is played again up to its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SavedGame {
+    /// What was saved.
+    pub save: Save,
+    /// The script so far.
+    pub script: String,
+}
+
+/// Identifies a saved game by what it takes the place of: the game in the same level or map file at
+/// the same difficulty, or the descent of the same kind and seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SaveId(u64);
+
+/// The reason why a game is not saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotSaved {
+    /// [`MOST_SAVES`] other games are saved.
+    Full,
+    /// Its script is longer than the longest one that is read.
+    TooLong,
+}
+
+impl std::error::Error for NotSaved {}
+
+/// The most games that are saved.
+pub const MOST_SAVES: usize = 100;
 
 /// The kind of a descent. It begins on its first floor, with its date as the seed if it has one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,24 +80,12 @@ pub enum Descent {
     Practice,
 }
 
-/// Where a game is saved: a descent does not replace a level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
-    /// For a level.
-    Level,
-    /// For a descent.
-    Descent,
-}
-
 /// The saved game as the file has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct SavedEntry {
-    pub(super) level: String,
-    pub(super) rules: Rules,
+    pub(super) save: Save,
     /// The name of the script's file.
     pub(super) script: String,
-    pub(super) checksum: Option<u64>,
-    pub(super) descent: Option<Descent>,
 }
 
 /// What the player has chosen in the game.
@@ -118,18 +137,18 @@ impl Progress {
         self.bests.get(&(level.to_owned(), difficulty))
     }
 
-    pub(super) fn saved_in(&self, slot: Slot) -> Option<&SavedEntry> {
-        match slot {
-            Slot::Level => self.saved.as_ref(),
-            Slot::Descent => self.saved_descent.as_ref(),
-        }
+    pub(super) fn saved(&self, id: SaveId) -> Option<&SavedEntry> {
+        self.saves.iter().find(|entry| entry.save.id() == id)
     }
 
-    pub(super) fn saved_in_mut(&mut self, slot: Slot) -> &mut Option<SavedEntry> {
-        match slot {
-            Slot::Level => &mut self.saved,
-            Slot::Descent => &mut self.saved_descent,
-        }
+    /// Adds a saved game as the newest one, in place of the one with the same identity.
+    pub(super) fn add_save(&mut self, entry: SavedEntry) {
+        self.remove_save(entry.save.id());
+        self.saves.push(entry);
+    }
+
+    pub(super) fn remove_save(&mut self, id: SaveId) {
+        self.saves.retain(|entry| entry.save.id() != id);
     }
 
     /// What a run would improve.
@@ -153,17 +172,29 @@ impl Progress {
             .bests
             .iter()
             .map(|((level, difficulty), best)| names::of_run(level, *difficulty, best.tally.steps));
-        let saved = self.saved.iter().chain(&self.saved_descent).map(|saved| saved.script.clone());
+        let saved = self.saves.iter().map(|entry| entry.script.clone());
         let dailies =
             self.dailies.iter().filter_map(|(&date, daily)| names::of_daily(date, daily.reached));
         runs.chain(saved).chain(dailies).chain(self.descent.and_then(names::of_descent))
     }
 }
 
-impl SavedGame {
-    /// Where it is saved.
-    pub fn slot(&self) -> Slot {
-        if self.descent.is_some() { Slot::Descent } else { Slot::Level }
+impl Save {
+    /// Its identity.
+    pub fn id(&self) -> SaveId {
+        let place = self.file.as_deref().unwrap_or(&self.level);
+        let kind = self.descent.map_or("level", Descent::name);
+        let Rules { difficulty, seed } = self.rules;
+        SaveId(names::hash(&format!("{kind} {} {seed} {place}", difficulty.name())))
+    }
+}
+
+impl fmt::Display for NotSaved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => write!(f, "{MOST_SAVES} other games are saved, and no more are kept"),
+            Self::TooLong => f.write_str("it is longer than a game that can be kept"),
+        }
     }
 }
 
@@ -182,13 +213,6 @@ impl Descent {
 
 impl SavedEntry {
     pub(super) fn of(game: &SavedGame) -> Self {
-        let script = names::of_saved(&game.script);
-        let &SavedGame { rules, checksum, descent, .. } = game;
-        Self { level: game.level.clone(), rules, script, checksum, descent }
-    }
-
-    pub(super) fn with_script(&self, script: String) -> SavedGame {
-        let &Self { rules, checksum, descent, .. } = self;
-        SavedGame { level: self.level.clone(), rules, script, checksum, descent }
+        Self { save: game.save.clone(), script: names::of_saved(&game.script) }
     }
 }

@@ -5,13 +5,14 @@
 //! short would be a better result.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
 use toml::de::DeValue;
 
 use super::best::{Best, Reached};
-use super::progress::{Daily, Descent, Preferences, Progress, SavedEntry};
-use super::values::{COLORS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, VERSION, named};
+use super::progress::{Daily, Descent, Preferences, Progress, Save, SavedEntry};
+use super::values::{COLORS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, SAVES, VERSION, named};
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};
@@ -40,8 +41,8 @@ pub(super) fn read(content: &[u8]) -> Content {
         match entry.key {
             "version" => version = number(&entry),
             "preferences" => read_preferences(&entry, &mut progress.preferences),
-            SAVED => progress.saved = saved(&entry),
-            SAVED_DESCENT => progress.saved_descent = saved(&entry),
+            SAVED | SAVED_DESCENT => saved(&entry).into_iter().for_each(|it| progress.add_save(it)),
+            SAVES => read_saves(&entry, &mut progress),
             "descent" => progress.descent = reached(&entry),
             "best" => read_bests(&entry, &mut progress),
             "daily" => read_dailies(&entry, &mut progress),
@@ -79,12 +80,28 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
     }
 }
 
+/// Reads the saved games in the order of their numbers.
+fn read_saves(section: &Entry<'_, '_>, progress: &mut Progress) {
+    let mut saves = BTreeMap::new();
+    for entry in inner(section) {
+        let number = checked(&entry, entry.key.parse::<u64>().ok());
+        if let (Some(number), Some(save)) = (number, saved(&entry)) {
+            saves.insert(number, save);
+        }
+    }
+    for save in saves.into_values() {
+        progress.add_save(save);
+    }
+}
+
 fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
-    let (mut level, mut at, mut seed, mut script) = (None, None, None, None);
-    let (mut checksum, mut descent) = (None, None);
+    let (mut level, mut file, mut at, mut seed) = (None, None, None, None);
+    let (mut descent, mut steps, mut checksum, mut script) = (None, None, None, None);
     for entry in inner(section) {
         match entry.key {
             "level" => level = entry.string(EXAMPLE).map(str::to_owned),
+            "file" => file = entry.string(EXAMPLE).map(str::to_owned),
+            "steps" => steps = number(&entry),
             "difficulty" => at = difficulty(&entry),
             // TOML's own numbers have one bit less.
             "seed" => seed = checked(&entry, entry.string(EXAMPLE).and_then(|it| it.parse().ok())),
@@ -102,9 +119,9 @@ fn saved(section: &Entry<'_, '_>) -> Option<SavedEntry> {
     }
     let complete = || {
         let rules = Rules { difficulty: at?, seed: seed? };
-        let is_descent = section.key == SAVED_DESCENT;
-        let entry = SavedEntry { level: level?, rules, script: script?, checksum, descent };
-        (entry.descent.is_some() == is_descent).then_some(entry)
+        let save = Save { level: level?, file, rules, descent, steps, checksum };
+        let is_whole = section.key != SAVED_DESCENT || save.descent.is_some();
+        is_whole.then_some(SavedEntry { save, script: script? })
     };
     checked(section, complete())
 }

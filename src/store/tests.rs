@@ -71,21 +71,39 @@ fn run(steps: u64, rank: Rank) -> Run {
 
 fn saved(script: &str) -> SavedGame {
     let level = "my \"maps\"/a\u{7}.toml".to_owned();
-    SavedGame {
+    let save = Save {
         level,
+        file: None,
         rules: Rules { difficulty: Hard, seed: u64::MAX },
-        script: script.to_owned(),
-        checksum: Some(0x0123_4567),
         descent: None,
-    }
+        steps: Some(60),
+        checksum: Some(0x0123_4567),
+    };
+    SavedGame { save, script: script.to_owned() }
+}
+
+/// A game in the level with that number.
+fn saved_in(level: usize) -> SavedGame {
+    let game = saved(&format!("{level} s forward\n"));
+    SavedGame { save: Save { level: format!("level {level}"), ..game.save }, ..game }
+}
+
+/// `game` as that of a descent.
+fn of_descent(kind: Descent, game: SavedGame) -> SavedGame {
+    SavedGame { save: Save { descent: Some(kind), ..game.save }, ..game }
+}
+
+/// The saved games with their scripts, the newest first.
+fn all_saved(store: &Store) -> Vec<SavedGame> {
+    store.saves().map(|save| store.saved(save.id()).unwrap()).collect()
 }
 
 fn fill(store: &mut Store) {
     store.record("cellar", Normal, run(300, Rank::Thief));
     store.record("museum", Hard, run(500, Rank::Ghost));
     store.record("a b\\\"ä\n", Easy, run(7, Rank::Burglar));
-    store.save(&saved("1 s forward\n"));
-    store.save(&SavedGame { descent: Some(Descent::Practice), ..saved("5 s forward\n") });
+    store.save(&saved("1 s forward\n")).unwrap();
+    store.save(&of_descent(Descent::Practice, saved("5 s forward\n"))).unwrap();
     store.set_preferences(Preferences {
         compass: true,
         ghost: false,
@@ -106,8 +124,8 @@ fn shown(store: &Store) -> String {
     let scripts =
         scripts.map(|(level, at)| (store.best(level, at).copied(), store.script(level, at)));
     let won: Vec<&str> = store.won(Normal).collect();
-    let saved = [Slot::Level, Slot::Descent].map(|slot| store.saved(slot));
-    let kept = (saved, store.preferences(), store.daily(20_261_122), store.best_descent());
+    let kept =
+        (all_saved(store), store.preferences(), store.daily(20_261_122), store.best_descent());
     format!("{scripts:?} {won:?} {kept:?}")
 }
 
@@ -127,10 +145,12 @@ fn what_is_kept_is_there_in_the_next_game() {
 }
 
 #[test]
-fn a_file_of_the_first_version_is_read() {
+fn files_of_older_versions_are_read() {
     let folder = Folder::new();
     fs::create_dir_all(folder.0.join("runs")).unwrap();
-    fs::write(folder.0.join("runs/saved.1.script"), "1 s forward\n").unwrap();
+    for (name, script) in [("1", "1 s forward\n"), ("2", "2 s forward\n")] {
+        fs::write(folder.0.join(format!("runs/saved.{name}.script")), script).unwrap();
+    }
     let text = "version = 1\n[preferences]\ncrosshair = true\ncompass = false\nbell = false\n\
                 ghost = true\ndifficulty = \"hard\"\n[saved]\nlevel = \"cellar\"\n\
                 difficulty = \"easy\"\nseed = \"0\"\nscript = \"saved.1.script\"\n";
@@ -138,11 +158,29 @@ fn a_file_of_the_first_version_is_read() {
     let mut store = sound(&folder.0);
     let preferences = Preferences { crosshair: true, difficulty: Hard, ..Preferences::default() };
     assert_eq!(store.preferences(), preferences);
-    let game = store.saved(Slot::Level).unwrap();
-    assert_eq!((game.level.as_str(), game.checksum, game.descent), ("cellar", None, None));
+    let first = all_saved(&store);
+    let [SavedGame { save, script }] = &first[..] else { panic!("{first:?}") };
+    assert_eq!((save.level.as_str(), script.as_str()), ("cellar", "1 s forward\n"));
+    assert_eq!((save.checksum, save.steps, save.descent), (None, None, None));
     store.set_preferences(Preferences { bell: true, ..preferences });
-    assert!(folder.text().contains("version = 2"), "{}", folder.text());
-    assert_eq!(sound(&folder.0).saved(Slot::Level), Some(game));
+    assert!(folder.text().contains("version = 3"), "{}", folder.text());
+    assert_eq!(all_saved(&sound(&folder.0)), first);
+
+    let second = text.replace("version = 1", "version = 2")
+        + "checksum = \"00000000000000ff\"\n[saved-descent]\nlevel = \"floor 1\"\n\
+           difficulty = \"normal\"\nseed = \"20261122\"\ndescent = \"daily\"\n\
+           script = \"saved.2.script\"\n";
+    fs::write(folder.progress(), second).unwrap();
+    let mut store = sound(&folder.0);
+    let both = all_saved(&store);
+    let about = |game: &SavedGame| (game.save.descent, game.save.checksum, game.script.clone());
+    let expected = [
+        (Some(Descent::Daily), None, "2 s forward\n".to_owned()),
+        (None, Some(0xff), "1 s forward\n".to_owned()),
+    ];
+    assert_eq!(both.iter().map(about).collect::<Vec<_>>(), expected);
+    store.set_preferences(preferences);
+    assert_eq!(all_saved(&sound(&folder.0)), both);
 }
 
 #[test]
@@ -191,18 +229,66 @@ fn only_the_first_try_of_a_day_counts() {
 }
 
 #[test]
-fn a_saved_game_replaces_the_one_before() {
+fn a_saved_game_takes_the_place_of_its_own_one_only() {
     let folder = Folder::new();
     let mut store = sound(&folder.0);
-    store.save(&saved("1 s forward\n"));
-    store.save(&saved("2 s forward\n"));
-    assert_eq!(sound(&folder.0).saved(Slot::Level), Some(saved("2 s forward\n")));
-    assert_eq!(folder.names(".script").len(), 1);
-    let descent = SavedGame { descent: Some(Descent::Daily), ..saved("3 s forward\n") };
-    store.save(&descent);
-    store.clear_saved(Slot::Level);
-    assert_eq!(sound(&folder.0).saved(Slot::Level), None);
-    assert_eq!(sound(&folder.0).saved(Slot::Descent), Some(descent));
-    store.clear_saved(Slot::Descent);
-    assert_eq!((sound(&folder.0).saved(Slot::Descent), folder.names(".script").len()), (None, 0));
+    let game = saved("1 s forward\n");
+    let with = |change: fn(&mut Save)| {
+        let mut other = game.clone();
+        change(&mut other.save);
+        other
+    };
+    let all = [
+        game.clone(),
+        with(|save| save.level = "cellar".to_owned()),
+        with(|save| save.rules.difficulty = Easy),
+        with(|save| save.file = Some("/maps/a.toml".to_owned())),
+        with(|save| save.file = Some("/maps/b.toml".to_owned())),
+        with(|save| save.descent = Some(Descent::Daily)),
+        with(|save| save.descent = Some(Descent::Practice)),
+        with(|save| (save.descent, save.rules.seed) = (Some(Descent::Daily), 20_261_123)),
+    ];
+    for game in &all {
+        store.save(game).unwrap();
+    }
+    let newest_first = |games: &[SavedGame]| games.iter().rev().cloned().collect::<Vec<_>>();
+    assert_eq!(all_saved(&sound(&folder.0)), newest_first(&all));
+
+    // The map in a file is the same one after a change of its text.
+    let mut later = all[3].clone();
+    (later.save.level, later.script) = ("changed".to_owned(), "2 s forward\n".to_owned());
+    store.save(&later).unwrap();
+    let mut expected = newest_first(&all);
+    expected.remove(4);
+    expected.insert(0, later.clone());
+    assert_eq!(all_saved(&sound(&folder.0)), expected);
+
+    for game in &expected {
+        store.remove_saved(game.save.id());
+    }
+    assert_eq!(all_saved(&sound(&folder.0)), []);
+    assert_eq!(folder.names(".script").len(), 0);
+}
+
+#[test]
+fn where_there_is_no_room_a_game_is_not_saved_and_none_is_lost() {
+    let mut store = Store::in_memory();
+    for level in 0..MOST_SAVES {
+        assert!(store.has_room_for(saved_in(level).save.id()));
+        store.save(&saved_in(level)).unwrap();
+    }
+    let before = all_saved(&store);
+    let one_more = saved_in(MOST_SAVES);
+    assert!(!store.has_room_for(one_more.save.id()));
+    assert_eq!(store.save(&one_more), Err(NotSaved::Full));
+    assert_eq!(all_saved(&store), before);
+    // In its own place there is room.
+    let again = SavedGame { script: "again\n".to_owned(), ..saved_in(7) };
+    store.save(&again).unwrap();
+    assert_eq!(all_saved(&store)[0], again);
+    let long = SavedGame { script: "x".repeat(5 << 20), ..saved_in(7) };
+    assert_eq!(store.save(&long), Err(NotSaved::TooLong));
+    assert_eq!(all_saved(&store)[0], again);
+    store.remove_saved(saved_in(3).save.id());
+    store.save(&one_more).unwrap();
 }

@@ -4,11 +4,14 @@ use crate::color::palette::ColorDepth;
 use crate::tui::GlyphMode;
 
 /// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
-/// preferences about the terminal.
-pub(super) const VERSION: u64 = 2;
+/// preferences about the terminal. Version 3 has any number of saved games.
+pub(super) const VERSION: u64 = 3;
 /// The oldest version that is read.
 pub(super) const OLDEST: u64 = 1;
 
+/// The sections of saved games, which have numbers: the newest has the largest one.
+pub(super) const SAVES: &str = "saves";
+/// The one saved level and the one saved descent of older versions.
 pub(super) const SAVED: &str = "saved";
 pub(super) const SAVED_DESCENT: &str = "saved-descent";
 

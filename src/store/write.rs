@@ -3,8 +3,8 @@
 use std::fmt::{self, Write};
 
 use super::best::{Best, Reached};
-use super::progress::{Preferences, Progress, SavedEntry};
-use super::values::{COLORS, GLYPHS, SAVED, SAVED_DESCENT, VERSION, name_of};
+use super::progress::{Preferences, Progress, Save, SavedEntry};
+use super::values::{COLORS, GLYPHS, SAVES, VERSION, name_of};
 use crate::game::{Rules, Share};
 
 impl fmt::Display for Progress {
@@ -13,10 +13,8 @@ impl fmt::Display for Progress {
         writeln!(f, "# The progress of a player of Cellcaster. The game replaces this file.")?;
         writeln!(f, "version = {VERSION}")?;
         write_preferences(f, self.preferences)?;
-        for (section, saved) in [(SAVED, &self.saved), (SAVED_DESCENT, &self.saved_descent)] {
-            if let Some(saved) = saved {
-                write_saved(f, section, saved)?;
-            }
+        for (number, saved) in (1..).zip(&self.saves) {
+            write_saved(f, number, saved)?;
         }
         if let Some(reached) = self.descent {
             writeln!(f, "\n[descent]")?;
@@ -51,13 +49,20 @@ fn write_preferences(f: &mut fmt::Formatter<'_>, preferences: Preferences) -> fm
     }
 }
 
-fn write_saved(f: &mut fmt::Formatter<'_>, section: &str, saved: &SavedEntry) -> fmt::Result {
-    let SavedEntry { level, rules: Rules { difficulty, seed }, script, checksum, descent } = saved;
-    writeln!(f, "\n[{section}]\nlevel = {}", quoted(level))?;
+fn write_saved(f: &mut fmt::Formatter<'_>, number: u64, saved: &SavedEntry) -> fmt::Result {
+    let SavedEntry { save, script } = saved;
+    let Save { level, file, rules: Rules { difficulty, seed }, descent, steps, checksum } = save;
+    writeln!(f, "\n[{SAVES}.{number}]\nlevel = {}", quoted(level))?;
+    if let Some(file) = file {
+        writeln!(f, "file = {}", quoted(file))?;
+    }
     writeln!(f, "difficulty = {}", quoted(difficulty.name()))?;
     writeln!(f, "seed = \"{seed}\"")?;
     if let Some(descent) = descent {
         writeln!(f, "descent = {}", quoted(descent.name()))?;
+    }
+    if let Some(steps) = steps {
+        writeln!(f, "steps = {steps}")?;
     }
     if let Some(checksum) = checksum {
         writeln!(f, "checksum = \"{checksum:016x}\"")?;

@@ -8,7 +8,18 @@ use super::UnixTime;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoreFailure {
     sentence: String,
-    is_away: bool,
+    cause: Cause,
+}
+
+/// Why a call failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    /// The store did not answer.
+    Away,
+    /// Its disk is full.
+    Full,
+    /// Something else, which the same call meets again.
+    Refused,
 }
 
 /// Why an account was not created or renamed.
@@ -38,18 +49,33 @@ pub enum Refusal {
 
 impl StoreFailure {
     pub(super) fn new(sentence: impl Into<String>) -> Self {
-        Self { sentence: sentence.into(), is_away: false }
+        Self { sentence: sentence.into(), cause: Cause::Refused }
+    }
+
+    /// That of a store whose disk is full.
+    pub(super) fn full(sentence: impl Into<String>) -> Self {
+        Self { sentence: sentence.into(), cause: Cause::Full }
     }
 
     /// That of a store that does not answer.
     #[cfg(any(test, feature = "cluster"))]
     pub(crate) fn away(sentence: impl Into<String>) -> Self {
-        Self { sentence: sentence.into(), is_away: true }
+        Self { sentence: sentence.into(), cause: Cause::Away }
     }
 
-    /// Whether the store did not answer, so that the same call may succeed later. Otherwise the store has refused it.
+    /// Whether the store did not answer.
     pub fn is_away(&self) -> bool {
-        self.is_away
+        self.cause == Cause::Away
+    }
+
+    /// Whether the disk of the store is full.
+    pub fn is_full(&self) -> bool {
+        self.cause == Cause::Full
+    }
+
+    /// Whether every call fails for now, and the same call may succeed later.
+    pub(super) fn is_of_now(&self) -> bool {
+        self.is_away() || self.is_full()
     }
 
     /// That of a program without PostgreSQL.

@@ -154,7 +154,7 @@ impl PostgresDatabase {
                     thread::sleep(wait(conflicts));
                     conflicts += 1;
                 }
-                Some(Fault::Conflict | Fault::Refused) | None => {
+                Some(Fault::Conflict | Fault::Full | Fault::Refused) | None => {
                     self.undo(kind);
                     return Err(failure);
                 }

@@ -71,6 +71,14 @@ pub trait Database: Send {
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E>;
+
+    /// Copies what is in a log of its own into the place where it stays.
+    ///
+    /// # Errors
+    /// If it can't be written. Nothing is lost then.
+    fn checkpoint(&mut self) -> Result<(), StoreFailure> {
+        Ok(())
+    }
 }
 
 /// The store in a database.
@@ -189,5 +197,9 @@ impl<D: Database> HostStore for SqlStore<D> {
         board: &LevelBoard,
     ) -> Result<Option<String>, StoreFailure> {
         self.database.once(|it| results::script(it, account, board))
+    }
+
+    fn checkpoint(&mut self) -> Result<(), StoreFailure> {
+        self.database.checkpoint()
     }
 }

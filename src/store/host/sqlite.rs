@@ -6,9 +6,11 @@
 //!   synchronised with each transaction (`journal_mode = WAL`, `synchronous = FULL`). A process that is
 //!   killed loses at most the change that has not returned.
 //! - **Others can read at the same time**, such as `cellcaster scores`.
-//! - **A damaged file is kept.** [`open`](SqliteStore::open) checks the whole file. A damaged one is renamed
-//!   to `host.db.damaged-1` with its log, all rows that can be read are copied into a new file, and a
-//!   sentence says so.
+//! - **The log is short.** What is in it is copied into the file at each start and end.
+//! - **A damaged file is kept.** [`open`](SqliteStore::open) checks the whole file, and refuses a damaged one.
+//!   [`open_or_salvage`](SqliteStore::open_or_salvage) renames it to `host.db.damaged-1` with its log, copies
+//!   all rows that can be read into a new file, and says so in a sentence. That is never done unasked: names
+//!   would be free to take, and bans gone.
 //! - **A file of a newer version is left alone**, and so is one of another program.
 //! - **Nobody else on the machine reads it**: the file has the mode 0600, and the folder 0700 where it is
 //!   created.
@@ -23,7 +25,7 @@ mod schema;
 use std::path::Path;
 
 use rusqlite::types::{ToSqlOutput, Value as SqliteValue, ValueRef};
-use rusqlite::{Connection, ToSql, TransactionBehavior, params_from_iter};
+use rusqlite::{Connection, ErrorCode, ToSql, TransactionBehavior, params_from_iter};
 
 use super::StoreFailure;
 use super::sql::{Database, Row, SqlStore, Statements, Value};
@@ -34,17 +36,26 @@ pub type SqliteStore = SqlStore<SqliteFile>;
 /// The file of a [`SqliteStore`].
 #[derive(Debug)]
 pub struct SqliteFile {
-    connection: Connection,
+    pub(super) connection: Connection,
 }
 
 impl SqliteStore {
-    /// The store in `folder`, which is created if it does not exist; and a sentence if its file was
-    /// damaged.
+    /// The store in `folder`, which is created if it does not exist.
+    ///
+    /// # Errors
+    /// If the folder can't be used, or the file is damaged, of a newer version or of another program.
+    pub fn open(folder: &Path) -> Result<Self, StoreFailure> {
+        let connection = opening::open(folder)?;
+        Ok(Self { database: SqliteFile { connection } })
+    }
+
+    /// The store in `folder`; if its file was damaged, a new one with the rows that can be read, and a sentence
+    /// about it.
     ///
     /// # Errors
     /// If the folder can't be used, or the file is of a newer version or of another program.
-    pub fn open(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
-        let (connection, sentence) = opening::open(folder)?;
+    pub fn open_or_salvage(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
+        let (connection, sentence) = opening::open_or_salvage(folder)?;
         Ok((Self { database: SqliteFile { connection } }, sentence))
     }
 
@@ -78,6 +89,10 @@ impl Database for SqliteFile {
         let result = act(&*transaction)?;
         transaction.commit().map_err(StoreFailure::from)?;
         Ok(result)
+    }
+
+    fn checkpoint(&mut self) -> Result<(), StoreFailure> {
+        Ok(opening::checkpoint(&self.connection)?)
     }
 }
 
@@ -126,7 +141,11 @@ fn value(value: ValueRef<'_>) -> Result<Value, StoreFailure> {
 
 impl From<rusqlite::Error> for StoreFailure {
     fn from(error: rusqlite::Error) -> Self {
-        Self::new(format!("the host's store failed: {error}"))
+        let sentence = format!("the host's store failed: {error}");
+        match error.sqlite_error_code() {
+            Some(ErrorCode::DiskFull) => Self::full(sentence),
+            _ => Self::new(sentence),
+        }
     }
 }
 

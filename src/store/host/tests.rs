@@ -44,8 +44,7 @@ impl Drop for Folder {
 fn with_each(test: impl Fn(&mut dyn HostStore)) {
     test(&mut MemoryStore::default());
     let folder = Folder::new();
-    let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
-    assert_eq!(sentence, None);
+    let mut store = SqliteStore::open(&folder.0).unwrap();
     test(&mut store);
     #[cfg(all(unix, feature = "cluster-tests"))]
     test(&mut postgres_store());

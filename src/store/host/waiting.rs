@@ -1,21 +1,20 @@
-//! Results that wait for a store that is away, in the file `waiting_results` of the host's data folder.
+//! Results that wait for a store that is away or full, in the file `waiting_results` of the host's data folder.
 //!
 //! Rules:
 //!
-//! - **A result is on the disk when [`add`](WaitingResults::add) returns**, and in the file until
-//!   [`save`](WaitingResults::save) after it was recorded. A host that is killed in between records it twice,
-//!   which changes nothing.
+//! - **A result is on the disk when [`save`](WaitingResults::save) has succeeded**, and in the file until the next
+//!   one after it was recorded. A host that is killed in between records it twice, which changes nothing. On a
+//!   full disk, results wait in memory until there is room.
 //! - **An account is named by its key**, since the number of an account is that of one database.
 //! - **A script is replayed again before it is recorded**, so that the file proves nothing, and so that a newer
 //!   version of the rules decides by itself.
-//! - **The file is bounded**, and replaced at once. A part that can't be read is put aside.
+//! - **File and memory are bounded.** The file is replaced at once. A part that can't be read is put aside.
 //! - **Nothing waits for ever:** a result that the store refuses although it answers is given up after
 //!   [`MOST_AGE`].
 //!
-//! A queue in memory was refused: a database is often restarted together with its hosts.
+//! Rejected: a queue in memory alone. A database is often restarted together with its hosts.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -70,8 +69,8 @@ pub enum Late {
     GivenUp(WaitingResult, StoreFailure),
     /// The store refuses it, and it waits on.
     Refused(StoreFailure),
-    /// The store is away.
-    Away,
+    /// The store is away or full, and it waits on with all others.
+    NotNow,
 }
 
 /// A line of the file.
@@ -92,7 +91,7 @@ impl WaitingResults {
         let file = folder.join("waiting_results");
         let failed = |error| failure(&file, &error);
         let mut bytes = Vec::new();
-        match File::open(&file) {
+        match private::open(&file) {
             Ok(found) => {
                 // More than this was not written by a host.
                 let most = 2 * MOST_BYTES as u64;
@@ -121,10 +120,10 @@ impl WaitingResults {
         self.results.is_empty()
     }
 
-    /// Adds a result, which is on the disk then.
+    /// Adds a result, which is on the disk after the next [`save`](Self::save).
     ///
     /// # Errors
-    /// If too many wait, or the file can't be written.
+    /// If too many wait.
     pub fn add(&mut self, result: WaitingResult) -> Result<(), StoreFailure> {
         let line = result.line();
         let bytes: usize = self.lines.iter().map(String::len).sum();
@@ -134,10 +133,7 @@ impl WaitingResults {
         self.results.push(result);
         self.lines.push(line);
         self.is_saved = false;
-        self.save().inspect_err(|_| {
-            self.results.pop();
-            self.lines.pop();
-        })
+        Ok(())
     }
 
     /// Records result number `index` at the time of its own, if there is one. [`save`](Self::save) is to be
@@ -151,7 +147,7 @@ impl WaitingResults {
     ) -> Option<Late> {
         let result = self.results.get(index)?;
         let late = result.record(store, world, now);
-        if !matches!(late, Late::Refused(_) | Late::Away) {
+        if !matches!(late, Late::Refused(_) | Late::NotNow) {
             self.results.remove(index);
             self.lines.remove(index);
             self.is_saved = false;
@@ -179,9 +175,11 @@ impl WaitingResults {
             };
         }
         let new = self.file.with_extension("new");
-        private::create_file(&new)?;
-        Real.write(&new, self.lines.concat().as_bytes())?;
-        Real.rename(&new, &self.file)
+        let written = private::create_file(&new)
+            .and_then(|()| Real.write(&new, self.lines.concat().as_bytes()))
+            .and_then(|()| Real.rename(&new, &self.file));
+        // A part of a file takes room on a full disk.
+        written.inspect_err(|_| _ = Real.remove(&new))
     }
 
     /// Puts a file aside of which a part can't be read; a sentence about it.
@@ -222,8 +220,8 @@ impl WaitingResult {
     }
 
     fn refused(&self, failure: StoreFailure, now: UnixTime) -> Late {
-        if failure.is_away() {
-            Late::Away
+        if failure.is_of_now() {
+            Late::NotNow
         } else if self.at.after(MOST_AGE) < now {
             Late::GivenUp(self.clone(), failure)
         } else {

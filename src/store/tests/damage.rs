@@ -22,7 +22,8 @@ fn a_damaged_value_costs_its_result_only() {
                     in it that can be read stays in force";
     assert_eq!(sentence, expected);
     assert!(store.best("cellar", Normal).is_none());
-    assert!(store.best("museum", Hard).is_some() && store.saved(Slot::Level).is_some());
+    assert!(store.best("museum", Hard).is_some());
+    assert_eq!(all_saved(&store).len(), 2);
     assert_eq!(fs::read_to_string(folder.0.join("progress.toml.damaged-1")).unwrap(), damaged);
     // Its script is not removed.
     assert_eq!(folder.names("cellar"), ["cellar.normal.300.script"]);
@@ -51,16 +52,17 @@ fn a_file_that_is_damaged_during_the_game_is_completed_from_memory() {
     let next = sound(&folder.0);
     assert_eq!(shown(&next), shown(&store));
     assert_eq!(next.won(Normal).collect::<Vec<_>>(), ["cellar", "citadel"]);
-    assert!(next.saved(Slot::Level).is_some() && !next.preferences().ghost);
+    assert_eq!(all_saved(&next).len(), 2);
+    assert!(!next.preferences().ghost);
 }
 
 #[test]
 fn a_file_of_a_newer_version_is_left_alone() {
     let folder = filled();
-    let newer = folder.text().replace("version = 2", "version = 3") + "[unknown]\n";
+    let newer = folder.text().replace("version = 3", "version = 4") + "[unknown]\n";
     fs::write(folder.progress(), &newer).unwrap();
     let (mut store, sentence) = Store::open(&folder.0);
-    assert!(sentence.unwrap().contains("version 3"));
+    assert!(sentence.unwrap().contains("version 4"));
     assert!(store.record("cellar", Normal, run(5, Rank::Thief)).time);
     assert!(store.trouble().unwrap().contains("newer"));
     assert_eq!((folder.text(), folder.names("damaged").len()), (newer, 0));
@@ -123,7 +125,7 @@ proptest! {
         for (date, daily) in &read.dailies {
             prop_assert_eq!(Some(daily), store.progress.dailies.get(date));
         }
-        prop_assert!(read.saved.is_none() || read.saved == store.progress.saved);
+        prop_assert!(store.progress.saves.starts_with(&read.saves));
         prop_assert!(read.descent.is_none() || read.descent == store.progress.descent);
     }
 
@@ -150,4 +152,49 @@ proptest! {
         let text = store.progress.to_string();
         prop_assert_eq!(read::read(text.as_bytes()), read::Content::Sound(store.progress));
     }
+}
+
+#[test]
+fn the_newest_three_damaged_files_are_kept() {
+    let folder = filled();
+    for number in 1..=7 {
+        fs::write(folder.progress(), format!("{number}")).unwrap();
+        assert!(Store::open(&folder.0).1.unwrap().contains(&format!("damaged-{number};")));
+    }
+    let kept = folder.names("damaged");
+    assert_eq!(kept, [5, 6, 7].map(|number| format!("progress.toml.damaged-{number}")));
+    let texts: Vec<_> =
+        kept.iter().map(|name| fs::read_to_string(folder.0.join(name)).unwrap()).collect();
+    assert_eq!(texts, ["5", "6", "7"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_named_and_never_waited_for() {
+    let pipe = |path: &Path| {
+        _ = fs::remove_file(path);
+        assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    for name in ["progress.toml", "progress.lock", "progress.toml.new"] {
+        let folder = filled();
+        pipe(&folder.0.join(name));
+        let (mut store, sentence) = Store::open(&folder.0);
+        store.record("citadel", Normal, run(5, Rank::Thief));
+        let sentence = sentence.or(store.trouble().map(str::to_owned)).unwrap();
+        assert!(
+            sentence.contains("it is a named pipe, and must be a file: move it away"),
+            "{sentence}"
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn nobody_else_can_read_what_is_kept() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = filled();
+    let mode = |name: &str| fs::metadata(folder.0.join(name)).unwrap().permissions().mode() & 0o777;
+    assert_eq!((mode(""), mode("runs")), (0o700, 0o700));
+    assert_eq!((mode("progress.toml"), mode("progress.lock")), (0o600, 0o600));
+    assert_eq!(mode("runs/cellar.normal.300.script"), 0o600);
 }

@@ -79,10 +79,10 @@ fn failing(folder: &Folder, from: usize, to: usize) -> (Store, Arc<AtomicUsize>)
 fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
     let changes: [fn(&mut Store); 6] = [
         |store| _ = store.record("cellar", Normal, run(200, Rank::Thief)),
-        |store| store.save(&saved("3 s forward\n")),
+        |store| store.save(&saved("3 s forward\n")).unwrap(),
         |store| _ = store.record("museum", Hard, run(400, Rank::Shadow)),
         |store| store.set_preferences(Preferences { bell: true, ..store.preferences() }),
-        |store| store.clear_saved(Slot::Level),
+        |store| store.remove_saved(saved("").save.id()),
         |store| {
             let reached = Reached { floors: 10, treasure: 1, steps: 9000 };
             _ = store.record_descent(reached, String::new());

@@ -18,7 +18,7 @@ use crate::support::cellcaster;
 /// The steps for which a tap walks.
 const TAP: u32 = 5;
 /// The steps in which a panel that has just appeared takes no key, and a few more.
-const PANEL: u32 = 40;
+const PANEL: u32 = 64;
 
 /// A level: its name, its goal, what its summary shows, and what is kept of it.
 struct Level {

@@ -24,7 +24,9 @@ fn play_daily(data: &Path, options: &[&str]) -> String {
 fn play_daily_by(program: &[&str], data: &Path, options: &[&str]) -> String {
     let environment = [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data.to_str().unwrap())]].concat();
     let arguments = [&program[1..], &["play", "--daily"], options].concat();
-    let mut player = Player::start((80, 24), Speaks::Plain, program[0], arguments, &environment);
+    let mut player = Player::start((100, 24), Speaks::Plain, program[0], arguments, &environment);
+    player.wait_for("> Begin the try that counts");
+    player.send("\r");
     player.wait_for("? help");
     player.send("w");
     // Some days begin in front of a guard who moves: the screen never rests.

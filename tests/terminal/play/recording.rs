@@ -46,6 +46,21 @@ fn a_recording_holds_exactly_what_the_terminal_was_sent() {
     assert_eq!(sizes.map(|event| event.data.as_str()).collect::<Vec<_>>(), ["100x30"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn nobody_else_can_read_a_recording() {
+    use std::os::unix::fs::PermissionsExt;
+    for name in ["private.cast", "private.script"] {
+        _ = fs::remove_file(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name));
+        let (mut game, path) = recorded(name);
+        game.press(Key::Right);
+        game.wait_for_arrow("turned", |arrow| arrow.points != '→');
+        assert_eq!(fs::metadata(path).unwrap().permissions().mode() & 0o777, 0o600);
+        game.leave();
+        game.wait_for_end();
+    }
+}
+
 #[test]
 fn a_killed_game_leaves_a_whole_file() {
     let (mut game, path) = recorded("killed.cast");

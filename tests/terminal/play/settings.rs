@@ -1,7 +1,8 @@
 //! The effect of the command line and of the configuration.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use super::game::{ENVIRONMENT, Game, Key, PROGRAM};
 use crate::emulator::{Modes, Speaks};
@@ -77,6 +78,19 @@ fn a_bad_configuration_is_an_error_that_names_the_line() {
     assert!(complaint.contains("bad.toml:3:1"), "{complaint}");
     let complaint = complaint_about(&["play", "--config", "no such file"]);
     assert!(complaint.contains("no such file"), "{complaint}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_as_a_configuration_is_named_and_not_waited_for() {
+    let pipe = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pipe.toml");
+    _ = fs::remove_file(&pipe);
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for command in ["play", "config"] {
+        let complaint = complaint_about(&[command, "--config", pipe.to_str().unwrap()]);
+        let expected = "pipe.toml can't be read: it is a named pipe, and must be a file";
+        assert!(complaint.contains(expected), "{complaint}");
+    }
 }
 
 #[test]

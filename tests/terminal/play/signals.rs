@@ -82,6 +82,22 @@ fn signals_end_it_in_a_terminal_that_answers_nothing() {
     end_by_each_signal(|| Game::with(Speaks::Nothing, (80, 24), None, &[], &[]).into_player());
 }
 
+/// SIGSTKFLT, SIGIO, SIGPWR and the real-time signals end it with the status that a shell reports for
+/// them.
+#[cfg(target_os = "linux")]
+#[test]
+fn signals_without_a_name_end_it_with_their_number() {
+    for number in [16, 29, 30].into_iter().chain(35..=64) {
+        let game = Game::start();
+        game.wait_for_releases();
+        let mut player = game.into_player();
+        player.signal_number(number);
+        let ending = player.wait_for_end();
+        ending.assert_given_back();
+        assert_eq!(ending.status.code(), Some(128 + number), "{ending:?}");
+    }
+}
+
 /// The key of SIGQUIT, pressed in a moment in which the terminal interprets keys.
 #[cfg(target_os = "linux")]
 #[test]

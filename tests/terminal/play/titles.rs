@@ -96,7 +96,7 @@ fn from_the_title_to_a_death_a_second_try_and_out_again() {
         }
         player.wait_for("killed by spikes");
         assert_eq!(rings(&player.bytes()), has_bell);
-        thread::sleep(Duration::from_millis(700));
+        thread::sleep(Duration::from_millis(1100));
         player.send("\r");
         player.wait_until("went on", |emulator| !emulator.text().contains("killed by"));
         player.wait_for("?");
@@ -128,6 +128,39 @@ fn a_game_that_is_left_is_offered_again() {
     player.send("q\r");
     player.wait_for_end().assert_given_back();
     assert!(data.join("progress.toml").exists());
+}
+
+#[test]
+fn a_map_that_is_started_by_its_path_is_saved_and_asked_about() {
+    let data = folder("by-path");
+    let map = test_map("pit");
+    let play = || {
+        let environment =
+            [&ENVIRONMENT[..], &[("CELLCASTER_DATA", data.to_str().unwrap())]].concat();
+        let arguments = ["play", map.to_str().unwrap()];
+        Player::start((80, 24), Speaks::Plain, PROGRAM, arguments, &environment)
+    };
+    let mut player = play();
+    player.wait_for("? help");
+    assert!(!player.text().contains("a saved game"), "{}", player.text());
+    player.send("w");
+    thread::sleep(Duration::from_millis(500));
+    player.send("q");
+    player.wait_for("the game is saved");
+    player.send("\r");
+    player.wait_for_end().assert_given_back();
+
+    let mut player = play();
+    player.wait_for("a saved game");
+    player.wait_for("> Continue");
+    player.send("\x1b");
+    player.wait_for_end().assert_given_back();
+    // The title goes on with it, although its folder is not among those of own maps.
+    let mut player = start(&data, (80, 24));
+    choose(&player, "Continue");
+    player.wait_for("? help");
+    player.send("q\r");
+    player.wait_for_end().assert_given_back();
 }
 
 #[test]

@@ -8,8 +8,8 @@ use unicode_width::UnicodeWidthChar;
 ///
 /// Every character that is kept takes one or two columns. Kinds of blanks and breaks become one blank,
 /// and there is none at the ends. Control characters, escape sequences' introducers, marks that combine,
-/// marks of direction, invisible, private and unassigned characters are dropped. Letters with accents are
-/// composed before, so that these stay.
+/// marks of direction, invisible, private and unassigned characters are dropped, and characters that
+/// terminals draw in different widths. Letters with accents are composed before, so that these stay.
 ///
 /// ```
 /// use cellcaster::store::host::printable;
@@ -41,10 +41,23 @@ pub fn printable(text: &str, columns: usize) -> String {
 
 /// The columns of a character that is kept.
 fn width_of(character: char) -> Option<usize> {
-    let is_hidden = character.is_control()
+    let is_dropped = character.is_control()
         || INVISIBLE.contains(&character)
-        || character.script() == Script::Unknown;
-    character.width().filter(|width| !is_hidden && (1..=2).contains(width))
+        || is_of_disputed_width(character)
+        || [Script::Unknown, Script::Cuneiform].contains(&character.script());
+    character.width().filter(|width| !is_dropped && (1..=2).contains(width))
+}
+
+/// Whether terminals draw `character` over its neighbours, or join it with them: dashes of two and three
+/// ems, Arabic words that are one character, halves of flags, and skin tones. (Cuneiform signs, too.)
+fn is_of_disputed_width(character: char) -> bool {
+    matches!(
+        character,
+        '\u{2e3a}'..='\u{2e3b}'
+            | '\u{fdf0}'..='\u{fdff}'
+            | '\u{1f1e6}'..='\u{1f1ff}'
+            | '\u{1f3fb}'..='\u{1f3ff}'
+    )
 }
 
 /// Characters with a width that some terminals show as nothing, or that change what is beside them: the

@@ -130,7 +130,10 @@ fn every_kind_of_character_is_kept_or_dropped_by_one_rule() {
         ("日本 \u{1f468}\u{200d}\u{1f469}", "日本 \u{1f468}\u{1f469}"),
         // In a line, look-alikes are as good as others: a name is checked by `Name`.
         ("раураl ⅰ①Ａ", "раураl ⅰ①Ａ"),
-        ("\u{fdfa}", "\u{fdfa}"),
+        // Characters that terminals draw over their neighbours or join with them.
+        ("a\u{fdfa}\u{fdfd}\u{2e3b}\u{1242b}b", "ab"),
+        ("\u{1f1eb}\u{1f1f7} \u{1f44d}\u{1f3fd}", "\u{1f44d}"),
+        ("שלום عليكم", "שלום عليكم"),
     ] {
         assert_eq!(printable(text, 80), kept, "{text:?}");
     }

@@ -59,6 +59,8 @@ pub(super) enum Fault {
     Unknown,
     /// Another transaction came before this one, which can be run again.
     Conflict,
+    /// The disk of the server is full.
+    Full,
     /// The server does not do it.
     Refused,
 }
@@ -199,6 +201,7 @@ impl Call<'_> {
         let sentence = format!("{} failed: {why}", self.shown);
         Err(match fault {
             Fault::Lost | Fault::Unknown => StoreFailure::away(sentence),
+            Fault::Full => StoreFailure::full(sentence),
             Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
         })
     }
@@ -240,6 +243,7 @@ fn fault(error: &Error) -> Fault {
     const LOSSES: [&str; 3] = ["08", "57P", "25006"];
     match error.code() {
         Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
+        Some(&SqlState::DISK_FULL) => Fault::Full,
         Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => Fault::Lost,
         Some(_) => Fault::Refused,
         None if is_of_the_value(error) => Fault::Refused,

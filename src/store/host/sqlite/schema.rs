@@ -105,16 +105,22 @@ CREATE TABLE account_rates (
 ) STRICT;
 ";
 
-/// The version of the file: the number of migrations that it has.
-pub(super) fn version(connection: &Connection) -> Result<usize> {
-    let version: i64 = connection.query_row("PRAGMA user_version", [], |row| row.get(0))?;
-    Ok(usize::try_from(version).unwrap_or(usize::MAX))
+/// The version of the file: the number of migrations that it has. In a file that no Cellcaster wrote, it
+/// may be negative.
+pub(super) fn version(connection: &Connection) -> Result<i64> {
+    connection.query_row("PRAGMA user_version", [], |row| row.get(0))
+}
+
+/// The version of a file that has all migrations.
+pub(super) fn newest() -> i64 {
+    MIGRATIONS.len() as i64
 }
 
 /// Brings a file to the newest version, all at once or not at all.
 pub(super) fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<()> {
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    for (number, migration) in (1..).zip(migrations).skip(version(&transaction)?) {
+    let done = usize::try_from(version(&transaction)?).unwrap_or(usize::MAX);
+    for (number, migration) in (1..).zip(migrations).skip(done) {
         transaction.execute_batch(migration)?;
         transaction.pragma_update(None, "user_version", number)?;
     }

@@ -8,7 +8,7 @@ use super::*;
 
 /// Makes a store with many accounts, and returns the path of its file.
 fn filled(folder: &Path) -> PathBuf {
-    let (mut store, _) = SqliteStore::open(folder).unwrap();
+    let mut store = SqliteStore::open(folder).unwrap();
     for number in 0..=250_u8 {
         let text = format!("n-{number}-x");
         let account = store.create_account(&key(number), &name(&text), at(0)).unwrap();
@@ -29,8 +29,8 @@ fn accounts(store: &mut SqliteStore) -> usize {
 fn what_is_kept_is_there_after_a_restart() {
     let folder = Folder::new();
     filled(&folder.0);
-    let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
-    assert_eq!((accounts(&mut store), sentence), (251, None));
+    let mut store = SqliteStore::open(&folder.0).unwrap();
+    assert_eq!(accounts(&mut store), 251);
     assert_eq!(store.level_scores(&board("cellar"), 99).unwrap().len(), 20);
 }
 
@@ -40,7 +40,7 @@ fn nobody_else_reads_it() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let inner = folder.0.join("a/b");
-    let (mut store, _) = SqliteStore::open(&inner).unwrap();
+    let mut store = SqliteStore::open(&inner).unwrap();
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!([mode(&folder.0), mode(&inner)], [0o700; 2]);
@@ -53,8 +53,65 @@ fn nobody_else_reads_it() {
     assert_eq!(mode(&inner.join("host.db")), 0o600);
 }
 
+/// Copies the files of a store, as they are when its process is killed.
+fn killed(folder: &Folder) -> Folder {
+    let copy = Folder::new();
+    fs::create_dir_all(&copy.0).unwrap();
+    for name in ["host.db", "host.db-wal"] {
+        fs::copy(folder.0.join(name), copy.0.join(name)).unwrap();
+    }
+    copy
+}
+
+/// The accounts in `host.db` without its log.
+fn accounts_in_the_file_alone(folder: &Folder) -> usize {
+    let copy = Folder::new();
+    fs::create_dir_all(&copy.0).unwrap();
+    fs::copy(folder.0.join("host.db"), copy.0.join("host.db")).unwrap();
+    accounts(&mut SqliteStore::open(&copy.0).unwrap())
+}
+
 #[test]
-fn a_damaged_file_is_kept_and_what_can_be_read_stays() {
+fn the_log_is_copied_into_the_file_at_each_start_and_end() {
+    let folder = Folder::new();
+    let mut store = SqliteStore::open(&folder.0).unwrap();
+    for number in 0..99 {
+        store.create_account(&key(number), &name(&format!("n-{number}-x")), at(0)).unwrap();
+    }
+    let killed = killed(&folder);
+    assert_eq!(accounts_in_the_file_alone(&killed), 0);
+    let length = || fs::metadata(killed.0.join("host.db-wal")).unwrap().len();
+    assert!(length() > 0);
+    let _next = SqliteStore::open(&killed.0).unwrap();
+    assert_eq!((length(), accounts_in_the_file_alone(&killed)), (0, 99));
+
+    store.checkpoint().unwrap();
+    assert_eq!(fs::metadata(folder.0.join("host.db-wal")).unwrap().len(), 0);
+    assert_eq!(accounts_in_the_file_alone(&folder), 99);
+}
+
+/// All files of a folder, with their content.
+fn files(folder: &Folder) -> Vec<(PathBuf, Vec<u8>)> {
+    let paths = fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = paths.map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+    files.sort();
+    files
+}
+
+/// Asserts that a store is refused as damaged, and that nothing in its folder changes.
+fn assert_refused(folder: &Folder) {
+    let before = files(folder);
+    let sentence = SqliteStore::open(&folder.0).unwrap_err().to_string();
+    let file = folder.0.join("host.db").display().to_string();
+    assert!(sentence.starts_with(&format!("{file} is damaged: ")), "{sentence}");
+    for part in ["a backup", "--accept-empty", "host.db.damaged-"] {
+        assert!(sentence.contains(part) && sentence.lines().count() == 1, "{sentence}");
+    }
+    assert!(files(folder) == before, "a file has changed");
+}
+
+#[test]
+fn a_damaged_file_is_refused_and_if_that_is_accepted_what_can_be_read_stays() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     let mut content = fs::read(&file).unwrap();
@@ -62,25 +119,28 @@ fn a_damaged_file_is_kept_and_what_can_be_read_stays() {
     // A page in the middle.
     content[10 * 4096..11 * 4096].fill(0x5a);
     fs::write(&file, &content).unwrap();
-    let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
+    assert_refused(&folder);
+    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
     let sentence = sentence.unwrap();
     assert!(sentence.contains("host.db.damaged-1") && sentence.lines().count() == 1, "{sentence}");
     assert_eq!(fs::read(folder.0.join("host.db.damaged-1")).unwrap(), content);
     let left = accounts(&mut store);
     assert!((100..=251).contains(&left), "{left}");
     drop(store);
-    let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
+    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
     assert_eq!((accounts(&mut store), sentence), (left, None));
 }
 
 #[test]
-fn a_file_without_anything_readable_is_kept() {
+fn a_file_without_anything_readable_is_refused_and_kept() {
     let folder = Folder::new();
     let file = filled(&folder.0);
-    for (number, content) in (1..).zip([&b"SQLite format 3\0nonsense"[..], &[7; 5000], &[0; 4096]])
+    for (number, content) in
+        (1..).zip([&b"SQLite format 3\0nonsense"[..], &[7; 5000], &[0; 4096], &[]])
     {
         fs::write(&file, content).unwrap();
-        let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
+        assert_refused(&folder);
+        let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
         assert!(sentence.is_some_and(|it| it.contains("0 rows")));
         assert_eq!(accounts(&mut store), 0);
         let kept = folder.0.join(format!("host.db.damaged-{number}"));
@@ -89,14 +149,50 @@ fn a_file_without_anything_readable_is_kept() {
 }
 
 #[test]
-fn a_file_cut_short_is_kept() {
+fn a_file_cut_short_is_refused_and_kept() {
     let folder = Folder::new();
     let file = filled(&folder.0);
     let content = fs::read(&file).unwrap();
     fs::write(&file, &content[..content.len() * 2 / 3]).unwrap();
-    let (mut store, sentence) = SqliteStore::open(&folder.0).unwrap();
+    assert_refused(&folder);
+    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
     assert!(sentence.is_some_and(|it| it.contains("host.db.damaged-1")));
     store.create_account(&key(251), &name("Later"), at(0)).unwrap();
+}
+
+/// SQLite would make a new file, and delete the log.
+#[test]
+fn a_log_without_its_file_is_refused_and_kept() {
+    let folder = Folder::new();
+    let mut store = SqliteStore::open(&folder.0).unwrap();
+    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let killed = killed(&folder);
+    let log = fs::read(killed.0.join("host.db-wal")).unwrap();
+    fs::remove_file(killed.0.join("host.db")).unwrap();
+    assert_refused(&killed);
+    let (_, sentence) = SqliteStore::open_or_salvage(&killed.0).unwrap();
+    assert!(sentence.is_some_and(|it| it.contains("host.db.damaged-1")));
+    assert_eq!(fs::read(killed.0.join("host.db.damaged-1-wal")).unwrap(), log);
+}
+
+/// SQLite itself says that there is no room.
+#[test]
+fn a_full_disk_is_told_from_other_failures() {
+    let folder = Folder::new();
+    let mut store = SqliteStore::open(&folder.0).unwrap();
+    let account = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let pages: i64 =
+        store.database.connection.query_row("PRAGMA page_count", [], |row| row.get(0)).unwrap();
+    let set = |store: &SqliteStore, most: i64| {
+        store.database.connection.pragma_update(None, "max_page_count", most).unwrap();
+    };
+    set(&store, pages);
+    let script = "#".repeat(AccountSettings::MOST_BYTES);
+    let settings = AccountSettings { configuration: script, ..AccountSettings::default() };
+    let failure = store.set_settings(account.id, &settings).unwrap_err();
+    assert!(failure.is_full() && !failure.is_away(), "{failure}");
+    set(&store, 1_000_000);
+    store.set_settings(account.id, &settings).unwrap();
 }
 
 #[test]
@@ -113,6 +209,8 @@ fn other_files_are_left_alone() {
     };
     alter("PRAGMA user_version = 99");
     assert!(refused().contains("has version 99, which a newer Cellcaster wrote"));
+    alter("PRAGMA user_version = -5");
+    assert!(refused().contains("has version -5, which no Cellcaster wrote"));
     alter("PRAGMA user_version = 1; PRAGMA application_id = 7");
     assert!(refused().contains("belongs to another program"));
     let blocked = folder.0.join("blocked");
@@ -121,12 +219,28 @@ fn other_files_are_left_alone() {
     assert!(sentence.contains("can't be used"), "{sentence}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_named_and_not_waited_for() {
+    let folder = Folder::new();
+    let file = filled(&folder.0);
+    fs::remove_file(&file).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&file).status().unwrap().success());
+    let sentences = [
+        SqliteStore::open(&folder.0).unwrap_err().to_string(),
+        SqliteStore::open_to_read(&folder.0).unwrap_err().to_string(),
+    ];
+    for sentence in sentences {
+        assert!(sentence.contains("it is a named pipe, and must be a file"), "{sentence}");
+    }
+}
+
 #[test]
 fn a_reader_sees_what_a_host_writes() {
     let folder = Folder::new();
     assert!(SqliteStore::open_to_read(&folder.0).unwrap().is_none());
     assert!(!folder.0.exists());
-    let (mut host, _) = SqliteStore::open(&folder.0).unwrap();
+    let mut host = SqliteStore::open(&folder.0).unwrap();
     let mut reader = SqliteStore::open_to_read(&folder.0).unwrap().unwrap();
     let ada = host.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     host.record(ada.id, &run("cellar", 9, Rank::Ghost), at(0)).unwrap();

@@ -70,12 +70,13 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
     let mut before = waiting(&folder);
     before.add(result(2, 3, WON)).unwrap();
     before.add(result(1, 4, WON)).unwrap();
+    before.save().unwrap();
     drop(before);
 
     let mut after = waiting(&folder);
     assert_eq!(after.len(), 2);
     let mut away = Failing(&mut store, Some(StoreFailure::away("gone")));
-    assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::Away)));
+    assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
     assert_eq!(after.len(), 2);
     for text in ["Bob", "Ada"] {
         let late = after.record(0, &mut store, |_| None, at(5));
@@ -125,6 +126,7 @@ fn the_file_is_bounded_and_what_cannot_be_read_is_put_aside() {
     waiting.add(result(1, 1, &long)).unwrap();
     assert!(waiting.add(result(1, 2, &long)).is_err());
     assert_eq!(waiting.len(), 2);
+    waiting.save().unwrap();
 
     let file = folder.0.join("waiting_results");
     let mut content = fs::read(&file).unwrap();
@@ -139,14 +141,31 @@ fn the_file_is_bounded_and_what_cannot_be_read_is_put_aside() {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_reads_the_file_and_one_that_cannot_be_written_is_a_failure() {
+fn nobody_else_reads_the_file() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let mut waiting = waiting(&folder);
     waiting.add(result(1, 0, WON)).unwrap();
+    waiting.save().unwrap();
     let mode = fs::metadata(folder.0.join("waiting_results")).unwrap().permissions().mode();
     assert_eq!(mode & 0o777, 0o600);
+}
+
+#[test]
+fn what_cannot_be_written_waits_in_memory_until_it_can() {
+    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let mut results = waiting(&folder);
     fs::remove_dir_all(&folder.0).unwrap();
-    assert!(waiting.add(result(1, 0, WON)).is_err());
-    assert_eq!(waiting.len(), 1);
+    results.add(result(1, 1, WON)).unwrap();
+    assert!(results.save().is_err());
+    assert_eq!(results.len(), 1);
+    // A store that is full takes nothing, however long it lasts.
+    let mut full = Failing(&mut store, Some(StoreFailure::full("no room")));
+    assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
+    fs::create_dir_all(&folder.0).unwrap();
+    results.save().unwrap();
+    assert_eq!(waiting(&folder).len(), 1);
+    assert!(matches!(results.record(0, &mut store, |_| None, at(99)), Some(Late::Recorded(..))));
+    assert_eq!(cellar(&mut store)[0].verified_at, at(1));
 }
