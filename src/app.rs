@@ -64,7 +64,7 @@ use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
-pub use offers::{FindMaps, Offers, OwnLevel, OwnMap};
+pub use offers::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 pub use recording::Recording;
 pub use replay::Replay;
 use results::LevelResult;
@@ -110,6 +110,8 @@ struct App {
     reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
+    /// What a key has just done, where nothing else shows it.
+    notice: Option<Goal>,
     /// The run since the level began.
     log: RunLog,
     /// The best run of the level.
@@ -142,6 +144,9 @@ struct App {
     help: HelpScroll,
     /// The time of the last event, and the time since which the screen is shown.
     now: Duration,
+    /// The machine's clock, by which steps that take long are noticed; `None` to take as long as they
+    /// need.
+    machine_time: Option<fn() -> Duration>,
     shown_since: Duration,
     pending: PendingKey,
     has_left: bool,
@@ -176,8 +181,10 @@ impl App {
             level: number,
             course,
             reached: Reached::default(),
+            machine_time: None,
             difficulty,
             goal: Goal::of(&game, settings.minimap),
+            notice: None,
             map: MapPanel::new(settings.minimap),
             help: HelpScroll::default(),
             game,
@@ -238,7 +245,8 @@ impl App {
             }
             Opening::Daily(offers) => {
                 let mut app = Self::offering(offers, settings, store);
-                app.begin_daily();
+                app.show_title();
+                app.open(Screen::Daily);
                 app
             }
             Opening::Endless(offers) => {

@@ -68,15 +68,18 @@ impl Controls {
         if press == Press::Repeat {
             return Some(press);
         }
-        if wants.is_some_and(walks) {
+        let wants_by = |key, is_meant: fn(Intent) -> bool| matches!(bindings.action(key), Some(Action::Want(intent)) if is_meant(intent));
+        if press == Press::Fresh {
+            self.held.release_lingering(|key| wants_by(key, Intent::turns));
+        }
+        if wants.is_some_and(Intent::walks) {
             self.toggles.keeps_walking = false;
         }
         if wants == Some(Intent::LookAhead) {
-            let tilts = |key| bindings.action(key).is_some_and(tilts);
-            self.held.release_each(tilts);
+            self.held.release_each(|key| wants_by(key, tilts));
         }
         if wants == Some(Intent::Jump) && context.plays && !context.is_airborne {
-            self.held.join_newest();
+            self.held.join_newest(|key| wants_by(key, Intent::walks));
         }
         Some(press)
     }
@@ -116,13 +119,7 @@ impl Controls {
     }
 }
 
-/// Whether `action` is to look up or down.
-fn tilts(action: Action) -> bool {
-    matches!(action, Action::Want(Intent::LookUp | Intent::LookDown))
-}
-
-/// Whether `intent` is to walk.
-fn walks(intent: Intent) -> bool {
-    use Intent::{Back, Forward, StrafeLeft, StrafeRight};
-    matches!(intent, Forward | Back | StrafeLeft | StrafeRight)
+/// Whether `intent` is to look up or down.
+fn tilts(intent: Intent) -> bool {
+    matches!(intent, Intent::LookUp | Intent::LookDown)
 }

@@ -1,28 +1,55 @@
 //! Descents: endless ones, and the one of the day.
 //!
 //! A descent ends when the player dies: there is no way back to a floor, so that how far somebody
-//! came means the same for all. The daily run counts once; later tries are practice. A descent that is
-//! left is saved, and removed when it goes on: it goes on once, and a death cannot be undone.
+//! came means the same for all. The first try of a daily run counts, and is asked about before it begins;
+//! tries after its end are practice. A descent that is left is saved, and goes on from there as the same
+//! try: its saved game is removed then, so that a death cannot be undone.
 
 use super::goal::Goal;
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
 use super::panels::whole_seconds;
-use super::{App, Levels, STEP};
-use crate::store::{Descent, Reached, Slot};
+use super::saved::save_of_descent;
+use super::{App, Levels, STEP, Screen};
+use crate::game::Rules;
+use crate::store::{Descent, Reached};
 use crate::world::Difficulty;
 
 /// What is said about a daily run that does not count.
 const PRACTICE: &str = "Practice: the first try of the day counts";
 
 impl App {
+    /// The question before the daily run: the try that counts begins or goes on, or is over.
+    pub(super) fn daily_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("daily run");
+        let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
+        let menu = menu.line(format!("The descent of {}, the same for all.", date_of(date.into())));
+        let rules = Rules { difficulty: Difficulty::default(), seed: date.into() };
+        let id = save_of_descent(Descent::Daily, rules).id();
+        let menu = match self.store.daily(date) {
+            None if !self.store.has_room_for(id) => self.with_removal(menu),
+            None => menu
+                .line("One try counts, and it ends with your death.")
+                .line("If you leave, it is saved, and you can go on.")
+                .entry("Begin the try that counts", Choice::Daily),
+            Some(_) if self.store.has_saved(id) => menu
+                .line("The try that counts is where you left it.")
+                .entry("Continue the try that counts", Choice::Continue(id)),
+            Some(tried) => menu
+                .line(format!("The try that counts reached {}.", described(tried.reached)))
+                .entry("Practise", Choice::Daily),
+        };
+        menu.entry("Return to the title", Choice::Back)
+    }
+
     /// Begins the descent of the day, at the same difficulty for everybody.
     pub(super) fn begin_daily(&mut self) {
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
         let counts = self.store.begin_daily(date);
         self.difficulty = Difficulty::default();
-        self.begin(Levels::descent(date.into(), Course::Daily { date, counts }));
+        self.set_up(Levels::descent(date.into(), Course::Daily { date, counts }));
+        self.ask_about_saved();
     }
 
     /// Begins a descent that nobody has seen.
@@ -104,17 +131,11 @@ impl App {
     /// Adds the descents to the title's menu.
     pub(super) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let Some(offers) = &self.offers else { return menu };
-        let menu = match self.store.saved(Slot::Descent).and_then(|saved| saved.descent) {
-            Some(kind) => {
-                menu.entry_with("Continue descent", name(kind), Choice::Continue(Slot::Descent))
-            }
-            None => menu,
-        };
         let menu = match offers.today {
             Some(date) => {
                 let tried = self.store.daily(date);
                 let tried = tried.map_or_else(String::new, |tried| short(tried.reached));
-                menu.entry_with("Daily run", tried, Choice::Daily)
+                menu.entry_with("Daily run", tried, Choice::Open(Screen::Daily))
             }
             None => menu,
         };
@@ -123,13 +144,9 @@ impl App {
     }
 }
 
-/// The name of a kind of descent, for the title.
-fn name(kind: Descent) -> &'static str {
-    match kind {
-        Descent::Endless => "endless",
-        Descent::Daily => "daily run",
-        Descent::Practice => "practice",
-    }
+/// The seed of a daily run as a date: 20261122 is 2026-11-22.
+pub(super) fn date_of(seed: u64) -> String {
+    format!("{}-{:02}-{:02}", seed / 10_000, seed / 100 % 100, seed % 100)
 }
 
 /// The floors that were reached, for the title.

@@ -5,7 +5,7 @@ use ratatui::layout::{Rect, Size};
 use super::overlay::Overlay;
 use super::status::{StatusValues, hint};
 use super::vitals::HealthSigns;
-use super::{App, Bindings, DrawOptions, Screen, banner, panels};
+use super::{App, Bindings, DrawOptions, Ghost, Screen, banner, panels};
 use crate::canvas::Canvas;
 use crate::game::{Game, PlayerId};
 
@@ -45,6 +45,8 @@ impl App {
         self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
+        } else if self.screen.is_result() {
+            canvas.draw_widget(hint("up and down, Enter"), status);
         } else {
             self.draw_status(canvas, status);
         }
@@ -60,8 +62,7 @@ impl App {
                 self.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
             Screen::Leaving => {
-                let effect = if self.is_descent() { "ends the run" } else { "leaves" };
-                panels::leaving(canvas, picture, bindings, effect);
+                panels::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
             Screen::Title => {
                 let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth);
@@ -75,6 +76,7 @@ impl App {
         self.status.update(&StatusValues {
             game: &self.game,
             goal: &self.goal,
+            notice: self.notice.as_ref(),
             level: self.level,
             share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
             toggles: self.controls.toggles,
@@ -130,6 +132,8 @@ impl App {
         let preferences = self.store.preferences();
         let Some(game) = self.game.grid() else { return };
         if let Some(overlay) = Overlay::new(game, PlayerId::FIRST, options, preferences) {
+            let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
+            let overlay = overlay.with_ghost(ghost);
             overlay.draw_map(canvas, area, &mut self.map, &self.views.grid);
         }
     }

@@ -3,9 +3,12 @@
 //! It is a game of its own that the script of that run plays. Recorded positions were refused: a
 //! script is a hundredth of their size, and is kept anyway.
 
+use super::App;
+use super::goal::Goal;
 use super::script_cursor::ScriptCursor;
 use crate::game::{Game, Intents};
-use crate::world::{Figure, SpriteId};
+use crate::tui::MapMark;
+use crate::world::{Camera, FieldOfView, Figure, SpriteId};
 
 /// How much of the ghost shows, of 255.
 const OPACITY: u8 = 96;
@@ -17,6 +20,23 @@ pub(super) struct Ghost {
     cursor: ScriptCursor,
     /// The intents of the next step; `None` at the end of the script.
     next: Option<Intents>,
+}
+
+impl App {
+    /// Switches ghosts on or off, and says so.
+    pub(super) fn toggle_ghost(&mut self) {
+        self.prefer(|it| it.ghost ^= true);
+        let is_on = self.store.preferences().ghost;
+        let (text, short) = match (is_on, &self.ghost) {
+            (false, _) => ("The ghost is off", "Ghost off"),
+            (true, Some(ghost)) if ghost.camera().is_none() => {
+                ("The ghost is on, and has left the level", "Ghost on, and gone")
+            }
+            (true, Some(_)) => ("The ghost of your best run is on", "Ghost on"),
+            (true, None) => ("The ghost is on: you have no best run here yet", "No ghost here yet"),
+        };
+        self.notice = Some(Goal::new(text, short));
+    }
 }
 
 impl Ghost {
@@ -49,10 +69,7 @@ impl Ghost {
 
     /// The figure of the ghost; `None` after it has left the level.
     pub(super) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
-        if self.game.is_finished() {
-            return None;
-        }
-        let camera = self.game.camera(crate::world::FieldOfView::default());
+        let camera = self.camera()?;
         Some(Figure {
             sprite,
             position: camera.position(),
@@ -61,5 +78,15 @@ impl Ghost {
             frame: 0,
             opacity: OPACITY,
         })
+    }
+
+    /// The ghost on the map; `None` after it has left the level.
+    pub(super) fn on_map(&self) -> Option<MapMark> {
+        let camera = self.camera()?;
+        Some(MapMark { position: camera.position(), heading: camera.heading })
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        (!self.game.is_finished()).then(|| self.game.camera(FieldOfView::default()))
     }
 }

@@ -1,4 +1,4 @@
-//! The goal of a level, shown in one line when it begins.
+//! The goal of a level, shown in one line when it begins; and what a key has just done, shown the same way.
 //!
 //! It is shown until the player has acted for some time. Hiding it by the clock was refused: that
 //! would draw a frame while nothing moves, and hide it from slow readers. For the same readers,

@@ -1,13 +1,15 @@
 //! Keys: the effect of each key on each screen.
 //!
-//! A [`PendingKey`](super::question::PendingKey) decides which presses answer a question. In the first half
-//! second of a panel that shows a result, none does.
+//! A [`PendingKey`](super::question::PendingKey) decides which presses answer a question. A panel that shows a
+//! result appears while the player presses keys of the game: only Enter and the arrows act there, once the keys
+//! that were held have been released.
 
 use std::time::Duration;
 
 use super::controls::KeyContext;
 use super::menu::Selection;
 use super::menus::Choice;
+use super::question::is_answerable;
 use super::settings_screen::Setting;
 use super::{App, Screen, menu};
 use crate::app::bindings::Action;
@@ -21,9 +23,6 @@ use crate::world::FieldOfView;
 const VIEW_STEP: f64 = 6.0;
 const NARROWEST_VIEW: f64 = 30.0;
 const WIDEST_VIEW: f64 = 120.0;
-
-/// The least time for which a result is shown.
-const LEAST_SHOWN: Duration = Duration::from_millis(500);
 
 impl App {
     /// Handles a press, a repetition or a release at time `now`.
@@ -70,6 +69,7 @@ impl App {
         match self.screen {
             _ if scrolls => {}
             Screen::Leaving => self.press_to_answer(key, press),
+            _ if self.screen.is_result() => self.press_on_result(key, press),
             _ if self.screen.has_menu() => self.press_in_menu(key, press),
             _ => self.press_command(key, press),
         }
@@ -86,12 +86,22 @@ impl App {
         }
     }
 
-    fn press_in_menu(&mut self, key: Key, press: Press) {
-        // A key that is held since the game selects nothing either.
-        let is_early = press == Press::Repeat || self.now < self.shown_since + LEAST_SHOWN;
-        if self.screen.is_result() && is_early {
+    fn press_on_result(&mut self, key: Key, press: Press) {
+        let held = &self.controls.held;
+        if press == Press::Repeat || !is_answerable(held, self.shown_since, self.now) {
             return;
         }
+        match key {
+            Key::Up | Key::Down => {
+                self.menu.select_neighbour(key == Key::Down);
+                self.shown = None;
+            }
+            Key::Enter => self.press_to_answer(key, press),
+            _ => {}
+        }
+    }
+
+    fn press_in_menu(&mut self, key: Key, press: Press) {
         if let Some(selection) = Selection::by(key, &self.settings.bindings) {
             self.menu.select(selection);
             self.shown = None;
@@ -99,6 +109,8 @@ impl App {
             self.change_value(forward);
         } else if self.chooses(key) {
             self.press_to_answer(key, press);
+        } else if let (true, Some(Choice::Continue(id))) = (self.removes(key), self.menu.choice()) {
+            self.open(Screen::Remove(id));
         } else {
             self.press_command(key, press);
         }
@@ -122,10 +134,14 @@ impl App {
     fn chooses(&self, key: Key) -> bool {
         match key {
             Key::Enter | Key::Char(' ') => true,
-            Key::Char('r' | 'l') if self.screen == Screen::Dead && !self.is_descent() => true,
             Key::Char(digit) => self.menu.has_number(digit),
             _ => false,
         }
+    }
+
+    /// Whether `key` removes the selected saved game.
+    fn removes(&self, key: Key) -> bool {
+        self.screen == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
     }
 
     fn command(&mut self, key: Key, action: Action) {
@@ -145,7 +161,7 @@ impl App {
             (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
             (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
             (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
-            (_, Action::ToggleGhost) => self.prefer(|it| it.ghost ^= true),
+            (_, Action::ToggleGhost) => self.toggle_ghost(),
             (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
@@ -162,7 +178,7 @@ impl App {
         }
     }
 
-    fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+    pub(super) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
         let mut preferences = self.store.preferences();
         change(&mut preferences);
         self.set_preferences(preferences);
@@ -173,14 +189,22 @@ impl App {
         match self.screen {
             Screen::Playing => {}
             Screen::Title => self.leave(),
-            Screen::LevelDone | Screen::Dead | Screen::End => self.ask_to_leave(),
+            screen if screen.is_before_start() => self.give_up_beginning(),
             _ => self.close(),
+        }
+    }
+
+    /// Returns to the title from a question before a level, or leaves where there is no title.
+    fn give_up_beginning(&mut self) {
+        match self.offers {
+            Some(_) => self.return_to_title(),
+            None => self.leave(),
         }
     }
 
     /// Asks whether to leave. Where there is no game to lose, it is not asked.
     fn ask_to_leave(&mut self) {
-        if self.demo.is_some() || self.screen == Screen::End {
+        if self.demo.is_some() || self.screen.is_before_start() {
             self.leave();
         } else {
             self.open(Screen::Leaving);
@@ -189,7 +213,7 @@ impl App {
 
     /// Leaves the program.
     pub(super) fn leave(&mut self) {
-        self.leave_game();
+        _ = self.leave_game();
         self.has_left = true;
     }
 
@@ -209,11 +233,8 @@ impl App {
             }
             return;
         }
-        match (self.screen, key) {
-            (Screen::Dead, Key::Char('r')) => self.menu.select_value("r"),
-            (Screen::Dead, Key::Char('l')) => self.menu.select_value("l"),
-            (_, Key::Char(digit)) => self.menu.select_number(digit),
-            _ => {}
+        if let Key::Char(digit) = key {
+            self.menu.select_number(digit);
         }
         self.choose();
     }

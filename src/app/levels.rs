@@ -68,7 +68,7 @@ impl Levels {
     }
 
     /// A map of the player's own.
-    pub(super) fn own(level: OwnLevel) -> Self {
+    pub fn own(level: OwnLevel) -> Self {
         Self::staged(Stage { content: Content::Own(level) }, iter::empty())
     }
 
@@ -133,6 +133,14 @@ impl Stage {
             Content::Builtin(level) => Some(level.name),
             Content::Own(own) => Some(&own.key),
             Content::Level(_) | Content::Game(_) | Content::Floor { .. } => None,
+        }
+    }
+
+    /// The path of the level's map file, if it is known.
+    pub(super) fn file(&self) -> Option<&str> {
+        match &self.content {
+            Content::Own(own) => own.file.as_deref(),
+            _ => None,
         }
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Every panel that asks for a choice is such a menu, so that the same keys work in all of them:
 //! the arrows or the keys to walk select, Enter or Space chooses, a digit chooses the entry with
-//! that number, Escape or Backspace goes back. A list that is higher than the window scrolls, and
+//! that number, Escape or Backspace goes back. On a result, only Enter and the arrows act, and the selection
+//! stops at both ends. A list that is higher than the window scrolls, and
 //! the text above it is cut first.
 
 use ratatui::layout::{Constraint, Flex, Layout, Rect};
@@ -152,10 +153,11 @@ impl<C: Copy> Menu<C> {
         self.selected = self.index_of(digit).unwrap_or(self.selected);
     }
 
-    /// Selects the entry with that value, if there is one.
-    pub(crate) fn select_value(&mut self, value: &str) {
-        let index = self.entries.iter().position(|entry| entry.value == value);
-        self.selected = index.unwrap_or(self.selected);
+    /// Selects the next entry, or the one before, if there is one.
+    pub(crate) fn select_neighbour(&mut self, forward: bool) {
+        let last = self.entries.len().saturating_sub(1);
+        let selected = self.selected;
+        self.selected = if forward { (selected + 1).min(last) } else { selected.saturating_sub(1) };
     }
 
     /// Selects the entry with that choice, if there is one. Returns whether there is.

@@ -4,12 +4,11 @@ use std::fmt::Write;
 
 use super::menu::Menu;
 use super::panels::{key_names, time, whole_seconds};
-use super::results::shown_name;
 use super::settings_screen::Setting;
 use super::{App, Levels, STEP, Screen};
 use crate::app::bindings::Action;
 use crate::map::builtin;
-use crate::store::{Preferences, Slot};
+use crate::store::{Preferences, SaveId};
 use crate::world::Difficulty;
 
 /// What an entry of a menu does.
@@ -24,9 +23,17 @@ pub(super) enum Choice {
     /// Begins the map with that index in the list of own maps.
     Map(usize),
     /// Goes on with a saved game.
-    Continue(Slot),
-    /// Begins a saved game anew.
-    BeginAnew(Slot),
+    Continue(SaveId),
+    /// Goes on with the saved game of the level that has just begun.
+    Resume(SaveId),
+    /// Plays what has begun in place of a saved game that cannot go on.
+    BeginAnew(SaveId),
+    /// Removes a saved game.
+    Remove(SaveId),
+    /// Removes the oldest saved game to make room.
+    RemoveOldest,
+    /// Returns to the screen before.
+    Back,
     /// Begins the descent of the day.
     Daily,
     /// Begins an endless descent.
@@ -55,7 +62,12 @@ impl App {
             Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
             Screen::Levels => self.level_menu(),
             Screen::Maps => self.map_menu(),
-            Screen::Outdated(slot) => outdated_menu(slot),
+            Screen::Saves => self.saves_menu(),
+            Screen::Remove(id) => self.remove_menu(id),
+            Screen::Daily => self.daily_menu(),
+            Screen::HasSaved => self.has_saved_menu(),
+            Screen::NoRoom => self.no_room_menu(),
+            Screen::Outdated(id) => self.outdated_menu(id),
             Screen::Paused => self.pause_menu(),
             Screen::Settings => self.settings_menu(),
             Screen::Dead => self.death_menu(),
@@ -83,8 +95,18 @@ impl App {
             Choice::Map(index) => self.begin_own_map(index),
             Choice::Daily => self.begin_daily(),
             Choice::Endless => self.begin_endless(),
-            Choice::Continue(slot) => self.continue_saved(slot),
-            Choice::BeginAnew(slot) => self.begin_saved_anew(slot),
+            Choice::Continue(id) => {
+                if self.screen != Screen::Daily {
+                    // A recorded script is about what the program began with.
+                    self.script = None;
+                }
+                self.continue_saved(id);
+            }
+            Choice::Resume(id) => self.resume(id),
+            Choice::BeginAnew(id) => self.begin_anew(id),
+            Choice::Remove(id) => self.remove_saved(id),
+            Choice::RemoveOldest => self.remove_oldest(),
+            Choice::Back => self.close(),
             Choice::Change(setting) => self.change_setting(setting, true),
             Choice::Retry => self.retry(),
             Choice::GoOn => self.show(Screen::Playing),
@@ -117,19 +139,8 @@ impl App {
     }
 
     pub(super) fn title_menu(&self) -> Menu<Choice> {
-        let menu = Menu::new("");
-        let menu = match (self.store.saved(Slot::Level), self.first_not_won()) {
-            (Some(saved), _) => {
-                let name = capitalized(shown_name(&saved.level));
-                menu.entry_with("Continue", name, Choice::Continue(Slot::Level))
-            }
-            (None, Some(index)) => {
-                let name = capitalized(builtin::LEVELS[index].name);
-                menu.entry_with("Continue", name, Choice::Level(index))
-            }
-            (None, None) => menu,
-        };
-        let menu = menu
+        let menu = self
+            .with_continue(Menu::new(""))
             .entry("New game", Choice::Open(Screen::NewGame))
             .entry("Levels", Choice::Open(Screen::Levels));
         let menu = self.with_descents(menu);
@@ -207,17 +218,6 @@ impl App {
     }
 }
 
-fn outdated_menu(slot: Slot) -> Menu<Choice> {
-    let what = match slot {
-        Slot::Level => "The level has",
-        Slot::Descent => "The floors of descents have",
-    };
-    Menu::new("the saved game")
-        .line(format!("{what} changed since you left it."))
-        .entry("Begin anew", Choice::BeginAnew(slot))
-        .entry("Return to the title", Choice::ToTitle)
-}
-
 fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
     let about = |difficulty| match difficulty {
         Difficulty::Easy => "what you found stays found",
@@ -237,7 +237,7 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
 }
 
 /// `text` with a capital letter at its start.
-fn capitalized(text: &str) -> String {
+pub(super) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     // Writing to a string never fails.

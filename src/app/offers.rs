@@ -11,6 +11,8 @@ use crate::map::Level;
 pub struct Offers {
     /// Finds the player's own maps. It is called when the player asks for them.
     pub maps: Option<FindMaps>,
+    /// Loads the map file at a path, to go on with a game that was saved in it.
+    pub load: Option<LoadMap>,
     /// The date, such as 20261122, whose daily run is offered.
     pub today: Option<u32>,
     /// The seed of the first endless descent. Each further one has the next seed.
@@ -19,6 +21,9 @@ pub struct Offers {
 
 /// Returns the player's own maps.
 pub type FindMaps = Box<dyn FnMut() -> Vec<OwnMap>>;
+
+/// Loads the map at a path; an error is a sentence for the player.
+pub type LoadMap = Box<dyn Fn(&str) -> Result<OwnLevel, String>>;
 
 /// A map of the player's own.
 pub struct OwnMap {
@@ -38,6 +43,8 @@ pub struct OwnLevel {
     /// The key of its results in the store. It differs from that of the map if the file was changed after it
     /// was found.
     pub key: String,
+    /// The absolute path of its file, for [`Offers::load`]. Without it, the map is found by its key.
+    pub file: Option<String>,
 }
 
 impl fmt::Debug for Offers {

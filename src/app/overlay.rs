@@ -20,6 +20,7 @@ pub(crate) struct Overlay<'a> {
     player: PlayerView<'a>,
     options: &'a DrawOptions,
     preferences: Preferences,
+    ghost: Option<MapMark>,
 }
 
 impl<'a> Overlay<'a> {
@@ -30,7 +31,12 @@ impl<'a> Overlay<'a> {
         options: &'a DrawOptions,
         preferences: Preferences,
     ) -> Option<Self> {
-        Some(Self { game, player: game.seen_by(player)?, options, preferences })
+        Some(Self { game, player: game.seen_by(player)?, options, preferences, ghost: None })
+    }
+
+    /// Sets the ghost on the map.
+    pub(crate) fn with_ghost(self, ghost: Option<MapMark>) -> Self {
+        Self { ghost, ..self }
     }
 
     /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
@@ -62,7 +68,7 @@ impl<'a> Overlay<'a> {
         panel: &mut MapPanel,
         view: &View,
     ) {
-        let Self { game, player, options, .. } = self;
+        let Self { game, player, options, ghost, .. } = self;
         let camera = &player.camera(options.field_of_view);
         panel.explore(game, camera, area.width);
         if !panel.is_shown {
@@ -74,7 +80,7 @@ impl<'a> Overlay<'a> {
         let others = others.map(|it| MapMark { position: it.position, heading: it.heading });
         let marks: Vec<MapMark> = guards.chain(others).collect();
         let map = panel.minimap(game, camera, view);
-        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks);
+        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(*ghost);
         if let Some(place) = panels::minimap(area, &map) {
             let inside = panels::framed(canvas, place, "map");
             map.paint(inside, canvas);

@@ -1,4 +1,4 @@
-//! Keys that answer a question.
+//! Keys that answer a question, and the time from which on they do.
 //!
 //! Irreversible actions require a certain press, and a repetition never answers. A byte that may be the first
 //! repetition of a key counts if no other byte follows within the interval of repetitions.
@@ -6,7 +6,19 @@
 use std::time::Duration;
 
 use crate::terminal::Key;
-use crate::tui::Press;
+use crate::tui::{HeldKeys, Press};
+
+/// The least time for which a result is shown, and the time after which held keys no longer matter.
+const LEAST_SHOWN: Duration = Duration::from_millis(500);
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// Whether a result that is shown since `shown_since` can be answered at `now`: half a second later, once the
+/// keys that were held for the game have been released, or a second later.
+pub(crate) fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
+    let shown_for = now.saturating_sub(shown_since);
+    let is_released = shown_for >= LEAST_SHOWN && !held.is_any_down_since(shown_since);
+    is_released || shown_for >= LONGEST_WAIT
+}
 
 /// The longest interval between repetitions.
 const REPETITION: Duration = Duration::from_millis(150);

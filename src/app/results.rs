@@ -7,7 +7,7 @@ use super::run_log::RunLog;
 use super::script_cursor::ScriptCursor;
 use crate::game::{Game, Header, LevelName, Rank, Script, Tally};
 use crate::map::builtin;
-use crate::store::{Improved, Run, Slot};
+use crate::store::{Improved, Run};
 
 /// The result of a level that was won.
 #[derive(Clone, Copy, Debug)]
@@ -24,13 +24,15 @@ impl App {
         if self.is_descent() {
             self.record_floor();
         }
+        if !self.is_descent() {
+            self.remove_save_of_level();
+        }
         let game = self.game.grid()?;
         let (tally, par) = (game.tally(), game.world().par());
         let rank = tally.rank(par);
         let improved = match self.stage.name().map(str::to_owned) {
             Some(level) => {
                 let run = Run { tally, rank, script: self.run_script(game) };
-                self.store.clear_saved(Slot::Level);
                 self.store.record(&level, self.difficulty, run)
             }
             None => Improved::default(),
@@ -73,11 +75,15 @@ impl App {
         Some(format!("{title} on {}: {seconds}, {alarms}{gold}", self.difficulty.name()))
     }
 
-    /// Keeps what was done in the game that is left, and saves it to go on with later.
-    pub(super) fn leave_game(&mut self) {
+    /// Keeps what was done in the game that is left, and saves it to go on with later. Returns a sentence if
+    /// it is not saved, which is also in the line about the game.
+    pub(super) fn leave_game(&mut self) -> Option<String> {
         self.left = self.summary();
-        self.save_game();
+        let saved = self.save_game();
         self.log = RunLog::default();
+        let sentence = format!("The game is not saved: {}.", saved.err()?);
+        self.left.iter_mut().for_each(|left| *left = format!("{left}\n{sentence}"));
+        Some(sentence)
     }
 
     /// The best run of the level as a script, to walk along.

@@ -57,6 +57,7 @@ pub fn play(
     app.detection.reports_releases = (!options.ask_for_key_releases).then_some(false);
     update_terminal(&mut app, &session);
     let time = Time::begin();
+    app.machine_time = time.of_machine();
     while !app.has_left {
         app.advance(time.now());
         app.reload(time.now());
@@ -93,7 +94,7 @@ pub fn play(
             Some(Event::Quit(_)) => break,
         }
     }
-    app.leave_game();
+    _ = app.leave_game();
     let trouble = app.store.trouble().map(str::to_owned);
     Ok(Farewell { done: app.left, trouble })
 }

@@ -32,6 +32,15 @@ impl RunLog {
         self.stretches.is_empty()
     }
 
+    /// The number of steps.
+    pub(super) fn steps(&self) -> u64 {
+        self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
+    }
+
+    pub(super) fn stretches(&self) -> &[Stretch] {
+        &self.stretches
+    }
+
     /// The script of the run, without a header.
     pub(super) fn script(&self) -> String {
         self.stretches.iter().flat_map(|stretch| [stretch.to_string(), "\n".to_owned()]).collect()

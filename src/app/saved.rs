@@ -1,87 +1,298 @@
 //! Saved games: a game that is left is kept as the script so far, and goes on after replaying it.
 //!
+//! There is one for each level, map file and difficulty, and one for each descent. A level with a saved
+//! game begins with the question which of both to play; the saved game stays until the new one is left
+//! or won.
+//!
 //! The checksum of the game at the end of the script is kept beside it. Where a replay ends in another
-//! state, the level or the rules have changed since, and the player is offered to begin anew. A
-//! checksum of the map alone was refused: it would not notice a change of the rules, and would refuse
-//! a map of which only a comment has changed.
+//! state, the level or the rules have changed since, and the player is offered to begin anew. Rejected:
+//! a checksum of the map alone. It would not notice a change of the rules, and would reject a map of which
+//! only a comment has changed.
 
-use super::results::builtin_named;
+use super::descents::date_of;
+use super::menu::Menu;
+use super::menus::{Choice, capitalized};
+use super::panels::whole_seconds;
+use super::results::{builtin_named, shown_name};
 use super::run_log::RunLog;
-use super::{App, Levels, Screen};
-use crate::game::{Intents, LevelName, Outcome, Script};
-use crate::store::{SavedGame, Slot};
+use super::watch::Watch;
+use super::{App, Levels, STEP, Screen};
+use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};
+use crate::map::builtin;
+use crate::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
+use crate::world::Difficulty;
+
+/// What leaving does with the game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Leaving {
+    /// Nothing has been played, or the game is over.
+    LosesNothing,
+    Saves,
+    FindsNoRoom,
+    /// The level has no name to find it by.
+    Loses,
+}
 
 impl App {
     /// Saves a game that has begun and is not over, if its level has a name to find it by.
-    pub(super) fn save_game(&mut self) {
-        if let Some(saved) = self.game_to_save() {
-            self.store.save(&saved);
+    ///
+    /// # Errors
+    /// If the store does not take it.
+    pub(super) fn save_game(&mut self) -> Result<(), NotSaved> {
+        match self.game_to_save() {
+            Some(saved) => self.store.save(&saved),
+            None => Ok(()),
         }
     }
 
-    /// The game to save. A descent is not over at the exit of a floor, but with the player's death.
     fn game_to_save(&self) -> Option<SavedGame> {
-        let game = self.game.grid().filter(|_| self.demo.is_none() && !self.log.is_empty())?;
-        let descent = self.descent();
-        let is_over = match descent {
-            Some(_) => matches!(game.outcome(), Outcome::Dead { .. }),
-            None => game.is_finished(),
-        };
-        let level = match descent {
-            Some(_) => LevelName::of_floor(1).as_str().to_owned(),
-            None => self.stage.name()?.to_owned(),
-        };
-        (!is_over).then(|| SavedGame {
-            level,
+        let game = self.game.grid().filter(|_| self.is_unfinished())?;
+        let save = Save { checksum: Some(game.checksum()), ..self.as_save()? };
+        Some(SavedGame { save, script: self.run_script(game) })
+    }
+
+    /// The description under which the game that is played would be saved, without a checksum; `None` if
+    /// it has no name to find it by.
+    fn as_save(&self) -> Option<Save> {
+        let game = self.game.grid().filter(|_| self.demo.is_none())?;
+        let steps = Some(self.log.steps());
+        if let Some(kind) = self.descent() {
+            return Some(Save { steps, ..save_of_descent(kind, game.rules()) });
+        }
+        Some(Save {
+            level: self.stage.name()?.to_owned(),
+            file: self.stage.file().map(str::to_owned),
             rules: game.rules(),
-            script: self.run_script(game),
-            checksum: Some(game.checksum()),
-            descent,
+            descent: None,
+            steps,
+            checksum: None,
         })
     }
 
-    /// Goes on with the saved game, if its script still leads to the state in which it was left.
-    pub(super) fn continue_saved(&mut self, slot: Slot) {
-        let Some(saved) = self.store.saved(slot) else { return };
-        let Ok(script) = Script::parse(&saved.script, "the saved game") else { return };
-        if !self.begin_saved(&saved) {
-            self.menu = self.title_menu().line("The map of the saved game is not as it was.");
-            self.shown = None;
-            return;
+    /// Whether a game has begun and is not over. A descent is not over at the exit of a floor, but with the
+    /// player's death.
+    fn is_unfinished(&self) -> bool {
+        let is_over = |game: &Game| match self.descent() {
+            Some(_) => matches!(game.outcome(), Outcome::Dead { .. }),
+            None => game.is_finished(),
+        };
+        let game = self.game.grid().filter(|_| self.demo.is_none() && !self.log.is_empty());
+        game.is_some_and(|game| !is_over(game))
+    }
+
+    fn leaving(&self) -> Leaving {
+        if !self.is_unfinished() {
+            return Leaving::LosesNothing;
         }
-        script.iter().for_each(|(_, intents)| self.step_again(intents));
-        let checksum = self.game.grid().map(crate::game::Game::checksum);
-        if saved.checksum.is_some() && saved.checksum != checksum {
-            self.log = RunLog::default();
-            self.show_title();
-            return self.open(Screen::Outdated(slot));
+        match self.as_save() {
+            Some(save) if self.store.has_room_for(save.id()) => Leaving::Saves,
+            Some(_) => Leaving::FindsNoRoom,
+            None => Leaving::Loses,
         }
-        if slot == Slot::Descent {
-            self.store.clear_saved(slot);
-            if self.game.is_finished() {
-                self.next_level();
+    }
+
+    /// What leaving the program does, for the question whether to leave.
+    pub(super) fn effect_of_leaving(&self) -> &'static str {
+        match self.leaving() {
+            Leaving::LosesNothing => "leaves the program",
+            Leaving::Saves => "leaves the program\nthe game is saved",
+            Leaving::FindsNoRoom => "leaves the program\nno room to save the game",
+            Leaving::Loses => "leaves the program\nthis game cannot be saved",
+        }
+    }
+
+    /// Removes the saved game of the level that has just been won.
+    pub(super) fn remove_save_of_level(&mut self) {
+        if let Some(save) = self.as_save() {
+            self.store.remove_saved(save.id());
+        }
+    }
+
+    /// Asks how to begin a level if a game in it is saved, or if there is no room to save another.
+    pub(super) fn ask_about_saved(&mut self) {
+        let is_at_start = self.screen == Screen::Playing && self.log.is_empty();
+        let Some(save) = self.as_save().filter(|_| is_at_start) else { return };
+        if self.store.has_saved(save.id()) {
+            self.show(Screen::HasSaved);
+        } else if !self.store.has_room_for(save.id()) {
+            self.show(Screen::NoRoom);
+        }
+    }
+
+    /// The question which game to play in a level in which one is saved.
+    pub(super) fn has_saved_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("a saved game");
+        let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
+        let menu = match self.store.saves().find(|save| save.id() == id) {
+            Some(save) => menu.line(described(save)),
+            None => menu,
+        };
+        let menu = menu
+            .line("A new game takes its place when you leave it or win.")
+            .entry("Continue", Choice::Resume(id))
+            .entry("Begin anew", Choice::GoOn);
+        self.with_leaving(menu)
+    }
+
+    /// The question what to do in a level of which no game can be saved.
+    pub(super) fn no_room_menu(&self) -> Menu<Choice> {
+        let menu = self.with_removal(Menu::new("no room"));
+        self.with_leaving(menu.entry("Play without saving", Choice::GoOn))
+    }
+
+    /// Adds the offer to remove the oldest saved game.
+    pub(super) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let menu = menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."));
+        match self.store.saves().last() {
+            Some(oldest) => {
+                menu.entry_with("Remove the oldest", name_of(oldest), Choice::RemoveOldest)
+            }
+            None => menu,
+        }
+    }
+
+    /// Removes the oldest saved game to make room for the one that begins.
+    pub(super) fn remove_oldest(&mut self) {
+        if let Some(id) = self.store.saves().last().map(Save::id) {
+            self.store.remove_saved(id);
+        }
+        if self.screen == Screen::Daily {
+            self.renew_menu();
+        } else {
+            self.show(Screen::Playing);
+            self.ask_about_saved();
+        }
+    }
+
+    /// Adds to the title's menu how to go on: at once if there is one way, or by a list.
+    pub(super) fn with_continue(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let mut ways = self.ways_on();
+        let (first, second) = (ways.next(), ways.next());
+        match (first, second) {
+            (None, _) => menu,
+            (Some((name, _, choice)), None) => menu.entry_with("Continue", name, choice),
+            (Some(_), Some(_)) => {
+                let count = 2 + ways.count();
+                menu.entry_with("Continue", format!("{count} games"), Choice::Open(Screen::Saves))
             }
         }
     }
 
-    /// Begins the level of the saved game, and forgets the rest of it.
-    pub(super) fn begin_saved_anew(&mut self, slot: Slot) {
-        let Some(saved) = self.store.saved(slot) else { return };
-        if self.begin_saved(&saved) {
-            self.store.clear_saved(slot);
+    /// The list of saved games, the newest first, and the next level of the campaign.
+    pub(super) fn saves_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("continue").line("x removes a saved game");
+        self.ways_on()
+            .fold(menu, |menu, (name, played, choice)| menu.entry_with(name, played, choice))
+    }
+
+    /// What can be continued: its name, how long it was played, and the choice.
+    fn ways_on(&self) -> impl Iterator<Item = (String, String, Choice)> {
+        let saves = self.store.saves();
+        let saves = saves.map(|save| (name_of(save), time_of(save), Choice::Continue(save.id())));
+        saves.chain(self.next_of_campaign())
+    }
+
+    /// The first level that was not won, unless a game in it is saved.
+    fn next_of_campaign(&self) -> Option<(String, String, Choice)> {
+        let index = self.first_not_won()?;
+        let name = builtin::LEVELS[index].name;
+        let difficulty = self.store.preferences().difficulty;
+        let is_it = |save: &Save| {
+            (save.level.as_str(), save.rules.difficulty) == (name, difficulty)
+                && save.file.is_none()
+        };
+        let name = on_difficulty(&capitalized(name), difficulty);
+        (!self.store.saves().any(is_it)).then_some((name, "new".to_owned(), Choice::Level(index)))
+    }
+
+    /// The question whether to remove a saved game.
+    pub(super) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
+        let menu = Menu::new("remove the saved game?");
+        let menu = match self.store.saves().find(|save| save.id() == id) {
+            Some(save) => menu.line(described(save)),
+            None => menu,
+        };
+        menu.entry("Keep it", Choice::Back).entry("Remove it", Choice::Remove(id))
+    }
+
+    /// Removes a saved game, and returns to the list, or to the title if it is empty.
+    pub(super) fn remove_saved(&mut self, id: SaveId) {
+        self.store.remove_saved(id);
+        self.show(Screen::Title);
+        if self.store.saves().next().is_some() {
+            self.open(Screen::Saves);
         }
     }
 
-    /// Begins the level of a saved game, or the first floor of its descent; whether there is one.
-    fn begin_saved(&mut self, saved: &SavedGame) -> bool {
-        let levels = match saved.descent {
-            Some(kind) => Self::descent_of(kind, saved.rules.seed),
-            None => self.levels_named(&saved.level),
+    /// Goes on with the saved game, if its script still leads to the state in which it was left.
+    pub(super) fn continue_saved(&mut self, id: SaveId) {
+        let begun = self.read_saved(id).and_then(|(saved, script)| {
+            self.begin_saved(&saved.save)?;
+            Ok((saved, script))
+        });
+        match begun {
+            Ok((saved, script)) => self.repeat(&saved.save, &script),
+            Err(sentence) => self.say_in_menu(&sentence),
+        }
+    }
+
+    /// Goes on with the saved game of the level that has just begun.
+    pub(super) fn resume(&mut self, id: SaveId) {
+        match self.read_saved(id) {
+            Ok((saved, script)) => self.repeat(&saved.save, &script),
+            Err(sentence) => self.say_in_menu(&sentence),
+        }
+    }
+
+    fn read_saved(&self, id: SaveId) -> Result<(SavedGame, Script), String> {
+        let saved = self.store.saved(id).ok_or("The saved game can't be read.")?;
+        let script = Script::parse(&saved.script, "the saved game");
+        Ok((saved, script.map_err(|_| "The saved game is damaged.")?))
+    }
+
+    /// Shows a sentence above the entries of the menu.
+    pub(super) fn say_in_menu(&mut self, sentence: &str) {
+        let selected = self.menu.selected();
+        self.menu = self.menu_of(self.screen).line(sentence).selecting(selected);
+        self.shown = None;
+    }
+
+    /// Begins the level of a saved game, or the first floor of its descent.
+    ///
+    /// # Errors
+    /// A sentence why there is no such level now.
+    fn begin_saved(&mut self, save: &Save) -> Result<(), String> {
+        let levels = match save.descent {
+            Some(kind) => Self::descent_of(kind, save.rules.seed).ok_or(NO_MAP)?,
+            None => self.levels_of(save)?,
         };
-        let Some(levels) = levels else { return false };
-        self.difficulty = saved.rules.difficulty;
-        self.begin(levels);
-        true
+        self.difficulty = save.rules.difficulty;
+        self.set_up(levels);
+        Ok(())
+    }
+
+    /// Repeats the steps of a saved game from the start of its level on.
+    fn repeat(&mut self, save: &Save, script: &Script) {
+        script.iter().for_each(|(_, intents)| self.step_again(intents));
+        let checksum = self.game.grid().map(Game::checksum);
+        if save.checksum.is_some() && save.checksum != checksum {
+            return self.show_outdated(save);
+        }
+        if let Some(script) = &mut self.script {
+            for stretch in self.log.stretches() {
+                // As while playing, the owner of the file asks for the error later.
+                _ = script.record(stretch.intents, stretch.steps.into());
+            }
+        }
+        self.watch = Watch::begin(self.game.grid());
+        self.show(Screen::Playing);
+        if save.descent.is_some() {
+            // It goes on once: a death cannot be undone.
+            self.store.remove_saved(save.id());
+            if self.game.is_finished() {
+                self.next_level();
+            }
+        }
     }
 
     /// Repeats a step of a saved game. In a descent, the step after an exit is on the next floor.
@@ -99,13 +310,85 @@ impl App {
         }
     }
 
-    /// The levels from the one on that the store calls `name`: built-in ones, or a map of the player's own.
-    fn levels_named(&mut self, name: &str) -> Option<Levels> {
-        if let Some(index) = builtin_named(name) {
-            return Levels::builtin(index);
+    /// Offers to begin anew what a saved game no longer leads to.
+    fn show_outdated(&mut self, save: &Save) {
+        self.log = RunLog::default();
+        match save.descent {
+            Some(_) => _ = self.begin_saved(save),
+            None => self.begin_again(),
+        }
+        self.show(Screen::Outdated(save.id()));
+    }
+
+    pub(super) fn outdated_menu(&self, id: SaveId) -> Menu<Choice> {
+        let what = if self.is_descent() { "The floors of descents have" } else { "The level has" };
+        let menu = Menu::new("the saved game")
+            .line(format!("{what} changed since you left it."))
+            .entry("Begin anew", Choice::BeginAnew(id));
+        self.with_leaving(menu)
+    }
+
+    /// Plays what has begun, without the saved game that cannot go on.
+    pub(super) fn begin_anew(&mut self, id: SaveId) {
+        self.store.remove_saved(id);
+        self.show(Screen::Playing);
+    }
+
+    /// The levels from that of a saved game on: built-in ones, or a map of the player's own.
+    fn levels_of(&mut self, save: &Save) -> Result<Levels, String> {
+        if let Some(file) = &save.file {
+            let load =
+                self.offers.as_ref().and_then(|offers| offers.load.as_ref()).ok_or(NO_MAP)?;
+            return load(file).map(Levels::own);
+        }
+        if let Some(index) = builtin_named(&save.level) {
+            return Levels::builtin(index).ok_or_else(|| NO_MAP.to_owned());
         }
         self.find_own_maps();
-        let map = self.own_maps.iter().find(|map| map.key == name)?;
-        (map.load)().ok().filter(|own| own.key == name).map(Levels::own)
+        let map = self.own_maps.iter().find(|map| map.key == save.level).ok_or(NO_MAP)?;
+        let own = (map.load)()?;
+        if own.key == save.level { Ok(Levels::own(own)) } else { Err(NO_MAP.to_owned()) }
+    }
+}
+
+const NO_MAP: &str = "The map of the saved game is not as it was.";
+
+/// The descent of that kind with these rules, as it is saved, without steps and checksum.
+pub(super) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
+    Save {
+        level: LevelName::of_floor(1).as_str().to_owned(),
+        file: None,
+        rules,
+        descent: Some(kind),
+        steps: None,
+        checksum: None,
+    }
+}
+
+/// The name of a saved game for the player.
+fn name_of(save: &Save) -> String {
+    let Rules { difficulty, seed } = save.rules;
+    match save.descent {
+        Some(Descent::Daily) => format!("Daily run of {}", date_of(seed)),
+        Some(Descent::Practice) => format!("Practice of {}", date_of(seed)),
+        Some(Descent::Endless) => on_difficulty("Endless", difficulty),
+        None => on_difficulty(&capitalized(shown_name(&save.level)), difficulty),
+    }
+}
+
+fn on_difficulty(name: &str, difficulty: Difficulty) -> String {
+    format!("{name} on {}", difficulty.name())
+}
+
+/// How long it was played; blank for old files.
+fn time_of(save: &Save) -> String {
+    let seconds = save.steps.map(|steps| whole_seconds(steps as f64 * STEP));
+    seconds.map_or_else(String::new, |seconds| seconds.to_string())
+}
+
+fn described(save: &Save) -> String {
+    match time_of(save).as_str() {
+        "" => name_of(save),
+        time => format!("{}: {time} played", name_of(save)),
     }
 }

@@ -7,7 +7,7 @@
 use super::App;
 use super::menu::Menu;
 use super::menus::Choice;
-use crate::store::Slot;
+use crate::store::SaveId;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +19,18 @@ pub(super) enum Screen {
     Levels,
     /// The choice of a map file.
     Maps,
+    /// The list of saved games.
+    Saves,
+    /// The question whether to remove a saved game.
+    Remove(SaveId),
+    /// The question whether to begin or to continue the daily run.
+    Daily,
+    /// The question whether to continue the saved game of a level that begins.
+    HasSaved,
+    /// The question what to do where no other game can be saved.
+    NoRoom,
     /// The offer to begin a saved game anew that cannot go on.
-    Outdated(Slot),
+    Outdated(SaveId),
     Settings,
     Playing,
     Paused,
@@ -38,6 +48,11 @@ impl Screen {
     /// for the game.
     pub(super) fn is_result(self) -> bool {
         matches!(self, Self::LevelDone | Self::Dead | Self::End)
+    }
+
+    /// Whether the screen is a question before the first step of a level.
+    pub(super) fn is_before_start(self) -> bool {
+        matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
     }
 
     /// Whether the screen has a menu.
@@ -69,6 +84,10 @@ impl App {
     pub(super) fn close(&mut self) {
         let (screen, menu) = self.behind.pop().unwrap_or_else(|| (Screen::Playing, Menu::new("")));
         self.enter((screen, menu));
+        if screen == Screen::Title {
+            // What it offers may have changed.
+            self.renew_menu();
+        }
     }
 
     /// Makes the menu anew, after something that it shows has changed.

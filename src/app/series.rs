@@ -14,8 +14,16 @@ use crate::game::{Intent, Intents};
 use crate::store::Reached;
 
 impl App {
-    /// Begins the first of `levels`.
+    /// Begins the first of `levels`; asks first if a game in it is saved.
     pub(super) fn begin(&mut self, levels: Levels) {
+        // A recorded script is about what the program began with.
+        self.script = None;
+        self.set_up(levels);
+        self.ask_about_saved();
+    }
+
+    /// Begins the first of `levels`.
+    pub(super) fn set_up(&mut self, levels: Levels) {
         let Levels { first, rest, number, changes, course } = levels;
         let Some(game) = first.begin(self.difficulty) else { return };
         self.later_levels = rest;
@@ -25,8 +33,6 @@ impl App {
         self.course = course;
         self.reached = Reached::default();
         self.demo = None;
-        // A recorded script is about what the program began with.
-        self.script = None;
         self.log = RunLog::default();
         self.begin_level(first, game);
         self.tell_whether_it_counts();
@@ -42,13 +48,19 @@ impl App {
             self.log = RunLog::default();
         }
         self.begin_level(stage, game);
+        self.ask_about_saved();
     }
 
     /// Begins the level again. A script that is recorded ends here: in a script, a level begins
     /// once.
     pub(super) fn restart_level(&mut self) {
-        let Some(game) = self.stage.begin(self.difficulty) else { return };
         self.script = None;
+        self.begin_again();
+    }
+
+    /// Returns to the start of the level.
+    pub(super) fn begin_again(&mut self) {
+        let Some(game) = self.stage.begin(self.difficulty) else { return };
         self.log = RunLog::default();
         let stage = mem::replace(&mut self.stage, Stage::nothing());
         self.begin_level(stage, game);
@@ -66,8 +78,11 @@ impl App {
 
     /// Leaves the game for the title.
     pub(super) fn return_to_title(&mut self) {
-        self.leave_game();
+        let not_saved = self.leave_game();
         self.show_title();
+        if let Some(sentence) = not_saved {
+            self.say_in_menu(&sentence);
+        }
     }
 
     /// Shows the title, over a level that plays itself.
@@ -92,6 +107,7 @@ impl App {
         self.stage = stage;
         self.game = game;
         self.result = None;
+        self.notice = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
         self.release_keys();

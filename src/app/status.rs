@@ -36,6 +36,7 @@ pub(crate) struct Toggles {
 pub(super) struct StatusValues<'a> {
     pub(super) game: &'a Played,
     pub(super) goal: &'a Goal,
+    pub(super) notice: Option<&'a Goal>,
     pub(super) level: LevelNumber,
     /// The share of the level that has been seen, from 0 to 1, if that is counted.
     pub(super) share_seen: Option<f64>,

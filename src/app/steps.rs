@@ -2,6 +2,9 @@
 //!
 //! Each step uses the keys held at its own time, even if several steps pass between two frames: a
 //! tap lasts the same number of steps on a slow machine as on a fast one.
+//!
+//! Steps that take long are not caught up with: the game slows down, and keys are read between two
+//! steps, whatever a step takes.
 
 use std::time::Duration;
 
@@ -10,20 +13,36 @@ use super::played::Played;
 use super::{App, Screen};
 use crate::game::Intents;
 
+/// The time after which no further step is begun before keys are read.
+const MOST_TIME: Duration = Duration::from_millis(25);
+
 impl App {
-    /// Advances the game to `now`.
+    /// Advances the game to `now`, or as far as it gets in a moment. The rest of the time is lost.
     pub(super) fn advance(&mut self, now: Duration) {
         self.now = now;
+        let begun = self.machine_time.map(|time| time());
+        let is_late = |time: Option<fn() -> Duration>| {
+            let passed = time.zip(begun).map(|(time, begun)| time().saturating_sub(begun));
+            passed.is_some_and(|passed| passed > MOST_TIME)
+        };
         let mut step = self.clock.step_after(0);
         let mut steps = self.clock.steps_until(now);
         let mut moves = 0;
         if self.demo.is_some() {
-            (0..steps.min(Clock::MOST_STEPS)).for_each(|_| self.step_demo());
+            for _ in 0..steps.min(Clock::MOST_STEPS) {
+                self.step_demo();
+                if is_late(self.machine_time) {
+                    break;
+                }
+            }
         }
         while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = clock::after(step, passed);
             steps -= passed;
+            if is_late(self.machine_time) {
+                break;
+            }
         }
         self.controls.advance(now, self.key_context());
         self.settle(now);
@@ -61,7 +80,9 @@ impl App {
         }
         self.controls.held.step();
         self.pointer.passed(steps);
-        self.goal.moved(if intents.is_empty() { 0 } else { steps });
+        let acted = if intents.is_empty() { 0 } else { steps };
+        self.goal.moved(acted);
+        self.notice.iter_mut().for_each(|notice| notice.moved(acted));
         self.record(intents, steps);
         self.follow_outcome();
         steps

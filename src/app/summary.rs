@@ -38,16 +38,11 @@ impl App {
         }
         let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
         let menu = Menu::new("you are dead").line(cause);
-        let menu = if deaths > 1 { menu.line(format!("for the {deaths}. time")) } else { menu };
-        let menu = menu.entry("Try again", Choice::Retry).entry_with(
-            "Restart the level",
-            "r",
-            Choice::Restart,
-        );
-        match &self.offers {
-            Some(_) => menu.entry_with("Leave to the title", "l", Choice::ToTitle),
-            None => menu.entry_with("Leave", "l", Choice::Leave),
-        }
+        let menu =
+            if deaths > 1 { menu.line(format!("for the {} time", ordinal(deaths))) } else { menu };
+        let menu =
+            menu.entry("Try again", Choice::Retry).entry("Restart the level", Choice::Restart);
+        self.with_leaving(menu)
     }
 
     pub(super) fn end_menu(&self) -> Menu<Choice> {
@@ -64,6 +59,18 @@ impl App {
         }
         lines
     }
+}
+
+/// `number` as an ordinal: 1st, 2nd, 3rd, 4th.
+fn ordinal(number: u32) -> String {
+    let ending = match (number % 10, number % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{number}{ending}")
 }
 
 /// The rank first, as it is what a small window has room for.
@@ -88,4 +95,16 @@ fn counts(tally: &Tally) -> String {
     let counts = counts.into_iter().filter(|&(what, count)| count > 0 || what == "alarms");
     let counts = counts.map(|(what, count)| format!("{what}: {count}"));
     shares.chain(counts).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordinals_have_the_endings_of_english() {
+        let numbers = [1, 2, 3, 4, 11, 12, 13, 21, 102, 111, 113];
+        let shown = numbers.map(ordinal).join(" ");
+        assert_eq!(shown, "1st 2nd 3rd 4th 11th 12th 13th 21st 102nd 111th 113th");
+    }
 }

@@ -1,6 +1,7 @@
 //! The keys of the game, from timed bytes to the player's motion, in simulated time.
 
 mod colours;
+mod gestures;
 mod interruption;
 mod kept;
 mod levels;

@@ -10,6 +10,7 @@
 //! sequence was refused: the decoder would have to know it. So was time that a file or a socket
 //! gives: it would have no order with the keys.
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// The time since the main loop began.
@@ -39,6 +40,19 @@ impl Time {
             return told.get();
         }
         self.start.elapsed()
+    }
+
+    /// The machine's clock, by which steps that take long are noticed; `None` if the terminal gives
+    /// the time.
+    pub(super) fn of_machine(&self) -> Option<fn() -> Duration> {
+        #[cfg(debug_assertions)]
+        if self.told.is_some() {
+            return None;
+        }
+        Some(|| {
+            static BEGUN: OnceLock<Instant> = OnceLock::new();
+            BEGUN.get_or_init(Instant::now).elapsed()
+        })
     }
 
     /// How long it is until `time`; `None` if time stands still until the terminal reports

@@ -51,10 +51,18 @@ impl StatusLine {
         if total > 0 {
             let needed = game.world().treasure_needed();
             let [short, long] = self.forms(Part::Treasure);
-            let wanted = if found < needed { needed } else { total };
-            let enough = if (1..=found).contains(&needed) { ", enough" } else { "" };
-            write!(short, "{found}/{wanted} gold")?;
-            write!(long, "{found} of {wanted} gold{enough}")?;
+            write!(long, "{found} of {total} gold")?;
+            match needed {
+                0 => {}
+                _ if found >= needed => long.push_str(", enough"),
+                _ if needed == total => long.push_str(", all needed"),
+                _ => write!(long, ", {needed} needed")?,
+            }
+            if found < needed && needed < total {
+                write!(short, "{found}/{total} need {needed}")?;
+            } else {
+                write!(short, "{found}/{total} gold")?;
+            }
         }
         Ok(())
     }

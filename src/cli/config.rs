@@ -1,6 +1,5 @@
 //! `cellcaster config`: the settings in force, as a configuration file.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -10,6 +9,10 @@ use super::Error;
 use super::arguments::Config;
 use crate::app::Configuration;
 use crate::fault::printable;
+use crate::store::private;
+
+/// The largest configuration, in bytes.
+pub(super) const LARGEST: u64 = 1 << 20;
 
 /// The configuration in force, and the path of its file.
 pub(super) struct InForce {
@@ -47,7 +50,7 @@ pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
         });
     };
     let name = path.display().to_string();
-    let (configuration, is_there) = match fs::read_to_string(&path) {
+    let (configuration, is_there) = match private::read_text(&path, LARGEST) {
         Ok(text) => (Configuration::parse(&text, &name)?, true),
         Err(error) if error.kind() == io::ErrorKind::NotFound && !is_named => {
             (Configuration::default(), false)

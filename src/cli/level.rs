@@ -4,9 +4,9 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::{io, iter};
 
-use super::Error;
 use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
 use super::watch::Watch;
+use super::{Error, own_maps};
 use crate::app::Levels;
 use crate::fault::nearest;
 use crate::game::{Game, Header, LevelName};
@@ -76,10 +76,16 @@ const NOTHING_TO_WATCH: &str =
 
 /// The level that `argument` names; if it is built in, followed by the later ones.
 pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
-    match argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
-        Some(levels) => Ok(levels),
-        None => Ok(Levels::new(load(argument)?, iter::empty())),
+    if let Some(levels) = argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
+        return Ok(levels);
     }
+    let level = load(argument)?;
+    let path = argument.filter(|argument| *argument != STANDARD_INPUT).map(Path::new);
+    // What is no file, such as a pipe, cannot be found again.
+    Ok(match path.and_then(|path| own_maps::own_level(path, level.clone())) {
+        Some(own) => Levels::own(own),
+        None => Levels::new(level, iter::empty()),
+    })
 }
 
 /// As [`load_series`], or the generated level followed by those of the next seeds.

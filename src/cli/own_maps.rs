@@ -1,11 +1,11 @@
-//! The player's own maps: the map files in the current folder.
+//! The player's own maps: the map files in the current folder, and those that are named by a path.
 
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::app::{OwnLevel, OwnMap};
-use crate::map;
+use crate::map::{self, Level};
 use crate::sort;
 use crate::store::map_key;
 
@@ -19,27 +19,43 @@ pub(super) fn find(folders: &[PathBuf]) -> Vec<OwnMap> {
 
 /// The map in the file at `path`, if it is a TOML file with a grid or a list of bodies at its top level.
 fn own_map(path: PathBuf) -> Option<OwnMap> {
-    let text = text_of(&path).filter(|text| text.lines().any(begins_a_map))?;
+    let is_toml = path.extension().is_some_and(|ending| ending == OsStr::new("toml"));
+    let text = text_of(&path).filter(|text| is_toml && text.lines().any(begins_a_map))?;
     let name = path.file_name()?.to_string_lossy().into_owned();
     let key = key_of(&path, &text);
-    let load = move || {
-        let text = text_of(&path).ok_or_else(|| format!("{} can't be read", path.display()))?;
-        let level = map::load_level(&path).map_err(|faults| faults.summary())?;
-        Ok(OwnLevel { level, key: key_of(&path, &text) })
-    };
+    let load = move || load(&path);
     Some(OwnMap { name, key, load: Box::new(load) })
+}
+
+/// Loads the map in the file at `path`.
+///
+/// # Errors
+/// A sentence for the player.
+pub(super) fn load(path: &Path) -> Result<OwnLevel, String> {
+    if !path.is_file() {
+        return Err(format!("{} is no file now", path.display()));
+    }
+    let level = map::load_level(path).map_err(|faults| faults.summary())?;
+    own_level(path, level).ok_or_else(|| format!("{} can't be read", path.display()))
+}
+
+/// `level` with what it is kept by, which was loaded from `path`; `None` if that is no file that can be read
+/// again.
+pub(super) fn own_level(path: &Path, level: Level) -> Option<OwnLevel> {
+    let text = text_of(path)?;
+    let file = fs::canonicalize(path).ok()?.into_os_string().into_string().ok();
+    Some(OwnLevel { level, key: key_of(path, &text), file })
 }
 
 fn key_of(path: &Path, text: &str) -> String {
     map_key(&path.file_name().unwrap_or_default().to_string_lossy(), text)
 }
 
-/// The text of a TOML file that is not too large for a map.
+/// The text of a file that is not too large for a map.
 fn text_of(path: &Path) -> Option<String> {
     const LARGEST: u64 = 1 << 20;
-    let is_toml = path.extension().is_some_and(|ending| ending == OsStr::new("toml"));
-    let is_small = || fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);
-    if is_toml && is_small() { fs::read_to_string(path).ok() } else { None }
+    let is_small = fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);
+    if is_small { fs::read_to_string(path).ok() } else { None }
 }
 
 fn begins_a_map(line: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
@@ -134,7 +134,12 @@ fn offers() -> Offers {
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
     let (today, seed) = today();
-    Offers { maps: Some(Box::new(move || own_maps::find(&folders))), today: Some(today), seed }
+    Offers {
+        maps: Some(Box::new(move || own_maps::find(&folders))),
+        load: Some(Box::new(|path| own_maps::load(Path::new(path)))),
+        today: Some(today),
+        seed,
+    }
 }
 
 /// The daily run or an endless game.

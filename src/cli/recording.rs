@@ -12,6 +12,7 @@ use ratatui::layout::Size;
 use super::Error;
 use super::asciicast::Asciicast;
 use super::output_file::unwritable;
+use crate::store::private;
 use crate::{app, game, terminal};
 
 /// The content of a file, by its extension.
@@ -42,6 +43,8 @@ impl RecordingFile {
         } else {
             options.create_new(true);
         }
+        // What players say to each other is in it.
+        private::restrict_file(&mut options);
         let file = options.write(true).open(path).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Error::mistake(format!(
                 "{} is there already: name another file, or replace it with --force",

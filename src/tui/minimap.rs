@@ -42,6 +42,7 @@ pub struct Minimap<'a> {
     columns: &'a [Column],
     explored: Option<&'a Explored>,
     marks: &'a [MapMark],
+    ghost: Option<MapMark>,
     glyphs: GlyphMode,
     depth: ColorDepth,
     zoom: i32,
@@ -57,6 +58,7 @@ impl<'a> Minimap<'a> {
             columns: &[],
             explored: None,
             marks: &[],
+            ghost: None,
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
             zoom: 0,
@@ -81,6 +83,12 @@ impl<'a> Minimap<'a> {
     #[must_use]
     pub fn marks(self, marks: &'a [MapMark]) -> Self {
         Self { marks, ..self }
+    }
+
+    /// Sets the mark of a ghost. It shows wherever it is on the map.
+    #[must_use]
+    pub fn ghost(self, ghost: Option<MapMark>) -> Self {
+        Self { ghost, ..self }
     }
 
     /// Sets the zoom. Each level about doubles or halves the map's size; 0 is the size that fits.
@@ -134,8 +142,11 @@ impl Minimap<'_> {
                 (point.color(), point.character())
             }),
         }
-        for mark in self.marks {
-            self.draw_mark(mark, &picture, area, canvas);
+        if let Some(ghost) = &self.ghost {
+            draw_pointer(ghost, self.ghost_look(), &picture, area, canvas);
+        }
+        for mark in self.marks.iter().filter(|mark| picture.top_view.is_visible(mark.position)) {
+            draw_pointer(mark, self.mark_look(), &picture, area, canvas);
         }
         if let Some((x, y)) = window.cell(self.camera.position()) {
             self.draw_player((area.x + x, area.y + y), canvas);
@@ -199,26 +210,32 @@ impl Minimap<'_> {
         }
     }
 
-    /// Draws a mark that points in one of four directions, if the floor below it is visible.
-    fn draw_mark(&self, mark: &MapMark, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
-        let is_seen = picture.top_view.is_visible(mark.position);
-        let Some((x, y)) = picture.window.cell(mark.position).filter(|_| is_seen) else { return };
-        if x >= area.width || y >= area.height {
-            return;
-        }
+    fn mark_look(&self) -> Look {
         let pointers = match self.glyphs {
             GlyphMode::Half => ['▸', '▾', '◂', '▴'],
             GlyphMode::Ascii | GlyphMode::Ramp => [')', 'u', '(', 'n'],
         };
-        let quarter = (mark.heading.degrees() / 90.0).round() as usize % pointers.len();
-        let colors = match self.depth {
-            ColorDepth::Mono => [Color::Reset; 2],
-            ColorDepth::Indexed16 => [Color::Indexed(15), Color::Indexed(9)],
-            ColorDepth::Indexed256 | ColorDepth::True => {
-                [MARK_TEXT, MARK].map(|color| color_at(self.depth, color))
-            }
+        (pointers, self.colors([MARK_TEXT, MARK], [15, 9]))
+    }
+
+    /// A ghost is hollow, or a letter, and pale: it is nobody who could see the player.
+    fn ghost_look(&self) -> Look {
+        let pointers = match self.glyphs {
+            GlyphMode::Half => ['▹', '▿', '◃', '▵'],
+            GlyphMode::Ascii | GlyphMode::Ramp => ['g'; 4],
         };
-        canvas.draw_character(area.x + x, area.y + y, pointers[quarter], colors);
+        (pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]))
+    }
+
+    /// The text and the background of a mark.
+    fn colors(&self, colors: [Rgb; 2], of_16: [u8; 2]) -> [Color; 2] {
+        match self.depth {
+            ColorDepth::Mono => [Color::Reset; 2],
+            ColorDepth::Indexed16 => of_16.map(Color::Indexed),
+            ColorDepth::Indexed256 | ColorDepth::True => {
+                colors.map(|color| color_at(self.depth, color))
+            }
+        }
     }
 
     /// Draws the arrow in the cell at `x` and `y`.
@@ -228,15 +245,25 @@ impl Minimap<'_> {
             GlyphMode::Ascii | GlyphMode::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
         };
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
-        let colors = match self.depth {
-            ColorDepth::Mono => [Color::Reset; 2],
-            ColorDepth::Indexed16 => [Color::Indexed(0), Color::Indexed(11)],
-            ColorDepth::Indexed256 | ColorDepth::True => {
-                [Rgb::BLACK, PLAYER].map(|color| color_at(self.depth, color))
-            }
-        };
+        let colors = self.colors([Rgb::BLACK, PLAYER], [0, 11]);
         canvas.draw_character(x, y, arrows[eighth], colors);
     }
+}
+
+/// Draws a mark that points in one of four directions.
+fn draw_pointer(
+    mark: &MapMark,
+    (pointers, colors): Look,
+    picture: &Picture,
+    area: Rect,
+    canvas: &mut impl Canvas,
+) {
+    let Some((x, y)) = picture.window.cell(mark.position) else { return };
+    if x >= area.width || y >= area.height {
+        return;
+    }
+    let quarter = (mark.heading.degrees() / 90.0).round() as usize % pointers.len();
+    canvas.draw_character(area.x + x, area.y + y, pointers[quarter], colors);
 }
 
 /// Somebody on the map besides the player.
@@ -248,10 +275,16 @@ pub struct MapMark {
     pub heading: Heading,
 }
 
+/// The pointers to the east, south, west and north, and the colours of the text and the background.
+type Look = ([char; 4], [Color; 2]);
+
 /// The colour of a mark, which is darker than the arrow.
 const MARK_TEXT: Rgb = Rgb::new(0xb8, 0xb0, 0xb0);
 /// The background of a mark.
 const MARK: Rgb = Rgb::new(0xc0, 0x30, 0x28);
+/// The colour of a ghost, and its background.
+const GHOST_TEXT: Rgb = Rgb::new(0xb8, 0xc0, 0xd0);
+const GHOST: Rgb = Rgb::new(0x38, 0x58, 0x78);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
 

@@ -10,8 +10,7 @@ use crate::game::PlayerId;
 
 impl StatusLine {
     pub(super) fn write(&mut self, values: &StatusValues) -> fmt::Result {
-        let StatusValues { game, goal, level, share_seen, toggles, mouse, stats, bindings, .. } =
-            *values;
+        let StatusValues { game, level, share_seen, toggles, mouse, stats, bindings, .. } = *values;
         let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
         let mission = game.grid().filter(|game| game.is_mission()).zip(player);
         if let Some((game, player)) = mission {
@@ -28,13 +27,7 @@ impl StatusLine {
         }
         self.write_modes(toggles, mouse, mission.is_some_and(|it| it.1.lamp_is_lit()))?;
         self.write_keys(game.keys())?;
-        if let Some(message) = game.message() {
-            self.both(Part::Notice, format_args!("{message}"))?;
-        } else if goal.is_shown() {
-            let [short, long] = &mut self.texts[Part::Notice as usize];
-            short.push_str(goal.short());
-            long.push_str(goal.text());
-        }
+        self.write_notice(values)?;
         if let Some(stats) = stats {
             self.write_stats(stats)?;
         }
@@ -43,6 +36,21 @@ impl StatusLine {
         }
         self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
         self.write_help(bindings)
+    }
+
+    /// Writes what a key has done, the message of the game, or the goal.
+    fn write_notice(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, goal, notice, .. } = *values;
+        let notice = notice.filter(|notice| notice.is_shown());
+        if let (None, Some(message)) = (notice, game.message()) {
+            return self.both(Part::Notice, format_args!("{message}"));
+        }
+        if let Some(line) = notice.or(Some(goal)).filter(|line| line.is_shown()) {
+            let [short, long] = self.forms(Part::Notice);
+            short.push_str(line.short());
+            long.push_str(line.text());
+        }
+        Ok(())
     }
 
     /// Writes the modes that are switched on.

@@ -1,5 +1,6 @@
 //! Pictures that take long, and the keys that arrive meanwhile. Work is counted, not timed.
 
+use std::cell::Cell;
 use std::iter;
 
 use ratatui::buffer::Buffer;
@@ -84,4 +85,30 @@ fn after_a_new_size_nothing_partial_is_shown() {
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
     rig.app.terminal_changed(None, ColorDepth::True);
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
+}
+
+/// A clock by which every step takes 30 ms.
+fn slow() -> Duration {
+    thread_local!(static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) });
+    NOW.set(NOW.get() + Duration::from_millis(30));
+    NOW.get()
+}
+
+#[test]
+fn steps_that_take_long_slow_the_game_down_and_leave_room_for_keys() {
+    let steps_in_a_second = |machine_time| {
+        let mut rig = Rig::new(floor(), None);
+        rig.app.machine_time = machine_time;
+        rig.send(W, Phase::Press);
+        let before = rig.game().steps();
+        rig.now += Duration::from_secs(1);
+        rig.app.advance(rig.now);
+        let steps = rig.game().steps() - before;
+        // A late key is not behind more than one step either.
+        rig.now += Duration::from_secs(1);
+        rig.send(Key::Char('q'), Phase::Press);
+        (steps, rig.game().steps() - before - steps)
+    };
+    assert_eq!(steps_in_a_second(None), (15, 15));
+    assert_eq!(steps_in_a_second(Some(slow as fn() -> Duration)), (1, 1));
 }

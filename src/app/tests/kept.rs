@@ -158,6 +158,40 @@ fn the_best_run_walks_along_and_can_be_switched_off() {
 }
 
 #[test]
+fn switching_the_ghost_says_so_and_the_map_shows_it() {
+    let mut rig = playing_own(DANGER, Store::in_memory());
+    let status = |rig: &mut Rig| text(&mut rig.app, 120, 24).lines().last().unwrap().to_owned();
+    for said in ["The ghost is off", "The ghost is on: you have no best run here yet"] {
+        rig.tap(Key::Char('0'), 30);
+        rig.wait(300);
+        let shown = status(&mut rig);
+        assert!(shown.contains(said), "{shown}");
+    }
+
+    let mut store = Store::in_memory();
+    let key = map_key("danger.toml", DANGER);
+    let tally = Tally { steps: 3600, ..Tally::default() };
+    let script = "1 s forward\n50 s stand\n".to_owned();
+    store.record(&key, Difficulty::Normal, Run { tally, rank: Rank::Thief, script });
+    let mut rig = playing_own(DANGER, store);
+    rig.wait(1500);
+    assert!(text(&mut rig.app, 120, 24).contains('▹'), "{}", text(&mut rig.app, 120, 24));
+    rig.tap(Key::Char('0'), 30);
+    rig.wait(300);
+    let shown = text(&mut rig.app, 120, 24);
+    assert!(!shown.contains('▹') && shown.contains("The ghost is off"), "{shown}");
+    rig.tap(Key::Char('0'), 30);
+    rig.wait(300);
+    let shown = text(&mut rig.app, 120, 24);
+    assert!(shown.contains('▹') && shown.contains("The ghost of your best run is on"), "{shown}");
+    // As a goal, it goes after some time of play.
+    rig.tap(Key::Char('g'), 30);
+    rig.wait(800);
+    rig.app.notice.as_mut().unwrap().moved(4 * 60);
+    assert!(!status(&mut rig).contains("The ghost"));
+}
+
+#[test]
 fn the_ghost_changes_the_pixels_where_it_stands_and_no_others() {
     const MEETING: &str = r##"
 grid = '''

@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use super::titles::titled;
 use super::*;
+use crate::app::run_log::RunLog;
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
 use crate::store::{Run, map_key};
@@ -35,7 +36,7 @@ pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
     let read = || parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary());
     let load = {
         let key = key.clone();
-        move || Ok(OwnLevel { level: read()?, key: key.clone() })
+        move || Ok(OwnLevel { level: read()?, key: key.clone(), file: None })
     };
     OwnMap { name: name.to_owned(), key, load: Box::new(load) }
 }
@@ -100,17 +101,15 @@ fn the_dead_say_what_happened_and_go_on_at_once() {
 }
 
 #[test]
-fn letters_restart_and_leave_to_the_title_after_a_death() {
+fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
     let mut rig = dead();
-    rig.wait(700);
-    rig.tap(Key::Char('r'), 30);
-    rig.wait(300);
+    rig.wait(1000);
+    rig.choose("Restart the level");
     assert_eq!((rig.app.screen, rig.game().tally().deaths), (Screen::Playing, 0));
     assert!(rig.game().elapsed() < 1.0);
     let mut rig = dead();
-    rig.wait(700);
-    rig.tap(Key::Char('l'), 30);
-    rig.wait(300);
+    rig.wait(1000);
+    rig.choose("Leave to the title");
     assert_eq!(rig.app.screen, Screen::Title);
     let left = rig.app.left.as_ref().unwrap();
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
@@ -144,6 +143,44 @@ fn the_end_of_a_level_tells_the_rank() {
     for wanted in ["you found the way out", "rank: ", "the par time of 0:30", "gold: 50 of 50"] {
         assert!(shown.contains(wanted), "{wanted}:\n{shown}");
     }
+}
+
+#[test]
+fn the_status_line_says_what_gold_there_is_and_what_is_needed() {
+    const GOLD: &str = r##"
+title = "Vault"
+treasure_needed = 50
+grid = '''
+#########
+#@.t.u.X#
+#########
+'''
+[tiles]
+"#" = { wall = "brick" }
+[things]
+"@" = { start = 0 }
+"t" = { treasure = 50 }
+"u" = { treasure = 80 }
+"X" = { exit = true }
+"##;
+    let mut rig = playing_own(GOLD, Store::in_memory());
+    let shown = |rig: &mut Rig, words: [&str; 2]| {
+        for (columns, words) in [(120, words[0]), (72, words[1])] {
+            let shown = text(&mut rig.app, columns, 24);
+            let status = shown.lines().last().unwrap();
+            assert!(status.contains(words), "{words}: {status}");
+        }
+    };
+    shown(&mut rig, ["0 of 130 gold, 50 needed", "0/130 need 50"]);
+    rig.tap(Key::Char('g'), 30);
+    while rig.game().treasure().found == 0 {
+        rig.wait(1);
+    }
+    shown(&mut rig, ["50 of 130 gold, enough", "50/130 gold"]);
+    while rig.game().treasure().found == 50 {
+        rig.wait(1);
+    }
+    shown(&mut rig, ["130 of 130 gold, enough", "130/130 gold"]);
 }
 
 #[test]
@@ -200,18 +237,19 @@ fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
     let offers = Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
     let mut rig = titled(offers, Store::in_memory());
     rig.choose("Daily run");
+    rig.choose("Begin the try that counts");
     assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: true });
     assert_eq!(rig.app.game.title(), "Floor 1");
     assert!(text(&mut rig.app, 120, 24).contains("Daily run: this try counts"));
     let floor = rig.game().world().clone();
-    rig.tap(Key::Char('q'), 30);
-    assert!(text(&mut rig.app, 80, 24).contains("q or Enter ends the run"));
-    rig.tap(Key::Char('x'), 30);
     rig.tap(Key::Char('p'), 30);
     rig.wait(300);
     assert!(!text(&mut rig.app, 80, 24).contains("Restart"));
+    // The try is over, as by a death.
+    rig.app.log = RunLog::default();
     rig.choose("Leave to the title");
     rig.choose("Daily run");
+    rig.choose("Practise");
     assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: false });
     assert!(text(&mut rig.app, 120, 24).contains("Practice: the first try"));
     assert_eq!(rig.game().world().grid(), floor.grid(), "it is the same for all");

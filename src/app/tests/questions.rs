@@ -45,7 +45,7 @@ fn a_repetition_confirms_nothing_and_a_fresh_press_does() {
                 assert_eq!(rig.app.screen, Screen::LevelDone, "{rate:?} {milliseconds} {key}");
                 rig.release(key);
                 rig.wait(400);
-                rig.tap(key, 50);
+                rig.tap(ENTER, 50);
                 rig.wait(200);
                 assert_eq!(rig.app.screen, Screen::End, "{rate:?} {milliseconds} {key}");
             }
@@ -67,11 +67,164 @@ fn nothing_confirms_in_the_first_half_second() {
         rig.wait(200);
         assert_eq!(rig.app.screen, Screen::End);
         rig.tap(ENTER, 50);
-        rig.wait(600);
+        rig.wait(1000);
         assert!(!rig.app.has_left);
         rig.tap(ENTER, 50);
         rig.wait(200);
         assert!(rig.app.has_left);
+    }
+}
+
+/// A corridor of spikes.
+const DEADLY: &str = r##"
+grid = '''
+####################
+#^^^^^^^^@^^^^^^^^^#
+####################
+'''
+[tiles]
+"#" = { wall = "brick" }
+[things]
+"@" = { start = 0 }
+"^" = { spikes = 1.0 }
+"##;
+
+/// A game whose player walks over spikes until a key to walk is pressed.
+fn on_spikes(rate: Option<Rate>) -> Rig {
+    let mut rig = Rig::new(parse_str(DEADLY).unwrap(), rate);
+    rig.tap(Key::Char('g'), 10);
+    rig.wait(100);
+    rig
+}
+
+/// Waits until the player is dead; returns how long that took.
+fn wait_for_death(rig: &mut Rig) -> u64 {
+    for milliseconds in 0..20_000 {
+        if rig.app.screen == Screen::Dead {
+            return milliseconds;
+        }
+        rig.wait(1);
+    }
+    panic!("alive at {} with {:?}", rig.position(), rig.game().health());
+}
+
+const KEYBOARDS: [Option<Rate>; 4] = [None, Some((250, 15)), Some((500, 30)), Some((660, 40))];
+
+#[test]
+fn keys_that_are_held_at_a_death_do_nothing_on_the_panel() {
+    for rate in KEYBOARDS {
+        let lives = wait_for_death(&mut on_spikes(rate));
+        let letters = ['w', 's', 'r', 'l', 'd', ' '].map(Key::Char);
+        for key in letters.into_iter().chain([Key::Up, Key::Down, ENTER]) {
+            for milliseconds in [20, 200, 620, 1400] {
+                let case = format!("{key} pressed {milliseconds} ms before the death, {rate:?}");
+                let mut rig = on_spikes(rate);
+                rig.wait(lives - milliseconds);
+                rig.press(key);
+                wait_for_death(&mut rig);
+                rig.wait(3000);
+                let shown = (rig.app.screen, rig.app.menu.selected(), rig.app.has_left);
+                assert_eq!(shown, (Screen::Dead, 0, false), "{case}");
+                rig.release(key);
+                rig.wait(400);
+                rig.tap(ENTER, 50);
+                rig.wait(200);
+                let goes_on = (rig.app.screen, rig.game().tally().deaths);
+                assert_eq!(goes_on, (Screen::Playing, 1), "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_panel_waits_for_the_release_of_the_keys_that_were_held_or_for_a_second() {
+    for (released, answered, is_answered) in [
+        (Some(100), 300, false),
+        (Some(100), 600, true),
+        (Some(700), 600, false),
+        (Some(700), 800, true),
+        (None, 950, false),
+        (None, 1050, true),
+    ] {
+        let mut rig = on_spikes(None);
+        rig.press(W);
+        wait_for_death(&mut rig);
+        for milliseconds in 0..answered {
+            if released == Some(milliseconds) {
+                rig.release(W);
+            }
+            rig.wait(1);
+        }
+        rig.tap(ENTER, 10);
+        let case = format!("released after {released:?} ms, answered after {answered}");
+        assert_eq!(rig.app.screen == Screen::Playing, is_answered, "{case}");
+    }
+    // Without releases: a key that repeats is up once it stops, and a key that was tapped may be down for as long as
+    // the first repetition may take.
+    for (key_lasts, answered, is_answered) in
+        [(300, 550, true), (3000, 900, false), (3000, 1050, true)]
+    {
+        let mut rig = on_spikes(Some((500, 30)));
+        rig.press(W);
+        wait_for_death(&mut rig);
+        for milliseconds in 0..answered {
+            if milliseconds == key_lasts {
+                rig.release(W);
+            }
+            rig.wait(1);
+        }
+        rig.tap(ENTER, 10);
+        let case = format!("released after {key_lasts} ms, answered after {answered}");
+        assert_eq!(rig.app.screen == Screen::Playing, is_answered, "{case}");
+    }
+}
+
+#[test]
+fn on_a_result_only_enter_and_the_arrows_act_and_the_selection_stops_at_both_ends() {
+    let dead = |rate| {
+        let mut rig = on_spikes(rate);
+        wait_for_death(&mut rig);
+        rig
+    };
+    let won = |rate| at_the_exit(rate, Key::Char('k'), 1);
+    for rate in KEYBOARDS {
+        for mut rig in [dead(rate), won(rate)] {
+            rig.release(Key::Char('k'));
+            rig.wait(1100);
+            let screen = rig.app.screen;
+            let named = [
+                Key::Left,
+                Key::Right,
+                Key::Escape,
+                Key::Backspace,
+                Key::PageDown,
+                Key::End,
+                Key::Tab,
+            ];
+            for key in (' '..='~').map(Key::Char).chain(named) {
+                rig.tap(key, 20);
+                rig.wait(20);
+                let shown = (rig.app.screen, rig.app.menu.selected(), rig.app.has_left);
+                assert_eq!(shown, (screen, 0, false), "{key}");
+            }
+            for (key, selected) in [
+                (Key::Up, 0),
+                (Key::Down, 1),
+                (Key::Down, 2),
+                (Key::Down, 2),
+                (Key::Up, 1),
+                (Key::Up, 0),
+                (Key::Up, 0),
+            ] {
+                rig.tap(key, 20);
+                rig.wait(300);
+                assert_eq!(rig.app.menu.selected(), selected, "{screen:?} {key} {rate:?}");
+            }
+            rig.tap(Key::Down, 20);
+            rig.tap(Key::Down, 20);
+            rig.tap(ENTER, 20);
+            assert!(rig.app.has_left, "{rate:?}");
+        }
     }
 }
 

@@ -3,9 +3,11 @@
 use super::missions::text;
 use super::titles::titled;
 use super::*;
-use crate::app::{Given, Offers, Opening, Origin};
-use crate::game::{Intents, Script};
-use crate::store::{SavedGame, Slot};
+use crate::app::run_log::RunLog;
+use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
+use crate::game::{Header, Intents, Script};
+use crate::map::builtin;
+use crate::store::{MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
 use crate::tui::GlyphMode;
 
 /// Leaves a game to the title, which keeps its store.
@@ -20,40 +22,64 @@ fn leave(rig: &mut Rig) -> Game {
 fn playing(label: &str, offers: Offers) -> Rig {
     let mut rig = titled(offers, Store::in_memory());
     rig.choose(label);
-    if rig.app.screen == Screen::NewGame {
-        rig.choose("Normal");
+    match rig.app.screen {
+        Screen::NewGame => rig.choose("Normal"),
+        Screen::Daily => rig.choose("Begin the try that counts"),
+        _ => {}
     }
+    walk(&mut rig);
+    rig
+}
+
+/// Walks for two seconds.
+fn walk(rig: &mut Rig) {
     assert_eq!(rig.app.screen, Screen::Playing);
     rig.press(W);
     rig.wait(1500);
     rig.release(W);
     rig.wait(700);
-    rig
+}
+
+/// The game that was saved last.
+fn newest(rig: &Rig) -> Option<SavedGame> {
+    let id = rig.app.store.saves().next()?.id();
+    rig.app.store.saved(id)
+}
+
+/// The names in the list of saved games.
+fn saved_levels(rig: &Rig) -> Vec<(&str, Difficulty)> {
+    let saves = rig.app.store.saves();
+    saves.map(|save| (save.level.as_str(), save.rules.difficulty)).collect()
 }
 
 #[test]
 fn a_game_in_a_level_that_has_changed_can_begin_anew() {
     let mut rig = playing("New game", Offers::default());
     leave(&mut rig);
-    let saved = rig.app.store.saved(Slot::Level).unwrap();
+    let saved = newest(&rig).unwrap();
+    let id = saved.save.id();
     // In the level as it was, the script led to another state.
-    let changed = SavedGame { checksum: saved.checksum.map(|sum| sum ^ 1), ..saved.clone() };
-    rig.app.store.save(&changed);
+    let with_checksum = |checksum| {
+        let save = Save { checksum, ..saved.save.clone() };
+        SavedGame { save, script: saved.script.clone() }
+    };
+    let changed = with_checksum(saved.save.checksum.map(|sum| sum ^ 1));
+    rig.app.store.save(&changed).unwrap();
     rig.choose("Continue");
-    assert_eq!(rig.app.screen, Screen::Outdated(Slot::Level));
+    assert_eq!(rig.app.screen, Screen::Outdated(id));
     let shown = text(&mut rig.app, 80, 24);
     assert!(shown.contains("The level has changed since you left it."), "{shown}");
     rig.tap(Key::Escape, 30);
     rig.wait(300);
     assert_eq!(rig.app.screen, Screen::Title);
-    assert_eq!(rig.app.store.saved(Slot::Level), Some(changed), "a look costs nothing");
+    assert_eq!(newest(&rig), Some(changed), "a look costs nothing");
     rig.choose("Continue");
     rig.choose("Begin anew");
-    assert_eq!((rig.app.screen, rig.app.store.saved(Slot::Level)), (Screen::Playing, None));
+    assert_eq!((rig.app.screen, newest(&rig)), (Screen::Playing, None));
     assert!(rig.game().elapsed() < 1.0);
 
     // A file of the first version has no checksum.
-    rig.app.store.save(&SavedGame { checksum: None, ..saved });
+    rig.app.store.save(&with_checksum(None)).unwrap();
     rig.app.show_title();
     rig.choose("Continue");
     assert_eq!(rig.app.screen, Screen::Playing);
@@ -63,38 +89,317 @@ fn a_game_in_a_level_that_has_changed_can_begin_anew() {
 #[test]
 fn a_descent_that_is_left_goes_on_once() {
     let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
-    for (label, kind) in [("Endless", "endless"), ("Daily run", "daily run")] {
+    for (label, name) in
+        [("Endless", "Endless on normal"), ("Daily run", "Daily run of 2026-11-22")]
+    {
         let mut rig = playing(label, offers());
         let course = rig.app.course;
         let mut left = leave(&mut rig);
         let shown = text(&mut rig.app, 80, 24);
-        assert!(shown.contains(&format!("Continue descent  {kind}")), "{shown}");
-        rig.choose("Continue descent");
+        assert!(shown.contains(&format!("Continue  {name}")), "{shown}");
+        rig.choose("Continue");
         assert_eq!((rig.app.screen, rig.app.course), (Screen::Playing, course));
         while left.tally().steps < rig.game().tally().steps {
             left.step(Intents::new());
         }
         assert_eq!(left, *rig.game());
-        assert_eq!(rig.app.store.saved(Slot::Descent), None);
+        assert_eq!(newest(&rig), None);
         // It can be left again, with the script from its beginning on.
         let steps = leave(&mut rig).tally().steps;
-        let saved = rig.app.store.saved(Slot::Descent).unwrap();
+        let saved = newest(&rig).unwrap();
         assert_eq!(Script::parse(&saved.script, "it").unwrap().steps(), steps);
     }
 }
 
 #[test]
-fn a_descent_does_not_replace_the_saved_level() {
+fn each_level_and_difficulty_has_a_saved_game_and_the_newest_is_the_first() {
     let mut rig = playing("New game", Offers::default());
     leave(&mut rig);
-    let level = rig.app.store.saved(Slot::Level);
-    rig.choose("Endless");
-    rig.press(W);
-    rig.wait(500);
-    rig.release(W);
+    rig.choose("New game");
+    rig.choose("Hard");
+    walk(&mut rig);
     leave(&mut rig);
-    assert!(level.is_some() && rig.app.store.saved(Slot::Descent).is_some());
-    assert_eq!(rig.app.store.saved(Slot::Level), level);
+    rig.choose("Levels");
+    rig.choose("Citadel");
+    walk(&mut rig);
+    leave(&mut rig);
+    rig.choose("Endless");
+    walk(&mut rig);
+    let left = leave(&mut rig);
+    let (hard, normal) = (Difficulty::Hard, Difficulty::Normal);
+    let all = [("floor 1", hard), ("citadel", hard), ("cellar", hard), ("cellar", normal)];
+    assert_eq!(saved_levels(&rig), all);
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("Continue  4 games"), "{shown}");
+    rig.choose("Continue");
+    let shown = text(&mut rig.app, 80, 24);
+    let names = ["Endless on hard", "Citadel on hard", "Cellar on hard", "Cellar on normal"];
+    let places: Vec<Option<usize>> = names.iter().map(|name| shown.find(name)).collect();
+    assert!(places.is_sorted() && places.iter().all(Option::is_some), "{shown}");
+    assert!(shown.contains("> Endless on hard") && shown.contains("0:02"), "{shown}");
+    rig.choose("Endless on hard");
+    let since = rig.game().tally().steps - left.tally().steps;
+    assert!(since < 60, "it has gone on for the time of this test: {since} steps");
+}
+
+/// The program as started with a built-in level.
+fn started(level: &str, store: Store) -> Rig {
+    let index = builtin::LEVELS.iter().position(|it| it.name == level).unwrap();
+    let levels = Opening::Levels(Box::new(Levels::builtin(index).unwrap()));
+    Rig::of(App::opened(levels, Settings::default(), store), Some((500, 30)))
+}
+
+/// Ends the program, and takes what it keeps.
+fn quit(mut rig: Rig) -> Store {
+    rig.app.leave();
+    std::mem::replace(&mut rig.app.store, Store::in_memory())
+}
+
+#[test]
+fn a_level_with_a_saved_game_asks_and_loses_nothing_before_the_answer() {
+    let mut rig = started("cellar", Store::in_memory());
+    assert_eq!(rig.app.screen, Screen::Playing, "nothing is saved, and nothing is asked");
+    walk(&mut rig);
+    let left = rig.game().clone();
+    let store = quit(rig);
+    // Another level is not asked about, and takes the place of nothing.
+    let mut rig = started("citadel", store);
+    walk(&mut rig);
+    let rig = started("cellar", quit(rig));
+    assert_eq!(rig.app.screen, Screen::HasSaved);
+    let saved = |rig: &Rig| {
+        let id = rig.app.store.saves().find(|save| save.level == "cellar").map(Save::id)?;
+        rig.app.store.saved(id)
+    };
+    let first = saved(&rig).unwrap();
+    assert_eq!(first.save.checksum, Some(left.checksum()));
+
+    // Leaving at the question, or before the first step, loses nothing.
+    let mut rig = started("cellar", quit(rig));
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("Cellar on normal: 0:02 played"), "{shown}");
+    rig.tap(Key::Escape, 30);
+    assert!(rig.app.has_left);
+    let mut rig = started("cellar", quit(rig));
+    assert_eq!(saved(&rig), Some(first.clone()));
+
+    rig.choose("Continue");
+    assert_eq!(rig.app.screen, Screen::Playing);
+    assert!(rig.game().tally().steps >= left.tally().steps);
+    let mut rig = started("cellar", quit(rig));
+    assert!(saved(&rig).unwrap().script.len() >= first.script.len());
+
+    rig.choose("Begin anew");
+    assert_eq!(rig.app.screen, Screen::Playing);
+    assert!(rig.game().elapsed() < 1.0);
+    assert!(saved(&rig).is_some(), "it is kept while the new game is played");
+    let rig = started("cellar", quit(rig));
+    assert!(saved(&rig).unwrap().save.steps.unwrap() < first.save.steps.unwrap());
+}
+
+#[test]
+fn a_game_that_goes_on_is_recorded_from_the_start_of_its_level() {
+    let mut rig = started("cellar", Store::in_memory());
+    walk(&mut rig);
+    let mut rig = started("cellar", quit(rig));
+    let script =
+        std::env::temp_dir().join(format!("cellcaster-record-{}.script", std::process::id()));
+    let file = std::fs::File::create(&script).unwrap();
+    rig.app.script = Some(crate::game::Recorder::with_header(Box::new(file), Header::default()));
+    rig.choose("Continue");
+    walk(&mut rig);
+    rig.app.script = None;
+    let recorded = std::fs::read_to_string(&script).unwrap();
+    std::fs::remove_file(&script).unwrap();
+    let recorded = Script::parse(&recorded, "it").unwrap_or_else(|faults| panic!("{faults}"));
+    let saved = Script::parse(&rig.app.log.script(), "it").unwrap();
+    assert!(recorded.iter().eq(saved.iter()));
+    assert_eq!(recorded.steps(), rig.game().tally().steps);
+}
+
+#[test]
+fn the_next_level_of_the_campaign_asks_too_and_is_offered_beside_saved_games() {
+    let mut store = Store::in_memory();
+    let tally = Tally { steps: 3600, ..Tally::default() };
+    let run = Run { tally, rank: Rank::Thief, script: String::new() };
+    store.record("cellar", Difficulty::Normal, run);
+    let mut rig = started("museum", store);
+    walk(&mut rig);
+    let mut rig = titled(Offers::default(), quit(rig));
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("Continue  Museum on normal"), "the saved game is in it: {shown}");
+    rig.choose("Endless");
+    walk(&mut rig);
+    leave(&mut rig);
+    assert!(text(&mut rig.app, 80, 24).contains("Continue  2 games"));
+    rig.app.begin(Levels::builtin(0).unwrap());
+    rig.app.next_level();
+    assert_eq!((rig.app.game.title(), rig.app.screen), ("The Museum of Walls", Screen::HasSaved));
+}
+
+#[test]
+fn a_saved_game_is_removed_from_the_list_after_a_question() {
+    let mut rig = playing("New game", Offers::default());
+    leave(&mut rig);
+    rig.choose("Endless");
+    walk(&mut rig);
+    leave(&mut rig);
+    let remove = |rig: &mut Rig, answer: &str| {
+        rig.tap(Key::Char('x'), 30);
+        rig.wait(300);
+        assert!(matches!(rig.app.screen, Screen::Remove(_)));
+        rig.choose(answer);
+    };
+    rig.choose("Continue");
+    remove(&mut rig, "Keep it");
+    assert_eq!((rig.app.screen, saved_levels(&rig).len()), (Screen::Saves, 2));
+    remove(&mut rig, "Remove it");
+    assert_eq!(saved_levels(&rig), [("cellar", Difficulty::Normal)]);
+    remove(&mut rig, "Remove it");
+    assert_eq!((rig.app.screen, saved_levels(&rig).len()), (Screen::Title, 0));
+    assert!(!text(&mut rig.app, 80, 24).contains("Continue"));
+}
+
+/// A store in which there is no room for another game.
+fn full() -> Store {
+    let mut store = Store::in_memory();
+    let rules = crate::game::Rules::default();
+    for number in 0..MOST_SAVES {
+        let level = format!("level {number}-0123456789abcdef");
+        let save = Save { level, file: None, rules, descent: None, steps: None, checksum: None };
+        store.save(&SavedGame { save, script: "1 s forward\n".to_owned() }).unwrap();
+    }
+    store
+}
+
+#[test]
+fn without_room_a_game_begins_with_a_question_and_says_that_it_is_not_saved() {
+    let ids = |rig: &Rig| rig.app.store.saves().map(Save::id).collect::<Vec<SaveId>>();
+    let mut rig = started("cellar", full());
+    let before = ids(&rig);
+    assert_eq!(rig.app.screen, Screen::NoRoom);
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("Remove the oldest") && shown.contains("Level 0 on normal"), "{shown}");
+    rig.choose("Play without saving");
+    walk(&mut rig);
+    rig.tap(Key::Char('q'), 30);
+    assert!(text(&mut rig.app, 80, 24).contains("no room to save the game"));
+    rig.app.leave();
+    assert_eq!(ids(&rig), before);
+    let left = rig.app.left.clone().unwrap();
+    let sentence = "The game is not saved: 100 other games are saved, and no more are kept.";
+    assert!(left.ends_with(sentence), "{left}");
+
+    let mut rig = started("cellar", quit(rig));
+    rig.choose("Remove the oldest");
+    assert_eq!((rig.app.screen, ids(&rig).len()), (Screen::Playing, MOST_SAVES - 1));
+    walk(&mut rig);
+    rig.tap(Key::Char('q'), 30);
+    assert!(text(&mut rig.app, 80, 24).contains("the game is saved"));
+    let store = quit(rig);
+    assert_eq!(store.saves().next().unwrap().level, "cellar");
+
+    // The try of a day does not begin where it could not be left.
+    let offers = Offers { today: Some(20_261_122), ..Offers::default() };
+    let mut rig = titled(offers, store);
+    rig.choose("Daily run");
+    assert!(!text(&mut rig.app, 80, 24).contains("Begin the try"));
+    rig.choose("Remove the oldest");
+    rig.choose("Begin the try that counts");
+    assert_eq!(rig.app.screen, Screen::Playing);
+}
+
+#[test]
+fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
+    let offers = || Offers { today: Some(20_261_122), seed: 7, ..Offers::default() };
+    // From the shell, it is asked as from the title.
+    let opening = Opening::Daily(offers());
+    let mut rig = Rig::of(App::opened(opening, Settings::default(), Store::in_memory()), None);
+    assert_eq!(rig.app.screen, Screen::Daily);
+    let shown = text(&mut rig.app, 80, 24);
+    for words in ["The descent of 2026-11-22", "One try counts", "it is saved"] {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    rig.tap(Key::Escape, 30);
+    rig.wait(300);
+    assert_eq!((rig.app.screen, rig.app.store.daily(20_261_122)), (Screen::Title, None));
+
+    rig.choose("Daily run");
+    rig.choose("Begin the try that counts");
+    let counts = Course::Daily { date: 20_261_122, counts: true };
+    assert_eq!((rig.app.course, rig.app.screen), (counts, Screen::Playing));
+    walk(&mut rig);
+    rig.tap(Key::Char('q'), 30);
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("q or Enter leaves the program"), "{shown}");
+    assert!(shown.contains("the game is saved"), "{shown}");
+    rig.tap(Key::Enter, 30);
+    assert!(rig.app.has_left);
+
+    let mut rig = titled(offers(), quit(rig));
+    rig.choose("Daily run");
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(
+        !shown.contains("Practise"),
+        "the floors are not shown before the try is over: {shown}"
+    );
+    rig.choose("Continue the try that counts");
+    assert_eq!((rig.app.course, rig.app.screen), (counts, Screen::Playing));
+    assert!(rig.game().elapsed() > 1.5);
+    assert_eq!(newest(&rig), None);
+    // The program is killed: the try is over.
+    rig.app.log = RunLog::default();
+    rig.app.return_to_title();
+    rig.choose("Daily run");
+    assert!(text(&mut rig.app, 80, 24).contains("The try that counts reached 0 floors."));
+    rig.choose("Practise");
+    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: false });
+    walk(&mut rig);
+    leave(&mut rig);
+    // Practice has a saved game of its own.
+    rig.choose("Daily run");
+    rig.choose("Practise");
+    assert_eq!(rig.app.screen, Screen::HasSaved);
+    rig.choose("Continue");
+    assert!(rig.game().elapsed() > 1.5);
+}
+
+#[test]
+fn a_map_in_a_file_goes_on_wherever_it_lies() {
+    let file = "/somewhere/else/pit.toml";
+    let own = |text: &str| {
+        let level = Level::from(parse_str(text).unwrap());
+        OwnLevel { level, key: map_key("pit.toml", text), file: Some(file.to_owned()) }
+    };
+    let opening = Opening::Levels(Box::new(Levels::own(own(PIT))));
+    let app = App::opened(opening, Settings::default(), Store::in_memory());
+    let mut rig = Rig::of(app, Some((500, 30)));
+    walk(&mut rig);
+    let left = rig.game().clone();
+    let store = quit(rig);
+
+    let offering = |text: &'static str| {
+        let load = move |path: &str| {
+            assert_eq!(path, file);
+            if text.is_empty() { Err(format!("{path} is no file now")) } else { Ok(own(text)) }
+        };
+        Offers { load: Some(Box::new(load)), ..Offers::default() }
+    };
+    let mut rig = titled(offering(""), store);
+    assert!(text(&mut rig.app, 80, 24).contains("Continue  Pit on normal"));
+    rig.choose("Continue");
+    assert_eq!(rig.app.screen, Screen::Title);
+    let shown = text(&mut rig.app, 80, 24);
+    assert!(shown.contains("/somewhere/else/pit.toml is no file now"), "{shown}");
+    rig.app.offers = Some(offering(PIT));
+    rig.choose("Continue");
+    assert!(rig.game().tally().steps >= left.tally().steps);
+    leave(&mut rig);
+    // A change that leads elsewhere.
+    let text = PIT.replace("start = 0", "start = 180").leak();
+    rig.app.offers = Some(offering(text));
+    rig.choose("Continue");
+    assert!(matches!(rig.app.screen, Screen::Outdated(_)), "{:?}", rig.app.screen);
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn the_goal_is_shown_until_the_player_has_acted_for_a_while() {
     app.goal.moved(1);
     let later = text(&mut app, size);
     assert!(!later.contains(&goal), "{later}");
-    assert!(later.contains("Cellar") && later.contains("0 of 100 gold"), "{later}");
+    assert!(later.contains("Cellar") && later.contains("0 of 130 gold, 100 needed"), "{later}");
 }
 
 #[test]

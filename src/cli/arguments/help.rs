@@ -23,9 +23,10 @@ You are a thief. Take the treasure that a level asks for, keep out of sight and 
 and reach the exit, which the map shows as a green square. A level ends with its time, treasure, \
 alarms and a rank, and your best results are kept.
 
-Without MAP the title screen offers a new game at one of three difficulties, the saved game, the levels \
+Without MAP the title screen offers the saved games, a new game at one of three difficulties, the levels \
 with your best results, the daily run, endless games, the maps in this folder, settings and help. With \
-MAP, --generate, --daily or --endless the game begins at once.
+MAP, --generate or --endless the game begins at once, and asks first only if a game in that level is \
+saved. --daily asks before the try that counts.
 ";
 
 const MAP: &str = "

@@ -50,7 +50,7 @@ impl Ghosts {
         room: &'g RoomView,
         own: Option<PlayerColor>,
     ) -> impl Iterator<Item = Seen<'g>> {
-        let step = room.begun().map(|begun| room.step.saturating_sub(begun));
+        let step = room.begun.map(|begun| room.step.saturating_sub(begun));
         let ghosts = self.ghosts.as_deref().unwrap_or_default();
         step.into_iter().flat_map(move |step| {
             ghosts.iter().filter_map(move |ghost| {

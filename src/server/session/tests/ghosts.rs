@@ -35,7 +35,7 @@ fn ghost(name: Option<&str>) -> Ghost {
 /// The steps since the race began.
 fn steps(rig: &Rig) -> Option<u64> {
     let view = rig.view();
-    view.begun().map(|begun| view.step - begun)
+    view.begun.map(|begun| view.step - begun)
 }
 
 #[test]
