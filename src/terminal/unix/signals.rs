@@ -3,11 +3,12 @@
 //!
 //! On a signal that asks the program to end, the program may still keep what was played. On every
 //! other signal that would end it, the thread gives the terminal back and lets the signal have its
-//! own effect. Doing so for signals that report a fault of the program, such as SIGSEGV, was refused: the
-//! faulty instruction would run again and again before the thread is done.
+//! own effect. Doing so for signals that report a fault of the program, which are SIGILL, SIGFPE, SIGSEGV
+//! and SIGBUS, was refused: the faulty instruction would run again and again before the thread is done.
 
 use std::io::{self, Read, Write};
 use std::mem;
+use std::ops::RangeInclusive;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,7 +24,7 @@ use signal_hook::consts::{
 };
 use signal_hook::iterator::exfiltrator::WithRawSiginfo;
 use signal_hook::iterator::{Handle, SignalsInfo};
-use signal_hook::low_level::emulate_default_handler;
+use signal_hook::low_level::{emulate_default_handler, exit};
 
 use super::super::QuitReason;
 use super::super::guard::Guard;
@@ -38,6 +39,17 @@ const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
 /// The signals that end the program by default and ask for nothing.
 const ENDS: [i32; 10] =
     [SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU];
+
+/// The signals that end the program by default and that the library does not know how to end it by:
+/// SIGSTKFLT, SIGIO, SIGPWR and the real-time signals. After them it ends with [`STATUS`] and their
+/// number, as a shell reports a program that a signal has ended.
+#[cfg(any(target_os = "linux", target_os = "android"))]
+const NAMELESS: [RangeInclusive<i32>; 4] = [16..=16, 29..=29, 30..=30, 34..=64];
+#[cfg(not(any(target_os = "linux", target_os = "android")))]
+const NAMELESS: [RangeInclusive<i32>; 0] = [];
+
+/// What a shell adds to the number of a signal.
+const STATUS: i32 = 128;
 
 /// The signals that have no effect, by default or, as SIGXFSZ, here: without that effect, a write
 /// beyond the largest size of a file fails as one on a full disk does.
@@ -79,6 +91,10 @@ impl Signals {
         default_effects()?.store(false, Ordering::SeqCst);
         let incoming = Incoming::new(REQUESTS.iter().chain(&ENDS).chain(&NOTICES))?;
         let handle = incoming.handle();
+        for number in nameless() {
+            // A C library may keep some for itself.
+            _ = handle.add_signal(number);
+        }
         let thread = thread::Builder::new().name("signals".to_owned()).spawn({
             let guard = Arc::clone(guard);
             move || pass_on(incoming, &sender, &guard)
@@ -157,12 +173,20 @@ fn default_effects() -> io::Result<&'static AtomicBool> {
     for number in REQUESTS.into_iter().chain(ENDS) {
         signal_hook::flag::register_conditional_default(number, Arc::clone(&flag))?;
     }
+    for number in nameless() {
+        let (status, flag) = (STATUS + number, Arc::clone(&flag));
+        _ = signal_hook::flag::register_conditional_shutdown(number, status, flag);
+    }
     Ok(FLAG.get_or_init(|| flag))
 }
 
 fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
     for info in incoming.forever() {
         let number = info.si_signo;
+        if is_nameless(number) {
+            guard.give_back_and(|| exit(STATUS + number));
+            continue;
+        }
         if ENDS.contains(&number) {
             if number != SIGQUIT || !is_from_system(info.si_code) {
                 end(number, guard);
@@ -178,6 +202,14 @@ fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
             }
         }
     }
+}
+
+fn nameless() -> impl Iterator<Item = i32> {
+    NAMELESS.into_iter().flatten()
+}
+
+fn is_nameless(number: i32) -> bool {
+    NAMELESS.iter().any(|numbers| numbers.contains(&number))
 }
 
 /// Gives the terminal back and ends the program by this signal.
