@@ -46,11 +46,13 @@ impl LineEntry {
             return self.text.pop().is_some();
         }
         let Some(character) = event.typed() else { return false };
-        let before = if self.is_offer { "" } else { &self.text };
-        let Some(after) = appended(before, character, self.columns) else { return false };
-        self.is_offer = false;
-        self.text = after;
-        true
+        let offer = self.is_offer.then(|| std::mem::take(&mut self.text));
+        let is_taken = append(&mut self.text, character, self.columns);
+        match offer {
+            Some(offer) if !is_taken => self.text = offer,
+            _ => self.is_offer = false,
+        }
+        is_taken
     }
 
     /// The end of the text that fits in `columns` with a cursor after it.
@@ -68,14 +70,21 @@ impl LineEntry {
     }
 }
 
-/// `line` with another character, which may combine with the last one; `None` if it is not taken.
-fn appended(line: &str, character: char, columns: usize) -> Option<String> {
-    if character == ' ' {
+/// Appends a character to `line`, with whose last one it may combine. Returns whether it is taken.
+fn append(line: &mut String, character: char, columns: usize) -> bool {
+    if character.is_whitespace() {
         let is_taken = !line.is_empty() && !line.ends_with(' ') && line.width() < columns;
-        return is_taken.then(|| format!("{line} "));
+        line.extend(is_taken.then_some(' '));
+        return is_taken;
     }
-    let after = printable(&format!("{line}{character}"), columns);
-    (after != line.trim_end()).then_some(after)
+    // No earlier character than the last one combines with it.
+    let last = line.chars().next_back().filter(|last| *last != ' ');
+    line.truncate(line.len() - last.map_or(0, char::len_utf8));
+    let room = columns.saturating_sub(line.width());
+    let end = printable(&last.into_iter().chain([character]).collect::<String>(), room);
+    let is_taken = !end.chars().eq(last);
+    line.push_str(&end);
+    is_taken
 }
 
 #[cfg(test)]
@@ -118,6 +127,17 @@ mod tests {
         assert_eq!(entry.shown(4), "b日_");
         assert_eq!(entry.shown(0), "_");
         assert_eq!(LineEntry::new(4).line(), None);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn a_line_typed_key_by_key_is_the_line_at_once(
+            text in "([a-e漢 \u{a0}][\u{300}-\u{303}]?|[ᄀ-ᄂ][ᅡ-ᅣ][ᆨ-ᆪ]?){0,16}",
+        ) {
+            let mut entry = LineEntry::new(60);
+            type_all(&mut entry, &text);
+            assert_eq!(entry.line(), Line::of(&text, 60), "{text:?}");
+        }
     }
 
     #[test]

@@ -278,8 +278,14 @@ impl Pen {
     }
 }
 
-/// Whether all terminals advance the cursor by one cell for `symbol`. They differ in the widths of
-/// other characters.
+/// Whether all terminals advance the cursor by one cell for `symbol`: a European letter, or a symbol of the
+/// blocks from punctuation to arrows and the block elements. For others they differ in width, and join
+/// letters of some scripts.
 fn advances_by_one(symbol: &str) -> bool {
-    symbol.chars().nth(1).is_none() && symbol.cell_width() == 1
+    let mut characters = symbol.chars();
+    let is_sure =
+        |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1fb00}'..'\u{1fc00}');
+    characters.next().is_some_and(is_sure)
+        && characters.next().is_none()
+        && symbol.cell_width() == 1
 }

@@ -136,6 +136,32 @@ fn any_character_can_be_drawn_alone() {
     }
 }
 
+/// Terminals that shape Arabic show two letters in one cell, and others give one letter two cells.
+#[test]
+fn a_width_that_terminals_dispute_moves_no_other_cell() {
+    let size = Size::new(20, 1);
+    let mut sent = Vec::new();
+    let mut writer = CellWriter::new(&mut sent, size);
+    writer.draw_frame(|screen| screen.draw_widget("say: سلام שלום | end", screen.bounds()));
+    writer.flush().unwrap();
+    drop(writer);
+    let sent = String::from_utf8(sent).unwrap();
+    let is_disputed = |it: char| ('\u{590}'..'\u{700}').contains(&it);
+    assert!(sent.contains(is_disputed));
+    for width in 0..=2 {
+        let seen: String = sent
+            .chars()
+            .map(|it| if is_disputed(it) { "x".repeat(width) } else { it.to_string() })
+            .collect();
+        let mut terminal = vt100::Parser::new(support::length(1), support::length(20), 0);
+        terminal.process(seen.as_bytes());
+        let row = terminal.screen().contents();
+        let (start, end) = (row.get(..5), row.get(row.len() - 5..));
+        assert_eq!((start, end), (Some("say: "), Some("| end")), "{width}: {row:?}");
+        assert_eq!(row.chars().count(), 20, "{width}: {row:?}");
+    }
+}
+
 #[test]
 fn a_wide_character_in_the_last_column_is_a_space() {
     let size = Size::new(6, 2);
