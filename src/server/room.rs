@@ -37,7 +37,7 @@ use self::member::{Member, looking_only};
 pub(crate) use self::mode::Mode;
 pub(crate) use self::replayed::replayed;
 use self::round::{Field, Round, SECOND};
-pub(crate) use self::round::{Phase, Role, Standing};
+pub(crate) use self::round::{Finish, Phase, Role, Standing};
 pub(crate) use self::view::{MemberView, RoomView, Said};
 use super::line::Line;
 #[cfg(feature = "cluster")]
@@ -240,7 +240,11 @@ impl Room {
         Arc::make_mut(game).step_all(inputs);
         round.step(Field { game, members, step: *step });
         emotes.retain(|(_, _, until)| *until > *step);
+        let finished: Vec<MemberId> = round.finished_in(*step).collect();
         *step += 1;
+        for id in finished {
+            self.announce_finish(id);
+        }
         if self.standings.len() != self.round.standings().len() {
             self.standings = self.round.standings().into();
         }
@@ -255,6 +259,7 @@ impl Room {
             color: member.color,
             player: member.player,
             role: self.round.role(member.id),
+            finish: self.round.finish(member.id),
             points: member.points,
             is_blind: self.round.is_blind(member.id),
             emote: emote(member.id),
@@ -265,6 +270,7 @@ impl Room {
             header: Arc::clone(&self.header),
             step: self.step,
             phase: self.round.phase(),
+            begun: self.round.begun(),
             members: self.members.iter().map(member).collect(),
             standings: Arc::clone(&self.standings),
             said: self.said.iter().cloned().collect(),

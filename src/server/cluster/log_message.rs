@@ -3,7 +3,7 @@
 //! A message is a line of numbers, and a line for each entry:
 //!
 //! ```text
-//! 2.1 3 18231 5400 2 5400 9f3ac1
+//! 2.2 3 18231 5400 2 5400 9f3ac1
 //! 0 want 7 5399 forward
 //! ```
 //!

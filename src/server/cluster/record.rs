@@ -1,11 +1,11 @@
 //! Records of rooms: what every host knows of a room, also without a replica of it.
 //!
 //! ```text
-//! 2.1 standing running 17
+//! 2.2 standing running 17
 //! playing 5400
 //! museum
 //! name Mara
-//! cellcaster-room 1
+//! cellcaster-room 2
 //! …
 //! ```
 //!
@@ -56,6 +56,11 @@ impl Record {
         let (phase, names) = (room.phase(), room.names().cloned().collect());
         let level = room.header().level.clone();
         Self { is_running, heartbeat: self.heartbeat + 1, phase, names, level, ..self }
+    }
+
+    /// The level of the present round.
+    pub(super) fn level(&self) -> &str {
+        &self.level
     }
 
     /// The room as lobbies show it, without those who watch.

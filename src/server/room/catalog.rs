@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::Mode;
 use crate::map::builtin;
 use crate::server::HostMaps;
-use crate::world::{ThingKind, World};
+use crate::store::name_in_map_key;
+use crate::world::World;
 
 /// Levels by name, in their order. The name of a map of the host is its key, which differs between two
 /// texts of the map.
@@ -55,6 +56,13 @@ impl Catalog {
         &self.names
     }
 
+    /// The keys of the host's own maps.
+    #[cfg(feature = "cluster")]
+    pub(crate) fn map_keys(&self) -> impl Iterator<Item = &str> {
+        let names = self.names.iter().map(String::as_str);
+        names.filter(|name| name_in_map_key(name).is_some())
+    }
+
     /// The level with that name.
     pub(crate) fn world(&self, name: &str) -> Option<&Arc<World>> {
         self.levels.get(name).map(|level| &level.world)
@@ -83,16 +91,21 @@ impl Catalog {
         level.is_some_and(|level| level.has_exit || !mode.moves_on())
     }
 
-    /// The name of the level with an exit after `name`. After the last one comes the first.
+    /// The name of the level with an exit after `name`. After the last one comes the first. Maps of the host follow
+    /// its maps only, so that rooms in built-in levels go on alike on hosts with other maps.
     pub(crate) fn after<'a>(&'a self, name: &'a str) -> &'a str {
         let index = self.names.iter().position(|it| it == name).map_or(0, |index| index + 1);
         let (before, after) = self.names.split_at(index);
-        let has_exit = |name: &&String| self.levels.get(*name).is_some_and(|it| it.has_exit);
-        after.iter().chain(before).find(has_exit).map_or(name, String::as_str)
+        let is_of_host = |name: &str| name_in_map_key(name).is_some();
+        let follows = |next: &&String| {
+            let has_exit = self.levels.get(*next).is_some_and(|it| it.has_exit);
+            has_exit && is_of_host(next) == is_of_host(name)
+        };
+        after.iter().chain(before).find(follows).map_or(name, String::as_str)
     }
 
     fn list(&mut self, name: &str, short: &str, world: Arc<World>) {
-        let has_exit = world.things().iter().any(|thing| thing.kind == ThingKind::Exit);
+        let has_exit = world.has_exit();
         let listed = Listed { short: short.to_owned(), world, has_exit };
         if self.levels.insert(name.to_owned(), listed).is_none() {
             self.names.push(name.to_owned());

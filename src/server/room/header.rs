@@ -1,7 +1,7 @@
 //! The state of a room at the start of a round.
 //!
 //! ```text
-//! cellcaster-room 1
+//! cellcaster-room 2
 //! level museum
 //! mode tag
 //! difficulty normal
@@ -24,7 +24,7 @@ use crate::server::line::Line;
 use crate::world::Difficulty;
 
 /// The version of the format, and the first line of each log.
-const FIRST_LINE: &str = "cellcaster-room 1";
+const FIRST_LINE: &str = "cellcaster-room 2";
 
 /// The state of a room at the start of a round.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,6 +62,12 @@ impl Header {
     pub(crate) fn new(level: &str, mode: Mode, difficulty: Difficulty, seed: u64) -> Self {
         let level = level.to_owned();
         Self { level, mode, difficulty, seed, round: 1, next_member: 1, members: Vec::new() }
+    }
+
+    /// Whether `text` begins with the header of another version, in whose rooms the same entries do something else.
+    pub(crate) fn is_of_other_version(text: &str) -> bool {
+        let first = text.lines().next().unwrap_or_default();
+        first.starts_with("cellcaster-room ") && first != FIRST_LINE
     }
 
     /// Reads the lines of a header; `None` if a line is none of one.

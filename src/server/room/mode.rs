@@ -135,8 +135,17 @@ impl Mode {
         }
     }
 
+    /// How long a round goes on after the first member has reached the exit, in steps; `None` if it does not.
+    pub(crate) const fn after_first(self) -> Option<u64> {
+        match self {
+            Self::Race => Some(60 * SECOND),
+            Self::Together => Some(120 * SECOND),
+            Self::Roam | Self::Alone | Self::Tag | Self::Hide => None,
+        }
+    }
+
     /// The longest play of a round, in steps.
-    pub(in crate::server) const fn longest(self) -> u64 {
+    pub(super) const fn longest(self) -> u64 {
         match self {
             Self::Roam => 60 * 60 * SECOND,
             Self::Together | Self::Alone => 20 * 60 * SECOND,

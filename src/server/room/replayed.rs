@@ -30,8 +30,13 @@ const MOST_STEPS: u64 = if cfg!(fuzzing) { 20 * 60 } else { 2 * 60 * 60 * 60 };
 /// until its last entry.
 ///
 /// # Errors
-/// A sentence: the text is no recording, or of a level that the catalog does not have.
+/// A sentence: the text is no recording, or one of another version, or of a level that the catalog does not have.
 pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>) -> Result<Vec<RoundReport>, String> {
+    if Header::is_of_other_version(text) {
+        return Err(
+            "it was recorded by another version of Cellcaster, which has to replay it".to_owned()
+        );
+    }
     let rounds = parse(text).ok_or("a line is neither of a header nor an entry")?;
     let last = rounds.len().saturating_sub(1);
     let rounds = rounds.iter().enumerate();

@@ -7,17 +7,16 @@
 //! A member gains a point for each other one whom they beat in a round. Points for a place were
 //! refused: with two members, the first of them would be worth as much as with eight.
 
+mod finishes;
 mod hide;
-mod race;
 mod tag;
-mod together;
 
 use std::collections::BTreeMap;
 
+pub(crate) use self::finishes::Finish;
+use self::finishes::Finishes;
 use self::hide::Hide;
-use self::race::Race;
 use self::tag::Tag;
-use self::together::Together;
 use super::entry::MemberId;
 use super::member::Member;
 use super::mode::Mode;
@@ -65,8 +64,9 @@ pub(crate) struct Standing {
     pub(crate) member: MemberId,
     /// The points that the round gives.
     pub(crate) points: u32,
-    /// What counts in the mode, in steps: the time to the exit, as "it", or hidden.
-    pub(crate) steps: u64,
+    /// What counts in the mode, in steps: the time to the exit, as "it", or hidden. `None` for a member who did not
+    /// finish.
+    pub(crate) steps: Option<u64>,
 }
 
 stored! { struct Standing { member, points, steps } }
@@ -121,20 +121,18 @@ stored! { part of Round { phase, play, chance, standings } level { mode } }
 #[derive(Clone, Debug, PartialEq)]
 enum Play {
     Roam,
-    Together(Together),
-    Race(Race),
+    ToExit(Finishes),
     Tag(Tag),
     Hide(Hide),
 }
 
-stored! { enum Play { 0: Roam, 1: Together(it), 2: Race(it), 3: Tag(it), 4: Hide(it) } }
+stored! { enum Play { 0: Roam, 1: ToExit(it), 2: Tag(it), 3: Hide(it) } }
 
 impl Round {
     pub(super) fn new(mode: Mode, seed: u64) -> Self {
         let play = match mode {
             Mode::Roam => Play::Roam,
-            Mode::Together => Play::Together(Together::default()),
-            Mode::Alone | Mode::Race => Play::Race(Race::default()),
+            Mode::Together | Mode::Alone | Mode::Race => Play::ToExit(Finishes::default()),
             Mode::Tag => Play::Tag(Tag::default()),
             Mode::Hide => Play::Hide(Hide::default()),
         };
@@ -145,8 +143,10 @@ impl Round {
     /// Refuses what another mode remembers, and what begins after `step`.
     pub(super) fn check(&self, step: u64) -> Result<(), Unrestorable> {
         let is_possible = match (&self.play, self.mode) {
-            (Play::Roam, Mode::Roam) | (Play::Together(_), Mode::Together) => true,
-            (Play::Race(race), Mode::Race | Mode::Alone) => race.begins_until(step),
+            (Play::Roam, Mode::Roam) => true,
+            (Play::ToExit(finishes), Mode::Together | Mode::Alone | Mode::Race) => {
+                finishes.begun() <= step
+            }
             (Play::Tag(tag), Mode::Tag) => tag.begins_until(step),
             (Play::Hide(hide), Mode::Hide) => hide.begins_until(step),
             _ => false,
@@ -172,11 +172,30 @@ impl Round {
     pub(super) fn role(&self, member: MemberId) -> Role {
         match &self.play {
             Play::Roam => Role::Player,
-            Play::Together(together) => together.role(member),
-            Play::Race(race) => race.role(member),
+            Play::ToExit(finishes) => finishes.role(member),
             Play::Tag(tag) => tag.role(member),
             Play::Hide(hide) => hide.role(member),
         }
+    }
+
+    /// The finish of a member, if they have reached the exit.
+    pub(super) fn finish(&self, member: MemberId) -> Option<Finish> {
+        self.finishes()?.of(member)
+    }
+
+    /// The members who have finished in `step`.
+    pub(super) fn finished_in(&self, step: u64) -> impl Iterator<Item = MemberId> {
+        self.finishes().into_iter().flat_map(move |finishes| finishes.in_step(step))
+    }
+
+    /// The step in which the play began, while it goes on in a mode that ends at the exit.
+    pub(super) fn begun(&self) -> Option<u64> {
+        let is_played = matches!(self.phase, Phase::Playing { .. });
+        self.finishes().filter(|_| is_played).map(Finishes::begun)
+    }
+
+    fn finishes(&self) -> Option<&Finishes> {
+        if let Play::ToExit(finishes) = &self.play { Some(finishes) } else { None }
     }
 
     /// Whether a member cannot walk at present.
@@ -205,6 +224,8 @@ impl Round {
             Phase::Countdown { ends } if ends <= step => self.begin(field),
             Phase::Playing { ends } => {
                 let is_decided = self.play(field);
+                let ends = self.last_step().map_or(ends, |last| last.min(ends));
+                self.phase = Phase::Playing { ends };
                 if is_decided || ends <= step {
                     self.end(field);
                 }
@@ -227,8 +248,8 @@ impl Round {
         if let Play::Tag(tag) = &mut self.play {
             tag.choose(field, &mut self.chance);
         }
-        if let Play::Race(race) = &mut self.play {
-            race.begin(field.step);
+        if let Play::ToExit(finishes) = &mut self.play {
+            finishes.begin(field.step);
         }
         self.phase = Phase::Playing { ends: field.step + self.mode.longest() };
     }
@@ -237,8 +258,7 @@ impl Round {
     fn play(&mut self, field: Field) -> bool {
         match &mut self.play {
             Play::Roam => false,
-            Play::Together(together) => together.step(field),
-            Play::Race(race) => race.step(field),
+            Play::ToExit(finishes) => finishes.step(field),
             Play::Tag(tag) => {
                 tag.step(field);
                 false
@@ -247,11 +267,15 @@ impl Round {
         }
     }
 
+    /// The step in which the round ends at the latest, once the first member has finished.
+    fn last_step(&self) -> Option<u64> {
+        Some(self.finishes()?.first()? + self.mode.after_first()?)
+    }
+
     fn end(&mut self, field: Field) {
         let scores = match &self.play {
             Play::Roam => BTreeMap::new(),
-            Play::Together(together) => together.scores(field),
-            Play::Race(race) => race.scores(field),
+            Play::ToExit(finishes) => finishes.scores(self.mode, field),
             Play::Tag(tag) => tag.scores(field),
             Play::Hide(hide) => hide.scores(field),
         };
@@ -264,7 +288,7 @@ impl Round {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Score {
     rank: u64,
-    steps: u64,
+    steps: Option<u64>,
 }
 
 /// The standings from `scores`. Members of the same rank have the same points.
@@ -286,10 +310,11 @@ mod tests {
 
     #[test]
     fn a_point_is_a_member_beaten() {
-        let score = |(id, rank)| (MemberId(id), Score { rank, steps: rank * 10 });
+        let score = |(id, rank)| (MemberId(id), Score { rank, steps: Some(rank * 10) });
         let scores = [(1, 5), (2, 3), (3, 5), (4, 9)].map(score).into_iter().collect();
         let places: Vec<_> =
             standings(&scores).iter().map(|it| (it.member.0, it.points, it.steps)).collect();
-        assert_eq!(places, [(2, 3, 30), (1, 1, 50), (3, 1, 50), (4, 0, 90)]);
+        let expected = [(2, 3, 30), (1, 1, 50), (3, 1, 50), (4, 0, 90)];
+        assert_eq!(places, expected.map(|(id, points, steps)| (id, points, Some(steps))));
     }
 }

@@ -89,11 +89,60 @@ fn a_race_counts_down_and_is_won_at_the_exit() {
     assert_eq!(next.members.iter().map(|seat| seat.points).collect::<Vec<_>>(), [1, 0]);
 }
 
+fn said(room: &Room) -> Vec<String> {
+    room.view().said.iter().map(|it| it.text.clone()).collect()
+}
+
+#[test]
+fn all_are_told_of_a_finish_and_of_how_long_the_race_goes_on() {
+    let mut room = room(Mode::Race);
+    let [one, other, third] = ["Mara", "Jon", "Kim"].map(|name| join(&mut room, name));
+    advance(&mut room, 3 * SECOND + 1);
+    let left = |room: &Room| match room.phase() {
+        Phase::Playing { ends, .. } => ends - room.step(),
+        phase => panic!("{phase:?}"),
+    };
+    assert!(left(&room) > 9 * 60 * SECOND);
+    want(&mut room, one, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 3 * SECOND);
+    assert!((58 * SECOND..60 * SECOND).contains(&left(&room)), "{}", left(&room));
+    let finished = said(&room).pop().unwrap();
+    assert!(finished.starts_with("Mara finished 1st, 0:01."), "{finished}");
+    want(&mut room, other, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 4 * SECOND);
+    let finished = said(&room).pop().unwrap();
+    assert!(finished.starts_with("Jon finished 2nd, 0:0"), "{finished}");
+    // Another finish gives nobody more time.
+    assert!(left(&room) < 55 * SECOND);
+    advance(&mut room, 55 * SECOND);
+    assert!(matches!(room.phase(), Phase::Over { .. }));
+    let last = *room.view().standings.last().unwrap();
+    assert_eq!((last.member, last.steps), (third, None));
+}
+
+#[test]
+fn members_begin_apart_in_every_round() {
+    for mode in Mode::ALL {
+        let mut room = room(mode);
+        let ids: Vec<MemberId> =
+            (0..mode.most()).map(|number| join(&mut room, &format!("m{number}"))).collect();
+        for _ in 0..2 {
+            let places: Vec<_> = ids.iter().map(|&id| position(&room, id)).collect();
+            for (index, place) in places.iter().enumerate() {
+                let is_apart = |other: &glam::DVec2| other.distance(*place) >= 1.0;
+                assert!(places[..index].iter().all(is_apart), "{mode:?}: {places:?}");
+            }
+            room.begin_next();
+        }
+    }
+}
+
 #[test]
 fn a_touch_passes_it_on() {
     let mut room = room(Mode::Tag);
     let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
-    // Those who wait for the start stand beside each other.
+    // The one who stands before the other steps back until they touch.
+    want(&mut room, ids[1], &[Intent::Back]);
     advance(&mut room, 3 * SECOND + 1);
     let it = |room: &Room| {
         ids.into_iter().find(|&id| room.view().member(id).unwrap().role == Role::Seeker)
@@ -243,7 +292,10 @@ fn a_recording_is_played_again() {
     log.begin(&room.next_header()).unwrap();
     let (steps, checksum) = (room.step(), room.checksum());
     drop(log);
-    let reports = replayed(&String::from_utf8(text).unwrap(), &catalog()).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let older = replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog());
+    assert!(older.unwrap_err().contains("another version"));
+    let reports = replayed(&text, &catalog()).unwrap();
     assert_eq!(reports.len(), 2);
     assert_eq!((reports[0].steps, reports[0].checksum), (steps, checksum));
     assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);

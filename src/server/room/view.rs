@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::entry::{Emote, MemberId};
 use super::header::Header;
-use super::round::{Phase, Role, Standing};
+use super::round::{Finish, Phase, Role, Standing};
 use crate::game::stored::stored;
 use crate::game::{Game, PlayerColor, PlayerId};
 use crate::server::line::Line;
@@ -21,6 +21,8 @@ pub(crate) struct RoomView {
     pub(crate) step: u64,
     /// The phase of the round.
     pub(crate) phase: Phase,
+    /// The step in which the play began, while it goes on in a mode that ends at the exit.
+    pub(crate) begun: Option<u64>,
     /// The members, in the order in which they joined.
     pub(crate) members: Vec<MemberView>,
     /// The standings of the round, the winner first; empty before its end.
@@ -38,6 +40,8 @@ pub(crate) struct MemberView {
     /// The player in the game; `None` where there was no place.
     pub(crate) player: Option<PlayerId>,
     pub(crate) role: Role,
+    /// The finish, if the member has reached the exit.
+    pub(crate) finish: Option<Finish>,
     pub(crate) points: u32,
     /// Whether the member sees nothing at present, since the others hide.
     pub(crate) is_blind: bool,
@@ -65,17 +69,10 @@ impl RoomView {
         self.members.iter().find(|member| member.id == id)
     }
 
-    /// The winner, if the round has ended and they are still there.
+    /// The winner, if the round has ended with one who is still there.
     pub(crate) fn winner(&self) -> Option<&MemberView> {
-        self.member(self.standings.first()?.member)
-    }
-
-    /// The step in which the play of the round has begun, while it is played.
-    pub(crate) fn begun(&self) -> Option<u64> {
-        match self.phase {
-            Phase::Playing { ends } => Some(ends.saturating_sub(self.header.mode.longest())),
-            Phase::Waiting | Phase::Countdown { .. } | Phase::Over { .. } => None,
-        }
+        let first = self.standings.first().filter(|standing| standing.steps.is_some());
+        self.member(first?.member)
     }
 
     /// The member whose player that is.

@@ -5,12 +5,13 @@
 //! write ends with a whole line. So the disk is touched seldom, and a thread for it was refused.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use crate::server::room::{Log, Queue, Recorded};
 use crate::server::summary::RoomId;
+use crate::store::private;
 
 /// Gives each room its log.
 pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);
@@ -52,11 +53,14 @@ fn log(folder: Option<&Path>, id: RoomId) -> Box<dyn Log> {
 
 /// A file that did not exist before.
 fn file(folder: &Path, id: RoomId) -> io::Result<File> {
-    fs::create_dir_all(folder)?;
+    private::create_folder(folder)?;
     for number in 0.. {
         let suffix = if number == 0 { String::new() } else { format!("-{number}") };
         let path = folder.join(format!("room-{id}{suffix}.log"));
-        match File::create_new(&path) {
+        let mut options = OpenOptions::new();
+        // What players say to each other is in it.
+        private::restrict_file(&mut options);
+        match options.write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             result => return result,
         }

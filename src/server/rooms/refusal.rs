@@ -15,7 +15,7 @@ pub(crate) enum RoomRefusal {
     Alone,
     /// There are as many rooms as the host allows.
     TooMany,
-    /// There is no such level.
+    /// This host does not have the level.
     NoLevel,
     /// The member is somewhere else.
     #[cfg(feature = "cluster")]
@@ -42,7 +42,7 @@ impl fmt::Display for RoomRefusal {
             Self::Full => "This room is full.",
             Self::Alone => "Somebody plays alone in this room; you can watch.",
             Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
-            Self::NoLevel => "There is no such level.",
+            Self::NoLevel => "This host does not have the map of this room.",
             #[cfg(feature = "cluster")]
             Self::Taken => "You are in a room by another connection, and stay there.",
             #[cfg(feature = "cluster")]

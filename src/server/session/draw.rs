@@ -154,8 +154,8 @@ impl Visit {
             members::draw_members(canvas, area, room, &self.host.catalog, look.depth);
         }
         said::draw(canvas, area, stay.talk.shown(), page == Page::Chat, look.depth);
-        if let Some(draining) = &self.draining {
-            notice(canvas, area, draining);
+        if let Some(draining) = self.draining {
+            notice(canvas, area, &draining.sentence(self.now));
         }
     }
 }

@@ -5,7 +5,7 @@ use super::messages::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;
-use crate::app::parts::Action;
+use crate::app::parts::{Action, is_answerable};
 use crate::game::Intent;
 use crate::server::room::{CHAT_COLUMNS, Command};
 use crate::terminal::Key;
@@ -24,18 +24,18 @@ impl Visit {
             _ => {}
         }
         let Some(stay) = &mut self.stay else { return };
-        let is_member = stay.member.is_some();
+        let (is_member, watches) = (stay.member.is_some(), stay.is_watching);
         match key {
-            Key::Enter if stay.is_dead => return self.retry(),
+            Key::Enter if stay.dead_since.is_some() => return self.press_to_go_on(press),
             Key::Enter | Key::Char('/') if is_member => {
                 self.entry = LineEntry::new(CHAT_COLUMNS);
                 return self.open(Page::Chat);
             }
             Key::Char('1') if is_member => return self.open(Page::Emotes),
             Key::Char(';') => stay.talk.toggle(),
-            Key::Tab if is_member => stay.shows_members ^= true,
-            Key::Tab | Key::Right | Key::Down if !is_member => stay.watch_another(true),
-            Key::Left | Key::Up if !is_member => stay.watch_another(false),
+            Key::Tab | Key::Right | Key::Down if watches => stay.watch_another(true),
+            Key::Left | Key::Up if watches => stay.watch_another(false),
+            Key::Tab => stay.shows_members ^= true,
             _ => return self.act_on(action),
         }
         self.is_stale = true;
@@ -67,9 +67,19 @@ impl Visit {
         self.is_stale = true;
     }
 
-    /// Goes on after death: from the last checkpoint, or from the beginning.
-    fn retry(&mut self) {
-        let Some(stay) = &mut self.stay else { return };
+    /// Goes on after a death by Enter, from the same time on as at home.
+    fn press_to_go_on(&mut self, press: Press) {
+        let Some(dead_since) = self.stay.as_ref().and_then(|stay| stay.dead_since) else { return };
+        if is_answerable(&self.controls.held, dead_since, self.now) {
+            self.press_to_answer(Key::Enter, press);
+        }
+    }
+
+    /// Goes on after a death: from the last checkpoint, or from the beginning.
+    pub(super) fn retry(&mut self) {
+        let Some(stay) = self.stay.as_mut().filter(|stay| stay.dead_since.is_some()) else {
+            return;
+        };
         if stay.dies_for_good {
             return self.ask(Request::Command(Command::Again));
         }

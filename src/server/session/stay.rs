@@ -20,8 +20,10 @@ use crate::world::{Camera, FieldOfView, Figure};
 pub(super) struct Stay {
     /// The visitor as a member; `None` if they watch.
     pub(super) member: Option<MemberId>,
-    /// Whom they watch.
+    /// The member that they watch, unless they play themselves.
     watched: Option<MemberId>,
+    /// Whether the last picture is that of another member: the visitor is no member, or has finished.
+    pub(super) is_watching: bool,
     pub(super) talk: Talk,
     pub(super) intents: IntentQueue,
     pub(super) frames: ShownSteps,
@@ -32,12 +34,13 @@ pub(super) struct Stay {
     pub(super) next_change: Option<f64>,
     pub(super) ghosts: Ghosts,
     pub(super) shows_members: bool,
-    /// Whether the player is in the air, and whether they are dead, in the last picture.
+    /// Whether the player is in the air in the last picture.
     pub(super) is_airborne: bool,
-    pub(super) is_dead: bool,
+    /// The time since which pictures show the player dead; `None` if the last one does not.
+    pub(super) dead_since: Option<Duration>,
     /// Whether the dead begin the round again, in place of going on from a checkpoint.
     pub(super) dies_for_good: bool,
-    /// The members in the last picture, to watch another one.
+    /// The members who could be watched in the last picture.
     members: Vec<MemberId>,
     /// What the last picture shows; `None` before the first one.
     shown: Option<Shown>,
@@ -63,6 +66,7 @@ impl Stay {
         Self {
             member,
             watched: None,
+            is_watching: false,
             talk: Talk::default(),
             intents: IntentQueue::default(),
             frames: ShownSteps::default(),
@@ -72,7 +76,7 @@ impl Stay {
             ghosts: Ghosts::default(),
             shows_members: false,
             is_airborne: false,
-            is_dead: false,
+            dead_since: None,
             dies_for_good: false,
             members: Vec::new(),
             shown: None,
@@ -97,15 +101,21 @@ impl Stay {
         }
         // A picture without the level changes with nothing in it.
         self.next_change = None;
-        self.members = room.members.iter().map(|member| member.id).collect();
-        if self.watched.is_none_or(|id| room.member(id).is_none()) {
+        let playing = room.members.iter().filter(|member| member.finish.is_none());
+        self.members = playing.map(|member| member.id).collect();
+        if self.watched.is_none_or(|id| !self.members.contains(&id)) {
             self.watched = self.members.first().copied();
         }
-        let player = self.seen_through(room);
-        self.is_airborne = player.is_some_and(|(_, player)| player.is_airborne());
+        let seen_through = self.seen_through(room).map(|(member, _)| member.id);
+        self.is_watching = self.member.is_none() || seen_through != self.member;
+        // Tab chooses another one then.
+        self.shows_members &= !self.is_watching;
+        let own = self.member.and_then(|id| room.game.seen_by(room.member(id)?.player?));
+        self.is_airborne = own.is_some_and(|player| player.is_airborne());
         let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
         self.dies_for_good = room.game.multiplayer_rules().is_some_and(|rules| !rules.respawns);
-        self.is_dead = self.member.is_some() && player.is_some_and(|(_, it)| is_dead(it));
+        let is_dead = own.is_some_and(is_dead);
+        self.dead_since = is_dead.then(|| self.dead_since.unwrap_or(now));
         begins.then(|| self.ghosts.begin(room)).flatten()
     }
 
@@ -120,16 +130,18 @@ impl Stay {
         self.ghosts.seen(room, own).filter(move |_| is_on)
     }
 
-    /// The member through whose eyes the room is seen: the visitor, or whom they watch. `None` if
-    /// nobody is there.
+    /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
+    /// Those who have finished are seen through only if nobody else plays. `None` if nobody is there.
     pub(super) fn seen_through<'r>(
         &self,
         room: &'r RoomView,
     ) -> Option<(&'r MemberView, PlayerView<'r>)> {
         let own = self.member.and_then(|id| room.member(id));
         let watched = self.watched.and_then(|id| room.member(id));
-        let mut candidates = own.into_iter().chain(watched).chain(&room.members);
-        candidates.find_map(|it| Some((it, room.game.seen_by(it.player?)?)))
+        let candidates = || own.into_iter().chain(watched).chain(&room.members);
+        let seen = |it: &'r MemberView| Some((it, room.game.seen_by(it.player?)?));
+        let playing = candidates().filter(|it| it.finish.is_none()).find_map(seen);
+        playing.or_else(|| candidates().find_map(seen))
     }
 
     /// The camera of the picture.
@@ -189,7 +201,7 @@ fn times(room: &RoomView) -> [Option<u64>; 2] {
 pub(super) fn run_seconds(room: &RoomView) -> Option<u64> {
     match room.header.mode {
         Mode::Race | Mode::Together | Mode::Alone => {
-            Some(room.step.saturating_sub(room.begun()?) / u64::from(STEPS_PER_SECOND))
+            Some(room.step.saturating_sub(room.begun?) / u64::from(STEPS_PER_SECOND))
         }
         Mode::Roam | Mode::Tag | Mode::Hide => None,
     }
@@ -197,10 +209,15 @@ pub(super) fn run_seconds(room: &RoomView) -> Option<u64> {
 
 /// The seconds until something that the picture counts down to; `None` if it counts nothing down.
 pub(super) fn seconds_left(room: &RoomView) -> Option<u64> {
-    let ((Phase::Countdown { ends } | Phase::Over { ends }, _)
-    | (Phase::Playing { ends }, Mode::Tag | Mode::Hide)) = (room.phase, room.header.mode)
-    else {
-        return None;
+    let counts = |ends: u64| match room.header.mode {
+        Mode::Tag | Mode::Hide => true,
+        // Others may go on for a while after the first one has finished.
+        mode => mode.after_first().is_some_and(|last| ends.saturating_sub(room.step) <= last),
     };
-    Some(ends.saturating_sub(room.step).div_ceil(60))
+    match room.phase {
+        Phase::Countdown { ends } | Phase::Over { ends } => Some(ends),
+        Phase::Playing { ends } if counts(ends) => Some(ends),
+        Phase::Playing { .. } | Phase::Waiting => None,
+    }
+    .map(|ends| ends.saturating_sub(room.step).div_ceil(u64::from(STEPS_PER_SECOND)))
 }

@@ -62,7 +62,7 @@ impl Hide {
         };
         field
             .ids()
-            .map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: hidden(id) }))
+            .map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: Some(hidden(id)) }))
             .collect()
     }
 }

@@ -66,7 +66,10 @@ impl Tag {
 
     /// The scores: who was "it" for the shortest time wins.
     pub(super) fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
-        field.ids().map(|id| (id, Score { rank: self.time(id), steps: self.time(id) })).collect()
+        field
+            .ids()
+            .map(|id| (id, Score { rank: self.time(id), steps: Some(self.time(id)) }))
+            .collect()
     }
 
     fn become_it(&mut self, next: Option<MemberId>, step: u64) {

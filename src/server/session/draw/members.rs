@@ -11,7 +11,7 @@ use crate::app::parts::{message, time, whole_seconds};
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::STEP;
-use crate::server::room::{Catalog, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
+use crate::server::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
 
 /// Draws who is in the room, and their points.
 pub(super) fn draw_members(
@@ -42,13 +42,17 @@ pub(super) fn draw_standings(
     room: &RoomView,
     depth: ColorDepth,
 ) {
+    let width = if room.standings.iter().all(|it| it.steps.is_some()) { 7 } else { 14 };
     let places = room.standings.iter().enumerate().filter_map(|(index, standing)| {
         let member = room.member(standing.member)?;
         let all = member.points.saturating_add(standing.points);
-        let place = Span::raw(format!("{}. ", index + 1));
-        let steps = time(standing.steps as f64 * STEP);
+        let place = member.finish.map_or(index + 1, |finish| finish.place);
+        let place = standing.steps.map_or_else(String::new, |_| format!("{place}."));
+        let steps = standing.steps.map(|steps| time(steps as f64 * STEP));
+        let steps = steps.unwrap_or_else(|| "did not finish".to_owned());
         let gained = format!("+{}", standing.points);
-        let text = format!(" {steps:>7} {gained:>3} {all:>3}");
+        let text = format!(" {steps:>width$} {gained:>3} {all:>3}");
+        let place = Span::raw(format!("{place:<3}"));
         Some(Line::from_iter([place, name(member, depth), Span::raw(text)]))
     });
     let head = Line::raw(format!("{}   round  all", counted(room.header.mode))).right_aligned();
@@ -83,13 +87,15 @@ fn name(member: &MemberView, depth: ColorDepth) -> Span<'static> {
     Span::styled(format!("{}{:blanks$}", member.name, ""), style)
 }
 
-const fn role(member: &MemberView, mode: Mode) -> &'static str {
-    match (member.role, mode) {
+fn role(member: &MemberView, mode: Mode) -> String {
+    let role = match (member.role, mode) {
         _ if member.is_away => "away",
         (Role::Seeker, Mode::Tag) => "is it",
         (Role::Seeker, _) => "seeks",
+        (Role::Done, Mode::Race) => return member.finish.map_or_else(String::new, Finish::ordinal),
         (Role::Done, _) => "is out",
         (Role::Player, Mode::Hide) => "hides",
         (Role::Player, _) => "",
-    }
+    };
+    role.to_owned()
 }

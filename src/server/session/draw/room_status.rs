@@ -78,10 +78,12 @@ fn write_notice(
     member: &MemberView,
     player: &PlayerView,
 ) -> fmt::Result {
+    let own_finish = stay.member.and_then(|id| finish(room.member(id)?, room.header.mode));
     if stay.member != Some(member.id) {
+        let own = own_finish.map_or_else(String::new, |finish| format!("{finish} · "));
         let [short, long] = line.forms(Part::Notice);
-        *short = format!("watching {}", member.name);
-        *long = format!("watching {} · Tab: the next one", member.name);
+        *short = format!("{own}watching {}", member.name);
+        *long = format!("{own}watching {} · Tab: the next one", member.name);
         return Ok(());
     }
     match player.outcome() {
@@ -95,9 +97,18 @@ fn write_notice(
         _ if player.message().is_some() => {
             line.both(Part::Notice, format_args!("{}", player.message().unwrap_or_default()))
         }
-        Outcome::Won => line.both(Part::Notice, format_args!("you are out")),
+        Outcome::Won => line.both(Part::Notice, format_args!("{}", own_finish.unwrap_or_default())),
         Outcome::Playing => line.both(Part::Notice, format_args!("{}", task(room, member))),
     }
+}
+
+/// The finish of a member as they read it.
+fn finish(member: &MemberView, mode: Mode) -> Option<String> {
+    let finish = member.finish?;
+    Some(match mode {
+        Mode::Race => finish.to_string(),
+        _ => format!("out, {}", finish.time()),
+    })
 }
 
 /// What a member has to do.
@@ -112,6 +123,11 @@ fn task(room: &RoomView, member: &MemberView) -> String {
         (Mode::Hide, _, Role::Seeker) => "you seek".to_owned(),
         (Mode::Hide, Phase::Countdown { .. }, _) => "hide".to_owned(),
         (Mode::Hide, ..) => "stay hidden".to_owned(),
+        (Mode::Race | Mode::Together, Phase::Playing { .. }, _) if seconds_left(room).is_some() => {
+            let left = whole_seconds(seconds_left(room).unwrap_or_default() as f64);
+            let what = if room.header.mode == Mode::Race { "race" } else { "level" };
+            format!("the {what} ends in {left}")
+        }
         (Mode::Race, ..) => "be the first at the exit".to_owned(),
         (Mode::Together | Mode::Alone | Mode::Roam, ..) => String::new(),
     }

@@ -158,10 +158,34 @@ fn a_member_who_is_put_out_is_told_why() {
     rig.rooms().close(ROOM, "The room is closed.");
     rig.pump(200);
     assert!(rig.text(one).contains("The room is closed."), "{}", rig.text(one));
-    rig.pump(9_000);
+    rig.pump(11_000);
     assert!(rig.text(one).contains("The server has ended."), "{}", rig.text(one));
-    rig.pump(1_500);
     assert!(rig.is_over(one));
+}
+
+/// Whether they are in the lobby or a room.
+#[test]
+fn the_seconds_to_the_end_of_the_server_are_counted_down() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
+    rig.press(other, ENTER);
+    for client in [one, other] {
+        rig.clients[client].drain();
+    }
+    rig.pump(200);
+    for seconds in (2..=10).rev() {
+        for client in [one, other] {
+            let text = rig.text(client);
+            assert!(text.contains(&format!("The server ends in {seconds} seconds.")), "{text}");
+        }
+        rig.pump(1_000);
+    }
+    assert!(rig.text(one).contains("The server ends in 1 second."), "{}", rig.text(one));
+    assert!(!rig.is_over(one));
+    rig.pump(2_000);
+    assert!(rig.is_over(one) && rig.is_over(other));
+    assert!(rig.text(one).contains("The server has ended."), "{}", rig.text(one));
 }
 
 #[test]
@@ -182,9 +206,15 @@ fn the_dead_go_on_or_begin_again() {
         }
         assert_eq!(rig.page(one), Page::Room, "{}", rig.text(one));
         for _ in 0..40 {
-            rig.press(one, "w");
+            if !rig.text(one).contains(effect) {
+                rig.press(one, "w");
+            }
         }
         assert!(rig.text(one).contains(effect), "{}", rig.text(one));
+        // The key to walk may still be held.
+        rig.press(one, ENTER);
+        assert!(rig.text(one).contains(effect), "{}", rig.text(one));
+        rig.pump(1000);
         rig.press(one, ENTER);
         rig.pump(500);
         assert!(!rig.text(one).contains(effect), "{}", rig.text(one));
@@ -211,4 +241,55 @@ fn capitals_and_signs_are_typed_in_both_protocols() {
         let said = rig.view().said.last().unwrap().text.clone();
         assert_eq!(said, "Hi! \u{e9}\u{e4}", "{speaks:?}");
     }
+}
+
+#[test]
+fn a_finisher_reads_place_and_time_and_watches_the_others() {
+    let map = HALL
+        .replace("............>#", ".............#")
+        .replace("@............#", "@.......>....#");
+    let mut rig = Rig::with(Wish { catalog: catalog(&map), ..Wish::new(Mode::Race) });
+    let names = ["Mara", "Jon", "Kim"];
+    let [one, other, third] = names.map(|name| rig.member(name, (100, 24), Speaks::Kitty));
+    let watcher = rig.visitor("Ada", (100, 24), Speaks::Kitty);
+    for key in [ENTER, ENTER, "2"] {
+        rig.press(watcher, key);
+    }
+    rig.pump(3_000);
+    assert!(rig.text(other).contains("be the first at the exit"), "{}", rig.text(other));
+    rig.send(one, "\x1b[119;1:1u");
+    rig.pump(4_000);
+    rig.send(one, "\x1b[119;1:3u");
+    for index in [one, other, watcher] {
+        let text = rig.text(index);
+        assert!(text.contains("Mara finished 1st, 0:0"), "{text}");
+    }
+    let text = rig.text(one);
+    assert!(text.contains("1st, 0:0") && text.contains("watching Jon"), "{text}");
+    let text = rig.text(other);
+    assert!(text.contains("the race ends in 0:5"), "{text}");
+    assert!(rig.text(watcher).contains("Race 0:5"), "{}", rig.text(watcher));
+    rig.press(one, "\x1b[9u");
+    assert!(rig.text(one).contains("watching Kim"), "{}", rig.text(one));
+    // Whoever has finished is not watched.
+    rig.press(one, "\x1b[9u");
+    assert!(rig.text(one).contains("watching Jon"), "{}", rig.text(one));
+    rig.send(other, "\x1b[119;1:1u");
+    rig.pump(4_000);
+    let text = rig.text(one);
+    assert!(text.contains("Jon finished 2nd, 0:") && text.contains("watching Kim"), "{text}");
+    rig.pump(54_000);
+    for index in [one, other, third, watcher] {
+        let text = rig.text(index);
+        assert_eq!(text.matches("did not finish").count(), 1, "{text}");
+        assert!(!text.contains("0:00.0"), "{text}");
+    }
+}
+
+#[test]
+fn members_see_each_other_when_they_come_in() {
+    let (rig, one, other) = two(Mode::Roam);
+    assert!(rig.position(one).distance(rig.position(other)) >= 1.0);
+    // In the line that says that he comes in, and over his head.
+    assert_eq!(rig.text(one).matches("Jon").count(), 2, "{}", rig.text(one));
 }
