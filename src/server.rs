@@ -64,4 +64,4 @@ pub use self::recorded::{MOST_RECORDED_BYTES, RecordedRound, is_room_recording, 
 pub use self::transport::{
     Arrival, Counters, Departure, Host, Inbound, KeyData, Link, Outbox, Server, Visitor,
 };
-pub use self::visitors::{Notice, Presence, Present, Visitors};
+pub use self::visitors::{Notice, Presence, Present, SessionId, Visitors};

@@ -13,6 +13,7 @@ use super::Error;
 use super::arguments::{Admin, AdminAction, Database};
 use super::data_folder::data_folder;
 use super::host_store;
+use crate::rng;
 use crate::server::{
     AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
 };
@@ -82,18 +83,20 @@ impl RunningHost<'_> {
         Ok(match self.answers(request)? {
             AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
             AdminReply::Visitors(rows) if rows.iter().any(|row| row.host.is_some()) => {
-                let titles = ["name", "room", "address", "time", "host", "key"];
+                let titles = ["session", "name", "room", "address", "time", "host", "key"];
                 table(titles, rows.iter().map(of_visitor_on_host))
             }
             AdminReply::Visitors(rows) => {
-                table(["name", "room", "address", "time", "key"], rows.iter().map(of_visitor))
+                let titles = ["session", "name", "room", "address", "time", "key"];
+                table(titles, rows.iter().map(of_visitor))
             }
             AdminReply::Rooms(rows) if rows.is_empty() => "no room is open\n".to_owned(),
             AdminReply::Rooms(rows) => {
                 table(["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
             }
             AdminReply::Hosts(rows) => {
-                let titles = ["host", "address", "version", "visitors", "seen", "writes rooms"];
+                let titles =
+                    ["host", "address", "version", "visitors", "seen", "maps", "writes rooms"];
                 table(titles, rows.iter().map(of_host))
             }
             AdminReply::Count(count) => format!("{}\n", visitors(count)),
@@ -117,7 +120,7 @@ impl RunningHost<'_> {
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
         match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
             0 => Err(Error::mistake("nobody there is on; \"cellcaster admin who\" lists who is")),
-            count => Ok(format!("ended the sessions of {}\n", visitors(count))),
+            count => Ok(format!("ended {}\n", sessions(count))),
         }
     }
 }
@@ -126,10 +129,11 @@ fn other_version() -> Error {
     Error::machine("the server is of another version: it answers something else")
 }
 
-fn of_visitor(row: &VisitorRow) -> [String; 5] {
+fn of_visitor(row: &VisitorRow) -> [String; 6] {
     let or = |text: &Option<String>, other: &str| text.clone().unwrap_or(other.to_owned());
     let (name, room) = (or(&row.name, "-"), or(&row.room, "lobby"));
-    [name, room, row.address.clone(), time(row.seconds), or(&row.key, "guest")]
+    let address = row.address.clone();
+    [row.session.clone(), name, room, address, time(row.seconds), or(&row.key, "guest")]
 }
 
 fn of_room(row: &RoomRow) -> [String; 5] {
@@ -144,12 +148,12 @@ fn of_room(row: &RoomRow) -> [String; 5] {
     [room, row.mode.clone(), row.level.clone(), row.difficulty.clone(), members]
 }
 
-fn of_visitor_on_host(row: &VisitorRow) -> [String; 6] {
-    let [name, room, address, time, key] = of_visitor(row);
-    [name, room, address, time, row.host.clone().unwrap_or_else(|| "-".to_owned()), key]
+fn of_visitor_on_host(row: &VisitorRow) -> [String; 7] {
+    let [session, name, room, address, time, key] = of_visitor(row);
+    [session, name, room, address, time, row.host.clone().unwrap_or_else(|| "-".to_owned()), key]
 }
 
-fn of_host(row: &HostInfo) -> [String; 6] {
+fn of_host(row: &HostInfo) -> [String; 7] {
     let rooms = match &row.rooms {
         None => "-".to_owned(),
         Some(rooms) if rooms.is_empty() => "none".to_owned(),
@@ -157,7 +161,25 @@ fn of_host(row: &HostInfo) -> [String; 6] {
     };
     let seen = format!("{} ago", time(row.seconds));
     let (visitors, version) = (row.visitors.to_string(), row.version.clone());
-    [row.host.clone(), row.address.clone(), version, visitors, seen, rooms]
+    let maps = row.maps.as_deref().map_or_else(|| "-".to_owned(), summary_of_maps);
+    [row.host.clone(), row.address.clone(), version, visitors, seen, maps, rooms]
+}
+
+/// The number of maps, and a hash by which an operator sees that two hosts have the same ones.
+fn summary_of_maps(keys: &[String]) -> String {
+    let bytes = keys.iter().flat_map(|key| key.bytes().chain([b'\n']));
+    match keys.len() {
+        0 => "none".to_owned(),
+        count => format!("{count} ({:08x})", rng::hash(0, bytes.map(u64::from)) as u32),
+    }
+}
+
+fn sessions(count: usize) -> String {
+    match count {
+        0 => "no session".to_owned(),
+        1 => "1 session".to_owned(),
+        count => format!("{count} sessions"),
+    }
 }
 
 fn visitors(count: usize) -> String {

@@ -17,16 +17,24 @@ pub(super) fn named(option: Option<Database>) -> Option<Database> {
     option.or_else(|| word().map(Database::of))
 }
 
-/// Opens a store, which is made if there is none. Returns also a sentence if it was damaged.
-pub(super) fn open(
+/// Opens a store, which is made if there is none.
+pub(super) fn open(database: &Database) -> Result<Box<dyn HostStore>, StoreFailure> {
+    match database {
+        Database::Folder(folder) => Ok(Box::new(SqliteStore::open(folder)?)),
+        Database::Address(address) => Ok(open_address(address)?),
+    }
+}
+
+/// As [`open`], but goes on with what can be read of a damaged file. Returns a sentence about it then.
+pub(super) fn open_or_salvage(
     database: &Database,
 ) -> Result<(Box<dyn HostStore>, Option<String>), StoreFailure> {
     match database {
         Database::Folder(folder) => {
-            let (store, sentence) = SqliteStore::open(folder)?;
+            let (store, sentence) = SqliteStore::open_or_salvage(folder)?;
             Ok((Box::new(store), sentence))
         }
-        Database::Address(address) => Ok((open_address(address)?, None)),
+        Database::Address(_) => Ok((open(database)?, None)),
     }
 }
 

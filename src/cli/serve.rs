@@ -23,7 +23,7 @@ use crate::server::{
     Config, GameHost, HostKey, HostParts, LogFormat, Logging, Metrics, Server, Visitors, events,
     respond,
 };
-use crate::store::host::{HostStore, WaitingResults};
+use crate::store::host::{HostStore, StoreFailure, WaitingResults};
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
@@ -37,15 +37,8 @@ pub(super) fn run(mut options: Serve) -> Result<(), Error> {
     let database = host_store::named(options.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let cluster = cluster::pending(&options, &database)?;
-    let (store, damage) =
-        host_store::open(&database).map_err(|failure| Error::mistake(failure.to_string()))?;
-    if let Some(sentence) = damage {
-        Error::machine(sentence).warn();
-    }
-    let waiting = match database {
-        Database::Folder(_) => None,
-        Database::Address(_) => Some(waiting(&folder)?),
-    };
+    let store = open_store(&database, options.accept_empty)?;
+    let waiting = waiting(&folder)?;
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
     let parts =
         Parts { config, key, folder: &folder, format: options.log, store, waiting, cluster };
@@ -63,8 +56,7 @@ struct Parts<'a> {
     folder: &'a Path,
     format: LogFormat,
     store: Box<dyn HostStore>,
-    /// With a store that may be away.
-    waiting: Option<WaitingResults>,
+    waiting: WaitingResults,
     /// In a cluster.
     cluster: Option<cluster::PendingCluster>,
 }
@@ -91,10 +83,8 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
 
     let metrics = Arc::new(Metrics::default());
     let host = HostParts::new(server.config(), Arc::clone(&metrics), Visitors::default(), store);
-    let mut host = host.map_err(|error| no_thread(&error))?.with_maps(configuration.maps());
-    if let Some(waiting) = waiting {
-        host = host.with_waiting(waiting);
-    }
+    let host = host.map_err(|error| no_thread(&error))?;
+    let mut host = host.with_maps(configuration.maps()).with_waiting(waiting);
     if let Some(cluster) = cluster {
         host = cluster.join(host, address).await?;
     }
@@ -124,6 +114,19 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     services.shutdown().await;
     events::ended();
     Ok(())
+}
+
+/// The store. A damaged one is an error unless the operator accepts that it may be empty.
+fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostStore>, Error> {
+    let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
+    if !accepts_empty {
+        return host_store::open(database).map_err(refused);
+    }
+    let (store, damage) = host_store::open_or_salvage(database).map_err(refused)?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    Ok(store)
 }
 
 /// The results that wait in the folder for data.

@@ -65,6 +65,8 @@ pub enum Target {
     Key(String),
     /// Those with an address in this range.
     Address(String),
+    /// The one with this session.
+    Session(String),
 }
 
 /// What a server answers.
@@ -93,6 +95,9 @@ pub enum AdminReply {
 /// A visitor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisitorRow {
+    /// Their session; empty from a host of a version without.
+    #[serde(default)]
+    pub session: String,
     /// The name; `None` until it is chosen.
     pub name: Option<String>,
     /// The address that they connect from.
@@ -123,6 +128,9 @@ pub struct HostInfo {
     pub rooms: Option<Vec<u32>>,
     /// How long ago it has announced itself.
     pub seconds: u64,
+    /// The keys of its own maps: the name of each, and a hash of its text; `None` if it did not answer.
+    #[serde(default)]
+    pub maps: Option<Vec<String>>,
 }
 
 /// A room.
@@ -159,7 +167,7 @@ impl Target {
     /// What a ban of them applies to.
     ///
     /// # Errors
-    /// A sentence, if the text is no fingerprint or no range of addresses.
+    /// A sentence, if the text is no fingerprint or no range of addresses, or the target is a session.
     pub fn to_ban(&self) -> Result<BanTarget, String> {
         match self {
             Self::Name(name) => {
@@ -173,6 +181,9 @@ impl Target {
             Self::Address(range) => {
                 let range = AddressPrefix::parse(range).map(BanTarget::Addresses);
                 range.ok_or_else(|| "addresses are written as 203.0.113.0/24 or as one".to_owned())
+            }
+            Self::Session(_) => {
+                Err("a session is no target of a ban: name a player, a key or addresses".to_owned())
             }
         }
     }

@@ -1,27 +1,30 @@
 //! Which connections are admitted: a policy without sockets and clocks.
 //!
-//! - **Counts.** So many connections at a time in all, of one address and with one key.
+//! - **Counts.** So many connections at a time in all, of one address and with one key. A /64 of IPv6 counts as
+//!   one address: whoever has one address of it has all, and a household has one /64 as it has one IPv4 address.
 //! - **Early random drop**, as by OpenSSH's `MaxStartups` (`sshd_config(5)`): when many connections
 //!   are not authenticated yet, new ones are refused by chance, the more the more there are. A
 //!   network may have a share of them only, so that one that opens connections and says nothing
-//!   does not fill the place of all others.
+//!   does not fill the place of all others. The default share is below the number from which connections are
+//!   refused by chance, so that one network alone causes nobody else to be refused.
 //! - **Penalties.** A failed connection costs its network (/24, /64) tokens of a bucket, which fills
 //!   again with time and with each successful login. A network whose bucket runs low is refused by
 //!   chance, and never always: many people behind one address share their bucket with whoever
-//!   attacks from there. Blocking an address outright, as OpenSSH's `PerSourcePenalties` does, was
-//!   refused for that reason.
+//!   attacks from there. Rejected for that reason: blocking an address outright, as OpenSSH's
+//!   `PerSourcePenalties` does.
 
 mod limits;
 mod penalties;
 
 use std::collections::BTreeMap;
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv6Addr};
 use std::time::Duration;
 
 use super::KeyData;
 use crate::rng::SplitMix64;
 pub use limits::{Limits, Startups};
-use penalties::{Network, Penalties};
+pub(in crate::server) use penalties::Network;
+use penalties::Penalties;
 
 /// The connections of a server, and what is known about where they come from.
 #[derive(Debug)]
@@ -30,6 +33,7 @@ pub struct Admission {
     visits: BTreeMap<VisitId, Visit>,
     next: u64,
     unauthenticated: u32,
+    /// By [`counted_address`].
     per_address: BTreeMap<IpAddr, u32>,
     per_key: BTreeMap<KeyData, u32>,
     /// Of connections that are not authenticated.
@@ -86,15 +90,53 @@ impl Refusal {
         }
     }
 
-    /// What a client reads that is refused after it has logged in.
-    pub(super) const fn sentence(self) -> &'static str {
+    /// A sentence for the refused visitor, which names the limit.
+    pub(super) fn sentence(self, limits: &Limits) -> String {
+        let Limits { connections, per_address, per_key, startups, .. } = *limits;
         match self {
-            Self::Key => "You are connected too often with this key: end another game first.",
-            Self::Address => {
-                "You are connected too often from this address: end another game first."
+            Self::Full => {
+                let most = counted(connections);
+                format!("This host takes at most {most} at a time: try again later.")
             }
-            Self::Full | Self::Startups | Self::Penalty => "There are too many connections now.",
+            Self::Address => {
+                let most = counted(per_address);
+                format!(
+                    "This host takes at most {most} from one address (/64 of IPv6): end another game first."
+                )
+            }
+            Self::Key => {
+                let most = counted(per_key);
+                format!("This host takes at most {most} with one key: end another game first.")
+            }
+            Self::Startups => {
+                let Startups { per_network, full, .. } = startups;
+                format!(
+                    "Too many visitors log in just now (at most {per_network} of one network, and {full} in \
+                     all): try again in a few seconds."
+                )
+            }
+            Self::Penalty => {
+                let seconds = limits.forget.as_secs();
+                format!(
+                    "Too many connections from your network have failed (one is forgotten every {seconds} s): \
+                     try again."
+                )
+            }
         }
+    }
+}
+
+/// A number of connections in words.
+fn counted(connections: u32) -> String {
+    let unit = if connections == 1 { "connection" } else { "connections" };
+    format!("{connections} {unit}")
+}
+
+/// The address that a connection counts as: that of IPv4, or the first one of its /64.
+pub(super) fn counted_address(address: IpAddr) -> IpAddr {
+    match address.to_canonical() {
+        IpAddr::V4(address) => address.into(),
+        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
     }
 }
 
@@ -158,8 +200,8 @@ impl Admission {
         now: Duration,
         chance: &mut SplitMix64,
     ) -> Result<VisitId, Refusal> {
-        let address = address.to_canonical();
         let network = Network::of(address);
+        let address = counted_address(address);
         if self.visits.len() >= self.limits.connections as usize {
             return Err(Refusal::Full);
         }

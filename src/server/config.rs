@@ -3,7 +3,7 @@
 //! ```toml
 //! listen = "[::]:2222"
 //! connections = 400
-//! connections-per-address = 20     # behind a proxy, all visitors have one address
+//! connections-per-address = 100    # behind a proxy, all visitors have one address
 //! message = "Races every Friday at 20:00"
 //! log = "info,connections=warn"
 //! maps = "/var/lib/cellcaster/maps"

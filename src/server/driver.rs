@@ -6,8 +6,8 @@
 //!   driver holds no snapshot, so that steps do not copy the game.
 //! - Rooms step whether anybody draws or not, see [`Sequencer`](super::sequencer::Sequencer).
 //! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
-//! - A result counts when the store's thread has replayed its script. One that a store of several hosts can't take
-//!   because it is away waits in a file, and is recorded later.
+//! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
+//!   is away or full, waits in a file or in memory, and is recorded later.
 
 mod account;
 #[cfg(feature = "cluster")]
@@ -29,7 +29,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use tokio::sync::Notify;
-use tokio::time::{Instant, interval};
+use tokio::time::{Instant, interval, timeout};
 
 use self::account::NamesInUse;
 use self::follow::follow;
@@ -81,6 +81,8 @@ struct Shared {
 
 /// The time between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
+/// The most time that the store has for its end.
+const STORE_END: Duration = Duration::from_secs(10);
 
 impl GameHost {
     /// A host of these parts.
@@ -136,17 +138,19 @@ impl GameHost {
         Self { shared }
     }
 
-    /// Ends the rooms after the last session, so that their recordings are whole.
+    /// Ends the rooms after the last session, so that their recordings are whole, and then the store, after
+    /// all that was asked of it.
     pub fn ending(&self) -> impl Future<Output = ()> + use<> {
-        let rooms = self.shared.rooms.clone();
-        #[cfg(feature = "cluster")]
-        let shared_rooms = self.shared.cluster.clone();
+        let shared = Arc::clone(&self.shared);
         async move {
             #[cfg(feature = "cluster")]
-            if let Some(shared) = shared_rooms {
-                shared.end().await;
+            if let Some(rooms) = &shared.cluster {
+                rooms.end().await;
             }
-            rooms.end().await;
+            shared.rooms.end().await;
+            let recorder = shared.recorder.clone();
+            let ended = shared.store.call(move |store| recorder.end(store));
+            _ = timeout(STORE_END, ended).await;
         }
     }
 
@@ -191,7 +195,7 @@ impl Host for GameHost {
         #[cfg(feature = "cluster")]
         let _counted = match shared.begin_visit(&visitor, known.key).await {
             Ok(counted) => counted,
-            Err((sentence, departure)) => return refuse(link, sentence, departure).await,
+            Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
         };
         let options = terminal::options(&visitor);
         let mut visit = Visit::new(shared, &visitor, known, options);

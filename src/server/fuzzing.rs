@@ -103,7 +103,10 @@ impl Hall {
     pub fn notify(&mut self, visitor: usize, seconds: u64) {
         let line = Line::of("The host speaks.", CHAT_COLUMNS).expect("it fits");
         let event = match seconds % 5 {
-            0 => SessionEvent::Draining { seconds, can_return: seconds % 10 == 0 },
+            0 => SessionEvent::Draining {
+                ends_at: self.now.saturating_add(Duration::from_secs(seconds)),
+                can_return: seconds.is_multiple_of(10),
+            },
             1 => SessionEvent::Said(line),
             2 => SessionEvent::Result("It was refused.".to_owned()),
             3 => {

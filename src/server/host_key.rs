@@ -10,6 +10,7 @@ use russh::keys::ssh_key::private::Ed25519Keypair;
 use russh::keys::{HashAlg, PrivateKey};
 
 use crate::fault::printable_path;
+use crate::store::private;
 
 /// An ed25519 key of a server.
 #[derive(Clone)]
@@ -36,7 +37,7 @@ impl HostKey {
     /// Others can read the file; or it is no key of this kind; or the folder can't be read or written.
     pub fn open(folder: &Path) -> Result<Self, HostKeyError> {
         let path = folder.join(NAME);
-        match File::open(&path) {
+        match private::open(&path) {
             Ok(file) => read(file, &path),
             Err(error) if error.kind() == io::ErrorKind::NotFound => make(folder, &path),
             Err(error) => Err(unreadable(&path, &error)),
@@ -78,11 +79,11 @@ fn make(folder: &Path, path: &Path) -> Result<HostKey, HostKeyError> {
     getrandom::fill(&mut seed).map_err(|cause| not_written(&cause))?;
     let key = PrivateKey::from(Ed25519Keypair::from_seed(&seed));
     let text = key.to_openssh(LineEnding::LF).map_err(|cause| not_written(&cause))?;
-    fs::create_dir_all(folder).map_err(|cause| not_written(&cause))?;
+    private::create_folder(folder).map_err(|cause| not_written(&cause))?;
     match write_new(path, text.as_bytes()) {
         Ok(()) => Ok(HostKey { key }),
         Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {
-            let file = File::open(path).map_err(|cause| unreadable(path, &cause))?;
+            let file = private::open(path).map_err(|cause| unreadable(path, &cause))?;
             read(file, path)
         }
         Err(cause) => Err(not_written(&cause)),

@@ -2,6 +2,7 @@
 
 mod client;
 mod connection;
+mod explanation;
 mod handler;
 mod hello;
 mod inbound;
@@ -24,10 +25,12 @@ use tokio::sync::watch;
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
+use super::admission::Network;
 use super::logging::{Throttle, events};
 use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
 use crate::rng::SplitMix64;
 use connection::Shared;
+use explanation::Explanations;
 pub use inbound::{Arrival, Inbound};
 pub use key_data::KeyData;
 pub use outbox::Outbox;
@@ -115,6 +118,8 @@ const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 const SEND_BUFFER: u32 = 128 << 10;
 /// The connections that wait to be accepted.
 const BACKLOG: u32 = 1024;
+/// The time in which a session that ends with the server says its last words.
+const LAST_WORDS: Duration = Duration::from_secs(2);
 /// The time in which closed connections end.
 const CLOSING: Duration = Duration::from_secs(2);
 
@@ -159,27 +164,31 @@ impl Server {
     }
 
     /// Serves visitors until `stop` is ready. Then it accepts no more, tells each session that the
-    /// server drains, waits for them as long as the configuration says, and closes what is left.
+    /// server drains, waits for them as long as the configuration says and two seconds more for their last
+    /// words, and closes what is left.
     pub async fn run<H: Host>(self, host: H, stop: impl Future<Output = ()> + Send) {
         let Self { listener, config, key, counters } = self;
         let (phase, phases) = watch::channel(Phase::Open);
         let shared = Arc::new(Shared::new(config.clone(), &key, counters, phases));
         let host = Arc::new(host);
         let mut tasks = JoinSet::new();
-        let mut chance = SplitMix64::new(seed());
-        let mut refusals = Throttle::default();
+        let mut gate = Gate::new();
         tokio::pin!(stop);
         loop {
             tokio::select! {
                 () = &mut stop => break,
                 Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
                 accepted = listener.accept() => match accepted {
-                    Ok((socket, peer)) => {
-                        if let Some(visit) = admit(&shared, peer, &mut chance, &mut refusals) {
+                    Ok((socket, peer)) => match gate.admit(&shared, peer) {
+                        Ok(visit) => {
                             let (shared, host) = (shared.clone(), host.clone());
                             tasks.spawn(connection::serve(shared, host, socket, peer, visit));
                         }
-                    }
+                        Err(Some(sentence)) => {
+                            tasks.spawn(explanation::explain(socket, sentence));
+                        }
+                        Err(None) => {}
+                    },
                     Err(error) => {
                         events::fault("accept", error);
                         sleep(ACCEPT_PAUSE).await;
@@ -190,7 +199,8 @@ impl Server {
         drop(listener);
         let drain = config.get().drain;
         events::draining(drain.as_secs());
-        for (next, time) in [(Phase::Draining, drain), (Phase::Closing, CLOSING)] {
+        let until_end = drain + LAST_WORDS.min(drain);
+        for (next, time) in [(Phase::Draining, until_end), (Phase::Closing, CLOSING)] {
             _ = phase.send(next);
             let all = async { while tasks.join_next().await.is_some() {} };
             if timeout(time, all).await.is_ok() {
@@ -212,31 +222,47 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     socket.listen(BACKLOG)
 }
 
-/// Admits a connection, or refuses it without a word.
-fn admit(
-    shared: &Shared,
-    peer: SocketAddr,
-    chance: &mut SplitMix64,
-    refusals: &mut Throttle,
-) -> Option<VisitId> {
-    let limits = shared.config.get().admission;
-    let (visit, now) = shared.admission(|admission, now| {
-        admission.set_limits(limits);
-        (admission.arrive(peer.ip(), now, chance), now)
-    });
-    let Counters { accepted, refused, .. } = &*shared.counters;
-    let count = if visit.is_ok() { accepted } else { refused };
-    count.fetch_add(1, Ordering::Relaxed);
-    match visit {
-        Ok(_) => events::accepted(peer.ip()),
-        Err(reason) => {
-            shared.counters.refuse(reason);
-            if let Some(left_out) = refusals.pass(now) {
-                events::refused(peer.ip(), reason, left_out);
+/// The way in: what decides over connections, and the state of it that only the listener has.
+struct Gate {
+    chance: SplitMix64,
+    logged: Throttle,
+    explanations: Explanations,
+}
+
+impl Gate {
+    fn new() -> Self {
+        Self {
+            chance: SplitMix64::new(seed()),
+            logged: Throttle::default(),
+            explanations: Explanations::default(),
+        }
+    }
+
+    /// Admits a connection, or refuses it: with a sentence, or without a word in a flood.
+    fn admit(&mut self, shared: &Shared, peer: SocketAddr) -> Result<VisitId, Option<String>> {
+        let limits = shared.config.get().admission;
+        let (visit, now) = shared.admission(|admission, now| {
+            admission.set_limits(limits);
+            (admission.arrive(peer.ip(), now, &mut self.chance), now)
+        });
+        let Counters { accepted, refused, .. } = &*shared.counters;
+        let count = if visit.is_ok() { accepted } else { refused };
+        count.fetch_add(1, Ordering::Relaxed);
+        match visit {
+            Ok(visit) => {
+                events::accepted(peer.ip());
+                Ok(visit)
+            }
+            Err(reason) => {
+                shared.counters.refuse(reason);
+                if let Some(left_out) = self.logged.pass(now) {
+                    events::refused(peer.ip(), reason, left_out);
+                }
+                let is_told = self.explanations.allow(Network::of(peer.ip()), now);
+                Err(is_told.then(|| reason.sentence(&limits)))
             }
         }
     }
-    visit.ok()
 }
 
 /// Unpredictable, so that nobody can time their connections by the random drop.

@@ -8,6 +8,7 @@
 //! does not take them costs no memory.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -38,9 +39,19 @@ pub enum Notice {
     Removed(String),
 }
 
+/// A session among those of all hosts, and of all their earlier runs: written as `3f9a-7`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SessionId {
+    /// Of the run of the host, by chance.
+    run: u16,
+    number: u64,
+}
+
 /// What an operator sees of a visitor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Present {
+    /// Their session.
+    pub session: SessionId,
     /// The name; `None` until it is chosen.
     pub name: Option<Name>,
     /// The address that they connect from.
@@ -53,8 +64,9 @@ pub struct Present {
     pub time: Duration,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Table {
+    run: u16,
     next: u64,
     /// In the order in which they came.
     entries: BTreeMap<u64, Entry>,
@@ -85,6 +97,33 @@ struct Notices {
 /// The most lines that wait for a session.
 const MOST_LINES: usize = 8;
 
+impl Default for Table {
+    fn default() -> Self {
+        // Without random numbers from the system there would be no keys, either.
+        let run = getrandom::u32().unwrap_or_default() as u16;
+        Self { run, next: 1, entries: BTreeMap::new() }
+    }
+}
+
+impl SessionId {
+    /// The session of a text such as `3f9a-7`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (run, number) = text.split_once('-')?;
+        let is_plain = run.len() == 4
+            && run.bytes().all(|byte| byte.is_ascii_hexdigit())
+            && number.bytes().all(|byte| byte.is_ascii_digit());
+        let id =
+            || Some(Self { run: u16::from_str_radix(run, 16).ok()?, number: number.parse().ok()? });
+        is_plain.then(id)?
+    }
+}
+
+impl fmt::Display for SessionId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04x}-{}", self.run, self.number)
+    }
+}
+
 impl Visitors {
     /// Adds a visitor.
     pub fn arrive(&self, address: IpAddr, key: Option<AccountKey>) -> Presence {
@@ -103,7 +142,12 @@ impl Visitors {
 
     /// All visitors, in the order in which they came.
     pub fn list(&self) -> Vec<Present> {
-        self.with(|table| table.entries.values().map(Entry::present).collect())
+        self.with(|table| {
+            let present = |(&number, entry): (&u64, &Entry)| {
+                entry.present(SessionId { run: table.run, number })
+            };
+            table.entries.iter().map(present).collect()
+        })
     }
 
     /// The number of visitors.
@@ -141,6 +185,14 @@ impl Visitors {
             let removed =
                 table.entries.values().filter(|entry| target.applies_to(&entry.identity()));
             removed.map(|entry| entry.inbox.remove(sentence)).count()
+        })
+    }
+
+    /// Ends one session, with a sentence for the visitor. Returns whether it is one of this host.
+    pub fn remove_session(&self, session: SessionId, sentence: &str) -> bool {
+        self.with(|table| {
+            let entry = table.entries.get(&session.number).filter(|_| table.run == session.run);
+            entry.map(|entry| entry.inbox.remove(sentence)).is_some()
         })
     }
 
@@ -182,8 +234,9 @@ impl Drop for Presence {
 }
 
 impl Entry {
-    fn present(&self) -> Present {
+    fn present(&self, session: SessionId) -> Present {
         Present {
+            session,
             name: self.name.clone(),
             address: self.address,
             key: self.key,

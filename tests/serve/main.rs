@@ -5,6 +5,8 @@
 #[path = "../support/emulator.rs"]
 mod emulator;
 mod kept;
+#[path = "../../examples/load/lamp.rs"]
+mod lamp;
 #[path = "../support/looks.rs"]
 mod looks;
 #[cfg(feature = "cluster-tests")]

@@ -17,7 +17,7 @@ const MUSEUM: &str = include_str!("../../maps/scripts/museum.normal.script");
 
 /// A store in which two accounts have results. It stays open, as while a host runs.
 fn filled(folder: &Path) -> SqliteStore {
-    let (mut store, _) = SqliteStore::open(folder).unwrap();
+    let mut store = SqliteStore::open(folder).unwrap();
     let now = UnixTime::new(1_795_300_000);
     for (number, name, scripts) in [(1, "漢字", &[WON, HARD][..]), (2, "Ada", &[WON, MUSEUM])] {
         let (key, name) = (AccountKey::new([number; 32]), Name::new(name).unwrap());

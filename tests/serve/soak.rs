@@ -73,7 +73,7 @@ impl Counted {
         config.stall = 2 * PATIENCE;
         config.empty_room = Duration::from_secs(1);
         let key = HostKey::open(&folder).unwrap();
-        let (store, _) = SqliteStore::open(&folder).unwrap();
+        let store = SqliteStore::open(&folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
         let (address, counters) = (server.address().unwrap(), server.counters());

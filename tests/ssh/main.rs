@@ -6,6 +6,7 @@
 
 #[path = "../support/emulator.rs"]
 mod emulator;
+mod host;
 #[path = "../support/player.rs"]
 mod player;
 mod proxy;
@@ -19,6 +20,7 @@ use std::time::{Duration, Instant};
 use cellcaster::terminal::Fidelity;
 
 use self::emulator::{Emulator, Speaks};
+use self::host::Host;
 use self::player::Player;
 use self::proxy::{Link, Proxy};
 use self::server::Server;
@@ -39,6 +41,12 @@ const SLOW: Link = Link {
     jitter: Duration::ZERO,
     bytes_per_second: Some(1_000_000.0 / 8.0),
 };
+/// A link on which exact frames are slow even when they are compressed.
+const SLOWEST: Link = Link {
+    delay: Duration::from_millis(75),
+    jitter: Duration::ZERO,
+    bytes_per_second: Some(256_000.0 / 8.0),
+};
 const UNLIMITED: Link =
     Link { delay: Duration::ZERO, jitter: Duration::ZERO, bytes_per_second: None };
 /// One that carries anything, at times late.
@@ -48,11 +56,11 @@ const JITTERY: Link = Link {
     bytes_per_second: None,
 };
 
-/// The game, as a guest plays it.
-struct Guest {
+/// The game, as a guest plays it behind sshd, or on a [`Host`].
+struct Guest<S = Server> {
     player: Player,
     proxy: Proxy,
-    server: Server,
+    server: S,
     /// One at a time: they are measured.
     _alone: MutexGuard<'static, ()>,
 }
@@ -64,18 +72,49 @@ impl Guest {
 
     /// As [`Guest::connect`], with more `options` for `ssh`.
     fn connect_with(options: &[&str], link: Link, game: &str) -> Self {
-        static ALONE: Mutex<()> = Mutex::new(());
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        Self::connect_in(WINDOW, options, link, game)
+    }
+
+    /// As [`Guest::connect_with`], in a window of that size.
+    fn connect_in(window: (u16, u16), options: &[&str], link: Link, game: &str) -> Self {
+        let alone = alone();
         let server = Server::start(game);
         let proxy = Proxy::start(server.port(), link);
-        let options = options.iter().map(|option| (*option).to_owned());
-        let arguments = options.chain(server.client_arguments(proxy.port()));
-        let player = Player::start(WINDOW, Speaks::Kitty, "ssh", arguments, &[]);
+        let arguments = server.client_arguments(proxy.port());
+        let player = ssh(window, options, arguments);
         player.wait_for("? help");
         player.wait_until("asked for releases", |emulator| emulator.modes().key_flags == [0, 1]);
         Self { player, proxy, server, _alone: alone }
     }
+}
 
+impl Guest<Host> {
+    /// Connects to a host in the same way, and enters its only room.
+    fn visit(window: (u16, u16), options: &[&str], link: Link) -> Self {
+        let alone = alone();
+        let server = Host::start();
+        let proxy = Proxy::start(server.port(), link);
+        let player = ssh(window, options, host::client_arguments(proxy.port()));
+        for page in ["Enter takes it", "Open a room", "Go in"] {
+            player.wait_for(page);
+            player.send("\r");
+        }
+        player.wait_for("comes in.");
+        Self { player, proxy, server, _alone: alone }
+    }
+}
+
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn ssh(window: (u16, u16), options: &[&str], arguments: Vec<String>) -> Player {
+    let options = options.iter().map(|option| (*option).to_owned());
+    Player::start(window, Speaks::Kitty, "ssh", options.chain(arguments), &[])
+}
+
+impl<S> Guest<S> {
     fn hold_letter(&self, letter: char, held: bool) {
         self.key(&format!("\x1b[{};1:", u32::from(letter)), LETTER_END, held);
     }
@@ -206,6 +245,42 @@ fn compressed_it_is_about_exact_on_a_slow_link() {
     let is_fine = |fidelity: &&String| matches!(fidelity.as_str(), "exact" | "1" | "2" | "3" | "4");
     let fine = walk.fidelities.iter().filter(is_fine).count();
     assert!(fine * 4 > walk.fidelities.len() * 3);
+}
+
+/// On the server, `ssh -C` and a slow link must not cost more frames than behind sshd.
+#[track_caller]
+fn compares_with_sshd(window: (u16, u16), options: &[&str], link: Link) {
+    const TIME: Duration = Duration::from_secs(20);
+    let name = |server: &str| format!("{server}, {window:?}, {options:?}, {link:?}");
+    let sshd = Guest::connect_in(window, options, link, &format!("{PLAY} --stats"));
+    let behind_sshd = sshd.play(TIME);
+    behind_sshd.report(&name("sshd"));
+    drop(sshd);
+    let host = Guest::visit(window, options, link);
+    host.player.send("i");
+    let on_host = host.play(TIME);
+    on_host.report(&name("host"));
+    assert!(on_host.frames_per_second >= 0.9 * behind_sshd.frames_per_second);
+}
+
+#[test]
+fn compressed_over_a_long_way_the_server_is_as_fast_as_sshd() {
+    compares_with_sshd((80, 24), &["-C"], Link { delay: 2 * SLOWEST.delay, ..SLOWEST });
+}
+
+#[test]
+fn uncompressed_on_the_slowest_link_the_server_is_as_fast_as_sshd() {
+    compares_with_sshd((80, 24), &[], SLOWEST);
+}
+
+#[test]
+fn compressed_on_the_slowest_link_the_server_is_as_fast_as_sshd() {
+    compares_with_sshd((80, 24), &["-C"], SLOWEST);
+}
+
+#[test]
+fn compressed_in_a_large_window_the_server_is_as_fast_as_sshd() {
+    compares_with_sshd(WINDOW, &["-C"], SLOWEST);
 }
 
 /// The server asks the client every 2 s, and gives it up after the third time. A game that goes on sending

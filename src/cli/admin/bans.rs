@@ -4,7 +4,7 @@ use std::env;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::table::{table, time as shown_time};
-use super::{Error, RunningHost, visitors};
+use super::{Error, RunningHost, sessions};
 use crate::cli::arguments::Database;
 use crate::cli::host_store::{self, failed};
 use crate::server::{AdminFailure, AdminReply, AdminRequest, Target};
@@ -37,7 +37,7 @@ pub(super) fn ban(
         time.map_or("for ever".to_owned(), |time| format!("for {}", shown_time(time.as_secs())));
     let ended = match removed {
         None => "no server runs".to_owned(),
-        Some(count) => format!("ended the sessions of {}", visitors(count)),
+        Some(count) => format!("ended {}", sessions(count)),
     };
     Ok(format!("banned {} {time}; {ended}\n", whom.join(" and ")))
 }
@@ -116,7 +116,7 @@ fn remove(
 /// The store, which is not made if there is none.
 fn open(database: &Database) -> Result<Box<dyn HostStore>, Error> {
     host_store::open_to_read(database)?;
-    host_store::open(database).map(|(store, _)| store).map_err(failed)
+    host_store::open(database).map_err(failed)
 }
 
 /// Who bans: the user who calls, also through `sudo`.

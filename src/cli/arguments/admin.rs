@@ -8,7 +8,7 @@ use clap::{ArgAction, ArgMatches, ValueHint};
 use super::database::{Database, STORE};
 use super::option::{FileOption, Parser, ValueOption};
 use super::{Command, Error, Positional, Subcommand};
-use crate::server::Target;
+use crate::server::{SessionId, Target};
 use crate::store::host::{AccountKey, AddressPrefix};
 
 /// Options of `admin`.
@@ -50,7 +50,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     name: "admin",
     about: "See who plays on a host, kick, ban, and say something to all",
     details: "The actions who and rooms list what a running server has; kick ends the sessions of a \
-              player, say shows a line to everybody, and drain ends the server as SIGTERM does. The \
+              player, or the one that --session names, say shows a line to everybody, and drain ends the server as SIGTERM does. The \
               actions ban, unban and bans work without a server, too: bans are in its store. A player \
               is a name, --key or --address; a banned name is banned with the key of its account. In a cluster, \
               who, say, kick and ban are of all hosts; hosts lists them, and drain ends the one whose data \
@@ -59,10 +59,11 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
                cellcaster admin hosts\n\
                cellcaster admin say \"Back in five minutes\"\n\
                cellcaster admin kick ada --reason \"let others play\"\n\
+               cellcaster admin kick --session 3f9a-7\n\
                cellcaster admin ban --address 203.0.113.0/24 --for 7d\n\
                cellcaster admin --data /var/lib/cellcaster bans",
     positionals: &[ACTION, WORD],
-    options: &[&DATA, &STORE, &KEY, &ADDRESS, &FOR, &REASON],
+    options: &[&DATA, &STORE, &KEY, &ADDRESS, &SESSION, &FOR, &REASON],
     surplus: "takes an action and one name or text",
     missing: "admin takes one of who, rooms, hosts, kick, ban, unban, bans, say, drain, as in \"cellcaster admin who\"",
     read,
@@ -110,6 +111,17 @@ const ADDRESS: ValueOption<AddressPrefix> = ValueOption {
     default: "",
     choices: &[],
     read: Parser::Optional(AddressPrefix::parse),
+    repeats: false,
+};
+
+const SESSION: ValueOption<SessionId> = ValueOption {
+    name: "session",
+    value: "ID",
+    takes: "a session as \"cellcaster admin who\" lists it, such as 3f9a-7",
+    help: "One session, to kick",
+    default: "",
+    choices: &[],
+    read: Parser::Optional(SessionId::parse),
     repeats: false,
 };
 
@@ -162,6 +174,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
             .map(Target::Name)
             .chain(KEY.of(&mut matches).map(|key| Target::Key(key.to_string())))
             .chain(ADDRESS.of(&mut matches).map(|range| Target::Address(range.to_string())))
+            .chain(SESSION.of(&mut matches).map(|session| Target::Session(session.to_string())))
             .collect(),
         time: FOR.of(&mut matches),
         reason: REASON.of(&mut matches),
@@ -188,10 +201,10 @@ impl Words {
             "bans" => AdminAction::Bans,
             "drain" => AdminAction::Drain,
             "say" => AdminAction::Say { text: self.text()? },
-            "kick" => AdminAction::Kick { target: self.target()?, reason: self.reason() },
-            "unban" => AdminAction::Unban { target: self.target()? },
+            "kick" => AdminAction::Kick { target: self.target(true)?, reason: self.reason() },
+            "unban" => AdminAction::Unban { target: self.target(false)? },
             _ => {
-                let (target, time) = (self.target()?, self.time.take());
+                let (target, time) = (self.target(false)?, self.time.take());
                 AdminAction::Ban { target, time, reason: self.reason() }
             }
         };
@@ -200,6 +213,7 @@ impl Words {
             (Some(Target::Name(name)), ..) => format!("\"{name}\""),
             (Some(Target::Key(_)), ..) => "--key".to_owned(),
             (Some(Target::Address(_)), ..) => "--address".to_owned(),
+            (Some(Target::Session(_)), ..) => "--session".to_owned(),
             (None, Some(_), _) => "--for".to_owned(),
             (None, None, Some(_)) => "--reason".to_owned(),
             (None, None, None) => return Ok(action),
@@ -207,16 +221,24 @@ impl Words {
         Err(Error::mistake(format!("admin {name} goes without {surplus}")))
     }
 
-    fn target(&mut self) -> Result<Target, Error> {
+    /// The one target, which is a session for some actions only.
+    fn target(&mut self, takes_session: bool) -> Result<Target, Error> {
         let name = &self.action;
+        let ways = if takes_session {
+            ["a name, --key, --address or --session", "a name, --key, --address and --session"]
+        } else {
+            ["a name, --key or --address", "a name, --key and --address"]
+        };
+        if self.targets.iter().any(|it| matches!(it, Target::Session(_))) && !takes_session {
+            return Err(Error::mistake(format!("admin {name} goes without --session")));
+        }
         match self.targets.len() {
             1 => Ok(self.targets.remove(0)),
             0 => Err(Error::mistake(format!(
-                "admin {name} takes a name, --key or --address, as in \"cellcaster admin {name} ada\""
+                "admin {name} takes {}, as in \"cellcaster admin {name} ada\"",
+                ways[0]
             ))),
-            _ => Err(Error::mistake(format!(
-                "admin {name} takes one of a name, --key and --address"
-            ))),
+            _ => Err(Error::mistake(format!("admin {name} takes one of {}", ways[1]))),
         }
     }
 
@@ -224,7 +246,7 @@ impl Words {
         match self.targets.iter().position(|target| matches!(target, Target::Name(_))) {
             Some(index) => match self.targets.remove(index) {
                 Target::Name(text) => Ok(text),
-                Target::Key(_) | Target::Address(_) => Ok(String::new()),
+                Target::Key(_) | Target::Address(_) | Target::Session(_) => Ok(String::new()),
             },
             None => Err(Error::mistake(
                 "admin say takes a text, as in \"cellcaster admin say 'Back in five minutes'\"",

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 
 use super::database::{Database, STORE};
-use super::option::{FileOption, Parser, ValueOption};
+use super::option::{FileOption, Flag, Parser, ValueOption};
 use super::{Command, Subcommand};
 use crate::server::LogFormat;
 
@@ -18,6 +18,7 @@ pub(in crate::cli) struct Serve {
     pub(in crate::cli) listen: Option<SocketAddr>,
     pub(in crate::cli) data: Option<PathBuf>,
     pub(in crate::cli) store: Option<Database>,
+    pub(in crate::cli) accept_empty: bool,
     pub(in crate::cli) cluster: Option<ClusterAddress>,
     pub(in crate::cli) config: Option<PathBuf>,
     pub(in crate::cli) maps: Option<PathBuf>,
@@ -43,7 +44,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
     examples: "cellcaster serve\n\
                cellcaster serve --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps",
     positionals: &[],
-    options: &[&LISTEN, &DATA, &STORE, &CLUSTER, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
+    options: &[&LISTEN, &DATA, &STORE, &ACCEPT_EMPTY, &CLUSTER, &CONFIG, &MAPS, &LOG, &RECORD_ROOM],
     surplus: "takes no map",
     missing: "",
     read: |matches| Ok(Command::Serve(read(matches))),
@@ -54,6 +55,7 @@ fn read(mut matches: ArgMatches) -> Serve {
         listen: LISTEN.of(&mut matches),
         data: DATA.of(&mut matches),
         store: STORE.of(&mut matches),
+        accept_empty: ACCEPT_EMPTY.of(&matches),
         cluster: CLUSTER.of(&mut matches).or_else(ClusterAddress::of_environment),
         config: CONFIG.of(&mut matches),
         maps: MAPS.of(&mut matches),
@@ -99,6 +101,12 @@ const LISTEN: ValueOption<SocketAddr> = ValueOption {
 const DATA: FileOption = FileOption {
     name: "data",
     help: "The folder for data [default: cellcaster in the folder for data, or $CELLCASTER_DATA]",
+};
+
+const ACCEPT_EMPTY: Flag = Flag {
+    name: "accept-empty",
+    help: "Start although host.db is damaged: keep the file aside, and go on with what can be read of it, \
+           which may be nothing",
 };
 
 const CLUSTER: ValueOption<ClusterAddress> = ValueOption {

@@ -1,7 +1,6 @@
 //! The configuration: the file and the maps that it names, read at the start; the file again at each
 //! hang-up.
 
-use std::fs;
 use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -9,8 +8,9 @@ use std::path::PathBuf;
 use super::signals::Hangups;
 use crate::cli::Error;
 use crate::cli::arguments::Serve;
-use crate::cli::config::configuration_file;
+use crate::cli::config::{LARGEST, configuration_file};
 use crate::server::{Config, HostMaps, LiveConfig, Logging, MapsError, events};
+use crate::store::private;
 
 /// Where the configuration comes from.
 pub(super) struct Configuration {
@@ -89,7 +89,7 @@ impl Configuration {
     /// The content of the file; an empty one if the default file does not exist.
     fn text(&self) -> Result<String, Error> {
         let Some(file) = &self.file else { return Ok(String::new()) };
-        match fs::read_to_string(file) {
+        match private::read_text(file, LARGEST) {
             Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
                 Ok(String::new())
             }

@@ -5,7 +5,7 @@ use crate::server::cluster::{OtherHosts, SharedRooms};
 
 /// The answer of this host with those of the others.
 pub(super) fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts) -> AdminReply {
-    let OtherHosts { replies, silent, seconds, remarks } = others;
+    let OtherHosts { replies, silent, seconds, mut remarks } = others;
     let own_name = cluster.own_name().to_owned();
     let reply = match own {
         AdminReply::Count(count) => AdminReply::Count(count + counts(replies.into_values())),
@@ -24,6 +24,8 @@ pub(super) fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts)
             });
             let mut rows: Vec<HostInfo> = rows.chain(silent.into_values()).collect();
             rows.sort_by(|one, other| one.host.cmp(&other.host));
+            let differences = rows.iter().filter_map(|row| cluster.map_difference(row));
+            remarks.extend(differences);
             AdminReply::Hosts(rows)
         }
         other => other,

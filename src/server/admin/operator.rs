@@ -7,12 +7,12 @@ use tokio::sync::Notify;
 
 #[cfg(feature = "cluster")]
 use super::merging;
-use super::{AdminReply, AdminRequest, RoomRow, VisitorRow};
+use super::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
 #[cfg(feature = "cluster")]
 use crate::server::cluster::SharedRooms;
 use crate::server::line::Line;
 use crate::server::logging::events;
-use crate::server::visitors::{Present, Visitors};
+use crate::server::visitors::{Present, SessionId, Visitors};
 
 /// What an operator can see and change in a server. Clones are the same.
 #[derive(Clone)]
@@ -90,14 +90,12 @@ impl Operator {
             }
             AdminRequest::Hosts => self.hosts(),
             AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
-            AdminRequest::Remove { target, reason, banned } => match target.to_ban() {
-                Err(sentence) => AdminReply::Fault(sentence),
-                Ok(target) => {
-                    let count = self.visitors.remove(&target, &farewell(reason, *banned));
-                    events::removed(&target, count, *banned);
-                    AdminReply::Count(count)
+            AdminRequest::Remove { target, reason, banned } => {
+                match self.remove(target, &farewell(reason, *banned), *banned) {
+                    Err(sentence) => AdminReply::Fault(sentence),
+                    Ok(count) => AdminReply::Count(count),
                 }
-            },
+            }
             AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
                 None => AdminReply::Fault("there is nothing to say".to_owned()),
                 Some(line) => {
@@ -111,6 +109,22 @@ impl Operator {
                 AdminReply::Count(self.visitors.list().len())
             }
         }
+    }
+
+    /// Ends the sessions of `target`, and returns their number.
+    fn remove(&self, target: &Target, sentence: &str, is_banned: bool) -> Result<usize, String> {
+        if let Target::Session(text) = target
+            && !is_banned
+        {
+            let session = SessionId::parse(text).ok_or("a session is written as 3f9a-7")?;
+            let count = usize::from(self.visitors.remove_session(session, sentence));
+            events::removed_session(session, count);
+            return Ok(count);
+        }
+        let target = target.to_ban()?;
+        let count = self.visitors.remove(&target, sentence);
+        events::removed(&target, count, is_banned);
+        Ok(count)
     }
 }
 
@@ -163,6 +177,7 @@ pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
 
 fn row(present: Present, host: Option<String>) -> VisitorRow {
     VisitorRow {
+        session: present.session.to_string(),
         name: present.name.map(|name| name.as_str().to_owned()),
         address: present.address.to_string(),
         key: present.key.map(|key| key.to_string()),

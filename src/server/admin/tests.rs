@@ -64,6 +64,7 @@ fn what_is_no_target_is_told_in_a_sentence() {
         Target::Name("\u{1b}".to_owned()),
         Target::Key("SHA256:short".to_owned()),
         Target::Address("192.0.2.1/33".to_owned()),
+        Target::Session("7".to_owned()),
     ] {
         let reply = operator.answer_alone(&remove(target.clone(), "", false));
         assert!(matches!(reply, AdminReply::Fault(_)), "{target:?}");
@@ -86,7 +87,11 @@ fn the_form_of_a_line_is_fixed() {
         assert_eq!(serde_json::from_str::<AdminRequest>(line).unwrap(), request);
     }
     assert_eq!(serde_json::to_string(&AdminReply::Count(2)).unwrap(), r#"{"count":2}"#);
-    let row = r#"{"name":null,"address":"::1","key":null,"room":null,"seconds":7}"#;
+    let kick = r#"{"do":"remove","target":{"session":"3f9a-7"},"reason":"","banned":false}"#;
+    let request = remove(Target::Session("3f9a-7".to_owned()), "", false);
+    assert_eq!(serde_json::to_string(&request).unwrap(), kick);
+    let row =
+        r#"{"session":"3f9a-7","name":null,"address":"::1","key":null,"room":null,"seconds":7}"#;
     let visitor: VisitorRow = serde_json::from_str(row).unwrap();
     assert_eq!(serde_json::to_string(&visitor).unwrap(), row);
     for line in ["", "{}", r#"{"do":"shell"}"#, r#"{"do":"say","text":"a","to":"b"}"#, "null"] {
@@ -96,12 +101,13 @@ fn the_form_of_a_line_is_fixed() {
 
 proptest! {
     #[test]
-    fn no_request_panics(name in ".*", reason in ".*", banned: bool, kind in 0..4) {
+    fn no_request_panics(name in ".*", reason in ".*", banned: bool, kind in 0..5) {
         let operator = operator(&Visitors::default());
         let request = match kind {
             0 => remove(Target::Name(name), &reason, banned),
             1 => remove(Target::Key(name), &reason, banned),
             2 => remove(Target::Address(name), &reason, banned),
+            3 => remove(Target::Session(name), &reason, banned),
             _ => AdminRequest::Say { text: name },
         };
         operator.answer_alone(&request);

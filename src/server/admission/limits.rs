@@ -7,7 +7,7 @@ use std::time::Duration;
 pub struct Limits {
     /// The most connections at a time.
     pub connections: u32,
-    /// The most connections of one address.
+    /// The most connections of one address, or of one /64 of IPv6.
     pub per_address: u32,
     /// The most connections with one key.
     pub per_key: u32,
@@ -36,7 +36,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             connections: 1200,
-            per_address: 8,
+            per_address: 64,
             per_key: 3,
             startups: Startups::default(),
             failures: 20,
@@ -47,7 +47,7 @@ impl Default for Limits {
 
 impl Default for Startups {
     fn default() -> Self {
-        Self { begin: 10, percent: 30, full: 100, per_network: 20 }
+        Self { begin: 50, percent: 30, full: 200, per_network: 40 }
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
     /// The figures of `sshd_config(5)` for 10:30:100.
     #[test]
     fn the_share_is_that_of_openssh() {
-        let startups = Startups::default();
+        let startups = Startups { begin: 10, percent: 30, full: 100, per_network: 20 };
         for (waiting, share) in [(0, 0.0), (9, 0.0), (10, 0.3), (55, 0.65), (100, 1.0), (9999, 1.0)]
         {
             assert!((startups.refused_share(waiting) - share).abs() < 1e-12, "{waiting}");

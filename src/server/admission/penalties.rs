@@ -8,7 +8,7 @@ use super::Outcome;
 
 /// A network that is penalised as one: a /24 of IPv4, a /64 of IPv6.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Network {
+pub(in crate::server) enum Network {
     V4([u8; 3]),
     V6([u8; 8]),
 }
@@ -40,7 +40,7 @@ const FREE_SHARE: f64 = 0.5;
 const REFUSED_SHARE: f64 = 0.9;
 
 impl Network {
-    pub(super) fn of(address: IpAddr) -> Self {
+    pub(in crate::server) fn of(address: IpAddr) -> Self {
         match address.to_canonical() {
             IpAddr::V4(address) => {
                 let [a, b, c, _] = address.octets();

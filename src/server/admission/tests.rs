@@ -6,8 +6,78 @@ use super::*;
 
 const START: Duration = Duration::ZERO;
 
+/// With small limits.
 fn admission() -> Admission {
-    Admission::new(Limits::default())
+    let startups = Startups { begin: 10, percent: 30, full: 100, per_network: 20 };
+    Admission::new(Limits { per_address: 8, startups, ..Limits::default() })
+}
+
+/// Forty people behind one address, or with addresses of one /64, read the fingerprint of the host at the same
+/// time, whatever chance says.
+#[test]
+fn a_classroom_gets_in_by_default() {
+    for (seed, last) in (0..50).zip([0, 1].into_iter().cycle()) {
+        let mut admission = Admission::new(Limits::default());
+        let mut chance = SplitMix64::new(seed);
+        let pupil = |number: u16| IpAddr::from([0x2001, 0xdb8, 0, 7, 0, 0, 0, number * last]);
+        let ids: Vec<VisitId> = (1..=40)
+            .map(|number| admission.arrive(pupil(number), START, &mut chance).unwrap())
+            .collect();
+        for id in ids {
+            assert_eq!(admission.log_in(id, None, START), Ok(()));
+        }
+        // Some open a second window.
+        for number in 1..=24 {
+            let id = admission.arrive(pupil(number), START, &mut chance).unwrap();
+            assert_eq!(admission.log_in(id, None, START), Ok(()));
+        }
+        assert_eq!(admission.arrive(pupil(41), START, &mut chance), Err(Refusal::Address));
+        assert!(admission.arrive(address(1, 1), START, &mut chance).is_ok());
+    }
+}
+
+/// However many connections of one network say nothing.
+#[test]
+fn one_network_alone_has_nobody_else_refused_by_default() {
+    let mut admission = Admission::new(Limits::default());
+    let mut chance = SplitMix64::new(1);
+    for host in 0..1000_u32 {
+        _ = admission.arrive(address(1, host as u8), START, &mut chance);
+    }
+    for network in 2..200 {
+        let id = admission.arrive(address(network, 1), START, &mut chance).unwrap();
+        admission.leave(id, Outcome::Served, START);
+    }
+}
+
+#[test]
+fn a_network_of_ipv6_counts_as_one_address() {
+    let (mut admission, mut chance) = (admission(), SplitMix64::new(1));
+    let of = |network: u16, host: u16| IpAddr::from([0x2001, 0xdb8, 0, network, 0, 0, 0, host]);
+    for host in 0..8 {
+        assert!(admission.arrive(of(1, host), START, &mut chance).is_ok());
+    }
+    assert_eq!(admission.arrive(of(1, 8), START, &mut chance), Err(Refusal::Address));
+    assert!(admission.arrive(of(2, 8), START, &mut chance).is_ok());
+    let mapped: IpAddr = "::ffff:192.0.2.1".parse().unwrap();
+    assert_eq!(counted_address(mapped), IpAddr::from([192, 0, 2, 1]));
+}
+
+#[test]
+fn a_refusal_names_its_limit_in_one_sentence() {
+    let limits = Limits { per_key: 1, ..Limits::default() };
+    for (refusal, part) in [
+        (Refusal::Full, "at most 1200 connections at a time"),
+        (Refusal::Address, "at most 64 connections from one address"),
+        (Refusal::Key, "at most 1 connection with one key"),
+        (Refusal::Startups, "at most 40 of one network, and 200 in all"),
+        (Refusal::Penalty, "one is forgotten every 10 s"),
+    ] {
+        let sentence = refusal.sentence(&limits);
+        assert!(sentence.contains(part) && sentence.ends_with('.'), "{sentence}");
+        // More than this, OpenSSH does not print.
+        assert!(sentence.len() < 400 && sentence.lines().count() == 1, "{sentence}");
+    }
 }
 
 fn address(network: u8, host: u8) -> IpAddr {

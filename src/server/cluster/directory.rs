@@ -92,6 +92,7 @@ impl SharedRooms {
         tokio::spawn(shared.clone().follow());
         tokio::spawn(shared.clone().maintain());
         tokio::spawn(shared.clone().announce());
+        tokio::spawn(shared.clone().compare_maps());
         shared
     }
 
@@ -269,8 +270,13 @@ impl SharedRooms {
 
     fn abandoned(&self) -> Vec<RoomId> {
         let now = Instant::now();
-        let is_abandoned =
-            |known: &Known| known.record.is_running && now.duration_since(known.since) >= ABANDONED;
+        let catalog = &self.0.context.catalog;
+        // A host that does not have the level leaves the room to others.
+        let is_abandoned = |known: &Known| {
+            known.record.is_running
+                && now.duration_since(known.since) >= ABANDONED
+                && catalog.world(known.record.level()).is_some()
+        };
         locked(&self.0.records, |records| {
             let abandoned = records.iter().filter(|(_, known)| is_abandoned(known));
             abandoned.map(|(id, _)| *id).collect()

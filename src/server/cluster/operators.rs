@@ -21,6 +21,7 @@ use super::directory::SharedRooms;
 use super::shown_name;
 use crate::server::{AdminReply, AdminRequest, HostInfo};
 use crate::store::host::HostRow;
+use crate::store::name_in_map_key;
 
 /// The most time that other hosts have for their answers.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -70,6 +71,7 @@ impl SharedRooms {
         HostInfo {
             visitors: context.visitors.count(),
             rooms: Some(context.load.metrics().each_room.written()),
+            maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
             ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
         }
     }
@@ -106,6 +108,29 @@ impl SharedRooms {
         let silent = others.silent.values().map(|it| format!("host {} did not answer", it.host));
         others.remarks.extend(silent);
         others
+    }
+
+    /// How the maps of a host differ from those of this one: a sentence. `None` if they do not, or if the host did not
+    /// answer.
+    pub(in crate::server) fn map_difference(&self, host: &HostInfo) -> Option<String> {
+        let own = self.context().catalog.map_keys().collect();
+        let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
+        let difference = difference(&own, &theirs)?;
+        let (own, other) = (shown_name(self.own_name()), &host.host);
+        Some(format!("host {other} has other maps than host {own}: it {difference}"))
+    }
+
+    /// Warns once of hosts whose maps differ from those of this one, which has just been started.
+    pub(super) async fn compare_maps(self) {
+        sleep(PAUSE).await;
+        let others = self.ask_others(&AdminRequest::Hosts).await;
+        let hosts = others.replies.into_values().filter_map(|reply| match reply {
+            AdminReply::Hosts(hosts) => Some(hosts),
+            _ => None,
+        });
+        for difference in hosts.flatten().filter_map(|host| self.map_difference(&host)) {
+            tracing::warn!("{difference}; its rooms in them are not listed here");
+        }
     }
 
     /// Answers what other hosts ask, again and again.
@@ -181,7 +206,28 @@ fn info(row: &HostRow) -> HostInfo {
         visitors: row.notice.load as usize,
         rooms: None,
         seconds: row.ago.as_secs(),
+        maps: None,
     }
+}
+
+/// How the maps with the keys `theirs` differ from those with the keys `own`, after "it"; `None` if they do not.
+fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
+    let names = |keys: &BTreeSet<&str>, others: &BTreeSet<&str>| -> BTreeSet<String> {
+        let names = keys.difference(others).map(|key| name_in_map_key(key).unwrap_or(key));
+        names.map(str::to_owned).collect()
+    };
+    let (lacking, more) = (names(own, theirs), names(theirs, own));
+    let list = |what: &str, names: Vec<&String>, end: &str| {
+        let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+        (!names.is_empty()).then(|| format!("{what} {}{end}", names.join(", ")))
+    };
+    let parts = [
+        list("has another text of", lacking.intersection(&more).collect(), ""),
+        list("lacks", lacking.difference(&more).collect(), ""),
+        list("has", more.difference(&lacking).collect(), " in addition"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join("; it "))
 }
 
 /// A reply that the bus takes.
@@ -194,5 +240,33 @@ fn bounded(reply: AdminReply, host: &str) -> AdminReply {
             AdminReply::AllHosts { reply, remarks: vec![remark] }
         }
         reply => reply,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::map_key;
+
+    fn told(own: &[(&str, &str)], theirs: &[(&str, &str)]) -> Option<String> {
+        let keys = |maps: &[(&str, &str)]| -> Vec<String> {
+            maps.iter().map(|(name, text)| map_key(name, text)).collect()
+        };
+        let (own, theirs) = (keys(own), keys(theirs));
+        let [own, theirs] = [&own, &theirs].map(|keys| keys.iter().map(String::as_str).collect());
+        difference(&own, &theirs)
+    }
+
+    #[test]
+    fn differences_of_maps_are_told_by_their_names() {
+        let moss = ("moss-2", "a");
+        assert_eq!(told(&[], &[]), None);
+        assert_eq!(told(&[moss], &[moss]), None);
+        let difference = told(
+            &[moss, ("fern", "a"), ("hall", "a")],
+            &[("moss-2", "b"), ("hall", "a"), ("cave", "a")],
+        );
+        let expected = "has another text of moss-2; it lacks fern; it has cave in addition";
+        assert_eq!(difference.as_deref(), Some(expected));
     }
 }

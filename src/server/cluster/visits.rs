@@ -26,6 +26,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
 pub(super) use self::registry::VisitRegistry;
+use crate::server::admission::counted_address;
 use crate::server::{Refusal, locked};
 use crate::store::host::{
     AccountKey, AddressPrefix, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor,
@@ -170,9 +171,9 @@ impl NewVisit {
     /// As whom they count, with the most visits and the reason of a refusal.
     fn limits(&self) -> impl Iterator<Item = (Visitor, u32, Refusal)> {
         let by_key = self.key.map(|key| (Visitor::Key(key), self.per_key, Refusal::Key));
-        let address = self.address.to_canonical();
-        let all_bits = if address.is_ipv4() { 32 } else { 128 };
-        let by_address = AddressPrefix::new(address, all_bits)
+        let address = counted_address(self.address);
+        let bits = if address.is_ipv4() { 32 } else { 64 };
+        let by_address = AddressPrefix::new(address, bits)
             .map(|prefix| (Visitor::Addresses(prefix), self.per_address, Refusal::Address));
         by_key.into_iter().chain(by_address)
     }

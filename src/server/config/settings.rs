@@ -27,7 +27,8 @@ pub(super) const SETTINGS: [Setting; 24] = [
     },
     Setting {
         name: "connections-per-address",
-        meaning: "the most connections of one address; behind a proxy, all visitors have the same",
+        meaning: "the most connections of one address, or of one /64 of IPv6; behind a proxy, all\n\
+                  visitors have the same",
         least: 1,
         most: 100_000,
         get: |config| config.admission.per_address,
@@ -173,7 +174,7 @@ pub(super) const SETTINGS: [Setting; 24] = [
     },
     Setting {
         name: "drain-seconds",
-        meaning: "the time that sessions have for their end when the server ends",
+        meaning: "the time for which sessions go on when the server ends",
         least: 0,
         most: 3600,
         get: |config| seconds(config.drain),

@@ -13,7 +13,7 @@ impl Shared {
         &self,
         visitor: &Visitor,
         key: Option<AccountKey>,
-    ) -> Result<Option<CountedVisit>, (&'static str, Departure)> {
+    ) -> Result<Option<CountedVisit>, (String, Departure)> {
         let Some(rooms) = &self.cluster else { return Ok(None) };
         let limits = self.config.get().admission;
         let new_visit = NewVisit {
@@ -25,12 +25,12 @@ impl Shared {
         rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
             VisitRefusal::TooMany(reason) => {
                 let refusal = Some(reason);
-                (reason.sentence(), Departure { refusal, ..Departure::REFUSED })
+                (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
             }
             VisitRefusal::NotNow(failure) => {
                 self.metrics.store_errors.count();
                 events::store_failed(failure);
-                (NOT_KNOWN, Departure::FAILED)
+                (NOT_KNOWN.to_owned(), Departure::FAILED)
             }
         })
     }

@@ -1,7 +1,8 @@
 //! Results that have waited for the store: recorded as soon as it answers.
 //!
 //! Each is a call of its own, so that those of players come in between. While the store refuses results although
-//! it answers, they are tried again less often.
+//! it answers, they are tried again less often. Results that a full disk keeps in memory are written as soon as
+//! there is room.
 
 use std::sync::Weak;
 use std::time::Duration;
@@ -12,7 +13,7 @@ use super::results::{Recorder, clock};
 use super::{Shared, unix_time};
 use crate::server::locked;
 use crate::server::logging::events;
-use crate::store::host::{HostStore, Late};
+use crate::store::host::{HostStore, Late, WaitingResults};
 
 /// The time from one round to the next.
 const PERIOD: Duration = Duration::from_secs(2);
@@ -47,7 +48,7 @@ enum Next {
     Recorded,
     /// It waits on, and the next one may be tried.
     Refused,
-    /// None: the store is away, or no more results wait.
+    /// None: the store is away or full, or no more results wait.
     None,
 }
 
@@ -57,16 +58,15 @@ impl Recorder {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
             let late = waiting.record(skipped, store, |name| self.world(name), unix_time());
-            if matches!(late, None | Some(Late::Away))
-                && let Err(failure) = waiting.save()
-            {
-                events::store_failed(failure);
+            if matches!(late, None | Some(Late::NotNow)) {
+                // The failure was logged when the first of them began to wait. It is tried again.
+                _ = waiting.save();
             }
             (late, waiting.len())
         });
         self.metrics.results_waiting.set(count as i64);
         match late {
-            None | Some(Late::Away) => return Next::None,
+            None | Some(Late::NotNow) => return Next::None,
             Some(Late::Refused(failure)) => {
                 self.failed(&failure);
                 return Next::Refused;
@@ -85,5 +85,21 @@ impl Recorder {
             Some(Late::GivenUp(result, failure)) => events::result_lost(&result.key, failure),
         }
         Next::Recorded
+    }
+
+    /// Leaves everything on the disk when the host ends: results that wait in memory, and the log of the store.
+    pub(super) fn end(&self, store: &mut dyn HostStore) {
+        if let Some(waiting) = &self.waiting
+            && locked(waiting, WaitingResults::save).is_err()
+        {
+            // The store may lie on another disk.
+            while matches!(self.record_late(store, 0), Next::Recorded) {}
+            if let Err(failure) = locked(waiting, WaitingResults::save) {
+                events::store_failed(format!("results that wait are lost: {failure}"));
+            }
+        }
+        if let Err(failure) = store.checkpoint() {
+            events::store_failed(failure);
+        }
     }
 }

@@ -19,8 +19,6 @@ use crate::world::{Difficulty, World};
 
 /// The most entries of a board that are shown, and the places that are told.
 const MOST_ROWS: usize = 100;
-/// What a player is told whose result waits.
-const KEPT: &str = "The host can't reach its database; your result is kept and will be recorded.";
 
 /// What replays runs and records them, on the thread of the store.
 #[derive(Clone, Debug)]
@@ -28,7 +26,7 @@ pub(super) struct Recorder {
     pub(super) catalog: Arc<Catalog>,
     pub(super) metrics: Arc<Metrics>,
     pub(super) visitors: Visitors,
-    /// The results that wait for a store that is away; `None` where none do.
+    /// The results that wait for a store that is away or full; `None` where none do.
     pub(super) waiting: Option<Arc<Mutex<WaitingResults>>>,
 }
 
@@ -55,11 +53,9 @@ impl Recorder {
             Ok(improved) => self.placed(store, account, &run, improved),
             Err(failure) => {
                 self.failed(&failure);
-                if failure.is_away() && self.keep(account, &run, now) {
-                    KEPT.to_owned()
-                } else {
-                    "The host can't keep your result now.".to_owned()
-                }
+                let is_kept = self.keep(account, &run, now);
+                if is_kept { kept(&failure) } else { "The host can't keep your result now." }
+                    .to_owned()
             }
         }
     }
@@ -96,17 +92,33 @@ impl Recorder {
         }
     }
 
-    /// Keeps a run for a store that is away; whether it is kept.
+    /// Keeps a run until the store takes it, on the disk or else in memory. Returns whether it is kept.
     fn keep(&self, account: &Account, run: &VerifiedLevel, at: UnixTime) -> bool {
         let Some(waiting) = &self.waiting else { return false };
         let result = WaitingResult { key: account.key, at, script: run.script().to_owned() };
-        let (kept, count) = locked(waiting, |waiting| (waiting.add(result), waiting.len()));
+        let (added, saved, count) = locked(waiting, |waiting| {
+            let added = waiting.add(result);
+            (added, waiting.save(), waiting.len())
+        });
         self.metrics.results_waiting.set(count as i64);
-        match kept {
-            Ok(()) => events::result_waits(account.name.as_str(), run.board().level()),
-            Err(ref failure) => events::store_failed(failure),
+        for failure in [&added, &saved].into_iter().filter_map(|it| it.as_ref().err()) {
+            events::store_failed(failure);
         }
-        kept.is_ok()
+        if added.is_ok() {
+            events::result_waits(account.name.as_str(), run.board().level());
+        }
+        added.is_ok()
+    }
+}
+
+/// What a player is told whose result waits because of `failure`.
+fn kept(failure: &StoreFailure) -> &'static str {
+    if failure.is_away() {
+        "The host can't reach its database; your result is kept and will be recorded."
+    } else if failure.is_full() {
+        "The host's disk is full; your result waits until there is room."
+    } else {
+        "The host can't record your result now; it is kept and will be recorded."
     }
 }
 

@@ -26,8 +26,6 @@ pub(super) enum Way {
     Open(RoomWish),
 }
 
-/// The time between the end of the sessions and that of the server, where there is as much.
-const LAST: Duration = Duration::from_secs(2);
 /// What a visitor reads while their place is looked for.
 #[cfg(feature = "cluster")]
 const LOOKS: &str = "You were in a room; the host looks for your place.";
@@ -111,10 +109,10 @@ impl Visit {
         if let Some(place) = self.place.take() {
             self.place = Some(self.kept_while_draining(place));
         }
-        let event =
-            SessionEvent::Draining { seconds: time.as_secs(), can_return: self.can_return() };
+        let ends_at = now + time;
+        let event = SessionEvent::Draining { ends_at, can_return: self.can_return() };
         self.session.notify(event, now);
-        self.ends_at = Some(now + time.saturating_sub(LAST.min(time / 2)));
+        self.ends_at = Some(ends_at);
     }
 
     /// What a visitor reads at the end of the server.

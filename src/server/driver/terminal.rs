@@ -1,18 +1,13 @@
 //! What a visitor's client says of their terminal.
 
 use crate::server::Visitor;
-use crate::terminal::{Fidelity, Options, locale_without_utf8};
+use crate::terminal::{Options, locale_without_utf8};
 
 /// What is known of a visitor's terminal.
-///
-/// Frames are exact where the connection compresses them: on 526 frames of 120 by 40 cells, zlib at
-/// its fastest level leaves 8.4 of 31.7 KB, and of frames at high fidelity 6.8 KB. Elsewhere the link
-/// decides.
 pub(super) fn options(visitor: &Visitor) -> Options {
     Options {
         is_remote: true,
         is_ascii: ascii_locale(visitor).is_some(),
-        fidelity: visitor.compresses.then_some(Fidelity::EXACT),
         ..Options::from_environment(|name| variable(visitor, name))
     }
 }
@@ -94,13 +89,5 @@ mod tests {
         let options = options(&visitor("linux", ""));
         assert!(!options.probe_extensions && !options.ask_for_version && !options.is_ascii);
         assert_eq!(options.color_depth.depth(), ColorDepth::Indexed16);
-    }
-
-    #[test]
-    fn frames_are_exact_where_the_connection_compresses() {
-        let plain = visitor("xterm", "");
-        assert_eq!(options(&plain).fidelity, None);
-        let compressed = Visitor { compresses: true, ..plain };
-        assert_eq!(options(&compressed).fidelity, Some(Fidelity::EXACT));
     }
 }

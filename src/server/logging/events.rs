@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tracing::{error, info, warn};
 
-use crate::server::{Outcome, Refusal};
+use crate::server::{Outcome, Refusal, SessionId};
 use crate::store::host::{AccountKey, AddressPrefix, BanTarget};
 
 const HOST: &str = "host";
@@ -127,7 +127,7 @@ pub(crate) fn result_refused(name: &str, level: &str, reason: impl Display) {
     warn!(target: RESULTS, name = clean(name), level = clean(level), reason = clean(&reason.to_string()), "refused");
 }
 
-/// A result was replayed, and waits for the store, which is away.
+/// A result was replayed, and waits for the store, which is away or full.
 pub(crate) fn result_waits(name: &str, level: &str) {
     warn!(target: RESULTS, name = clean(name), level = clean(level), "waits for the store");
 }
@@ -146,6 +146,11 @@ pub(crate) fn removed(target: &BanTarget, count: usize, is_banned: bool) {
     } else {
         info!(target: ADMIN, who, count, "removed");
     }
+}
+
+/// An operator has ended a session, if `count` is 1 and not 0.
+pub(crate) fn removed_session(session: SessionId, count: usize) {
+    info!(target: ADMIN, %session, count, "removed");
 }
 
 /// An operator has said a line to `count` visitors.

@@ -3,7 +3,7 @@
 use super::messages::{Request, SessionEvent};
 use super::page::Page;
 use super::stay::Stay;
-use super::visit::Visit;
+use super::visit::{Draining, Visit};
 use crate::server::line::Line;
 
 impl Visit {
@@ -42,10 +42,8 @@ impl Visit {
             }
             SessionEvent::Result(sentence) => self.hear(sentence),
             SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
-            SessionEvent::Draining { seconds, can_return } => {
-                let then =
-                    if can_return { " Connect again, and you are where you were." } else { "" };
-                self.draining = Some(format!("The server ends in {seconds} seconds.{then}"));
+            SessionEvent::Draining { ends_at, can_return } => {
+                self.draining = Some(Draining { ends_at, can_return });
                 self.renew_menu();
             }
             SessionEvent::Ended(sentence) => self.farewell = Some(sentence),

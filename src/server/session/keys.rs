@@ -168,7 +168,7 @@ impl Visit {
         }
     }
 
-    fn press_to_answer(&mut self, key: Key, press: Press) {
+    pub(super) fn press_to_answer(&mut self, key: Key, press: Press) {
         if let Some(key) = self.pending.press(key, press, self.now) {
             self.answer(key);
         }
@@ -178,6 +178,7 @@ impl Visit {
         match (self.page, key) {
             (Page::Leaving, _) if key == Key::Enter || self.leaves(key) => self.say_goodbye(),
             (Page::Leaving, _) => self.close(),
+            (Page::Room, _) => self.retry(),
             (Page::RoomMenu, _) if self.leaves(key) => {
                 self.menu.select_choice(Choice::LeaveRoom);
                 self.choose();

@@ -8,6 +8,7 @@ use crate::app::parts::{Menu, time};
 use crate::game::STEP;
 use crate::server::line::Line;
 use crate::server::room::{Emote, Mode};
+use crate::server::rooms::RoomRefusal;
 use crate::server::summary::RoomSummary;
 
 /// The rooms that the lobby lists itself; the others are on a page of their own.
@@ -39,7 +40,7 @@ impl Visit {
         let [notice, message] = [&self.host.notice, &self.host.message];
         let lines = [
             self.note.clone(),
-            self.draining.clone(),
+            self.draining.map(|draining| draining.sentence(self.now)),
             notice.as_ref().map(ToString::to_string),
             message.as_ref().map(ToString::to_string),
             self.wants_compression.then(|| COMPRESSION.to_owned()),
@@ -71,10 +72,11 @@ impl Visit {
             .entry("Leave", Choice::Open(Page::Leaving))
     }
 
-    /// The rooms for several, the one with the most members first, the full ones last.
+    /// The rooms for several in levels that this host has, the one with the most members first, the full ones last.
     fn rooms_by_life(&self) -> Vec<&RoomSummary> {
-        let is_for_several = |room: &&RoomSummary| room.mode != Mode::Alone;
-        let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_for_several).collect();
+        let is_offered =
+            |room: &&RoomSummary| room.mode != Mode::Alone && self.host.has_level(&room.level);
+        let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_offered).collect();
         let life = |room: &RoomSummary| std::cmp::Reverse(room.members.len());
         rooms.sort_by_key(|room| (room.is_full(), life(room), room.mode, room.id));
         rooms
@@ -187,6 +189,9 @@ impl Visit {
             Target::New { mode, .. } => (mode, None, false),
             Target::Existing(id) => match self.room(id) {
                 None => return back(Menu::new("").line("The room is closed.")),
+                Some(room) if !self.host.has_level(&room.level) => {
+                    return back(Menu::new("").line(RoomRefusal::NoLevel.to_string()));
+                }
                 Some(room) => (room.mode, Some(who_is_here(room)), room.is_full()),
             },
         };

@@ -46,6 +46,13 @@ pub(crate) struct HostFacts {
     pub(crate) frame_time: Duration,
 }
 
+impl HostFacts {
+    /// Whether rooms in that level can be played here. In a cluster, other hosts may have other maps.
+    pub(crate) fn has_level(&self, name: &str) -> bool {
+        self.catalog.world(name).is_some()
+    }
+}
+
 /// How long a visitor may press no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct IdleLimits {
@@ -109,8 +116,8 @@ pub(crate) enum SessionEvent {
     Result(String),
     /// A line from the host to all.
     Said(Line),
-    /// The server ends in that many seconds; whether the visitor finds the room as it was on another one.
-    Draining { seconds: u64, can_return: bool },
+    /// The server ends at `ends_at`; whether the visitor finds the room as it was on another one.
+    Draining { ends_at: Duration, can_return: bool },
     /// The session ends, and why: a sentence.
     Ended(String),
 }

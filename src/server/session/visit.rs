@@ -46,8 +46,8 @@ pub(super) struct Visit {
     pub(super) pending: PendingKey,
     /// A sentence about what happened last.
     pub(super) note: Option<String>,
-    /// That the server ends.
-    pub(super) draining: Option<String>,
+    /// When the server ends, if it does.
+    pub(super) draining: Option<Draining>,
     pub(super) rooms: Arc<[RoomSummary]>,
     pub(super) board: Board,
     /// The room that the visitor is in.
@@ -167,13 +167,17 @@ impl Visit {
             (tap || turns).then(|| self.clock.step_after(0)),
             stay.and_then(|stay| stay.talk.next_end()),
             stay.and_then(|stay| stay.intents.next_at()),
+            self.draining.and_then(|draining| draining.next_at(self.now)),
         ];
         times.into_iter().flatten().min()
     }
 
     /// Counts the steps up to `now`, and tells the room what the visitor wants in them.
     pub(super) fn advance(&mut self, now: Duration) {
-        self.now = now;
+        let before = std::mem::replace(&mut self.now, now);
+        if self.draining.is_some_and(|it| it.seconds(before) != it.seconds(now)) {
+            self.renew_menu();
+        }
         let context = self.key_context();
         for _ in 0..self.clock.steps_until(now).min(Clock::MOST_STEPS) {
             self.controls.advance(now, context);
@@ -246,6 +250,37 @@ impl Visit {
             self.leave_room(Some(sentence));
         } else {
             self.farewell = Some(sentence);
+        }
+    }
+}
+
+/// The end of the server, to which visitors see the seconds counted down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Draining {
+    pub(super) ends_at: Duration,
+    /// Whether the visitor finds the room as it was on another host.
+    pub(super) can_return: bool,
+}
+
+impl Draining {
+    /// The whole seconds to the end, rounded up.
+    fn seconds(self, now: Duration) -> u64 {
+        let left = self.ends_at.saturating_sub(now).as_millis();
+        u64::try_from(left.div_ceil(1000)).unwrap_or(u64::MAX)
+    }
+
+    /// The time at which the number of seconds changes; `None` at the end.
+    fn next_at(self, now: Duration) -> Option<Duration> {
+        let after = Duration::from_secs(self.seconds(now).checked_sub(1)?);
+        Some(self.ends_at.saturating_sub(after))
+    }
+
+    pub(super) fn sentence(self, now: Duration) -> String {
+        let then = if self.can_return { " Connect again, and you are where you were." } else { "" };
+        match self.seconds(now) {
+            0 => format!("The server ends now.{then}"),
+            1 => format!("The server ends in 1 second.{then}"),
+            seconds => format!("The server ends in {seconds} seconds.{then}"),
         }
     }
 }

@@ -155,7 +155,8 @@ impl Client {
     /// Starts the session, or says why not.
     pub(super) fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
         if let Some(reason) = self.refusal {
-            return refuse(channel, reason.sentence(), session);
+            let sentence = reason.sentence(&self.shared.config.get().admission);
+            return refuse(channel, &sentence, session);
         }
         let Some((term, size)) = self.terminal.take() else {
             return refuse(channel, NO_TERMINAL, session);

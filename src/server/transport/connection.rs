@@ -18,7 +18,7 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 use super::client::{Begun, Client};
 use super::outbox::Passage;
 use super::wire::{ByteLimits, Line, Wire};
-use super::{Counters, Host, Phase, locked};
+use super::{Counters, Host, Phase, explanation, locked};
 use crate::server::logging::events;
 use crate::server::{Admission, HostKey, LiveConfig, Outcome, VisitId};
 
@@ -255,7 +255,7 @@ fn ssh_config(key: &HostKey) -> server::Config {
     const COMPRESSION: &[compression::Name] = &[compression::NONE, compression::ZLIB_LEGACY];
     let methods = [MethodKind::PublicKey, MethodKind::KeyboardInteractive];
     server::Config {
-        server_id: SshId::Standard(Cow::Borrowed("SSH-2.0-cellcaster")),
+        server_id: SshId::Standard(Cow::Borrowed(explanation::VERSION)),
         methods: MethodSet::from(methods.as_slice()),
         // There is nothing to guess.
         auth_rejection_time: Duration::ZERO,

@@ -77,3 +77,27 @@ fn a_removal_reaches_those_whom_it_concerns_before_any_line()
     }
     Ok(())
 }
+
+#[test]
+fn one_session_of_several_with_one_name_is_removed() {
+    let (visitors, later) = (Visitors::default(), Visitors::default());
+    let mut sessions = [1, 1].map(|last| visitors.arrive(here(last), None));
+    let mut other = later.arrive(here(1), None);
+    for session in &sessions {
+        session.set_name("Ada");
+    }
+    let ids: Vec<SessionId> = visitors.list().iter().map(|present| present.session).collect();
+    assert_ne!(ids[0], ids[1]);
+    let written = SessionId::parse(&ids[1].to_string());
+    assert_eq!(written, Some(ids[1]));
+    assert!(visitors.remove_session(ids[1], "go"));
+    assert_eq!(next(&mut sessions[0]), None);
+    assert_eq!(next(&mut sessions[1]), Some(Notice::Removed("go".to_owned())));
+    // The same number in another run of a host is another session.
+    let of_other_run = SessionId { run: later.with(|table| table.run) ^ 1, number: 1 };
+    assert!(!later.remove_session(of_other_run, "go"));
+    assert_eq!(next(&mut other), None);
+    for text in ["", "7", "-", "3f9a-", "3f9a-+7", "+f9a-7", "3f9-7", "3f9a-99999999999999999999"] {
+        assert_eq!(SessionId::parse(text), None, "{text}");
+    }
+}

@@ -46,7 +46,7 @@ fn an_operator_sees_visitors_speaks_to_them_and_ends_their_sessions() {
     assert_eq!(running.admin_says(&["say", "closing \u{1b}[31msoon"]), "said to 1 visitor\n");
     visitor.wait_for("closing [31msoon");
     let kick = ["kick", "--address", "127.0.0.0/8", "--reason", "repairs"];
-    assert_eq!(running.admin_says(&kick), "ended the sessions of 1 visitor\n");
+    assert_eq!(running.admin_says(&kick), "ended 1 session\n");
     visitor.wait_for("ended your session: repairs");
     visitor.wait_for_end();
     running.wait_for_visitors(0);
@@ -58,13 +58,34 @@ fn an_operator_sees_visitors_speaks_to_them_and_ends_their_sessions() {
 }
 
 #[test]
+fn one_session_of_several_is_kicked() {
+    let running = Running::start("", "text");
+    let first = running.visitor();
+    running.wait_for_visitors(1);
+    let mut second = running.visitor();
+    running.wait_for_visitors(2);
+    let who = running.admin_says(&["who"]);
+    assert!(who.starts_with("session "), "{who}");
+    let sessions: Vec<&str> =
+        who.lines().skip(1).map(|line| line.split(' ').next().unwrap()).collect();
+    assert_eq!(running.admin_says(&["kick", "--session", sessions[1]]), "ended 1 session\n");
+    second.wait_for("ended your session");
+    second.wait_for_end();
+    running.wait_for_visitors(1);
+    assert!(running.admin_says(&["who"]).contains(sessions[0]), "{sessions:?}");
+    let said = complaint(&running.folder, &["kick", "--session", sessions[1]]);
+    assert!(said.contains("nobody there is on"), "{said}");
+    first.send("x");
+}
+
+#[test]
 fn a_ban_ends_sessions_and_is_kept() {
     let running = Running::start("", "text");
     let mut visitor = running.visitor();
     running.wait_for_visitors(1);
     let said =
         running.admin_says(&["ban", "--address", "127.0.0.1", "--for", "7d", "--reason", "floods"]);
-    assert_eq!(said, "banned 127.0.0.1/32 for 7d 0h; ended the sessions of 1 visitor\n");
+    assert_eq!(said, "banned 127.0.0.1/32 for 7d 0h; ended 1 session\n");
     visitor.wait_for("You are banned from this host: floods");
     visitor.wait_for_end();
     let bans = running.admin_says(&["bans"]);
@@ -76,7 +97,7 @@ fn a_ban_ends_sessions_and_is_kept() {
 #[test]
 fn bans_work_while_no_server_runs() {
     let folder = folder();
-    let (mut store, _) = SqliteStore::open(&folder).unwrap();
+    let mut store = SqliteStore::open(&folder).unwrap();
     let (key, now) = (AccountKey::new([1; 32]), UnixTime::new(1_795_300_000));
     store.create_account(&key, &Name::new("Ada").unwrap(), now).unwrap();
     drop(store);
@@ -109,8 +130,13 @@ fn what_is_wrong_is_told_in_a_sentence() {
         (&[], "admin takes one of who, rooms"),
         (&["whom"], "admin takes one of who, rooms"),
         (&["say"], "admin say takes a text"),
-        (&["kick"], "admin kick takes a name, --key or --address"),
-        (&["kick", "ada", "--address", "::1"], "one of a name, --key and --address"),
+        (&["kick"], "admin kick takes a name, --key, --address or --session"),
+        (&["kick", "ada", "--address", "::1"], "one of a name, --key, --address and --session"),
+        (&["kick", "--session", "7"], "--session takes a session as"),
+        (&["kick", "--session", "3f9a-7"], "no server runs"),
+        (&["ban"], "admin ban takes a name, --key or --address"),
+        (&["ban", "--session", "3f9a-7"], "admin ban goes without --session"),
+        (&["who", "--session", "3f9a-7"], "admin who goes without --session"),
         (&["who", "ada"], "admin who goes without \"ada\""),
         (&["unban", "ada", "--for", "7d"], "admin unban goes without --for"),
         (&["bans", "--reason", "x"], "admin bans goes without --reason"),

@@ -2,6 +2,7 @@
 
 mod cut_off;
 mod limits;
+mod maps;
 mod network;
 mod operators;
 mod returning;

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use cellcaster::store::host::{HostStore, Name, SqliteStore};
 use rustix::process::Signal;
 
 use super::running::Running;
@@ -78,12 +79,58 @@ fn a_server_that_drains_loses_nothing() {
     enter_room(&player, "Mara");
     running.signal(Signal::TERM);
     player.wait_for("The server ends in 3 seconds.");
+    let begun = Instant::now();
     say(&player, "the last words");
+    player.wait_for("The server ends in 2 seconds.");
+    player.wait_for("The server ends in 1 second.");
     assert_eq!(player.wait_for_end().status.code(), Some(0));
+    // It was told up to a second after it began.
+    assert!(begun.elapsed() >= Duration::from_secs(2), "{:?}", begun.elapsed());
     assert_eq!(running.wait_for_end(), Some(0));
     let text = recording(&recordings);
     assert!(text.contains("say 1 the last words\n"), "{text}");
     assert!(text.ends_with(" leave 1\n"), "{text}");
     running.restart();
     running.player(Some(&key)).wait_for("> Mara");
+}
+
+/// A copy of `host.db` alone is a whole backup of a host that has ended.
+#[test]
+fn a_server_that_ends_leaves_all_in_one_file() {
+    let mut running = Running::start("drain-seconds = 0\n", "text");
+    let key = user_key(&running.folder);
+    enter_room(&running.player(Some(&key)), "Mara");
+    running.signal(Signal::TERM);
+    assert_eq!(running.wait_for_end(), Some(0));
+    let log = fs::metadata(running.folder.join("host.db-wal")).map_or(0, |data| data.len());
+    assert_eq!(log, 0);
+    let backup = folder();
+    fs::copy(running.folder.join("host.db"), backup.join("host.db")).unwrap();
+    let mut store = SqliteStore::open(&backup).unwrap();
+    assert!(store.account_named(&Name::new("Mara").unwrap()).unwrap().is_some());
+}
+
+#[test]
+fn a_damaged_store_is_refused_until_the_operator_accepts_it() {
+    let mut running = Running::start("drain-seconds = 0\n", "text");
+    running.signal(Signal::TERM);
+    assert_eq!(running.wait_for_end(), Some(0));
+    let file = running.folder.join("host.db");
+    let garbage = b"garbage".repeat(1000);
+    fs::write(&file, &garbage).unwrap();
+    let serve = ["serve", "--listen", "127.0.0.1:0", "--data"];
+    let refused = cellcaster(&serve).arg(&running.folder).output().unwrap();
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!((refused.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+    let names = ["host.db is damaged", "--accept-empty", "host.db.damaged-1"];
+    assert!(names.iter().all(|name| said.contains(name)), "{said}");
+    assert_eq!(fs::read(&file).unwrap(), garbage);
+    let banned = running.admin(&["ban", "ada"]);
+    assert!(!banned.status.success() && fs::read(&file).unwrap() == garbage, "{banned:?}");
+
+    running.add_option("--accept-empty");
+    running.restart();
+    assert_eq!(running.admin_says(&["bans"]), "nobody is banned\n");
+    assert!(running.log().contains("kept as host.db.damaged-1"), "{}", running.log());
+    assert_eq!(fs::read(running.folder.join("host.db.damaged-1")).unwrap(), garbage);
 }

@@ -8,6 +8,7 @@ use rustix::process::Signal;
 
 use super::killed::user_key;
 use super::running::Running;
+use crate::play::enter_room;
 use crate::player::Player;
 use crate::support::cellcaster;
 use crate::transport::{folder, wait_until};
@@ -188,4 +189,24 @@ fn a_standing_room_in_a_level_that_there_is_not_ends_the_start() {
     {
         assert!(error.contains(part), "{error}");
     }
+}
+
+#[test]
+fn a_finish_is_told_to_all_and_the_finisher_watches_the_others() {
+    let maps = maps(&[("moss.toml", HALL)]);
+    let room = "[[room]]\nmode = \"race\"\nlevel = \"moss\"\n";
+    let running = Running::start(&format!("maps = \"{}\"\n{room}", maps.display()), "text");
+    let [mara, jon] = ["Mara", "Jon"].map(|name| {
+        let player = running.player(None);
+        enter_room(&player, name);
+        player
+    });
+    jon.wait_for("be the first at the exit");
+    wait_until("the finish", || {
+        mara.send("w");
+        mara.text().contains("watching Jon")
+    });
+    assert!(mara.text().contains("1st, 0:"), "{}", mara.text());
+    jon.wait_for("Mara finished 1st, 0:");
+    jon.wait_for("the race ends in 0:");
 }

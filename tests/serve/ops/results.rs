@@ -1,5 +1,14 @@
 //! Results of runs that were played to the end over SSH.
 
+#[cfg(feature = "cluster-tests")]
+use std::fs::{self, File};
+#[cfg(feature = "cluster-tests")]
+use std::io::Write;
+#[cfg(feature = "cluster-tests")]
+use std::path::PathBuf;
+#[cfg(feature = "cluster-tests")]
+use std::process::Command;
+
 use rustix::process::Signal;
 
 use super::killed::user_key;
@@ -47,4 +56,65 @@ fn results_of_accounts_rank_and_outlive_a_kill_and_those_of_guests_do_not_rank()
     player.send("\x1b[F\r");
     player.wait_for("Mara (you)");
     assert!(!player.text().contains("Jon"), "{}", player.text());
+}
+
+/// A file system of one megabyte, unmounted at the end.
+#[cfg(feature = "cluster-tests")]
+struct SmallDisk(PathBuf);
+
+#[cfg(feature = "cluster-tests")]
+impl SmallDisk {
+    fn mount() -> Self {
+        let folder = crate::transport::folder();
+        let mut mount = Command::new("mount");
+        mount.args(["-t", "tmpfs", "-o", "size=1m,mode=700", "tmpfs"]).arg(&folder);
+        assert!(mount.status().unwrap().success(), "root can mount");
+        Self(folder)
+    }
+
+    fn fill(&self) {
+        let mut file = File::create(self.0.join("filler")).unwrap();
+        while file.write_all(&[0; 4096]).is_ok() {}
+    }
+
+    fn make_room(&self) {
+        fs::remove_file(self.0.join("filler")).unwrap();
+    }
+}
+
+#[cfg(feature = "cluster-tests")]
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        _ = Command::new("umount").arg("--lazy").arg(&self.0).status();
+    }
+}
+
+#[cfg(feature = "cluster-tests")]
+#[test]
+fn a_result_waits_until_a_full_disk_has_room() {
+    let disk = SmallDisk::mount();
+    let maps = maps(&[("moss.toml", HALL)]);
+    let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
+    let data = ["--data", disk.0.to_str().unwrap()];
+    let mut running = Running::start_with(&config, "text", &data);
+    let key = user_key(&running.folder);
+    let player = running.player(Some(&key));
+    choose(&player, "Mara", "4");
+    player.wait_for("The moss hall");
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("comes in.");
+    disk.fill();
+    wait_until("the result", || {
+        player.send("w");
+        player.text().contains("The host's disk is full; your result waits until there is room.")
+    });
+    assert!(!scores(&disk.0, &[]).contains("Mara"));
+    assert!(!disk.0.join("waiting_results.new").exists());
+    disk.make_room();
+    player.wait_for("is recorded now.");
+    assert!(scores(&disk.0, &["--level", "moss"]).contains("Mara"));
+    running.signal(Signal::KILL);
+    running.wait_for_end();
 }

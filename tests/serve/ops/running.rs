@@ -52,6 +52,11 @@ impl Running {
         Self { folder, process, port, options, namespace }
     }
 
+    /// Adds an option for the next start.
+    pub(super) fn add_option(&mut self, option: &str) {
+        self.options.push(option.to_owned());
+    }
+
     /// Starts the server again in the same folder, with the same options.
     pub(super) fn restart(&mut self) {
         (self.process, self.port) =

@@ -50,6 +50,7 @@ fn new_limits_apply_to_those_who_come() {
     let first = running.visitor();
     running.wait_for_visitors(1);
     let mut second = running.visitor();
+    second.wait_for("This host takes at most 1 connection at a time: try again later.");
     second.wait_for_end();
     running.wait_for_log("reason=\"full\"");
     fs::write(running.folder.join("serve.toml"), "connections = 2\n").unwrap();

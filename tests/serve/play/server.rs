@@ -36,7 +36,7 @@ impl GameServer {
     /// A server with what `fill` puts into its store.
     pub(super) fn open_with(fill: impl FnOnce(&mut SqliteStore)) -> Self {
         let folder = folder();
-        let (mut store, _) = SqliteStore::open(&folder).unwrap();
+        let mut store = SqliteStore::open(&folder).unwrap();
         fill(&mut store);
         drop(store);
         let running = Some(Running::start(&folder));
@@ -98,8 +98,7 @@ impl Running {
         config.admission.per_address = 1000;
         config.drain = Duration::from_secs(4);
         let key = HostKey::open(folder).unwrap();
-        let (store, damage) = SqliteStore::open(folder).unwrap();
-        assert_eq!(damage, None);
+        let store = SqliteStore::open(folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
         let address = server.address().unwrap();

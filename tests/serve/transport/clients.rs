@@ -43,7 +43,7 @@ fn one_key_has_three_sessions() {
         let identity = format!("IdentityFile={}", house.user_key("key", ""));
         let _players = [(); 3].map(|()| house.visitor(&["-o", &identity]));
         let mut fourth = house.player(&["-o", &identity]);
-        fourth.wait_for("connected too often with this key");
+        fourth.wait_for("This host takes at most 3 connections with one key");
         assert_eq!(fourth.wait_for_end().status.code(), Some(2));
     });
     house.assert_answers();
@@ -103,6 +103,22 @@ fn commands_and_subsystems_are_refused() {
             assert_eq!(status, Some(255), "{rest:?}");
         }
     });
+    house.assert_answers();
+}
+
+#[test]
+fn a_visitor_beyond_the_limit_of_their_address_reads_what_it_is() {
+    let house = House::open_with(|config| config.admission.per_address = 2);
+    let players = [(); 2].map(|()| house.visitor(&[]));
+    for _ in 0..5 {
+        let (_, error, status) = house.run(&[], &["-tt", "ann@127.0.0.1"]);
+        let sentence = "This host takes at most 2 connections from one address (/64 of IPv6): end another \
+                        game first.";
+        assert!(error.contains(sentence), "{error}");
+        assert_eq!(status, Some(255));
+    }
+    drop(players);
+    wait_until("their sessions live on", || house.sessions() == 0);
     house.assert_answers();
 }
 

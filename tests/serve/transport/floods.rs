@@ -1,9 +1,11 @@
 //! Clients that send without end, or read nothing.
 
+use std::io::Read;
+use std::net::TcpStream;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use super::house::{House, wait_until};
+use super::house::{House, PATIENCE, wait_until};
 
 #[test]
 fn a_paste_bomb_arrives_bit_by_bit() {
@@ -66,4 +68,26 @@ fn a_client_that_takes_nothing_is_disconnected() {
         player.set_reading(true);
     });
     house.assert_answers();
+}
+
+/// Of a flood of connections that are refused, few are told why, and all are closed.
+#[test]
+fn a_flood_of_refused_connections_is_told_seldom() {
+    let house = House::open_with(|config| config.admission.per_address = 1);
+    let player = house.visitor(&[]);
+    let told = (0..200).filter(|_| {
+        let mut stream = TcpStream::connect(house.address).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let mut answer = Vec::new();
+        // A connection that is closed without a word may be reset.
+        _ = stream.read_to_end(&mut answer);
+        assert!(answer.is_empty() || answer.starts_with(b"SSH-2.0-cellcaster\r\n"), "{answer:?}");
+        String::from_utf8_lossy(&answer).contains("at most 1 connection from one address")
+    });
+    let (begun, told) = (Instant::now(), told.count());
+    let most = 8 * (1 + begun.elapsed().as_secs() as usize / 2);
+    assert!((1..=most).contains(&told), "{told} of 200, and at most {most}");
+    assert_eq!(house.counters.connections.load(Ordering::Relaxed), 1);
+    player.send("still here");
+    player.wait_for("[typed still here]");
 }

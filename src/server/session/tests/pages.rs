@@ -156,3 +156,38 @@ fn boards_settings_and_help_lead_back() {
     rig.press(one, "\x1b[C");
     assert!(rig.text(one).contains("On hard"), "{}", rig.text(one));
 }
+
+#[cfg(feature = "cluster")]
+#[test]
+fn rooms_in_maps_that_this_host_lacks_are_not_listed() {
+    use crate::server::room::Phase;
+    use crate::server::summary::RoomSummary;
+    use crate::world::Difficulty;
+
+    let mut rig = Rig::new(Mode::Roam);
+    let room = |id, level: &str| RoomSummary {
+        id: RoomId(id),
+        level: level.to_owned(),
+        mode: Mode::Tag,
+        difficulty: Difficulty::Normal,
+        phase: Phase::Waiting,
+        members: [line("Kim")].into(),
+        watchers: 0,
+    };
+    let elsewhere = |level| vec![room(7, level), room(8, "museum")];
+    rig.rooms().show_shared(elsewhere("hall"));
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    assert_eq!(rig.text(one).matches("Tag in The Hall").count(), 2, "{}", rig.text(one));
+    // The room moves on to a map of other hosts while she looks at it.
+    rig.press(one, ENTER);
+    rig.rooms().show_shared(elsewhere("moss-0123456789abcdef"));
+    rig.pump(500);
+    let text = rig.text(one);
+    assert!(text.contains("This host does not have the map of this room."), "{text}");
+    assert!(!text.contains("Go in"), "{text}");
+    rig.press(one, ESCAPE);
+    let text = rig.text(one);
+    assert_eq!(text.matches("Tag in").count(), 1, "{text}");
+    assert!(!text.contains("moss"), "{text}");
+}

@@ -64,6 +64,10 @@ impl Run {
                 self.rig.pump(30);
                 self.is_settled(client)
             });
+            if self.rig.is_over(client) {
+                assert!(self.is_draining, "the session of client {client} has ended");
+                continue;
+            }
             let text = self.rig.text(client);
             let wait = self.rig.session(client, |session, room| session.wait(room));
             assert!(is_settled, "client {client} never shows all ({wait}):\n{text}");
@@ -77,8 +81,9 @@ impl Run {
     }
 
     fn is_settled(&self, client: usize) -> bool {
-        self.rig.clients[client].has_all()
-            && self.rig.session(client, |session, room| session.is_settled(room))
+        self.rig.is_over(client)
+            || self.rig.clients[client].has_all()
+                && self.rig.session(client, |session, room| session.is_settled(room))
     }
 
     /// Nothing that somebody typed has reached a terminal but printable characters.

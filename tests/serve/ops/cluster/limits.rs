@@ -9,7 +9,7 @@ use crate::ops::killed::user_key;
 use crate::play::enter_room;
 use crate::transport::{folder, wait_until};
 
-const TOO_OFTEN: &str = "You are connected too often with this key: end another game first.";
+const TOO_OFTEN: &str = "This host takes at most 1 connection with one key";
 const ONE: &str = "connections-per-key = 1\n";
 
 #[test]
@@ -38,7 +38,7 @@ fn an_address_is_limited_over_all_hosts() {
     for guest in &guests {
         guest.wait_for("Enter takes it");
     }
-    hosts.running[1].0.visitor().wait_for("You are connected too often from this address");
+    hosts.running[1].0.visitor().wait_for("This host takes at most 2 connections from one address");
     let [one, _other] = guests;
     drop(one);
     hosts.running[1].0.visitor().wait_for("Enter takes it");
