@@ -11,6 +11,7 @@ use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key
 use russh::{Channel, ChannelMsg, Error};
 use tokio::time::{Instant, sleep_until};
 
+use crate::lamp::Lamp;
 use crate::report::Tally;
 use crate::server::Access;
 
@@ -36,6 +37,10 @@ const ANSWERS: [(&[u8], &[u8]); 4] = [
 const STATUS: &[u8] = b"\x1b[5n";
 /// The keyboard repeats a held key at this interval.
 const REPEAT: Duration = Duration::from_millis(33);
+/// The key that lights the lamp, or puts it out.
+const LAMP: &[u8] = b"l";
+/// The pause between two keys that are timed, in seconds.
+const TIMED_PAUSE: (f64, f64) = (0.5, 1.5);
 /// The time between two presses of Enter on the way to a room.
 const ENTER: Duration = Duration::from_millis(900);
 /// A frame with so many half blocks is a picture of a room.
@@ -55,7 +60,8 @@ pub(crate) async fn play(
         chance: SplitMix64::new(number),
         tally: Tally::default(),
         unread: Vec::new(),
-        pressed_at: None,
+        lamp: Lamp::default(),
+        next_timed: Instant::now(),
         key: b"w",
         key_until: Instant::now(),
         next_key: Instant::now() + ENTER,
@@ -108,8 +114,8 @@ struct Client {
     tally: Tally,
     /// Bytes in which a query may begin.
     unread: Vec<u8>,
-    /// When a key was pressed after which nothing has come.
-    pressed_at: Option<Instant>,
+    lamp: Lamp,
+    next_timed: Instant,
     key: &'static [u8],
     key_until: Instant,
     next_key: Instant,
@@ -145,10 +151,9 @@ impl Client {
     /// Answers the queries in what has come, and counts it.
     fn read(&mut self, data: &[u8], is_counting: bool) {
         let now = Instant::now();
-        if let Some(pressed) = self.pressed_at.take().filter(|_| is_counting) {
-            self.tally.delays.push(now - pressed);
-        }
+        let answered = self.lamp.read(data, now.into_std());
         if is_counting {
+            self.tally.delays.extend(answered);
             self.tally.bytes += data.len() as u64;
         }
         let blocks = data.windows(3).filter(|it| *it == "▀".as_bytes() || *it == "▄".as_bytes());
@@ -190,7 +195,16 @@ impl Client {
             self.key_until = now + Duration::from_secs_f64(time);
         }
         self.next_key = now + REPEAT;
-        self.pressed_at.get_or_insert(now);
+        if self.lamp.gives_up(now.into_std()) {
+            self.tally.unanswered += 1;
+        }
+        let is_time = now >= self.next_timed && !self.lamp.is_awaited();
+        if is_time || self.lamp.is_lit() {
+            let (least, most) = TIMED_PAUSE;
+            self.next_timed = now + Duration::from_secs_f64(self.chance.between(least, most));
+            self.lamp.press(now.into_std());
+            self.channel.data(LAMP).await?;
+        }
         self.channel.data(self.key).await
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! The server is a process of its own on processor 0, and all clients are in this process on
 //! processor 1. Each client walks about a room, answers the terminal's queries, counts frames and
-//! bytes, and measures the time from a key to the next bytes. `--silent N` adds connections that never
+//! bytes, and measures the time from a key to the frame that answers it. `--silent N` adds connections that never
 //! read. `--server PATH` is the program, `target/release/cellcaster` otherwise. `--sshd` measures OpenSSH's
 //! server with one process of the game for each session in place of `cellcaster serve`.
 //!
@@ -24,6 +24,7 @@
 #[cfg(feature = "cluster")]
 mod bus;
 mod client;
+mod lamp;
 mod plan;
 mod process;
 mod report;

@@ -8,8 +8,10 @@ pub(crate) struct Tally {
     pub(crate) is_walking: bool,
     pub(crate) frames: u64,
     pub(crate) bytes: u64,
-    /// The times from keys to the next bytes.
+    /// The times from keys to the frames that answer them.
     pub(crate) delays: Vec<Duration>,
+    /// The number of timed keys that no frame has answered.
+    pub(crate) unanswered: usize,
 }
 
 pub(crate) struct Report {
@@ -18,6 +20,7 @@ pub(crate) struct Report {
     frames: Vec<f64>,
     bytes: f64,
     delays: Vec<Duration>,
+    unanswered: usize,
     /// The share of a processor that each server takes.
     busy: Vec<f64>,
 }
@@ -35,6 +38,7 @@ impl Report {
             frames,
             bytes: tallies.iter().map(|it| it.bytes as f64).sum::<f64>() / seconds,
             delays,
+            unanswered: tallies.iter().map(|tally| tally.unanswered).sum(),
             busy: processor.iter().map(|it| it.as_secs_f64() / seconds).collect(),
         }
     }
@@ -50,10 +54,11 @@ impl Report {
         );
         println!("bytes         {:.1} KB a second and session", self.bytes / count / 1000.0);
         println!(
-            "key to bytes  p50 {:.1} ms, p99 {:.1} ms, {} keys",
+            "key to frame  p50 {:.1} ms, p99 {:.1} ms, {} keys, {} without an answer",
             percentile(&self.delays, 50),
             percentile(&self.delays, 99),
-            self.delays.len()
+            self.delays.len(),
+            self.unanswered
         );
         let busy: f64 = self.busy.iter().sum();
         let each: Vec<String> = self.busy.iter().map(|it| format!("{:.1} %", it * 100.0)).collect();

@@ -1,0 +1,109 @@
+//! Times a key to the frame that answers it.
+//!
+//! Frames come all the time while others walk, and the next bytes after a key seldom answer it. So a client lights
+//! its lamp now and then. The room decides on that, in a cluster by its log, and the first frame in which the
+//! lamp is lit says `lamp` in its status line, which nothing else does.
+//!
+//! The tests of the server run its tests.
+
+use std::time::{Duration, Instant};
+
+/// The lamp of a client.
+#[derive(Debug, Default)]
+pub(crate) struct Lamp {
+    state: State,
+    /// The last bytes, in which the word may begin.
+    tail: Vec<u8>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+enum State {
+    #[default]
+    Out,
+    /// It was to be lit at this time, and no frame has shown it yet.
+    Awaited(Instant),
+    /// A frame has shown it, and it was not put out yet.
+    Lit,
+}
+
+/// The time after which a key is not expected to be answered.
+const PATIENCE: Duration = Duration::from_secs(5);
+const WORD: &[u8] = b"lamp";
+
+impl Lamp {
+    /// Records that the key was pressed. Only a key that lights the lamp is timed.
+    pub(crate) fn press(&mut self, now: Instant) {
+        self.state = match self.state {
+            State::Out => State::Awaited(now),
+            State::Awaited(_) | State::Lit => State::Out,
+        };
+        self.tail.clear();
+    }
+
+    /// Whether to press the key at once, to put the lamp out.
+    pub(crate) fn is_lit(&self) -> bool {
+        matches!(self.state, State::Lit)
+    }
+
+    /// Whether a key is to be answered.
+    pub(crate) fn is_awaited(&self) -> bool {
+        matches!(self.state, State::Awaited(_))
+    }
+
+    /// Whether a key was not answered; it is forgotten then.
+    pub(crate) fn gives_up(&mut self, now: Instant) -> bool {
+        let State::Awaited(pressed) = self.state else { return false };
+        let gives_up = now.saturating_duration_since(pressed) > PATIENCE;
+        if gives_up {
+            self.state = State::Out;
+        }
+        gives_up
+    }
+
+    /// Reads what has arrived, and returns the time since the key if a frame in it answers it.
+    pub(crate) fn read(&mut self, bytes: &[u8], now: Instant) -> Option<Duration> {
+        let State::Awaited(pressed) = self.state else { return None };
+        self.tail.extend_from_slice(bytes);
+        if self.tail.windows(WORD.len()).any(|window| window == WORD) {
+            self.state = State::Lit;
+            return Some(now.saturating_duration_since(pressed));
+        }
+        self.tail.drain(..self.tail.len().saturating_sub(WORD.len() - 1));
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MILLISECOND: Duration = Duration::from_millis(1);
+
+    #[test]
+    fn frames_that_do_not_answer_the_key_do_not_end_its_time() {
+        let begun = Instant::now();
+        let mut lamp = Lamp::default();
+        let lit = b"\x1b[?2026h\x1b[35Dlamp\x1b[?2026l\x1b[5n";
+        assert_eq!(lamp.read(lit, begun), None);
+        lamp.press(begun);
+        assert_eq!(lamp.read(b"\x1b[?2026h\x1b[23H \x1b[?2026l\x1b[5n", begun + MILLISECOND), None);
+        let (first, rest) = lit.split_at(15);
+        assert_eq!(lamp.read(first, begun + 20 * MILLISECOND), None);
+        let now = begun + 30 * MILLISECOND;
+        assert_eq!(lamp.read(rest, now), Some(30 * MILLISECOND));
+        assert_eq!(lamp.read(lit, now), None);
+        assert!(lamp.is_lit());
+        lamp.press(now);
+        assert_eq!(lamp.read(lit, now), None);
+    }
+
+    #[test]
+    fn a_key_without_an_answer_is_forgotten() {
+        let begun = Instant::now();
+        let mut lamp = Lamp::default();
+        lamp.press(begun);
+        assert!(!lamp.gives_up(begun + PATIENCE) && lamp.is_awaited());
+        assert!(lamp.gives_up(begun + PATIENCE + MILLISECOND) && !lamp.is_awaited());
+        assert!(!lamp.gives_up(begun + 2 * PATIENCE));
+    }
+}
