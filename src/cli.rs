@@ -65,7 +65,7 @@ impl Command {
             Self::Play(options) => play::run(options),
             Self::Snapshot(options) => snapshot::run(options),
             Self::Cast(options) => cast::run(&options),
-            Self::Check(maps) => check::run(&maps),
+            Self::Check(options) => check::run(&options),
             Self::Config(options) => config::run(options),
             #[cfg(all(unix, feature = "serve"))]
             Self::Admin(options) => admin::run(options),
