@@ -148,5 +148,6 @@ const LOG: ValueOption<LogFormat> = ValueOption {
 
 const RECORD_ROOM: FileOption = FileOption {
     name: "record-room",
-    help: "A folder in which the log of each room is written [default: nothing is recorded]",
+    help: "A folder in which the log of each room is written. It keeps 256 MiB and 30 days at most: the oldest \
+           recordings are removed first [default: nothing is recorded]",
 };

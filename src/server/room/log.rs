@@ -73,8 +73,7 @@ impl<L: Log, W: Write> Recorded<L, W> {
         Self { log, output }
     }
 
-    /// What was recorded.
-    #[cfg(fuzzing)]
+    /// Where it is recorded.
     pub(in crate::server) fn output(&self) -> &W {
         &self.output
     }
@@ -83,7 +82,7 @@ impl<L: Log, W: Write> Recorded<L, W> {
 impl<L: Log, W: Write + Send> Log for Recorded<L, W> {
     fn begin(&mut self, header: &Header) -> io::Result<()> {
         self.log.begin(header)?;
-        write!(self.output, "{header}")?;
+        self.output.write_all(header.to_string().as_bytes())?;
         self.output.flush()
     }
 
