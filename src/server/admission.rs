@@ -46,7 +46,7 @@ pub struct Admission {
 pub struct VisitId(u64);
 
 /// Why a connection is refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Refusal {
     /// There are too many connections.
     Full,
@@ -61,7 +61,7 @@ pub enum Refusal {
 }
 
 /// How a connection has ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Outcome {
     /// In order.
     Served,

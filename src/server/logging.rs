@@ -6,7 +6,7 @@
 //! - **No key and no address is logged whole:** a key as its fingerprint, an address as its network.
 //! - **What a player typed is data:** it stands in a field, quoted and escaped, and what they say to
 //!   each other is not logged at all.
-//! - A flood is one line a second: `Throttle` counts what it leaves out.
+//! - A flood of connections is a few lines a second: `Throttle` sums what precedes a login, by network and second.
 //!
 //! An event has a topic, which is the target that `tracing` knows: `host`, `connections`, `rooms`,
 //! `results` or `admin`. A [`LogFilter`] has a level for each.
@@ -24,7 +24,7 @@ use tracing_subscriber::reload::Handle;
 use tracing_subscriber::{Layer, Registry, fmt, reload};
 
 pub use filter::{LogFilter, UnknownLogFilter};
-pub(super) use throttle::Throttle;
+pub(super) use throttle::{ConnectionEvent, Throttle};
 
 /// The form of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -23,10 +23,10 @@ use std::time::Duration;
 use tokio::net::{TcpListener, TcpSocket};
 use tokio::sync::watch;
 use tokio::task::JoinSet;
-use tokio::time::{sleep, timeout};
+use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use super::admission::Network;
-use super::logging::{Throttle, events};
+use super::logging::{ConnectionEvent, events};
 use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
 use crate::rng::SplitMix64;
 use connection::Shared;
@@ -113,6 +113,8 @@ enum Phase {
 
 /// The pause after a failed `accept`, as when the process has no file descriptors left.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+/// The time in which events are summed for the log.
+const SECOND: Duration = Duration::from_secs(1);
 /// In bytes: of a socket, for what the client's system has not acknowledged. That is 640 KB a second on
 /// a link with a round trip of 0.2 s.
 const SEND_BUFFER: u32 = 128 << 10;
@@ -173,11 +175,14 @@ impl Server {
         let host = Arc::new(host);
         let mut tasks = JoinSet::new();
         let mut gate = Gate::new();
+        let mut second = interval(SECOND);
+        second.set_missed_tick_behavior(MissedTickBehavior::Delay);
         tokio::pin!(stop);
         loop {
             tokio::select! {
                 () = &mut stop => break,
                 Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
+                _ = second.tick() => shared.end_second(),
                 accepted = listener.accept() => match accepted {
                     Ok((socket, peer)) => match gate.admit(&shared, peer) {
                         Ok(visit) => {
@@ -208,6 +213,7 @@ impl Server {
             }
         }
         tasks.shutdown().await;
+        shared.end_second();
     }
 }
 
@@ -225,7 +231,6 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
 /// The way in: what decides over connections, and the state of it that only the listener has.
 struct Gate {
     chance: SplitMix64,
-    logged: Throttle,
     explanations: Explanations,
 }
 
@@ -233,7 +238,6 @@ impl Gate {
     fn new() -> Self {
         Self {
             chance: SplitMix64::new(seed()),
-            logged: Throttle::default(),
             explanations: Explanations::default(),
         }
     }
@@ -250,14 +254,12 @@ impl Gate {
         count.fetch_add(1, Ordering::Relaxed);
         match visit {
             Ok(visit) => {
-                events::accepted(peer.ip());
+                shared.log(ConnectionEvent::Accepted, peer.ip());
                 Ok(visit)
             }
             Err(reason) => {
                 shared.counters.refuse(reason);
-                if let Some(left_out) = self.logged.pass(now) {
-                    events::refused(peer.ip(), reason, left_out);
-                }
+                shared.log(ConnectionEvent::Refused(reason), peer.ip());
                 let is_told = self.explanations.allow(Network::of(peer.ip()), now);
                 Err(is_told.then(|| reason.sentence(&limits)))
             }

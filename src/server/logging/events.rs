@@ -62,15 +62,21 @@ pub(crate) fn store_failed(error: impl Display) {
     error!(target: HOST, error = clean(&error.to_string()), "store failed");
 }
 
-/// A connection was accepted.
-pub(crate) fn accepted(address: IpAddr) {
-    info!(target: CONNECTIONS, network = network(address), "accepted");
+/// `count` connections of a network were accepted; without one, of several others.
+pub(super) fn accepted(network: Option<AddressPrefix>, count: u64) {
+    info!(target: CONNECTIONS, network = or_others(network), count, "accepted");
 }
 
-/// A connection was refused, and `left_out` ones before of which nothing was logged.
-pub(crate) fn refused(address: IpAddr, reason: Refusal, left_out: u64) {
-    let (network, reason) = (network(address), reason.name());
-    info!(target: CONNECTIONS, network, reason, left_out, "refused");
+/// `count` connections of a network were refused; without one, of several others.
+pub(super) fn refused(network: Option<AddressPrefix>, reason: Refusal, count: u64) {
+    let (network, reason) = (or_others(network), reason.name());
+    info!(target: CONNECTIONS, network, reason, count, "refused");
+}
+
+/// `count` connections of a network have ended before their login; without one, of several others.
+pub(super) fn ended_early(network: Option<AddressPrefix>, outcome: Outcome, count: u64) {
+    let (network, outcome) = (or_others(network), outcome.name());
+    info!(target: CONNECTIONS, network, outcome, count, "disconnected");
 }
 
 /// A client is authenticated; without a key as a guest.
@@ -79,9 +85,9 @@ pub(crate) fn authenticated(address: IpAddr, key: Option<&str>) {
     info!(target: CONNECTIONS, network = network(address), key, "authenticated");
 }
 
-/// A connection has ended.
-pub(crate) fn disconnected(address: IpAddr, outcome: Outcome, seconds: u64) {
-    let (network, outcome) = (network(address), outcome.name());
+/// A connection has ended in order, after so many seconds.
+pub(crate) fn disconnected(address: IpAddr, seconds: u64) {
+    let (network, outcome) = (network(address), Outcome::Served.name());
     info!(target: CONNECTIONS, network, outcome, seconds, "disconnected");
 }
 
@@ -171,6 +177,10 @@ fn clean(text: &str) -> String {
 /// The network of an address, as admission knows it: /24 or /64.
 fn network(address: IpAddr) -> String {
     AddressPrefix::network_of(address).to_string()
+}
+
+fn or_others(network: Option<AddressPrefix>) -> String {
+    network.map_or_else(|| "others".to_owned(), |network| network.to_string())
 }
 
 fn shown(target: &BanTarget) -> String {

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::*;
 use crate::server::Refusal;
-use crate::store::host::AccountKey;
+use crate::store::host::{AccountKey, AddressPrefix};
 
 /// Keeps what is written.
 #[derive(Clone, Default)]
@@ -61,7 +61,8 @@ fn nothing_that_was_typed_is_more_than_a_field() {
 #[test]
 fn json_has_a_field_for_each_part() {
     let text = logged(LogFormat::Json, "info", |_| {
-        events::refused("203.0.113.7".parse().unwrap(), Refusal::Penalty, 4);
+        let network = AddressPrefix::network_of("203.0.113.7".parse().unwrap());
+        events::refused(Some(network), Refusal::Penalty, 4);
     });
     let line: serde_json::Value = serde_json::from_str(&text).unwrap();
     for (field, value) in [
@@ -70,7 +71,7 @@ fn json_has_a_field_for_each_part() {
         ("message", "refused".into()),
         ("network", "203.0.113.0/24".into()),
         ("reason", "penalty".into()),
-        ("left_out", serde_json::Value::from(4)),
+        ("count", serde_json::Value::from(4)),
     ] {
         assert_eq!(line[field], value, "{text}");
     }
@@ -81,7 +82,7 @@ fn json_has_a_field_for_each_part() {
 fn addresses_are_logged_as_networks() {
     let text = logged(LogFormat::Text, "info", |_| {
         for address in ["203.0.113.7", "::ffff:203.0.113.7", "2001:db8:1:2:3:4:5:6"] {
-            events::accepted(address.parse::<IpAddr>().unwrap());
+            events::authenticated(address.parse::<IpAddr>().unwrap(), None);
         }
     });
     let networks: Vec<&str> = text.lines().filter_map(|line| line.split('"').nth(1)).collect();
@@ -92,7 +93,7 @@ fn addresses_are_logged_as_networks() {
 fn the_filter_has_a_level_for_each_topic_and_can_be_changed() {
     let one_each = || {
         events::ended();
-        events::accepted([192, 0, 2, 1].into());
+        events::authenticated([192, 0, 2, 1].into(), None);
         events::room_closed(1);
         tracing::warn!("without a topic");
         tracing::error!(target: "russh", "not of this program");

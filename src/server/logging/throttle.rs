@@ -1,39 +1,124 @@
-//! A limit of lines for events that a flood repeats.
+//! A limit of lines for events that a flood of connections repeats.
+//!
+//! Within a second, the first [`MOST`] pairs of an event and a network have a line of their own at once. What follows
+//! is counted, and is logged when the second is over: a line with the sum for each of these pairs, and one for
+//! each event with the sum of all other networks.
 
-use std::time::Duration;
+use std::collections::BTreeMap;
+use std::mem;
+use std::net::IpAddr;
 
-/// Lets one event a second through, and counts the others.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::server) struct Throttle {
-    next: Duration,
-    left_out: u64,
+use super::events;
+use crate::server::{Outcome, Refusal};
+use crate::store::host::AddressPrefix;
+
+/// What a client brings about without logging in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::server) enum ConnectionEvent {
+    /// A connection was accepted.
+    Accepted,
+    /// A connection was refused.
+    Refused(Refusal),
+    /// A connection has ended before its login.
+    Ended(Outcome),
 }
 
-const PAUSE: Duration = Duration::from_secs(1);
+/// Lets a few events a second through, and sums the others.
+#[derive(Debug, Default)]
+pub(in crate::server) struct Throttle {
+    /// The events of this second without a line; without a network, those of all that have no line.
+    unlogged: BTreeMap<(ConnectionEvent, Option<AddressPrefix>), u64>,
+}
+
+/// The pairs that have a line of their own in a second.
+const MOST: usize = 4;
 
 impl Throttle {
-    /// Whether an event at `now` is let through: then the number of those that were left out since the
-    /// last one that was.
-    pub(in crate::server) fn pass(&mut self, now: Duration) -> Option<u64> {
-        if now < self.next {
-            self.left_out += 1;
-            return None;
+    /// Logs an event of a client at `address`, at once or with the second.
+    pub(in crate::server) fn log(&mut self, event: ConnectionEvent, address: IpAddr) {
+        let network = Some(AddressPrefix::network_of(address));
+        let with_line = self.unlogged.keys().filter(|(_, network)| network.is_some()).count();
+        if let Some(count) = self.unlogged.get_mut(&(event, network)) {
+            *count += 1;
+        } else if with_line < MOST {
+            self.unlogged.insert((event, network), 0);
+            write(event, network, 1);
+        } else {
+            *self.unlogged.entry((event, None)).or_default() += 1;
         }
-        self.next = now + PAUSE;
-        Some(std::mem::take(&mut self.left_out))
+    }
+
+    /// Logs the sums of the second that is over.
+    pub(in crate::server) fn end_second(&mut self) {
+        for ((event, network), count) in mem::take(&mut self.unlogged) {
+            if count > 0 {
+                write(event, network, count);
+            }
+        }
+    }
+}
+
+fn write(event: ConnectionEvent, network: Option<AddressPrefix>, count: u64) {
+    match event {
+        ConnectionEvent::Accepted => events::accepted(network, count),
+        ConnectionEvent::Refused(reason) => events::refused(network, reason, count),
+        ConnectionEvent::Ended(outcome) => events::ended_early(network, outcome, count),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::server::logging::LogFormat;
+    use crate::server::logging::tests::logged;
+
     use super::*;
 
+    /// The lines of a second in which `connections` are accepted, of so many networks, and leave early; the
+    /// others are refused.
+    fn lines(connections: u32, networks: u32) -> Vec<serde_json::Value> {
+        let text = logged(LogFormat::Json, "info", |_| {
+            let mut throttle = Throttle::default();
+            for number in 0..connections {
+                let address = IpAddr::from(((10 << 24) + ((number % networks) << 8)).to_be_bytes());
+                let events = if number % 3 == 0 {
+                    &[ConnectionEvent::Refused(Refusal::Penalty)] as &[_]
+                } else {
+                    &[ConnectionEvent::Accepted, ConnectionEvent::Ended(Outcome::LeftEarly)]
+                };
+                for event in events {
+                    throttle.log(*event, address);
+                }
+            }
+            throttle.end_second();
+            // Nothing is left for the next one.
+            throttle.end_second();
+        });
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+
     #[test]
-    fn a_flood_is_one_event_a_second() {
-        let mut throttle = Throttle::default();
-        let passed: Vec<_> =
-            (0..2500).filter_map(|time| throttle.pass(Duration::from_millis(time))).collect();
-        assert_eq!(passed, [0, 999, 999]);
-        assert_eq!(throttle.pass(Duration::from_mins(1)), Some(499));
+    fn a_flood_is_a_few_lines_a_second_whose_sums_are_right() {
+        for networks in [1, 8, 5000] {
+            let lines = lines(6000, networks);
+            assert!(lines.len() <= 12, "{lines:#?}");
+            for (event, count) in [("accepted", 4000), ("refused", 2000), ("disconnected", 4000)] {
+                let of_event = lines.iter().filter(|line| line["message"] == event);
+                let sum: u64 = of_event.filter_map(|line| line["count"].as_u64()).sum();
+                assert_eq!(sum, count, "{lines:#?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_sum_names_its_network() {
+        let lines = lines(3000, 1);
+        let known = lines.iter().all(|line| line["network"] == "10.0.0.0/24");
+        assert!(known && lines.len() == 6, "{lines:#?}");
+    }
+
+    #[test]
+    fn connections_that_come_now_and_then_have_lines_of_their_own() {
+        assert!(lines(2, 2).iter().all(|line| line["count"] == 1));
+        assert_eq!(lines(2, 2).len(), 3);
     }
 }

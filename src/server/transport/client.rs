@@ -19,7 +19,7 @@ use super::inbound::{Inlet, inbound};
 use super::visitor::{self, MOST_VARIABLES};
 use super::wire::Line;
 use super::{Departure, KeyData, Link, Outbox, Visitor};
-use crate::server::logging::events;
+use crate::server::logging::{ConnectionEvent, events};
 use crate::server::{Refusal, VisitId};
 use crate::terminal::WindowSize;
 
@@ -110,7 +110,7 @@ impl Client {
         events::authenticated(self.peer.ip(), self.key.as_ref().map(KeyData::fingerprint));
         if let Err(reason) = logged_in {
             self.shared.counters.refuse(reason);
-            events::refused(self.peer.ip(), reason, 0);
+            self.shared.log(ConnectionEvent::Refused(reason), self.peer.ip());
             self.refusal = Some(reason);
         }
     }

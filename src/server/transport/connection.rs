@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::pin::{Pin, pin};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -19,7 +19,7 @@ use super::client::{Begun, Client};
 use super::outbox::Passage;
 use super::wire::{ByteLimits, Line, Wire};
 use super::{Counters, Host, Phase, explanation, locked};
-use crate::server::logging::events;
+use crate::server::logging::{ConnectionEvent, Throttle, events};
 use crate::server::{Admission, HostKey, LiveConfig, Outcome, VisitId};
 
 /// What the connections of a server have in common.
@@ -28,6 +28,7 @@ pub(super) struct Shared {
     pub(super) counters: Arc<Counters>,
     ssh: Arc<server::Config>,
     admission: Mutex<Admission>,
+    logged: Mutex<Throttle>,
     begun: Instant,
     phases: watch::Receiver<Phase>,
 }
@@ -53,7 +54,18 @@ impl Shared {
     ) -> Self {
         let ssh = Arc::new(ssh_config(key));
         let admission = Mutex::new(Admission::new(config.get().admission));
-        Self { config, counters, ssh, admission, begun: Instant::now(), phases }
+        let logged = Mutex::default();
+        Self { config, counters, ssh, admission, logged, begun: Instant::now(), phases }
+    }
+
+    /// Logs an event of a client, at once or with the second.
+    pub(super) fn log(&self, event: ConnectionEvent, address: IpAddr) {
+        locked(&self.logged, |logged| logged.log(event, address));
+    }
+
+    /// Logs the sums of the second that is over.
+    pub(super) fn end_second(&self) {
+        locked(&self.logged, Throttle::end_second);
     }
 
     /// Acts on the admission, with the time since the server began.
@@ -88,15 +100,16 @@ pub(super) async fn serve<H: Host>(
     let outcome = match log_in(&shared, &line, transport.as_mut(), begun).await {
         Ok(begun) => {
             converse(&shared, &*host, &line, transport, begun).await;
+            events::disconnected(peer.ip(), line.begun().elapsed().as_secs());
             Outcome::Served
         }
         Err(outcome) => {
             // Its task ends at once, and the stream with it.
             line.cut();
+            shared.log(ConnectionEvent::Ended(outcome), peer.ip());
             outcome
         }
     };
-    events::disconnected(peer.ip(), outcome, line.begun().elapsed().as_secs());
     shared.admission(|admission, now| admission.leave(visit, outcome, now));
 }
 
@@ -166,7 +179,7 @@ async fn converse<H: Host>(
     };
     if let Some(reason) = departure.refusal {
         shared.counters.refuse(reason);
-        events::refused(peer, reason, 0);
+        shared.log(ConnectionEvent::Refused(reason), peer);
     }
     let farewell = async {
         _ = handle.exit_status_request(channel, u32::from(departure.status)).await;

@@ -2,6 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
@@ -61,6 +62,11 @@ impl Running {
     pub(super) fn restart(&mut self) {
         (self.process, self.port) =
             spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
+    }
+
+    /// A connection that says nothing yet.
+    pub(super) fn connect(&self) -> TcpStream {
+        TcpStream::connect(format!("127.0.0.1:{}", self.port)).unwrap()
     }
 
     pub(super) fn log(&self) -> String {

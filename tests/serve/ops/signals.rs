@@ -1,11 +1,14 @@
 //! Signals: SIGHUP reads the configuration again, SIGTERM ends the server.
 
 use std::fs;
+use std::io::Write;
+use std::time::Instant;
 
 use rustix::process::Signal;
 use serde_json::Value;
 
 use super::running::Running;
+use crate::transport::wait_until;
 
 #[test]
 fn a_hang_up_reads_the_configuration_again() {
@@ -80,6 +83,29 @@ fn a_signal_ends_the_server_and_the_log_says_so() {
     let draining = events.iter().find(|event| event["message"] == "draining").unwrap();
     assert_eq!((&draining["seconds"], &draining["target"]), (&5.into(), &"host".into()));
     assert!(!log.contains("127.0.0.1\""), "an address is logged whole: {log}");
+}
+
+#[test]
+fn a_flood_of_connections_is_a_few_lines_a_second() {
+    const FLOOD: u64 = 1000;
+    let running = Running::start("", "json");
+    let begun = Instant::now();
+    for _ in 0..FLOOD {
+        // The other end may have closed it.
+        _ = running.connect().write_all(b"SSH-2.0-flood\r\n");
+    }
+    let connections = || -> Vec<Value> {
+        let log = running.log();
+        let events = log.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+        events.filter(|event| event["target"] == "connections").collect()
+    };
+    wait_until("all are in the log", || {
+        let events = connections();
+        let came = events.iter().filter(|event| event["message"] != "disconnected");
+        came.filter_map(|event| event["count"].as_u64()).sum::<u64>() == FLOOD
+    });
+    let (lines, seconds) = (connections().len() as u64, begun.elapsed().as_secs() + 1);
+    assert!(lines <= 12 * seconds, "{lines} lines in {seconds} s");
 }
 
 #[test]
