@@ -49,7 +49,7 @@ mod visitors;
 #[cfg(unix)]
 pub use self::admin::{AdminFailure, AdminSocket, ask};
 pub use self::admin::{AdminReply, AdminRequest, HostInfo, Operator, RoomRow, Target, VisitorRow};
-pub use self::admission::{Admission, Limits, Outcome, Refusal, Startups, VisitId};
+pub use self::admission::{Admission, Admitted, Limits, Outcome, Refusal, VisitId};
 #[cfg(feature = "cluster")]
 pub use self::cluster::Cluster;
 pub use self::config::{Config, LiveConfig, StandingRoom};

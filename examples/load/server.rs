@@ -51,8 +51,8 @@ impl ServerProcess {
         fs::write(
             &config,
             format!(
-                "connections = {most}\nconnections-per-address = {most}\nstartups-begin = {most}\n\
-                 startups-full = {most}\nstartups-per-network = {most}\nstall-seconds = 600\n\
+                "connections = {most}\nconnections-per-address = {most}\nstartups = {most}\n\
+                 stall-seconds = 600\n\
                  [metrics]\nlisten = \"{metrics}\"\n"
             ),
         )?;

@@ -56,7 +56,8 @@ pub struct Config {
     pub admission: Limits,
     /// How many accounts a network may make.
     pub accounts: AccountRate,
-    /// The time in which a client sends its half of the key exchange.
+    /// The time in which a client sends its half of the key exchange. Its version has to arrive within three
+    /// seconds.
     pub handshake: Duration,
     /// The time in which a session begins. Its user may have to check the host key and to type a
     /// passphrase.

@@ -13,23 +13,24 @@ mod pipe;
 mod visitor;
 mod wire;
 
+use std::collections::BTreeMap;
 use std::future::Future;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use tokio::net::{TcpListener, TcpSocket};
-use tokio::sync::watch;
+use tokio::sync::{oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
-use super::admission::Network;
 use super::logging::{ConnectionEvent, events};
-use super::{Config, HostKey, LiveConfig, Refusal, VisitId, locked};
+use super::{Admitted, Config, HostKey, LiveConfig, Refusal, VisitId, locked};
 use crate::rng::SplitMix64;
-use connection::Shared;
+use crate::store::host::AddressPrefix;
+use connection::{Entry, Shared};
 use explanation::Explanations;
 pub use inbound::{Arrival, Inbound};
 pub use key_data::KeyData;
@@ -88,7 +89,7 @@ pub struct Counters {
     pub frames: AtomicU64,
     /// Their bytes, before compression and encryption.
     pub frame_bytes: AtomicU64,
-    /// Those of `refused` and those that were refused after they had logged in, by reason.
+    /// Those of `refused`, and those that were refused later or displaced, by reason.
     refusals: [AtomicU64; Refusal::ALL.len()],
 }
 
@@ -181,16 +182,23 @@ impl Server {
         loop {
             tokio::select! {
                 () = &mut stop => break,
-                Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
+                Some(ended) = tasks.join_next(), if !tasks.is_empty() => gate.forget(ended.ok().flatten()),
                 _ = second.tick() => shared.end_second(),
                 accepted = listener.accept() => match accepted {
                     Ok((socket, peer)) => match gate.admit(&shared, peer) {
-                        Ok(visit) => {
+                        Ok(entry) => {
                             let (shared, host) = (shared.clone(), host.clone());
-                            tasks.spawn(connection::serve(shared, host, socket, peer, visit));
+                            tasks.spawn(async move {
+                                let visit = entry.visit;
+                                connection::serve(shared, host, socket, peer, entry).await;
+                                Some(visit)
+                            });
                         }
                         Err(Some(sentence)) => {
-                            tasks.spawn(explanation::explain(socket, sentence));
+                            tasks.spawn(async {
+                                explanation::explain(socket, sentence).await;
+                                None
+                            });
                         }
                         Err(None) => {}
                     },
@@ -232,6 +240,8 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
 struct Gate {
     chance: SplitMix64,
     explanations: Explanations,
+    /// What tells a connection that it is displaced, and where it comes from.
+    open: BTreeMap<VisitId, (IpAddr, oneshot::Sender<Option<String>>)>,
 }
 
 impl Gate {
@@ -239,35 +249,62 @@ impl Gate {
         Self {
             chance: SplitMix64::new(seed()),
             explanations: Explanations::default(),
+            open: BTreeMap::new(),
         }
     }
 
     /// Admits a connection, or refuses it: with a sentence, or without a word in a flood.
-    fn admit(&mut self, shared: &Shared, peer: SocketAddr) -> Result<VisitId, Option<String>> {
+    fn admit(&mut self, shared: &Shared, peer: SocketAddr) -> Result<Entry, Option<String>> {
         let limits = shared.config.get().admission;
-        let (visit, now) = shared.admission(|admission, now| {
+        let (admitted, now) = shared.admission(|admission, now| {
             admission.set_limits(limits);
             (admission.arrive(peer.ip(), now, &mut self.chance), now)
         });
         let Counters { accepted, refused, .. } = &*shared.counters;
-        let count = if visit.is_ok() { accepted } else { refused };
+        let count = if admitted.is_ok() { accepted } else { refused };
         count.fetch_add(1, Ordering::Relaxed);
-        match visit {
-            Ok(visit) => {
+        match admitted {
+            Ok(Admitted { id, displaced }) => {
                 shared.log(ConnectionEvent::Accepted, peer.ip());
-                Ok(visit)
+                if let Some((address, connection)) = displaced.and_then(|id| self.open.remove(&id))
+                {
+                    let sentence = self.refuse(shared, Refusal::Startups, address, now);
+                    // It may have ended just now.
+                    _ = connection.send(sentence);
+                }
+                let (sender, displaced) = oneshot::channel();
+                self.open.insert(id, (peer.ip(), sender));
+                Ok(Entry { visit: id, displaced })
             }
             Err(reason) => {
-                shared.counters.refuse(reason);
                 shared.log(ConnectionEvent::Refused(reason), peer.ip());
-                let is_told = self.explanations.allow(Network::of(peer.ip()), now);
-                Err(is_told.then(|| reason.sentence(&limits)))
+                Err(self.refuse(shared, reason, peer.ip(), now))
             }
+        }
+    }
+
+    /// Counts a refusal; returns the sentence for the client at `address`, if it is told why.
+    fn refuse(
+        &mut self,
+        shared: &Shared,
+        reason: Refusal,
+        address: IpAddr,
+        now: Duration,
+    ) -> Option<String> {
+        shared.counters.refuse(reason);
+        let is_told = self.explanations.allow(AddressPrefix::network_of(address), now);
+        is_told.then(|| reason.sentence(&shared.config.get().admission))
+    }
+
+    /// A connection has ended.
+    fn forget(&mut self, visit: Option<VisitId>) {
+        if let Some(visit) = visit {
+            self.open.remove(&visit);
         }
     }
 }
 
-/// Unpredictable, so that nobody can time their connections by the random drop.
+/// Unpredictable, so that nobody can time their connections by the chance of a refusal.
 fn seed() -> u64 {
     // Without random numbers from the system there would be no keys, either.
     getrandom::u64().unwrap_or_default()

@@ -64,9 +64,7 @@ impl Counted {
         let folder = folder();
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
         config.admission.per_address = 1000;
-        config.admission.startups.begin = 1000;
-        config.admission.startups.full = 1000;
-        config.admission.startups.per_network = 1000;
+        config.admission.startups = 1000;
         config.bytes_per_second = 1 << 20;
         config.silence = Duration::from_secs(3);
         // A client that takes nothing is not what is tested here.

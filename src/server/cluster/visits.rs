@@ -29,7 +29,7 @@ pub(super) use self::registry::VisitRegistry;
 use crate::server::admission::counted_address;
 use crate::server::{Refusal, locked};
 use crate::store::host::{
-    AccountKey, AddressPrefix, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor,
+    AccountKey, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor,
 };
 
 /// The time from one announcement of a host to the next.
@@ -171,11 +171,8 @@ impl NewVisit {
     /// As whom they count, with the most visits and the reason of a refusal.
     fn limits(&self) -> impl Iterator<Item = (Visitor, u32, Refusal)> {
         let by_key = self.key.map(|key| (Visitor::Key(key), self.per_key, Refusal::Key));
-        let address = counted_address(self.address);
-        let bits = if address.is_ipv4() { 32 } else { 64 };
-        let by_address = AddressPrefix::new(address, bits)
-            .map(|prefix| (Visitor::Addresses(prefix), self.per_address, Refusal::Address));
-        by_key.into_iter().chain(by_address)
+        let address = Visitor::Addresses(counted_address(self.address));
+        by_key.into_iter().chain([(address, self.per_address, Refusal::Address)])
     }
 }
 

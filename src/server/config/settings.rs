@@ -16,10 +16,10 @@ pub(super) struct Setting {
 }
 
 /// The settings in the order of a file.
-pub(super) const SETTINGS: [Setting; 24] = [
+pub(super) const SETTINGS: [Setting; 21] = [
     Setting {
         name: "connections",
-        meaning: "the most connections at a time",
+        meaning: "the most visitors at a time who have logged in",
         least: 1,
         most: 100_000,
         get: |config| config.admission.connections,
@@ -43,37 +43,13 @@ pub(super) const SETTINGS: [Setting; 24] = [
         set: |config, value| config.admission.per_key = value,
     },
     Setting {
-        name: "startups-begin",
-        meaning: "connections that are not authenticated: from this number on, some new ones are\n\
-                  refused by chance, as by MaxStartups of OpenSSH",
+        name: "startups",
+        meaning: "the most connections at a time that have not logged in, besides; one more displaces\n\
+                  the oldest one of the busiest network",
         least: 1,
-        most: 100_000,
-        get: |config| config.admission.startups.begin,
-        set: |config, value| config.admission.startups.begin = value,
-    },
-    Setting {
-        name: "startups-percent",
-        meaning: "how many of 100 are refused at that number",
-        least: 0,
-        most: 100,
-        get: |config| config.admission.startups.percent,
-        set: |config, value| config.admission.startups.percent = value,
-    },
-    Setting {
-        name: "startups-full",
-        meaning: "the number from which all are refused",
-        least: 1,
-        most: 100_000,
-        get: |config| config.admission.startups.full,
-        set: |config, value| config.admission.startups.full = value,
-    },
-    Setting {
-        name: "startups-per-network",
-        meaning: "the most that one network (/24, /64) may have of them",
-        least: 1,
-        most: 100_000,
-        get: |config| config.admission.startups.per_network,
-        set: |config, value| config.admission.startups.per_network = value,
+        most: 10_000,
+        get: |config| config.admission.startups,
+        set: |config, value| config.admission.startups = value,
     },
     Setting {
         name: "failures",
@@ -110,7 +86,7 @@ pub(super) const SETTINGS: [Setting; 24] = [
     },
     Setting {
         name: "handshake-seconds",
-        meaning: "the time in which a client exchanges keys",
+        meaning: "the time in which a client exchanges keys; its version has to arrive within 3",
         least: 1,
         most: 600,
         get: |config| seconds(config.handshake),

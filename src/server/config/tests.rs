@@ -14,7 +14,7 @@ fn an_empty_file_is_the_default() -> Result<(), Faults> {
 #[test]
 fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
     let mut config = Config { listen: "[::1]:22".parse().unwrap(), ..Config::default() };
-    config.admission.startups.per_network = 7;
+    config.admission.startups = 7;
     config.drain = Duration::ZERO;
     config.message = "\"Races\" at 20:00 \\o/".to_owned();
     config.log = "warn,rooms=debug".parse().unwrap();

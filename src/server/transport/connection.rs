@@ -10,7 +10,9 @@ use std::time::Duration;
 
 use russh::keys::{Algorithm, EcdsaCurve, HashAlg};
 use russh::server::{self, Handle};
-use russh::{Error, MethodKind, MethodSet, Preferred, SshId, cipher, compression, kex, mac};
+use russh::{
+    Disconnect, Error, MethodKind, MethodSet, Preferred, SshId, cipher, compression, kex, mac,
+};
 use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, sleep, sleep_until, timeout};
@@ -33,6 +35,15 @@ pub(super) struct Shared {
     phases: watch::Receiver<Phase>,
 }
 
+/// A connection that was admitted.
+pub(super) struct Entry {
+    pub(super) visit: VisitId,
+    /// That it is displaced, and what its client is told, if anything.
+    pub(super) displaced: oneshot::Receiver<Option<String>>,
+}
+
+/// The time for the first line of a client, its version, which no client has to think about.
+const VERSION_TIME: Duration = Duration::from_secs(3);
 /// The time that a session has for its end after its link has ended.
 const AFTERWARDS: Duration = Duration::from_secs(5);
 /// The least time between two looks whether a client has gone.
@@ -80,7 +91,7 @@ pub(super) async fn serve<H: Host>(
     host: Arc<H>,
     socket: TcpStream,
     peer: SocketAddr,
-    visit: VisitId,
+    Entry { visit, displaced }: Entry,
 ) {
     let _open = Counted::new(&shared.counters.connections);
     // Frames are small, and whole when they are written.
@@ -94,10 +105,23 @@ pub(super) async fn serve<H: Host>(
     let client = Client::new(shared.clone(), line.clone(), visit, peer, begin);
     let wire = Wire::new(socket, line.clone());
     let ssh = shared.ssh.clone();
-    // Unboxed, the handshake would keep its memory in this task as long as the connection lasts.
-    let mut transport =
-        pin!(async { Box::pin(server::run_stream(ssh, wire, client)).await?.await });
-    let outcome = match log_in(&shared, &line, transport.as_mut(), begun).await {
+    let (ready, mut handle) = oneshot::channel();
+    let mut transport = pin!(async {
+        // Unboxed, the handshake would keep its memory in this task as long as the connection lasts.
+        let session = Box::pin(server::run_stream(ssh, wire, client)).await?;
+        _ = ready.send(session.handle());
+        session.await
+    });
+    let logged_in = tokio::select! {
+        Ok(sentence) = displaced => {
+            if let (Some(sentence), Ok(handle)) = (sentence, handle.try_recv()) {
+                _ = timeout(FAREWELL, disconnect(&handle, sentence, transport.as_mut())).await;
+            }
+            Err(Outcome::Displaced)
+        }
+        logged_in = log_in(&shared, &line, transport.as_mut(), begun) => logged_in,
+    };
+    let outcome = match logged_in {
         Ok(begun) => {
             converse(&shared, &*host, &line, transport, begun).await;
             events::disconnected(peer.ip(), line.begun().elapsed().as_secs());
@@ -113,6 +137,16 @@ pub(super) async fn serve<H: Host>(
     shared.admission(|admission, now| admission.leave(visit, outcome, now));
 }
 
+/// Tells the client why it has to go, if its key exchange is over, and waits until it has gone.
+async fn disconnect(
+    handle: &Handle,
+    sentence: String,
+    transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
+) {
+    _ = handle.disconnect(Disconnect::TooManyConnections, sentence, String::new()).await;
+    _ = transport.await;
+}
+
 /// Waits until the session begins.
 async fn log_in(
     shared: &Shared,
@@ -123,7 +157,11 @@ async fn log_in(
     let mut phases = shared.phases.clone();
     loop {
         let config = shared.config.get();
-        let time = if line.has_exchanged() { config.login } else { config.handshake };
+        let time = match () {
+            () if line.has_exchanged() => config.login,
+            () if line.has_version() => config.handshake,
+            () => config.handshake.min(VERSION_TIME),
+        };
         let deadline = line.begun() + time;
         if Instant::now() >= deadline {
             let is_guilty = !line.is_logged_in();

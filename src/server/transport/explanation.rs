@@ -18,11 +18,11 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-use super::Network;
+use crate::store::host::AddressPrefix;
 
 /// The refused connections that were told why in the last [`LINGER`].
 #[derive(Debug, Default)]
-pub(super) struct Explanations(VecDeque<(Duration, Network)>);
+pub(super) struct Explanations(VecDeque<(Duration, AddressPrefix)>);
 
 /// The version of the server, without the end of its line.
 pub(super) const VERSION: &str = "SSH-2.0-cellcaster";
@@ -41,7 +41,7 @@ const TOO_MANY_CONNECTIONS: u32 = 12;
 
 impl Explanations {
     /// Whether a connection of `network` that is refused at `now` is told why; counts it then.
-    pub(super) fn allow(&mut self, network: Network, now: Duration) -> bool {
+    pub(super) fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
         while self.0.front().is_some_and(|(at, _)| *at + LINGER <= now) {
             self.0.pop_front();
         }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn a_flood_is_told_seldom_and_leaves_room_for_other_networks() {
         let mut explanations = Explanations::default();
-        let network = |number: u8| Network::of(IpAddr::from([10, 0, number, 1]));
+        let network = |number: u8| AddressPrefix::network_of(IpAddr::from([10, 0, number, 1]));
         let told = |explanations: &mut Explanations, number, at: u64| {
             let now = Duration::from_millis(at);
             (0..1000).filter(|_| explanations.allow(network(number), now)).count()

@@ -46,6 +46,11 @@ impl Hello {
         self.stage == Stage::Done
     }
 
+    /// Whether the line of the client's version has arrived.
+    pub(super) fn has_version(&self) -> bool {
+        self.stage != Stage::Version
+    }
+
     /// Whether what the server sends will be compressed: whether the first method in the client's
     /// list that the server has is one of compression.
     pub(super) fn compresses(&self) -> bool {

@@ -47,6 +47,7 @@ pub(super) struct Line {
     pub(super) passage: Arc<Passage>,
     limits: ByteLimits,
     begun: Instant,
+    has_version: AtomicBool,
     has_exchanged: AtomicBool,
     is_logged_in: AtomicBool,
     compresses: AtomicBool,
@@ -90,6 +91,7 @@ impl Line {
             passage,
             limits,
             begun: Instant::now(),
+            has_version: AtomicBool::new(false),
             has_exchanged: AtomicBool::new(false),
             is_logged_in: AtomicBool::new(false),
             compresses: AtomicBool::new(false),
@@ -98,6 +100,11 @@ impl Line {
             is_cut: AtomicBool::new(false),
             wakers: Mutex::default(),
         }
+    }
+
+    /// Whether the client has sent the line of its version.
+    pub(super) fn has_version(&self) -> bool {
+        self.has_version.load(Ordering::Acquire)
     }
 
     /// Whether the client has sent its half of the key exchange, after which it may wait for its
@@ -184,10 +191,13 @@ impl<S> Wire<S> {
     fn received(&mut self, bytes: &[u8]) {
         self.line.count(bytes.len());
         self.bucket.bytes -= bytes.len() as f64;
-        if !self.line.has_exchanged() && self.hello.receive(bytes) {
-            self.line.compresses.store(self.hello.compresses(), Ordering::Release);
-            self.line.has_exchanged.store(true, Ordering::Release);
+        if self.line.has_exchanged() {
+            return;
         }
+        let has_exchanged = self.hello.receive(bytes);
+        self.line.has_version.store(self.hello.has_version(), Ordering::Release);
+        self.line.compresses.store(self.hello.compresses(), Ordering::Release);
+        self.line.has_exchanged.store(has_exchanged, Ordering::Release);
     }
 }
 

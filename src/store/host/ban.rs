@@ -104,9 +104,15 @@ impl AddressPrefix {
 
     /// The network of an address, as far as one owner has it: a /24 of IPv4, a /64 of IPv6.
     pub fn network_of(address: IpAddr) -> Self {
+        Self::around(address, [24, 64])
+    }
+
+    /// The addresses that share their first bits with `address`: so many if it is one of IPv4, and so many
+    /// of IPv6.
+    pub(crate) fn around(address: IpAddr, [v4, v6]: [u8; 2]) -> Self {
         let address = address.to_canonical();
-        let length = if address.is_ipv4() { 24 } else { 64 };
-        // An address has so many bits.
+        let length = if address.is_ipv4() { v4 } else { v6 };
+        // No address has more bits.
         Self::new(address, length).unwrap_or(Self { first: address, length })
     }
 

@@ -2,7 +2,9 @@
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
+use std::process::Command;
 
+use cellcaster::server::Refusal;
 use rustix::process::Signal;
 
 use super::house::{House, wait_until};
@@ -25,9 +27,8 @@ fn a_key_is_the_same_whatever_its_comment() {
     let first = house.visitor(&["-o", &identity]);
     first.wait_for("[SHA256:");
     let fingerprint = first.text();
-    let comment = std::process::Command::new("ssh-keygen")
-        .args(["-q", "-c", "-C", "another", "-f", &path])
-        .output();
+    let comment =
+        Command::new("ssh-keygen").args(["-q", "-c", "-C", "another", "-f", &path]).output();
     assert!(comment.unwrap().status.success());
     let second = house.visitor(&["-o", &identity]);
     assert_eq!(second.text(), fingerprint);
@@ -120,6 +121,24 @@ fn a_visitor_beyond_the_limit_of_their_address_reads_what_it_is() {
     drop(players);
     wait_until("their sessions live on", || house.sessions() == 0);
     house.assert_answers();
+}
+
+/// Their `ssh` asks for a passphrase meanwhile.
+#[test]
+fn a_visitor_who_is_displaced_reads_why() {
+    let house = House::open_with(|config| config.admission.startups = 1);
+    let key = house.user_key("locked", "");
+    let mut keygen = Command::new("ssh-keygen");
+    let locked = keygen.args(["-q", "-p", "-P", "", "-N", "secret", "-f", &key]).output();
+    assert!(locked.unwrap().status.success());
+    let mut player = house.player(&["-o", &format!("IdentityFile={key}")]);
+    player.wait_for("Enter passphrase");
+    let _newcomer = TcpStream::connect(house.address).unwrap();
+    let displaced = || house.counters.refused_for(Refusal::Startups);
+    wait_until("nobody is displaced", || displaced() == 1);
+    player.send("secret\r");
+    player.wait_for("Too many visitors");
+    assert_eq!(player.wait_for_end().status.code(), Some(255));
 }
 
 #[test]
