@@ -19,6 +19,7 @@
 
 mod admin;
 mod admission;
+mod bucket;
 #[cfg(feature = "cluster")]
 mod cluster;
 mod config;

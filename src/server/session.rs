@@ -12,6 +12,9 @@
 //! A frame is drawn only while the terminal has answered the ones before and something on it has
 //! changed. So a session of a client that does not read keeps one frame, and a visitor who does
 //! nothing among others who do nothing costs no bytes.
+//!
+//! Keys that are pressed faster than anybody types are dropped, since some open a page or change a setting, which
+//! takes a hundred times as long as to decode them.
 
 mod choice;
 mod draw;
@@ -41,10 +44,15 @@ use self::look::Look;
 pub(crate) use self::messages::{BoardRow, HostFacts, Identity, IdleLimits, Request, SessionEvent};
 use self::pace::Pace;
 use self::visit::Visit;
+use super::bucket::Bucket;
 use super::room::RoomView;
 use crate::app::parts::{Meter, Stats};
-use crate::terminal::{Event, Options, Protocol, WindowSize};
+use crate::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 
+/// The keys that a visitor may press in a second. A held key repeats some 30 times a second.
+const KEYS: f64 = 200.0;
+/// The keys that they may press at once: more than a line of chat that is pasted has characters.
+const KEYS_AT_ONCE: f64 = 300.0;
 /// The least round-trip time of a link that is not local.
 const FAR: Duration = Duration::from_millis(3);
 
@@ -54,6 +62,8 @@ pub(crate) struct Session {
     visit: Visit,
     ending: Ending,
     pace: Pace,
+    /// The keys that the visitor may press now.
+    keys: Bucket,
     /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
     answers_key: Option<u64>,
     /// The step of the room in the last frame.
@@ -92,6 +102,7 @@ impl Session {
             visit: Visit::new(identity, host, look, now),
             ending: Ending::Not,
             pace,
+            keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
             answers_key: None,
             drawn_step: 0,
             meter: Meter::default(),
@@ -243,6 +254,7 @@ impl Session {
         self.visit.wants_compression = self.wants_compression();
         while let Some(event) = self.protocol.next_event() {
             match event {
+                Event::Key(event) if !self.takes_key(event, now) => continue,
                 Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
                 Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
                 _ => {}
@@ -251,6 +263,11 @@ impl Session {
         }
         self.show_choices();
         self.finish(now);
+    }
+
+    /// Whether a key counts. Releases do, whatever was pressed, so that no key is held for ever.
+    fn takes_key(&mut self, event: KeyEvent, now: Duration) -> bool {
+        event.phase == Phase::Release || self.keys.takes_one(now)
     }
 
     /// Whether compression would make pictures finer. Before the first pictures of a room have shown

@@ -20,6 +20,7 @@ use tokio::time::{Instant, Sleep, sleep_until};
 use super::hello::Hello;
 use super::locked;
 use super::outbox::Passage;
+use crate::server::bucket::Bucket;
 
 /// The limits of a client's bytes.
 #[derive(Clone, Copy, Debug)]
@@ -59,13 +60,6 @@ pub(super) struct Line {
     wakers: Mutex<[Option<Waker>; 2]>,
 }
 
-/// A token bucket.
-#[derive(Debug)]
-struct Bucket {
-    bytes: f64,
-    filled: Instant,
-}
-
 /// The time whose bytes may come at once.
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause, so that pauses are few.
@@ -77,10 +71,9 @@ const WRITER: usize = 1;
 
 impl<S> Wire<S> {
     pub(super) fn new(socket: S, line: Arc<Line>) -> Self {
-        let now = Instant::now();
-        let bytes = f64::from(line.limits.per_second) * BURST;
-        let bucket = Bucket { bytes, filled: now };
-        let pause = Box::pin(sleep_until(now));
+        let rate = f64::from(line.limits.per_second);
+        let bucket = Bucket::new(rate, rate * BURST, line.begun.elapsed());
+        let pause = Box::pin(sleep_until(Instant::now()));
         Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
     }
 }
@@ -175,22 +168,21 @@ impl<S> Wire<S> {
                 left => Ok(left as usize),
             });
         }
-        let rate = f64::from(limits.per_second);
+        let fewest = FEWEST.min(f64::from(limits.per_second));
         loop {
             let now = Instant::now();
-            self.bucket.fill(rate, now);
-            let missing = FEWEST.min(rate) - self.bucket.bytes;
-            if missing <= 0.0 {
-                return Poll::Ready(Ok(self.bucket.bytes as usize));
+            let bytes = self.bucket.fill(now.saturating_duration_since(self.line.begun));
+            if bytes >= fewest {
+                return Poll::Ready(Ok(bytes as usize));
             }
-            self.pause.as_mut().reset(now + Duration::from_secs_f64(missing / rate));
+            self.pause.as_mut().reset(now + self.bucket.time_until(fewest));
             ready!(self.pause.as_mut().poll(cx));
         }
     }
 
     fn received(&mut self, bytes: &[u8]) {
         self.line.count(bytes.len());
-        self.bucket.bytes -= bytes.len() as f64;
+        self.bucket.take(bytes.len() as f64);
         if self.line.has_exchanged() {
             return;
         }
@@ -198,14 +190,6 @@ impl<S> Wire<S> {
         self.line.has_version.store(self.hello.has_version(), Ordering::Release);
         self.line.compresses.store(self.hello.compresses(), Ordering::Release);
         self.line.has_exchanged.store(has_exchanged, Ordering::Release);
-    }
-}
-
-impl Bucket {
-    fn fill(&mut self, rate: f64, now: Instant) {
-        let added = now.saturating_duration_since(self.filled).as_secs_f64() * rate;
-        self.bytes = (self.bytes + added).min(rate * BURST);
-        self.filled = now;
     }
 }
 

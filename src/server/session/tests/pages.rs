@@ -134,6 +134,41 @@ fn a_room_is_opened_and_watched() {
 }
 
 #[test]
+fn keys_beyond_what_anybody_types_are_dropped() {
+    let mut rig = Rig::new(Mode::Roam);
+    let [fast, slow] = ["Mara", "Jon"].map(|name| {
+        let visitor = rig.visitor(name, (80, 24), Speaks::Plain);
+        rig.press(visitor, ENTER);
+        rig.press(visitor, "6");
+        visitor
+    });
+    rig.pump(2_000);
+    rig.press(fast, &"\x1b[C".repeat(1000));
+    (0..KEYS_AT_ONCE as usize % 3).for_each(|_| rig.press(slow, "\x1b[C"));
+    let difficulty = |rig: &Rig, index| {
+        rig.session(index, |session, _| session.visit.identity.preferences.difficulty)
+    };
+    assert_eq!(difficulty(&rig, fast), difficulty(&rig, slow));
+    for visitor in [fast, slow] {
+        rig.press(visitor, "\x1b[C");
+    }
+    assert_eq!(difficulty(&rig, fast), difficulty(&rig, slow));
+    rig.press(fast, &("w".repeat(20_000) + "\x03"));
+    assert_eq!(rig.page(fast), Page::Leaving);
+}
+
+#[test]
+fn a_line_that_is_pasted_is_whole() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    let line: String =
+        ('a'..='z').cycle().take(60).flat_map(|letter| [letter, '\u{301}']).collect();
+    rig.press(one, &format!("/{line} and more that does not fit\r"));
+    let said = rig.view().said.last().map(|said| said.text.clone());
+    assert_eq!(said, crate::server::line::Line::of(&line, 60).map(|line| line.to_string()));
+}
+
+#[test]
 fn boards_settings_and_help_lead_back() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
