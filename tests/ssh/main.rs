@@ -4,6 +4,7 @@
 //! Needs the programs of OpenSSH, so it has a feature of its own.
 #![cfg(all(unix, feature = "ssh-tests"))]
 
+mod bystander;
 #[path = "../support/emulator.rs"]
 mod emulator;
 mod host;

@@ -1,0 +1,435 @@
+//! Bystanders beside others who send all that they may.
+//!
+//! Eight connections send one kind of traffic to a host, as much of it as the host permits. Bystanders type a
+//! letter and delete it again on the page of the name, where their own keys alone change the screen. The time from
+//! each key to the bytes that show it is measured, on a thread of its own.
+//!
+//! Where the machine does other work, too, the limit is a multiple of what the bystanders measure without traffic.
+
+use std::process::Command;
+use std::sync::{Arc, OnceLock, mpsc};
+use std::thread;
+use std::time::Duration;
+
+use russh::client::{self, AuthResult, Handle, Handler, Msg};
+use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key};
+use russh::{
+    Channel, ChannelMsg, ChannelReadHalf, ChannelWriteHalf, Error, Preferred, compression,
+};
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::oneshot;
+use tokio::task::JoinSet;
+use tokio::time::{Instant, interval, sleep, timeout};
+
+use super::alone;
+use super::emulator::{Emulator, Speaks};
+use super::host::Host;
+
+const SENDERS: usize = 8;
+/// With several bystanders, there are enough keys for a percentile although each types as slowly as a human.
+const BYSTANDERS: usize = 6;
+/// The time for which each kind of traffic is sent.
+const TIME: Duration = Duration::from_millis(2200);
+/// The time between two keys of a bystander.
+const PAUSE: Duration = Duration::from_millis(100);
+/// The time for which nothing changes before the first key.
+const REST: Duration = Duration::from_millis(400);
+/// A player feels more than this.
+const LIMIT: Duration = Duration::from_millis(100);
+/// How many times as long as without traffic a key may take on a busy machine.
+const FACTOR: u32 = 3;
+const PATIENCE: Duration = Duration::from_secs(20);
+/// The bytes that a sender sends in a tick. With the frame of a packet they are the 64 KB a second that hosts
+/// permit.
+const CHUNK: usize = 1000;
+const TICK: Duration = Duration::from_millis(16);
+/// The ticks whose bytes are sent at once at the beginning: hosts permit those of four seconds.
+const BURST: usize = 200;
+
+/// What is sent.
+#[derive(Clone, Copy)]
+enum Traffic {
+    /// These bytes again and again, after this way: what is waited for, and what is typed then.
+    Typed {
+        way: &'static [(&'static str, &'static str)],
+        bytes: &'static str,
+    },
+    /// Text of which compression leaves hardly anything.
+    Compressed,
+    Resizes,
+    /// Channels that are refused.
+    Channels,
+    /// Key exchanges.
+    Rekeys,
+    /// Keys before the login that are refused, on one connection after another.
+    Offers,
+}
+
+const TO_THE_NAME: &[(&str, &str)] = &[("Enter takes it", "")];
+const TO_THE_LOBBY: &[(&str, &str)] = &[("Enter takes it", "\r"), ("Open a room", "")];
+const TO_SETTINGS: &[(&str, &str)] =
+    &[("Enter takes it", "\r"), ("Open a room", "6"), ("Mouse turns", "")];
+const TO_A_ROOM: &[(&str, &str)] =
+    &[("Enter takes it", "\r"), ("Open a room", "\r"), ("Go in", "\r"), ("comes in.", "")];
+const TO_THE_CHAT: &[(&str, &str)] = &[
+    ("Enter takes it", "\r"),
+    ("Open a room", "\r"),
+    ("Go in", "\r"),
+    ("comes in.", "\r"),
+    ("say", ""),
+];
+const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
+    ("Enter takes it", "\r"),
+    ("Open a room", "6"),
+    ("Mouse turns", "\x1b[B"),
+    ("Mouse turns", "\x1b[B"),
+    ("Mouse turns", "\r"),
+    ("Mouse turns", "\x7f"),
+    ("Open a room", "\r"),
+    ("Go in", "\r"),
+    ("comes in.", ""),
+];
+
+/// Believes every server.
+struct Anyone;
+
+impl Handler for Anyone {
+    type Error = Error;
+
+    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
+
+/// A client with a terminal.
+struct Client {
+    handle: Handle<Anyone>,
+    channel: Channel<Msg>,
+    emulator: Emulator,
+}
+
+impl Client {
+    async fn connect(port: u16, compresses: bool) -> Self {
+        let mut handle = open(port, compresses).await.unwrap();
+        while !handle.authenticate_none("guest").await.unwrap().success() {}
+        let channel = handle.channel_open_session().await.unwrap();
+        channel.request_pty(false, "xterm-256color", 80, 24, 0, 0, &[]).await.unwrap();
+        channel.request_shell(false).await.unwrap();
+        Self { handle, channel, emulator: Emulator::new(80, 24, Speaks::Kitty) }
+    }
+
+    async fn press(&mut self, keys: &str) {
+        self.channel.data(keys.as_bytes()).await.unwrap();
+    }
+
+    /// Reads until the screen is as it should be.
+    async fn wait_until(&mut self, what: &str, is_so: impl Fn(&str) -> bool) {
+        let wait = async {
+            while !is_so(&self.emulator.text()) {
+                self.read().await;
+            }
+        };
+        let has_come = timeout(PATIENCE, wait).await.is_ok();
+        assert!(has_come, "{what} does not come:\n{}", self.emulator.text());
+    }
+
+    /// Reads what comes next, and answers it as a terminal does.
+    async fn read(&mut self) {
+        let Some(message) = self.channel.wait().await else { panic!("the connection has ended") };
+        if let ChannelMsg::Data { data } = message {
+            let answers = self.emulator.process(&data);
+            if !answers.is_empty() {
+                self.channel.data(&answers[..]).await.unwrap();
+            }
+        }
+    }
+
+    async fn rest(&mut self, time: Duration) {
+        _ = timeout(time, async {
+            loop {
+                self.read().await;
+            }
+        })
+        .await;
+    }
+}
+
+async fn open(port: u16, compresses: bool) -> Result<Handle<Anyone>, Error> {
+    let mut config = client::Config { nodelay: true, ..client::Config::default() };
+    if compresses {
+        let compression = std::borrow::Cow::Borrowed(&[compression::ZLIB_LEGACY] as &[_]);
+        config.preferred = Preferred { compression, ..Preferred::DEFAULT };
+    }
+    client::connect(Arc::new(config), ("127.0.0.1", port), Anyone).await
+}
+
+/// Sends traffic until the connection ends, which it should not.
+async fn send(client: Client, traffic: Traffic) {
+    let Client { handle, channel, .. } = client;
+    let (mut input, output) = channel.split();
+    let answers = answer_all(&mut input, &output);
+    let sending = async {
+        match traffic {
+            Traffic::Typed { bytes, .. } => type_all(&output, bytes).await,
+            Traffic::Compressed => flood(&output).await,
+            Traffic::Resizes => resize(&output).await,
+            Traffic::Channels => while handle.channel_open_session().await.is_err() {},
+            Traffic::Rekeys => exchange_keys(&handle).await,
+            Traffic::Offers => unreachable!("it needs no session"),
+        }
+    };
+    tokio::select! {
+        () = answers => {}
+        () = sending => {}
+    }
+}
+
+/// Answers the requests at the ends of frames.
+async fn answer_all(input: &mut ChannelReadHalf, output: &ChannelWriteHalf<Msg>) {
+    let mut last = Vec::new();
+    while let Some(message) = input.wait().await {
+        let ChannelMsg::Data { data } = message else { continue };
+        last.extend_from_slice(&data);
+        let count = last.windows(4).filter(|it| it.starts_with(b"\x1b[c") || *it == b"\x1b[5n");
+        let answers: Vec<u8> = count
+            .flat_map(|query| if query[2] == b'c' { &b"\x1b[?62;22c"[..] } else { b"\x1b[0n" })
+            .copied()
+            .collect();
+        last.drain(..last.len().saturating_sub(3));
+        if !answers.is_empty() && output.data(&answers[..]).await.is_err() {
+            return;
+        }
+    }
+}
+
+async fn type_all(output: &ChannelWriteHalf<Msg>, bytes: &str) {
+    // Whole keys, so that each chunk begins with one.
+    let chunk = bytes.repeat(CHUNK / bytes.len());
+    let mut ticks = interval(TICK);
+    for tick in 0.. {
+        if tick > BURST {
+            ticks.tick().await;
+        }
+        if output.data(chunk.as_bytes()).await.is_err() {
+            return;
+        }
+    }
+}
+
+async fn flood(output: &ChannelWriteHalf<Msg>) {
+    let text = vec![b'w'; 30_000];
+    while output.data(&text[..]).await.is_ok() {}
+}
+
+async fn resize(output: &ChannelWriteHalf<Msg>) {
+    /// A request is a packet of 68 bytes.
+    const IN_A_TICK: u32 = 15;
+    let mut ticks = interval(TICK);
+    for tick in 0.. {
+        ticks.tick().await;
+        for change in 0..IN_A_TICK {
+            let size = (tick * IN_A_TICK + change) % 40;
+            if output.window_change(60 + size, 20 + size / 2, 0, 0).await.is_err() {
+                return;
+            }
+        }
+    }
+}
+
+async fn exchange_keys(handle: &Handle<Anyone>) {
+    /// An exchange takes some two kilobytes of a client.
+    const EXCHANGE: Duration = Duration::from_millis(30);
+    while handle.rekey_soon().await.is_ok() {
+        sleep(EXCHANGE).await;
+    }
+}
+
+/// Offers a key that is refused, as often as the host allows on a connection, and then on the next.
+async fn offer_keys(port: u16, key: PrivateKeyWithHashAlg) {
+    loop {
+        if let Ok(mut handle) = open(port, false).await {
+            while let Ok(AuthResult::Failure { .. }) =
+                handle.authenticate_publickey("ann", key.clone()).await
+            {}
+        }
+        sleep(TICK).await;
+    }
+}
+
+fn rsa_key() -> PrivateKeyWithHashAlg {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("bystander-rsa");
+    _ = std::fs::remove_file(&path);
+    let arguments = ["-q", "-t", "rsa", "-b", "2048", "-N", "", "-f"];
+    let status = Command::new("ssh-keygen").args(arguments).arg(&path).status();
+    assert!(status.unwrap().success());
+    PrivateKeyWithHashAlg::new(Arc::new(load_secret_key(path, None).unwrap()), None)
+}
+
+/// Makes the senders ready, says so, and lets them send from the bystanders' first keys on until it is told to
+/// stop.
+async fn send_all(
+    port: u16,
+    traffic: Traffic,
+    ready: mpsc::Sender<()>,
+    stop: oneshot::Receiver<()>,
+) {
+    let mut senders = JoinSet::new();
+    if let Traffic::Offers = traffic {
+        let key = rsa_key();
+        (0..SENDERS).for_each(|_| _ = senders.spawn(offer_keys(port, key.clone())));
+        ready.send(()).unwrap();
+    } else {
+        let mut clients = Vec::new();
+        for _ in 0..SENDERS {
+            let mut client = Client::connect(port, matches!(traffic, Traffic::Compressed)).await;
+            let way = if let Traffic::Typed { way, .. } = traffic { way } else { TO_THE_NAME };
+            for (text, keys) in way {
+                client.wait_until(text, |screen| screen.contains(text)).await;
+                client.press(keys).await;
+            }
+            clients.push(client);
+        }
+        ready.send(()).unwrap();
+        let begins = Instant::now() + 2 * REST;
+        for mut client in clients {
+            client.rest(begins - Instant::now()).await;
+            senders.spawn(send(client, traffic));
+        }
+    }
+    tokio::select! {
+        ended = senders.join_next() => panic!("a sender was sent away: {ended:?}"),
+        _ = stop => {}
+    }
+}
+
+/// The times from keys to the bytes that show them.
+async fn type_beside(port: u16, begins: Instant) -> Vec<Duration> {
+    let mut client = Client::connect(port, false).await;
+    client.wait_until("the page", |screen| screen.contains("Enter takes it")).await;
+    client.rest(begins - Instant::now()).await;
+    let end = Instant::now() + TIME;
+    let mut times = Vec::new();
+    for (key, shown) in [("x", true), ("\x7f", false)].into_iter().cycle() {
+        let pressed = Instant::now();
+        client.press(key).await;
+        client.wait_until("the letter", |screen| screen.contains("x_") == shown).await;
+        times.push(pressed.elapsed());
+        client.rest(PAUSE).await;
+        if Instant::now() > end {
+            break;
+        }
+    }
+    times
+}
+
+/// The 99th percentile of the times of all bystanders, and the median.
+async fn measure(port: u16) -> [Duration; 2] {
+    let mut bystanders = JoinSet::new();
+    let begins = Instant::now() + REST;
+    for number in 0..BYSTANDERS {
+        let own_begin = begins + PAUSE * number as u32 / BYSTANDERS as u32;
+        bystanders.spawn(type_beside(port, own_begin));
+    }
+    let mut times: Vec<Duration> = bystanders.join_all().await.concat();
+    times.sort();
+    assert!(times.len() > 50, "{} keys", times.len());
+    [times.len() * 99 / 100, times.len() / 2].map(|index| times[index.min(times.len() - 1)])
+}
+
+fn runtime() -> Runtime {
+    Builder::new_current_thread().enable_all().build().unwrap()
+}
+
+/// The 99th percentile without traffic.
+fn quiet() -> Duration {
+    static QUIET: OnceLock<Duration> = OnceLock::new();
+    *QUIET.get_or_init(|| {
+        let host = Host::start();
+        let [p99, median] = runtime().block_on(measure(host.port()));
+        eprintln!("without traffic: p99 {p99:?}, median {median:?}");
+        p99
+    })
+}
+
+#[track_caller]
+fn delays_nobody(name: &str, traffic: Traffic) {
+    let _alone = alone();
+    let limit = LIMIT.max(FACTOR * quiet());
+    let host = Host::start();
+    let port = host.port();
+    let (ready, is_ready) = mpsc::channel();
+    let (stop, stopped) = oneshot::channel();
+    let senders =
+        thread::spawn(move || runtime().block_on(send_all(port, traffic, ready, stopped)));
+    // It fails only if the thread has panicked.
+    let measured = is_ready.recv().map(|()| runtime().block_on(measure(port)));
+    drop(stop);
+    senders.join().unwrap();
+    let [p99, median] = measured.unwrap();
+    eprintln!("{name}: p99 {p99:?}, median {median:?}, limit {limit:?}");
+    assert!(p99 <= limit, "{p99:?}, and the limit is {limit:?}");
+}
+
+#[test]
+fn names_that_are_typed() {
+    let bytes = "ab\x7f\x7fe\u{301}\u{302}\u{303}\x7f";
+    delays_nobody("name", Traffic::Typed { way: TO_THE_NAME, bytes });
+}
+
+#[test]
+fn chat_that_is_typed() {
+    let bytes = "ab\x7f\x7fe\u{301}\u{302}\u{303}\x7f";
+    delays_nobody("chat", Traffic::Typed { way: TO_THE_CHAT, bytes });
+}
+
+#[test]
+fn keys_in_the_lobby() {
+    delays_nobody("lobby", Traffic::Typed { way: TO_THE_LOBBY, bytes: "\x1b[B\x1b[A6\x7f" });
+}
+
+#[test]
+fn keys_in_settings() {
+    delays_nobody("settings", Traffic::Typed { way: TO_SETTINGS, bytes: "\x1b[C" });
+}
+
+#[test]
+fn keys_in_a_room() {
+    delays_nobody("room", Traffic::Typed { way: TO_A_ROOM, bytes: "wsad\x1b[C\x1b[Dmp" });
+}
+
+#[test]
+fn keys_with_releases() {
+    let bytes = "\x1b[119;1:1u\x1b[119;1:2u\x1b[119;1:3u";
+    delays_nobody("releases", Traffic::Typed { way: TO_A_ROOM, bytes });
+}
+
+#[test]
+fn the_mouse() {
+    let bytes = "\x1b[<35;10;10M\x1b[<35;60;20M\x1b[<0;1;1M\x1b[<0;1;1m";
+    delays_nobody("mouse", Traffic::Typed { way: TO_A_ROOM_WITH_A_MOUSE, bytes });
+}
+
+#[test]
+fn compressed_input() {
+    delays_nobody("compressed", Traffic::Compressed);
+}
+
+#[test]
+fn resizes() {
+    delays_nobody("resizes", Traffic::Resizes);
+}
+
+#[test]
+fn channels() {
+    delays_nobody("channels", Traffic::Channels);
+}
+
+#[test]
+fn key_exchanges() {
+    delays_nobody("rekeys", Traffic::Rekeys);
+}
+
+#[test]
+fn key_offers_before_the_login() {
+    delays_nobody("offers", Traffic::Offers);
+}
