@@ -176,7 +176,7 @@ impl Client {
         };
         let handle = session.handle();
         let outbox = Outbox::new(handle.clone(), channel, self.line.passage.clone());
-        let (inlet, inbound) = inbound();
+        let (inlet, inbound) = inbound(self.line.limits());
         self.inlet = Some(inlet.clone());
         let link = Link { inbound, outbox };
         // The connection may be closing.

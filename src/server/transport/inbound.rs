@@ -4,16 +4,23 @@
 //! that a flood waits in the client's own socket. Of sizes of the window, only the newest waits. A
 //! queue of messages was refused: a message of one byte costs a hundred.
 //!
+//! Bytes come at the rate at which a client may send them before compression. Without that, eight clients that
+//! compressed what they sent took two processors.
+//!
 //! A session takes a flood in parts, and others have their turn between two of them. Whole buffers were refused:
 //! eight visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
 
 use std::mem;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use tokio::sync::Notify;
 use tokio::task::yield_now;
+use tokio::time::{Instant, timeout};
 
 use super::locked;
+use super::wire::{ByteLimits, FEWEST};
+use crate::server::bucket::Bucket;
 use crate::terminal::WindowSize;
 
 /// What has arrived from a visitor.
@@ -43,8 +50,9 @@ pub(super) struct Inlet {
     shared: Arc<Shared>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Shared {
+    begun: Instant,
     waiting: Mutex<Waiting>,
     /// For the session: something has arrived.
     arrived: Notify,
@@ -52,8 +60,10 @@ struct Shared {
     taken: Notify,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Waiting {
+    /// The bytes that may come.
+    bucket: Bucket,
     bytes: Vec<u8>,
     size: Option<WindowSize>,
     drains: bool,
@@ -62,9 +72,22 @@ struct Waiting {
     is_abandoned: bool,
 }
 
+/// What has become of bytes.
+enum Appended {
+    /// So many of them are done with.
+    Some(usize),
+    /// There is no room.
+    Full,
+    /// More of them may come after this time.
+    TooFast(Duration),
+}
+
 /// Both ends.
-pub(super) fn inbound() -> (Inlet, Inbound) {
-    let shared = Arc::<Shared>::default();
+pub(super) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
+    let waiting = Waiting::new(limits.bucket(Duration::ZERO));
+    let [arrived, taken] = [(); 2].map(|()| Notify::new());
+    let begun = Instant::now();
+    let shared = Arc::new(Shared { begun, waiting: Mutex::new(waiting), arrived, taken });
     (Inlet { shared: shared.clone() }, Inbound { shared, yields: false })
 }
 
@@ -102,23 +125,28 @@ impl Inbound {
 impl Drop for Inbound {
     fn drop(&mut self) {
         locked(&self.shared.waiting, |waiting| {
-            *waiting = Waiting { is_abandoned: true, ..Waiting::default() };
+            *waiting = Waiting { is_abandoned: true, ..Waiting::new(waiting.bucket) };
         });
         self.shared.taken.notify_one();
     }
 }
 
 impl Inlet {
-    /// Passes bytes on, and waits where there is no room for them.
+    /// Passes bytes on, and waits where there is no room for them, or where they come too fast.
     pub(super) async fn bytes(&self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
-            let count = locked(&self.shared.waiting, |waiting| waiting.append(bytes));
-            if count == 0 {
-                self.shared.taken.notified().await;
-            } else {
-                self.shared.arrived.notify_one();
+            let now = self.shared.begun.elapsed();
+            let appended = locked(&self.shared.waiting, |waiting| waiting.append(bytes, now));
+            let taken = self.shared.taken.notified();
+            match appended {
+                Appended::Some(count) => {
+                    self.shared.arrived.notify_one();
+                    bytes = &bytes[count..];
+                }
+                Appended::Full => taken.await,
+                // The session may end meanwhile.
+                Appended::TooFast(pause) => _ = timeout(pause, taken).await,
             }
-            bytes = &bytes[count..];
         }
     }
 
@@ -142,6 +170,11 @@ impl Inlet {
 }
 
 impl Waiting {
+    fn new(bucket: Bucket) -> Self {
+        let bytes = Vec::new();
+        Self { bucket, bytes, size: None, drains: false, ended: false, is_abandoned: false }
+    }
+
     fn take(&mut self) -> Option<Arrival> {
         if mem::take(&mut self.drains) {
             return Some(Arrival::Drains);
@@ -156,14 +189,23 @@ impl Waiting {
         self.ended.then_some(Arrival::Ended)
     }
 
-    /// The number of bytes that are done with.
-    fn append(&mut self, bytes: &[u8]) -> usize {
+    fn append(&mut self, bytes: &[u8], now: Duration) -> Appended {
         if self.is_abandoned || self.ended {
-            return bytes.len();
+            return Appended::Some(bytes.len());
         }
-        let count = bytes.len().min(Inbound::MOST_BYTES - self.bytes.len());
+        let room = bytes.len().min(Inbound::MOST_BYTES - self.bytes.len());
+        if room == 0 {
+            return Appended::Full;
+        }
+        let allowed = self.bucket.fill(now);
+        let fewest = FEWEST.min(room as f64);
+        if allowed < fewest {
+            return Appended::TooFast(self.bucket.time_until(fewest));
+        }
+        let count = room.min(allowed as usize);
+        self.bucket.take(count as f64);
         self.bytes.extend_from_slice(&bytes[..count]);
-        count
+        Appended::Some(count)
     }
 }
 
@@ -174,6 +216,8 @@ mod tests {
     use std::task::{Context, Poll, Waker};
 
     use super::*;
+
+    const LIMITS: ByteLimits = ByteLimits { before_login: 0, per_second: 64 << 10 };
 
     fn poll<T>(future: impl Future<Output = T>) -> Option<T> {
         match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
@@ -190,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_flood_waits_and_takes_no_memory() {
-        let (inlet, mut inbound) = inbound();
+        let (inlet, mut inbound) = inbound(LIMITS);
         let flood = vec![b'w'; 10 << 20];
         assert_eq!(poll(inlet.bytes(&flood)), None);
         let held =
@@ -208,7 +252,7 @@ mod tests {
 
     #[test]
     fn bytes_keep_their_order_across_waits() {
-        let (inlet, mut inbound) = inbound();
+        let (inlet, mut inbound) = inbound(LIMITS);
         let sent: Vec<u8> = (0..100_000_u32).map(|number| number as u8).collect();
         let mut sending = pin!(inlet.bytes(&sent));
         let mut received = Vec::new();
@@ -224,9 +268,23 @@ mod tests {
         assert_eq!(received, sent);
     }
 
+    #[tokio::test(start_paused = true)]
+    async fn bytes_that_were_compressed_come_at_the_rate_of_others() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        let sending = async {
+            inlet.bytes(&[b'w'; 20 * (64 << 10)]).await;
+            inlet.end();
+        };
+        let taking = async { while inbound.next().await != Arrival::Ended {} };
+        let begun = Instant::now();
+        tokio::join!(sending, taking);
+        // Those of the first four seconds come at once.
+        assert_eq!(begun.elapsed().as_millis().next_multiple_of(100), 16_000);
+    }
+
     #[test]
     fn of_many_sizes_the_newest_arrives() {
-        let (inlet, mut inbound) = inbound();
+        let (inlet, mut inbound) = inbound(LIMITS);
         for columns in 1..=500 {
             inlet.resize(WindowSize::of_cells(columns, 24));
         }
@@ -236,7 +294,7 @@ mod tests {
 
     #[test]
     fn the_end_comes_after_the_bytes_and_stays() {
-        let (inlet, mut inbound) = inbound();
+        let (inlet, mut inbound) = inbound(LIMITS);
         assert_eq!(poll(inlet.bytes(b"q")), Some(()));
         inlet.end();
         assert_eq!(next(&mut inbound), Some(Arrival::Bytes(b"q".to_vec())));
@@ -246,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_connection_never_waits_for_a_session_that_is_gone() {
-        let (inlet, inbound) = inbound();
+        let (inlet, inbound) = inbound(LIMITS);
         assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MOST_BYTES + 1])), None);
         drop(inbound);
         assert_eq!(poll(inlet.bytes(&vec![0; 1 << 20])), Some(()));

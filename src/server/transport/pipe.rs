@@ -10,7 +10,8 @@ use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 use super::inbound::{Inlet, inbound};
 use super::outbox::{Outbox, Passage};
-use super::{Counters, Link};
+use super::wire::ByteLimits;
+use super::{Config, Counters, Link};
 use crate::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones are the same end.
@@ -31,7 +32,8 @@ pub(in crate::server) struct Parts {
 pub(in crate::server) fn pipe(counters: Arc<Counters>) -> (Link, FarEnd, Parts) {
     let passage = Arc::new(Passage::new(counters));
     let (sender, parts) = unbounded_channel();
-    let (inlet, inbound) = inbound();
+    let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
+    let (inlet, inbound) = inbound(limits);
     let [for_end, for_parts] = [(); 2].map(|()| Arc::downgrade(&passage));
     let link = Link { inbound, outbox: Outbox::into_pipe(sender, passage) };
     (link, FarEnd { inlet, passage: for_end }, Parts { parts, passage: for_parts })

@@ -2,7 +2,8 @@
 //!
 //! russh reads and writes when it likes, so limits belong below it. Before authentication, a client
 //! has a budget of bytes. After it, bytes are read at a limited rate: whatever a client floods its
-//! connection with, be it keys, empty packets or key exchanges, costs the server no more than that.
+//! connection with, be it keys, empty packets or key exchanges, costs the server no more than that. What
+//! compression has made small is limited once more, on its [way](super::inbound) to the session.
 //!
 //! russh makes room for a packet as soon as its length has arrived, up to 256 KB, and then reads the
 //! packet at once. A read of more than a packet of this server's channel has ends the connection.
@@ -29,6 +30,14 @@ pub(super) struct ByteLimits {
     pub(super) before_login: u64,
     /// The most bytes a second after it. Bytes of four seconds may come at once.
     pub(super) per_second: u32,
+}
+
+impl ByteLimits {
+    /// The bytes that may come after authentication, from `now` on.
+    pub(super) fn bucket(&self, now: Duration) -> Bucket {
+        let rate = f64::from(self.per_second);
+        Bucket::new(rate, rate * BURST, now)
+    }
 }
 
 /// A socket with limits.
@@ -63,7 +72,7 @@ pub(super) struct Line {
 /// The time whose bytes may come at once.
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause, so that pauses are few.
-const FEWEST: f64 = 1024.0;
+pub(super) const FEWEST: f64 = 1024.0;
 /// The most bytes that are read at once. Packets are 32 KB and their frame (RFC 4253, section 6.1).
 const LONGEST_PACKET: usize = 35_000;
 const READER: usize = 0;
@@ -71,8 +80,7 @@ const WRITER: usize = 1;
 
 impl<S> Wire<S> {
     pub(super) fn new(socket: S, line: Arc<Line>) -> Self {
-        let rate = f64::from(line.limits.per_second);
-        let bucket = Bucket::new(rate, rate * BURST, line.begun.elapsed());
+        let bucket = line.limits.bucket(line.begun.elapsed());
         let pause = Box::pin(sleep_until(Instant::now()));
         Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
     }
@@ -118,6 +126,10 @@ impl Line {
     /// The client is authenticated.
     pub(super) fn log_in(&self) {
         self.is_logged_in.store(true, Ordering::Release);
+    }
+
+    pub(super) fn limits(&self) -> ByteLimits {
+        self.limits
     }
 
     pub(super) fn begun(&self) -> Instant {
