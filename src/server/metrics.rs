@@ -44,7 +44,7 @@ pub struct Metrics {
     pub step_lateness: Histogram,
     /// The time in which a frame is drawn and encoded.
     pub frame_time: Histogram,
-    /// The time from the arrival of a key to the departure of the first frame after it.
+    /// The time from the arrival of a key to the departure of the frame that shows its effect.
     pub key_time: Histogram,
     /// Results that a replay has confirmed.
     pub results_verified: Counter,

@@ -272,6 +272,7 @@ impl Room {
             phase: self.round.phase(),
             begun: self.round.begun(),
             members: self.members.iter().map(member).collect(),
+            acted: self.members.iter().map(|member| member.acted).collect(),
             standings: Arc::clone(&self.standings),
             said: self.said.iter().cloned().collect(),
         }

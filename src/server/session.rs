@@ -36,6 +36,7 @@ mod stay;
 mod talk;
 #[cfg(test)]
 mod tests;
+mod unanswered;
 mod visit;
 
 use std::time::Duration;
@@ -43,10 +44,12 @@ use std::time::Duration;
 use self::look::Look;
 pub(crate) use self::messages::{BoardRow, HostFacts, Identity, IdleLimits, Request, SessionEvent};
 use self::pace::Pace;
+use self::unanswered::{Effect, Unanswered};
 use self::visit::Visit;
 use super::bucket::Bucket;
 use super::room::RoomView;
 use crate::app::parts::{Meter, Stats};
+use crate::game::Intents;
 use crate::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 
 /// The keys that a visitor may press in a second. A held key repeats some 30 times a second.
@@ -66,6 +69,10 @@ pub(crate) struct Session {
     keys: Bucket,
     /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
     answers_key: Option<u64>,
+    /// When the oldest key came that no frame has answered.
+    unanswered: Unanswered,
+    /// When the oldest key came that the last frame answers.
+    answered: Option<Duration>,
     /// The step of the room in the last frame.
     drawn_step: u64,
     meter: Meter,
@@ -104,6 +111,8 @@ impl Session {
             pace,
             keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
             answers_key: None,
+            unanswered: Unanswered::default(),
+            answered: None,
             drawn_step: 0,
             meter: Meter::default(),
             is_limited: None,
@@ -140,9 +149,20 @@ impl Session {
         self.finish(now);
     }
 
-    /// Whether the next frame answers a key.
-    pub(crate) fn has_key(&self) -> bool {
-        self.answers_key.is_some()
+    /// When the oldest key came that the frames since the last call answer; `None` if they answer none.
+    pub(crate) fn answered(&mut self) -> Option<Duration> {
+        self.answered.take()
+    }
+
+    /// Looks at the newest snapshot of the room, so that a key by which nothing has changed there waits for no frame.
+    pub(crate) fn look_at(&mut self, room: &RoomView) {
+        if self.has_acted(room) && !self.visit.is_stale(Some(room)) {
+            self.unanswered.forget_wanted();
+        }
+    }
+
+    fn has_acted(&self, room: &RoomView) -> bool {
+        self.visit.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
     }
 
     /// What the session wants since the last call.
@@ -172,6 +192,9 @@ impl Session {
     fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
         // Before the picture, which shows the newest figures then.
         self.measure(now);
+        let has_acted = room.is_none_or(|room| self.has_acted(room));
+        let answered = self.unanswered.answer(has_acted);
+        self.answered = self.answered.into_iter().chain(answered).min();
         let Self { protocol, visit, .. } = self;
         if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
             visit.requests.extend(stay.look_at(room, now));
@@ -259,10 +282,30 @@ impl Session {
                 Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
                 _ => {}
             }
-            self.visit.event(event, now);
+            if let Event::Key(_) = event {
+                self.press(event, now);
+            } else {
+                self.visit.event(event, now);
+            }
         }
         self.show_choices();
         self.finish(now);
+    }
+
+    /// Handles a key, and records what it changes.
+    fn press(&mut self, key: Event, now: Duration) {
+        self.visit.advance(now);
+        let was_stale = std::mem::take(&mut self.visit.is_stale);
+        let wanted = self.wanted();
+        self.visit.event(key, now);
+        let effect = Effect { is_shown: self.visit.is_stale, is_wanted: self.wanted() != wanted };
+        self.unanswered.press(effect, now);
+        self.visit.is_stale |= was_stale;
+    }
+
+    /// What the visitor wants of the room.
+    fn wanted(&self) -> Option<Intents> {
+        self.visit.stay.as_ref().map(|stay| stay.intents.newest())
     }
 
     /// Whether a key counts. Releases do, whatever was pressed, so that no key is held for ever.

@@ -31,7 +31,7 @@ use super::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
 use super::rooms::Rooms;
 use super::session::Session;
 use super::summary::{RoomId, RoomWish};
-use super::{Config, LiveConfig, Visitor, Visitors};
+use super::{Config, LiveConfig, Metrics, Visitor, Visitors};
 use crate::color::palette::ColorDepth;
 use crate::map;
 use crate::store::host::MemoryStore;
@@ -238,6 +238,10 @@ impl Rig {
 
     pub(in crate::server) fn is_over(&self, index: usize) -> bool {
         self.clients[index].visiting.is_over()
+    }
+
+    pub(in crate::server) fn metrics(&self) -> &Metrics {
+        self.host.metrics()
     }
 
     pub(in crate::server) fn rooms(&self) -> &Rooms {

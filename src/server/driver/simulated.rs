@@ -64,6 +64,10 @@ impl Simulated {
         Self { host }
     }
 
+    pub(in crate::server) fn metrics(&self) -> &Metrics {
+        &self.host.shared.metrics
+    }
+
     pub(in crate::server) fn rooms(&self) -> &Rooms {
         &self.host.shared.rooms
     }

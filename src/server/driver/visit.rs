@@ -46,9 +46,7 @@ pub(super) struct Visit {
     replied: mpsc::Receiver<Reply>,
     /// When the session was woken last.
     woken_at: Duration,
-    /// When a key came that no frame has answered.
-    key_at: Option<Duration>,
-    /// The same, if the frame on its way answers it.
+    /// When the oldest key came that the frame on its way answers.
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
     pub(super) ends_at: Option<Duration>,
@@ -132,7 +130,6 @@ impl Visit {
             replies,
             replied,
             woken_at: Duration::ZERO,
-            key_at: None,
             answers_key: None,
             ends_at: None,
             is_sending: false,
@@ -166,16 +163,13 @@ impl Visit {
                     return 0;
                 }
                 self.is_sending = !bytes.is_empty() && outbox.try_send(bytes).is_ok();
+                // A frame without bytes leaves at no time.
+                self.answers_key.take_if(|_| !self.is_sending);
             }
             let event = self.wait(inbound, outbox, wakes_at).await;
             let now = self.shared.now();
             match event {
-                DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
-                    self.session.receive(&bytes, now);
-                    if self.session.has_key() {
-                        self.key_at.get_or_insert(now);
-                    }
-                }
+                DriverEvent::Arrived(Arrival::Bytes(bytes)) => self.session.receive(&bytes, now),
                 DriverEvent::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
                 DriverEvent::Arrived(Arrival::Drains) => self.drain(now),
                 DriverEvent::Arrived(Arrival::Ended) => return 0,
@@ -224,7 +218,9 @@ impl Visit {
         if self.session.is_due(view.as_deref(), now) {
             self.session.draw(view.as_deref(), now);
             self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
-            self.answers_key = self.key_at.take();
+            self.answers_key = self.session.answered();
+        } else if let Some(view) = &view {
+            self.session.look_at(view);
         }
         // What waking did not change, waking again will not, as where a terminal never answers.
         let time = self.session.wakes_at(view.as_deref(), now);

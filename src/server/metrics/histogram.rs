@@ -39,6 +39,14 @@ impl Histogram {
         self.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
     }
 
+    /// The number of durations, and their mean in seconds.
+    #[cfg(test)]
+    pub(in crate::server) fn count_and_mean(&self) -> (u64, f64) {
+        let Distribution { up_to, sum } = self.distribution();
+        let count = up_to[BOUNDS.len()];
+        (count, sum / count as f64)
+    }
+
     pub(super) fn distribution(&self) -> Distribution {
         let mut count = 0;
         let up_to = array::from_fn(|bucket| {

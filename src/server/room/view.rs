@@ -6,7 +6,7 @@ use super::entry::{Emote, MemberId};
 use super::header::Header;
 use super::round::{Finish, Phase, Role, Standing};
 use crate::game::stored::stored;
-use crate::game::{Game, PlayerColor, PlayerId};
+use crate::game::{Game, Intents, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
 /// An immutable snapshot of a room. It shares the game with the room, which copies it only if a
@@ -25,6 +25,8 @@ pub(crate) struct RoomView {
     pub(crate) begun: Option<u64>,
     /// The members, in the order in which they joined.
     pub(crate) members: Vec<MemberView>,
+    /// What each of them wanted in the last step, which no picture shows by itself.
+    pub(crate) acted: Vec<Intents>,
     /// The standings of the round, the winner first; empty before its end.
     pub(crate) standings: Arc<[Standing]>,
     /// What was said last, the newest last.
@@ -67,6 +69,12 @@ impl RoomView {
     /// A member.
     pub(crate) fn member(&self, id: MemberId) -> Option<&MemberView> {
         self.members.iter().find(|member| member.id == id)
+    }
+
+    /// What a member wanted in the last step.
+    pub(crate) fn acted(&self, id: MemberId) -> Option<Intents> {
+        let index = self.members.iter().position(|member| member.id == id)?;
+        self.acted.get(index).copied()
     }
 
     /// The winner, if the round has ended with one who is still there.

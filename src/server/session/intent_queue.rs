@@ -32,7 +32,7 @@ pub(super) struct IntentQueue {
 impl IntentQueue {
     /// Records what the member wants from now on.
     pub(super) fn set(&mut self, intents: Intents) {
-        if *self.waiting.back().unwrap_or(&self.sent) == intents {
+        if self.newest() == intents {
             return;
         }
         if self.waiting.len() >= MOST {
@@ -45,6 +45,11 @@ impl IntentQueue {
     pub(super) fn turn(&mut self, by: Look) {
         let [turn, tilt] = self.angles;
         self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
+    }
+
+    /// What the member wants now.
+    pub(super) fn newest(&self) -> Intents {
+        *self.waiting.back().unwrap_or(&self.sent)
     }
 
     /// What is to be sent at `now`, if something is.

@@ -11,7 +11,7 @@ use super::shown_steps::ShownSteps;
 use super::talk::Talk;
 use crate::app::MapDisplay;
 use crate::app::parts::{MapPanel, Watch};
-use crate::game::{Outcome, PlayerView, STEPS_PER_SECOND};
+use crate::game::{self, Outcome, PlayerView, STEPS_PER_SECOND};
 use crate::server::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use crate::world::{Camera, FieldOfView, Figure};
 
@@ -117,6 +117,12 @@ impl Stay {
         let is_dead = own.is_some_and(is_dead);
         self.dead_since = is_dead.then(|| self.dead_since.unwrap_or(now));
         begins.then(|| self.ghosts.begin(room)).flatten()
+    }
+
+    /// Whether `room` has acted on all that the member wants.
+    pub(super) fn has_acted(&self, room: &RoomView) -> bool {
+        let acted = self.member.and_then(|id| room.acted(id));
+        acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
     }
 
     /// The ghosts in the picture.

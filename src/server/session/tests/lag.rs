@@ -99,6 +99,34 @@ fn a_key_is_answered_before_the_next_regular_frame() {
     assert_ne!(rig.text(one), before, "the map is hidden");
 }
 
+#[test]
+fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+    let other = rig.member("Jon", (80, 24), Speaks::Kitty);
+    // A key without a meaning, and steps back into the wall behind her, while he walks now and then.
+    let [unbound, back] = [120, 115].map(|key| format!("\x1b[{key};1:1u\x1b[{key};1:3u"));
+    rig.send(one, "\x1b[115;1:1u");
+    rig.pump(2_000);
+    rig.send(one, "\x1b[115;1:3u");
+    rig.pump(1_000);
+    for _ in 0..4 {
+        for key in [&unbound, &back] {
+            rig.send(one, key);
+            rig.pump(2_500);
+        }
+        rig.press(other, "\x1b[119;1:1u\x1b[119;1:3u");
+    }
+    // Keys that a frame answers: what the screen shows, and what the room does.
+    let before = rig.metrics().key_time.count_and_mean().0;
+    for key in ["\x1b[109;1:1u\x1b[109;1:3u", "\x1b[1;1:1C", "\x1b[1;1:3C"] {
+        rig.press(one, key);
+    }
+    let (count, mean) = rig.metrics().key_time.count_and_mean();
+    assert!((2..=3).contains(&(count - before)), "{before} and {count}");
+    assert!(mean < 0.05, "{mean} s");
+}
+
 /// What a hostile or unlucky client may do.
 #[derive(Clone, Debug)]
 enum Event {
