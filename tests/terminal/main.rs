@@ -14,5 +14,8 @@ mod emulator;
 mod looks;
 #[path = "../support/player.rs"]
 mod player;
+#[cfg(all(target_os = "linux", feature = "ssh-tests"))]
+#[path = "../support/strace.rs"]
+mod strace;
 #[path = "../support/mod.rs"]
 mod support;

@@ -5,6 +5,8 @@ mod campaign;
 mod clock;
 mod doors;
 mod ending;
+#[cfg(all(target_os = "linux", feature = "ssh-tests"))]
+mod failures;
 mod game;
 mod generated;
 mod holding;
