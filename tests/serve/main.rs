@@ -21,6 +21,9 @@ mod player;
 mod postgres_server;
 mod scores;
 mod soak;
+#[cfg(all(target_os = "linux", feature = "ssh-tests"))]
+#[path = "../support/strace.rs"]
+mod strace;
 #[path = "../support/mod.rs"]
 mod support;
 mod transport;

@@ -6,6 +6,8 @@ mod away;
 #[cfg(feature = "cluster-tests")]
 mod cluster;
 mod documents;
+#[cfg(all(target_os = "linux", feature = "ssh-tests"))]
+mod failures;
 mod killed;
 mod maps;
 mod metrics;

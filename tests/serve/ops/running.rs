@@ -116,6 +116,11 @@ impl Running {
         String::from_utf8(output.stdout).unwrap()
     }
 
+    /// The number of the process.
+    pub(super) fn process(&self) -> u32 {
+        self.process.id()
+    }
+
     pub(super) fn signal(&self, signal: Signal) {
         kill_process(Pid::from_child(&self.process), signal).unwrap();
     }
