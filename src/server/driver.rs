@@ -4,6 +4,9 @@
 //!
 //! - A frame is drawn only when the one before has left, from the newest snapshot. Between frames, a
 //!   driver holds no snapshot, so that steps do not copy the game.
+//! - Frames of large windows are drawn on threads of their own, at most one for two processors at a time. On the
+//!   threads of the runtime, one session with a window of 500×200 cells delayed the keys of others by up to a whole
+//!   frame, since the thread that draws may be the one that waits for sockets.
 //! - Rooms step whether anybody draws or not, see [`Sequencer`](super::sequencer::Sequencer).
 //! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
 //! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
@@ -24,11 +27,13 @@ mod store_worker;
 mod terminal;
 mod visit;
 
+use std::num::NonZero;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
+use std::thread::available_parallelism;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use tokio::sync::Notify;
+use tokio::sync::{Notify, Semaphore};
 use tokio::time::{Instant, interval, timeout};
 
 use self::account::NamesInUse;
@@ -76,6 +81,8 @@ struct Shared {
     runs: Arc<Mutex<KeptRuns>>,
     names: NamesInUse,
     load: Arc<Load>,
+    /// The large frames that may be drawn at a time.
+    large_frames: Arc<Semaphore>,
     next_guest: AtomicU32,
 }
 
@@ -114,6 +121,7 @@ impl GameHost {
             visitors: visitors.clone(),
             waiting: waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
         };
+        let processors = available_parallelism().map_or(1, NonZero::get);
         let shared = Arc::new(Shared {
             config: live,
             metrics,
@@ -128,6 +136,7 @@ impl GameHost {
             runs: Arc::default(),
             names: NamesInUse::default(),
             load,
+            large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));

@@ -56,6 +56,8 @@ use crate::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 const KEYS: f64 = 200.0;
 /// The keys that they may press at once: more than a line of chat that is pasted has characters.
 const KEYS_AT_ONCE: f64 = 300.0;
+/// A frame with more cells is large. One of 200×60 cells takes 1.2 ms, and one of 500×200 eight times as long.
+const LARGE: usize = 12_000;
 /// The least round-trip time of a link that is not local.
 const FAR: Duration = Duration::from_millis(3);
 
@@ -173,6 +175,12 @@ impl Session {
     /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
     pub(crate) fn is_due(&self, room: Option<&RoomView>, now: Duration) -> bool {
         self.due_at(room, now).is_some_and(|due| due <= now)
+    }
+
+    /// Whether a frame may take longer than others should wait for their turn.
+    pub(crate) fn is_large(&self) -> bool {
+        let WindowSize { columns, rows, .. } = self.protocol.size();
+        usize::from(columns) * usize::from(rows) > LARGE
     }
 
     /// Adds a frame to the output.

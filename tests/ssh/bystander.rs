@@ -6,6 +6,7 @@
 //!
 //! Where the machine does other work, too, the limit is a multiple of what the bystanders measure without traffic.
 
+use std::future::pending;
 use std::process::Command;
 use std::sync::{Arc, OnceLock, mpsc};
 use std::thread;
@@ -26,16 +27,19 @@ use super::emulator::{Emulator, Speaks};
 use super::host::Host;
 
 const SENDERS: usize = 8;
+const WINDOW: (u16, u16) = (80, 24);
 /// With several bystanders, there are enough keys for a percentile although each types as slowly as a human.
 const BYSTANDERS: usize = 6;
 /// The time for which each kind of traffic is sent.
-const TIME: Duration = Duration::from_millis(2200);
+const TIME: Duration = Duration::from_millis(1900);
 /// The time between two keys of a bystander.
 const PAUSE: Duration = Duration::from_millis(100);
 /// The time for which nothing changes before the first key.
 const REST: Duration = Duration::from_millis(400);
 /// A player feels more than this.
 const LIMIT: Duration = Duration::from_millis(100);
+/// What a picture of a large window may delay a key by.
+const LIMIT_BESIDE_A_PICTURE: Duration = Duration::from_millis(20);
 /// How many times as long as without traffic a key may take on a busy machine.
 const FACTOR: u32 = 3;
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -63,6 +67,31 @@ enum Traffic {
     Rekeys,
     /// Keys before the login that are refused, on one connection after another.
     Offers,
+    /// A held key: one session turns, in a window of the largest size.
+    Turns,
+}
+
+impl Traffic {
+    /// What is waited for, and what is typed then, before the traffic.
+    fn way(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Typed { way, .. } => way,
+            Self::Turns => TO_A_ROOM,
+            _ => TO_THE_NAME,
+        }
+    }
+
+    fn senders(self) -> usize {
+        if let Self::Turns = self { 1 } else { SENDERS }
+    }
+
+    fn limit(self) -> Duration {
+        if let Self::Turns = self { LIMIT_BESIDE_A_PICTURE } else { LIMIT }
+    }
+
+    fn window(self) -> (u16, u16) {
+        if let Self::Turns = self { (500, 200) } else { WINDOW }
+    }
 }
 
 const TO_THE_NAME: &[(&str, &str)] = &[("Enter takes it", "")];
@@ -109,13 +138,15 @@ struct Client {
 }
 
 impl Client {
-    async fn connect(port: u16, compresses: bool) -> Self {
+    async fn connect(port: u16, compresses: bool, (columns, rows): (u16, u16)) -> Self {
         let mut handle = open(port, compresses).await.unwrap();
         while !handle.authenticate_none("guest").await.unwrap().success() {}
         let channel = handle.channel_open_session().await.unwrap();
-        channel.request_pty(false, "xterm-256color", 80, 24, 0, 0, &[]).await.unwrap();
+        channel.set_env(false, "COLORTERM", "truecolor").await.unwrap();
+        let [width, height] = [columns, rows].map(u32::from);
+        channel.request_pty(false, "xterm-256color", width, height, 0, 0, &[]).await.unwrap();
         channel.request_shell(false).await.unwrap();
-        Self { handle, channel, emulator: Emulator::new(80, 24, Speaks::Kitty) }
+        Self { handle, channel, emulator: Emulator::new(columns, rows, Speaks::Kitty) }
     }
 
     async fn press(&mut self, keys: &str) {
@@ -175,6 +206,10 @@ async fn send(client: Client, traffic: Traffic) {
             Traffic::Resizes => resize(&output).await,
             Traffic::Channels => while handle.channel_open_session().await.is_err() {},
             Traffic::Rekeys => exchange_keys(&handle).await,
+            Traffic::Turns => {
+                _ = output.data(&b"\x1b[1;1:1C"[..]).await;
+                pending().await
+            }
             Traffic::Offers => unreachable!("it needs no session"),
         }
     };
@@ -280,10 +315,10 @@ async fn send_all(
         ready.send(()).unwrap();
     } else {
         let mut clients = Vec::new();
-        for _ in 0..SENDERS {
-            let mut client = Client::connect(port, matches!(traffic, Traffic::Compressed)).await;
-            let way = if let Traffic::Typed { way, .. } = traffic { way } else { TO_THE_NAME };
-            for (text, keys) in way {
+        for _ in 0..traffic.senders() {
+            let compresses = matches!(traffic, Traffic::Compressed);
+            let mut client = Client::connect(port, compresses, traffic.window()).await;
+            for (text, keys) in traffic.way() {
                 client.wait_until(text, |screen| screen.contains(text)).await;
                 client.press(keys).await;
             }
@@ -304,7 +339,7 @@ async fn send_all(
 
 /// The times from keys to the bytes that show them.
 async fn type_beside(port: u16, begins: Instant) -> Vec<Duration> {
-    let mut client = Client::connect(port, false).await;
+    let mut client = Client::connect(port, false, WINDOW).await;
     client.wait_until("the page", |screen| screen.contains("Enter takes it")).await;
     client.rest(begins - Instant::now()).await;
     let end = Instant::now() + TIME;
@@ -354,7 +389,7 @@ fn quiet() -> Duration {
 #[track_caller]
 fn delays_nobody(name: &str, traffic: Traffic) {
     let _alone = alone();
-    let limit = LIMIT.max(FACTOR * quiet());
+    let limit = traffic.limit().max(FACTOR * quiet());
     let host = Host::start();
     let port = host.port();
     let (ready, is_ready) = mpsc::channel();
@@ -432,4 +467,9 @@ fn key_exchanges() {
 #[test]
 fn key_offers_before_the_login() {
     delays_nobody("offers", Traffic::Offers);
+}
+
+#[test]
+fn pictures_of_the_largest_size() {
+    delays_nobody("pictures", Traffic::Turns);
 }

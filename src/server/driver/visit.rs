@@ -4,7 +4,9 @@ use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::{mpsc, watch};
+use tokio::runtime::{Handle, RuntimeFlavor};
+use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
+use tokio::task::block_in_place;
 use tokio::time::sleep_until;
 
 use super::Shared;
@@ -158,6 +160,7 @@ impl Visit {
             self.run_requests();
             let mut wakes_at = None;
             if !self.is_sending {
+                let _turn = self.turn().await;
                 let bytes = self.frame(&mut wakes_at);
                 if bytes.is_empty() && self.session.is_over() {
                     return 0;
@@ -204,6 +207,13 @@ impl Visit {
         }
     }
 
+    /// Waits for the turn of a session whose frames are large. Others have none.
+    async fn turn(&self) -> Option<OwnedSemaphorePermit> {
+        let turns = self.session.is_large().then(|| Arc::clone(&self.shared.large_frames))?;
+        // It is never closed.
+        turns.acquire_owned().await.ok()
+    }
+
     /// The bytes to send: those that wait, or else a frame, if one is due.
     fn frame(&mut self, wakes_at: &mut Option<Duration>) -> Vec<u8> {
         let now = self.shared.now();
@@ -216,7 +226,8 @@ impl Visit {
         let frame_time = self.shared.load.frame_time();
         self.session.set_frame_time(frame_time);
         if self.session.is_due(view.as_deref(), now) {
-            self.session.draw(view.as_deref(), now);
+            let session = &mut self.session;
+            aside(session.is_large(), || session.draw(view.as_deref(), now));
             self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {
@@ -276,6 +287,13 @@ impl Visit {
             self.session.notify(SessionEvent::Ended(self.last_sentence().to_owned()), now);
         }
     }
+}
+
+/// Draws a frame. For a large one, other tasks go on meanwhile.
+fn aside(is_large: bool, draw: impl FnOnce()) {
+    // There is one thread in simulated time.
+    let has_threads = Handle::current().runtime_flavor() == RuntimeFlavor::MultiThread;
+    if is_large && has_threads { block_in_place(draw) } else { draw() }
 }
 
 /// The name of the host as the lobby shows it.
