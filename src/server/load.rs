@@ -1,11 +1,16 @@
 //! Measurements of how busy the server is, and the frame rate that follows from them.
 
+#[cfg(test)]
+mod worker;
+
 use std::num::NonZero;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
+#[cfg(test)]
+pub(crate) use self::worker::{Work, Worker};
 use super::governor::Sample;
 use super::{Metrics, locked};
 
@@ -25,6 +30,8 @@ pub(crate) struct Load {
     processors: f64,
     /// The clock of its processor time.
     clock: fn() -> Duration,
+    #[cfg(test)]
+    worker: Worker,
 }
 
 impl Load {
@@ -34,17 +41,33 @@ impl Load {
         Self::with(metrics, processors, processor_time)
     }
 
-    /// That of a processor that is never busy, in simulated time.
+    /// That of a host in simulated time, of which only the steps of rooms are measured.
     #[cfg(test)]
-    pub(crate) fn simulated(metrics: Arc<Metrics>) -> Self {
-        Self::with(metrics, 1.0, || Duration::ZERO)
+    pub(crate) fn simulated(metrics: Arc<Metrics>, worker: Worker) -> Self {
+        Self { worker, ..Self::with(metrics, 1.0, || Duration::ZERO) }
+    }
+
+    /// Lets the time of `work` that is done pass, in simulated time.
+    #[cfg(test)]
+    pub(crate) fn spend(&self, work: Work) {
+        self.worker.spend(work);
     }
 
     fn with(metrics: Arc<Metrics>, processors: f64, clock: fn() -> Duration) -> Self {
         let used = Mutex::new(clock());
         let [lateness, steps] = [const { AtomicU64::new(0) }; 2];
         let frame_time = AtomicU64::new(33_333);
-        Self { metrics, lateness, steps, frame_time, used, processors, clock }
+        Self {
+            metrics,
+            lateness,
+            steps,
+            frame_time,
+            used,
+            processors,
+            clock,
+            #[cfg(test)]
+            worker: Worker::default(),
+        }
     }
 
     /// The figures of the server.

@@ -31,6 +31,8 @@ pub(crate) use self::round_log::Changes;
 pub(crate) use self::round_log::{FinishedRun, RoundLog};
 pub(crate) use self::shown::{Shown, State};
 use super::load::Load;
+#[cfg(test)]
+use super::load::Work;
 use super::room::Room;
 use crate::game::STEPS_PER_SECOND;
 
@@ -154,6 +156,8 @@ impl Sequencer {
             let changes = log.step(room, |pass| interface.inbox.take(pass));
             (room.view(), changes)
         });
+        #[cfg(test)]
+        self.load.spend(Work::Step);
         self.load.metrics().entries.add(changes.entries);
         if let Some(run) = changes.finished {
             interface.inbox.finish(run);

@@ -4,7 +4,8 @@
 //! Everything runs on one thread under a clock that advances when nothing else is left to do. So what
 //! happens depends on the seed alone, and a minute takes less than a second. Tokio wakes those who wait
 //! for one `watch` channel in a random order, which only an unstable option seeds; no run depends on
-//! that order, as a test shows that plays seeds twice.
+//! that order, as a test shows that plays seeds twice. Where computing [costs](Worker) time, the order decides
+//! who is some milliseconds later.
 
 mod client;
 #[path = "../../tests/support/emulator.rs"]
@@ -27,6 +28,7 @@ pub(in crate::server) use self::tapes::Tapes;
 use super::config::StandingRoom;
 use super::driver::{Setup, Simulated};
 use super::line::Line;
+use super::load::Worker;
 use super::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
 use super::rooms::Rooms;
 use super::session::Session;
@@ -77,6 +79,7 @@ pub(in crate::server) struct Wish {
     pub(in crate::server) mode: Mode,
     /// How long the store takes for a call.
     pub(in crate::server) store_time: Duration,
+    pub(in crate::server) worker: Worker,
     pub(in crate::server) seed: u64,
 }
 
@@ -96,7 +99,8 @@ pub(in crate::server) fn catalog(map: &str) -> Catalog {
 impl Wish {
     /// Two levels with the hall, and a standing room in it.
     pub(in crate::server) fn new(mode: Mode) -> Self {
-        Self { catalog: catalog(HALL), level: "hall", mode, store_time: Duration::ZERO, seed: 7 }
+        let (store_time, worker) = (Duration::ZERO, Worker::default());
+        Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7 }
     }
 }
 
@@ -122,6 +126,7 @@ impl Rig {
             logs: tapes.logs(),
             store: Box::new(MemoryStore::default()),
             store_time: wish.store_time,
+            worker: wish.worker,
             seed: wish.seed,
         };
         let host = runtime.block_on(async { Simulated::new(setup) });

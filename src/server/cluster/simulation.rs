@@ -36,7 +36,7 @@ use self::players::Player;
 use self::world::{Link, World, notice};
 use super::{Cluster, SharedRooms};
 use crate::rng::SplitMix64;
-use crate::server::load::Load;
+use crate::server::load::{Load, Worker};
 use crate::server::room::{Catalog, MemberId, Mode, Queue};
 use crate::server::rooms::{Logs, RoomLimits, Rooms};
 use crate::server::simulation::{HALL, catalog};
@@ -161,7 +161,7 @@ impl Host {
             standing: Vec::new(),
         };
         let metrics = Arc::<Metrics>::default();
-        let load = Arc::new(Load::simulated(Arc::clone(&metrics)));
+        let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
         let logs = Logs::new(|_| Box::<Queue>::default());
         let rooms = Rooms::new(limits, Arc::clone(catalog), logs, Arc::clone(&load), seed);
         let (bus, leases) = (world.bus(index), world.lease_worker(index));

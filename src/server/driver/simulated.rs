@@ -10,7 +10,7 @@ use super::store_worker::StoreWorker;
 use super::terminal;
 use super::visit::Visit;
 use super::{GameHost, HostParts, Shared, refuse};
-use crate::server::load::Load;
+use crate::server::load::{Load, Worker};
 use crate::server::room::{Catalog, RoomView};
 use crate::server::rooms::{Logs, Place, Rooms};
 use crate::server::session::Session;
@@ -32,6 +32,7 @@ pub(in crate::server) struct Setup {
     pub(in crate::server) store: Box<dyn HostStore>,
     /// How long the store takes for a call.
     pub(in crate::server) store_time: Duration,
+    pub(in crate::server) worker: Worker,
     pub(in crate::server) seed: u64,
 }
 
@@ -53,7 +54,7 @@ impl Simulated {
             visitors: setup.visitors,
             catalog: setup.catalog,
             logs: setup.logs,
-            load: Load::simulated(Arc::clone(&metrics)),
+            load: Load::simulated(Arc::clone(&metrics), setup.worker),
             metrics,
             store: StoreWorker::simulated(setup.store, time),
             waiting: None,

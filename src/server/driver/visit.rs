@@ -15,6 +15,8 @@ use super::requests::{Reply, replies};
 use super::terminal;
 use crate::app::Configuration;
 use crate::server::line::Line;
+#[cfg(test)]
+use crate::server::load::Work;
 use crate::server::rooms::Place;
 use crate::server::session::{HostFacts, Identity, IdleLimits, Session, SessionEvent};
 use crate::server::summary::RoomSummary;
@@ -172,7 +174,11 @@ impl Visit {
             let event = self.wait(inbound, outbox, wakes_at).await;
             let now = self.shared.now();
             match event {
-                DriverEvent::Arrived(Arrival::Bytes(bytes)) => self.session.receive(&bytes, now),
+                DriverEvent::Arrived(Arrival::Bytes(bytes)) => {
+                    self.session.receive(&bytes, now);
+                    #[cfg(test)]
+                    self.shared.load.spend(Work::Arrival(bytes.len()));
+                }
                 DriverEvent::Arrived(Arrival::Resized(size)) => self.session.resize(size, now),
                 DriverEvent::Arrived(Arrival::Drains) => self.drain(now),
                 DriverEvent::Arrived(Arrival::Ended) => return 0,
@@ -228,6 +234,8 @@ impl Visit {
         if self.session.is_due(view.as_deref(), now) {
             let session = &mut self.session;
             aside(session.is_large(), || session.draw(view.as_deref(), now));
+            #[cfg(test)]
+            self.shared.load.spend(Work::Frame);
             self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {

@@ -42,7 +42,7 @@ impl Session {
         let size = self.protocol.size();
         let size = ratatui::layout::Size::new(size.columns, size.rows);
         let mut writer = CellWriter::new(Vec::new(), size);
-        writer.set_ascii(self.visit.look.glyphs == crate::tui::GlyphMode::Ascii);
+        writer.set_ascii(self.visit.look.is_ascii());
         writer.draw_frame(|screen| self.visit.draw(screen, room));
         _ = ratatui::backend::Backend::flush(&mut writer);
         std::mem::take(writer.output_mut())

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::{Run, STEADY, hall};
+use super::{BETWEEN_KEYS, Bystander, Run, STEADY, hall};
 use crate::server::session::Session;
 use crate::server::simulation::emulator::Emulator;
 use crate::server::simulation::looks::looks;
@@ -14,6 +14,9 @@ use crate::server::simulation::{ROOM, Speaks, catalog};
 
 /// The longest time between two pictures of the steady member: three frames of thirty a second.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+
+/// The longest time from a key of the bystander to the picture that answers it.
+const LONGEST_ANSWER: Duration = Duration::from_millis(100);
 
 impl Run {
     /// Nothing has delayed the pictures of the steady member.
@@ -24,6 +27,18 @@ impl Run {
         let pauses = times.windows(2).map(|pair| pair[1] - pair[0]);
         let longest = pauses.chain([times[0] - begun]).max();
         assert!(longest <= Some(LONGEST_PAUSE), "{longest:?} without a picture");
+    }
+
+    /// Each key of the bystander was answered in time.
+    pub(super) fn assert_answered(&mut self) {
+        self.rig.pump(BETWEEN_KEYS.as_millis() as u64);
+        let Some(Bystander { client, pressed }) = &self.bystander else { return };
+        let arrivals = self.rig.clients[*client].arrivals();
+        for key in pressed {
+            let answer = arrivals.iter().find(|time| *time > key).map(|answer| *answer - *key);
+            let is_soon = answer.is_some_and(|time| time <= LONGEST_ANSWER);
+            assert!(is_soon, "a key was answered after {answer:?}");
+        }
     }
 
     /// The recordings of all rooms that are open give their states again.
@@ -99,7 +114,8 @@ impl Run {
 
     /// All leave, and no task is left but those of the host.
     pub(super) fn assert_no_task_left(mut self) {
-        for client in std::mem::take(&mut self.connected) {
+        let bystander = self.bystander.take().map(|bystander| bystander.client);
+        for client in std::mem::take(&mut self.connected).into_iter().chain(bystander) {
             self.leave(client);
         }
         self.rig.pump(100);
