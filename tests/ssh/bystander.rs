@@ -208,7 +208,7 @@ async fn send(client: Client, traffic: Traffic) {
             Traffic::Rekeys => exchange_keys(&handle).await,
             Traffic::Turns => {
                 _ = output.data(&b"\x1b[1;1:1C"[..]).await;
-                pending().await
+                pending::<()>().await;
             }
             Traffic::Offers => unreachable!("it needs no session"),
         }

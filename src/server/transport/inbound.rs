@@ -272,7 +272,7 @@ mod tests {
     async fn bytes_that_were_compressed_come_at_the_rate_of_others() {
         let (inlet, mut inbound) = inbound(LIMITS);
         let sending = async {
-            inlet.bytes(&[b'w'; 20 * (64 << 10)]).await;
+            inlet.bytes(&vec![b'w'; 20 * (64 << 10)]).await;
             inlet.end();
         };
         let taking = async { while inbound.next().await != Arrival::Ended {} };
