@@ -17,6 +17,7 @@
 use std::fmt::Write;
 
 use crate::game::RULES_VERSION;
+use crate::game::stored::MOST_COUNT;
 use crate::server::room::Entry;
 
 /// The version of the format of messages, records and checkpoints.
@@ -99,12 +100,12 @@ impl LogMessage {
 
     fn read(numbers: &str, entries: &str) -> Option<Self> {
         let mut words = numbers.split(' ');
-        let mut number = || words.next()?.parse().ok();
-        let [epoch, last, tick, steps] = [number()?, number()?, number()?, number()?];
+        let mut next = || number(words.next()?);
+        let [epoch, last, tick, steps] = [next()?, next()?, next()?, next()?];
         let check = match (words.next(), words.next(), words.next()) {
             (None, ..) => None,
             (Some(tick), Some(sum), None) => {
-                Some(Check { tick: tick.parse().ok()?, sum: u64::from_str_radix(sum, 16).ok()? })
+                Some(Check { tick: number(tick)?, sum: u64::from_str_radix(sum, 16).ok()? })
             }
             _ => return None,
         };
@@ -112,6 +113,11 @@ impl LogMessage {
         let is_possible = steps <= MOST_STEPS && entries.iter().all(|entry| entry.step < steps);
         is_possible.then_some(Self { epoch, last, tick, steps, check, entries })
     }
+}
+
+/// Reads a number of messages, steps or epochs; `None` for one that no room reaches.
+pub(super) fn number(word: &str) -> Option<u64> {
+    word.parse().ok().filter(|number| *number <= MOST_COUNT)
 }
 
 /// The versions of the format and of the rules.
@@ -149,6 +155,9 @@ mod tests {
             "3 1 1 2 9 x",
             "3 1 1 2 9 a b",
             "3 1 1 2\n5 leave 1",
+            "18446744073709551615 1 1 2",
+            "3 18446744073709551615 1 2",
+            "3 1 18446744073709551615 2",
         ] {
             assert_eq!(text(&format!("{version} {head}")), Err(Unreadable::Damaged), "{head}");
         }

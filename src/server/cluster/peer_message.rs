@@ -7,7 +7,7 @@
 //! commands
 //! claim 1 4 7
 //! join 9f3ac1 kept Mara
-//! joined 9f3ac1 7 amber
+//! joined 9f3ac1 7 red
 //! full 9f3ac1
 //! return 9f3ac2 7
 //! taken 9f3ac2
@@ -20,7 +20,7 @@
 
 use std::fmt::Write;
 
-use super::log_message::{LogMessage, Unreadable};
+use super::log_message::{self, LogMessage, Unreadable};
 use crate::game::PlayerColor;
 use crate::server::line::Line;
 use crate::server::room::{Command, Entry, MemberId, NAME_COLUMNS};
@@ -90,7 +90,7 @@ impl PeerMessage {
         let rest = bytes.get(line.len() + 1..).unwrap_or_default();
         let line = str::from_utf8(line).map_err(|_| Unreadable::Damaged)?;
         if let Some(number) = line.strip_prefix("appended ") {
-            let number = number.parse().map_err(|_| Unreadable::Damaged)?;
+            let number = log_message::number(number).ok_or(Unreadable::Damaged)?;
             return LogMessage::parse(rest).map(|message| Self::Appended(number, message));
         }
         Self::read(line, rest).ok_or(Unreadable::Damaged)
@@ -99,7 +99,7 @@ impl PeerMessage {
     fn read(line: &str, rest: &[u8]) -> Option<Self> {
         let (verb, words) = line.split_once(' ').unwrap_or((line, ""));
         let token = |word| u64::from_str_radix(word, 16).ok();
-        let member = |word: &str| word.parse().ok().map(MemberId);
+        let member = MemberId::parse;
         match verb {
             "commands" => {
                 let lines = str::from_utf8(rest).ok()?.lines().map(Entry::parse);
@@ -177,6 +177,8 @@ mod tests {
             "released 1",
             "joined 1 2",
             "claim x",
+            "claim 4294967295",
+            "appended 18446744073709551615",
             "commands\nx",
             "\n",
         ] {

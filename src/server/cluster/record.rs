@@ -14,7 +14,7 @@
 
 use std::sync::Arc;
 
-use super::log_message::version;
+use super::log_message::{number, version};
 use crate::server::line::Line;
 use crate::server::room::{Header, NAME_COLUMNS, Phase, Room};
 use crate::server::summary::{RoomId, RoomSummary};
@@ -103,7 +103,7 @@ impl Record {
         let [found, stands, running, heartbeat] = words.try_into().ok()?;
         (found == version()).then_some(())?;
         let (phase, ends) = lines.next()?.split_once(' ')?;
-        let ends = ends.parse().ok()?;
+        let ends = number(ends)?;
         let phase = match phase {
             "waiting" => Phase::Waiting,
             "countdown" => Phase::Countdown { ends },
@@ -119,7 +119,7 @@ impl Record {
         Some(Self {
             stands: stands == "standing",
             is_running: running == "running",
-            heartbeat: heartbeat.parse().ok()?,
+            heartbeat: number(heartbeat)?,
             phase,
             names: names.into(),
             level,
@@ -149,9 +149,14 @@ mod tests {
         };
         for record in [new, used] {
             let bytes = record.to_bytes();
-            assert_eq!(Record::parse(&bytes), Some(record));
+            assert_eq!(Record::parse(&bytes).as_ref(), Some(&record));
             let other = [b"0.0".as_slice(), &bytes[version().len()..]].concat();
             assert_eq!(Record::parse(&other), None);
+            let text = String::from_utf8(bytes).unwrap();
+            let beyond =
+                text.replacen(&format!(" {}\n", record.heartbeat), " 18446744073709551615\n", 1);
+            assert_ne!(beyond, text);
+            assert_eq!(Record::parse(beyond.as_bytes()), None);
         }
     }
 }

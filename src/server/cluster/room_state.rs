@@ -12,7 +12,7 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
-use super::log_message::{Check, LogMessage};
+use super::log_message::{Check, LogMessage, number};
 use crate::game::STEPS_PER_SECOND;
 use crate::game::stored::MOST_BYTES;
 use crate::server::room::{Catalog, Entry, Header, Queue, Room};
@@ -154,8 +154,8 @@ impl RoomState {
         let damaged = || "the checkpoint is damaged".to_owned();
         let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
         let head = str::from_utf8(&bytes[..end]).map_err(|_| damaged())?;
-        let numbers: Result<Vec<u64>, _> = head.split(' ').map(str::parse).collect();
-        let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+        let numbers: Option<Vec<u64>> = head.split(' ').map(number).collect();
+        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
         let mut room = Vec::new();
         let mut decoder = ZlibDecoder::new(&bytes[end + 1..]).take(MOST_BYTES as u64 + 1);
         decoder.read_to_end(&mut room).map_err(|_| damaged())?;
@@ -228,6 +228,26 @@ mod tests {
         assert_eq!(again.room().checksum(), state.room().checksum());
         for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", b"1 2\n", b"1 2 x\nabc"] {
             assert!(RoomState::restore(&catalog, damaged).is_err());
+        }
+    }
+
+    #[test]
+    fn numbers_that_no_room_reaches_are_refused() {
+        let catalog = Arc::new(Catalog::builtin());
+        let bytes = state().checkpoint();
+        let end = bytes.iter().position(|byte| *byte == b'\n').unwrap();
+        for (line, is_possible) in [
+            ("9007199254740991 9007199254740991 9007199254740991", true),
+            ("18446744073709551615 2 3", false),
+            ("4 18446744073709551615 3", false),
+            ("4 2 18446744073709551615", false),
+        ] {
+            let state = RoomState::restore(&catalog, &[line.as_bytes(), &bytes[end..]].concat());
+            assert_eq!(state.is_ok(), is_possible, "{line}");
+            if let Ok(mut state) = state {
+                let next = message(&state, state.epoch() + 1, None);
+                state.apply(Some(state.number() + 1), &next);
+            }
         }
     }
 }

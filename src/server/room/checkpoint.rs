@@ -9,9 +9,9 @@
 
 use std::sync::Arc;
 
-use super::entry::{CHAT_COLUMNS, NAME_COLUMNS};
+use super::entry::{CHAT_COLUMNS, MemberId, NAME_COLUMNS};
 use super::member::Member;
-use super::presence::{AWAY, KeptPlace};
+use super::presence::KeptPlace;
 use super::replayed::no_level;
 use super::talk::SAID;
 use super::{Catalog, Header, Room, Said};
@@ -114,7 +114,7 @@ impl Room {
         self.said = Stored::read(input)?;
         self.said_count = Stored::read(input)?;
         self.step = Stored::read(input)?;
-        self.next_member = Stored::read(input)?;
+        self.next_member = input.number_to(u64::from(MemberId::MOST.0) + 1)? as u32;
         self.round.read_over(input)?;
         self.members = input.list(self.header.mode.most())?;
         self.again = Stored::read(input)?;
@@ -149,15 +149,11 @@ impl Room {
             let name = Line::of(member.name.as_str(), NAME_COLUMNS);
             self.members[..index].iter().all(is_other)
                 && name.as_ref() == Some(&member.name)
-                && is_kept_possibly(member.kept)
+                && member.id < self.next_member()
+                && member.kept.is_none_or(KeptPlace::is_possible)
                 && (member.player.is_none() || color(member) == Some(member.color))
         })
     }
-}
-
-/// Whether such a place may be kept: nobody has more time to return than those who have just gone.
-fn is_kept_possibly(kept: Option<KeptPlace>) -> bool {
-    kept.and_then(|kept| kept.away).is_none_or(|left| (1..=AWAY).contains(&left))
 }
 
 fn read_header(input: &mut Reader) -> Result<Header, Unrestorable> {

@@ -3,7 +3,7 @@
 //! An entry is a line of text:
 //!
 //! ```text
-//! 0 join 1 amber Mara
+//! 0 join 1 red Mara
 //! 12 want 1 9 forward run turn:1.5
 //! 40 say 1 behind you
 //! 41 emote 1 wave
@@ -28,13 +28,28 @@ use crate::server::line::Line;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct MemberId(pub(in crate::server) u32);
 
+impl MemberId {
+    /// The greatest number, which a room that somebody joins each second reaches in 68 years.
+    pub(in crate::server) const MOST: Self = Self(i32::MAX as u32);
+
+    /// Reads a number; `None` for one that no room reaches.
+    pub(in crate::server) fn parse(word: &str) -> Option<Self> {
+        word.parse().ok().map(Self).filter(|id| *id <= Self::MOST)
+    }
+
+    /// Reads the number of the next member who joins, which may be one more.
+    pub(super) fn parse_next(word: &str) -> Option<u32> {
+        word.parse().ok().filter(|next| *next <= Self::MOST.0 + 1)
+    }
+}
+
 impl Stored for MemberId {
     fn write(&self, out: &mut Writer) {
         self.0.write(out);
     }
 
     fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        Ok(Self(Stored::read(input)?))
+        Ok(Self(input.number_to(Self::MOST.0.into())? as u32))
     }
 }
 
@@ -179,7 +194,7 @@ impl Entry {
             "emote" => Command::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
             _ => return None,
         };
-        Some(Self { step: step.parse().ok()?, member: MemberId(member.parse().ok()?), command })
+        Some(Self { step: step.parse().ok()?, member: MemberId::parse(member)?, command })
     }
 }
 
@@ -214,7 +229,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_reads_as_the_same(step: u64, member: u32, command in command()) {
+        fn what_is_written_reads_as_the_same(
+            step: u64,
+            member in 0..=MemberId::MOST.0,
+            command in command(),
+        ) {
             let entry = Entry { step, member: MemberId(member), command };
             prop_assert_eq!(Entry::parse(&entry.to_string()), Some(entry));
         }
@@ -235,6 +254,7 @@ mod tests {
             "x leave 1",
             "0 want 1 2 fly",
             "0 away 1 x",
+            "0 leave 2147483648",
         ] {
             assert_eq!(Entry::parse(line), None, "{line}");
         }

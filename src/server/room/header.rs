@@ -7,7 +7,7 @@
 //! difficulty normal
 //! seed 77
 //! round 3
-//! member 1 amber 250 Mara
+//! member 1 red 250 Mara
 //! kept 1 9f3ac1 1200
 //! ```
 //!
@@ -88,8 +88,19 @@ impl Header {
             }
         }
         let (seed, round) = (seed.parse().ok()?, round.parse().ok()?);
-        let next_member = next_member.parse().ok()?;
-        Some(Self { level, mode, difficulty, seed, round, next_member, members })
+        let next_member = MemberId::parse_next(next_member)?;
+        let header = Self { level, mode, difficulty, seed, round, next_member, members };
+        header.is_possible().then_some(header)
+    }
+
+    /// Whether each member has a number of their own, which was given before.
+    fn is_possible(&self) -> bool {
+        let is_possible = |(index, seat): (usize, &Seat)| {
+            seat.id.0 < self.next_member
+                && self.members[..index].iter().all(|other| other.id != seat.id)
+                && seat.kept.is_none_or(KeptPlace::is_possible)
+        };
+        self.members.len() <= self.mode.most() && self.members.iter().enumerate().all(is_possible)
     }
 }
 
@@ -106,7 +117,7 @@ impl fmt::Display for Header {
 impl Seat {
     fn parse(line: &str) -> Option<Self> {
         let mut words = line.strip_prefix("member ")?.splitn(4, ' ');
-        let id = MemberId(words.next()?.parse().ok()?);
+        let id = MemberId::parse(words.next()?)?;
         let color = words.next()?;
         let color = PlayerColor::ALL.into_iter().find(|it| it.name() == color)?;
         let points = words.next()?.parse().ok()?;
@@ -135,7 +146,7 @@ fn write_kept(f: &mut fmt::Formatter<'_>, seat: &Seat) -> fmt::Result {
 /// Reads such a line after its first word.
 fn read_kept(members: &mut [Seat], words: &str) -> Option<()> {
     let mut words = words.split(' ');
-    let id = MemberId(words.next()?.parse().ok()?);
+    let id = MemberId::parse(words.next()?)?;
     let token = u64::from_str_radix(words.next()?, 16).ok()?;
     let away = match words.next() {
         Some(left) => Some(left.parse().ok()?),
@@ -170,5 +181,22 @@ mod tests {
         let text = header.to_string();
         assert_eq!(Header::parse(text.lines()), Some(header));
         assert_eq!(Header::parse(text.lines().skip(1)), None);
+    }
+
+    #[test]
+    fn what_no_room_reaches_is_no_header() {
+        let read = |next: &str, rest: &str| {
+            let text = format!(
+                "{FIRST_LINE}\nlevel museum\nmode tag\ndifficulty hard\nseed 1\nround 1\nnext {next}\n{rest}"
+            );
+            Header::parse(text.lines())
+        };
+        assert!(read("2147483648", "member 2147483647 red 0 Mara").is_some());
+        assert_eq!(read("2147483649", ""), None);
+        assert_eq!(read("7", "member 7 red 0 Mara"), None);
+        assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
+        assert_eq!(read("7", "member 3 red 0 Mara\nkept 3 1 3601"), None);
+        let many: String = (1..=99).map(|id| format!("member {id} red 0 Mara\n")).collect();
+        assert_eq!(read("100", &many), None);
     }
 }

@@ -27,6 +27,13 @@ pub(crate) struct KeptPlace {
     pub(crate) away: Option<u64>,
 }
 
+impl KeptPlace {
+    /// Whether such a place may be kept: nobody has more time to return than those who have just gone.
+    pub(super) fn is_possible(self) -> bool {
+        self.away.is_none_or(|left| (1..=AWAY).contains(&left))
+    }
+}
+
 impl Stored for KeptPlace {
     fn write(&self, out: &mut Writer) {
         // A token may be greater than any count.

@@ -226,6 +226,9 @@ impl Waiting {
         let worn = |color: &PlayerColor| self.seats.iter().filter(|it| it.color == *color).count();
         let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(JoinRefusal::Full)?;
         let id = MemberId(self.next);
+        if id > MemberId::MOST {
+            return Err(JoinRefusal::Full);
+        }
         self.next += 1;
         self.moves.push_back((id, Command::Join { color, name: name.clone() }));
         self.seat(id, color);

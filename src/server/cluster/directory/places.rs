@@ -35,7 +35,7 @@ impl SharedRooms {
     pub(in crate::server) async fn place_of(&self, key: AccountKey) -> Option<(RoomId, MemberId)> {
         let bytes = self.0.context.bus.get(Key::Place(key)).await.ok()??;
         let (id, member) = str::from_utf8(&bytes).ok()?.split_once(' ')?;
-        Some((RoomId(id.parse().ok()?), MemberId(member.parse().ok()?)))
+        Some((RoomId(id.parse().ok()?), MemberId::parse(member)?))
     }
 
     /// Takes a player back to the room and the member.

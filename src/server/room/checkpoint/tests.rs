@@ -199,6 +199,20 @@ proptest! {
 }
 
 #[test]
+fn members_whom_no_room_has_had_are_refused() {
+    let (catalog, bytes) = busy(Mode::Tag, 7);
+    let room = Room::restore(&catalog, &bytes).unwrap();
+    let is_restored = |next_member, id| {
+        let mut room = room.clone();
+        (room.next_member, room.members[0].id) = (next_member, MemberId(id));
+        Room::restore(&catalog, &room.checkpoint()).is_ok()
+    };
+    assert!(is_restored(MemberId::MOST.0 + 1, MemberId::MOST.0));
+    assert!(!is_restored(u32::MAX, 1_000_000));
+    assert!(!is_restored(1_000_000, 1_000_000));
+}
+
+#[test]
 fn a_checkpoint_of_another_version_or_of_an_unknown_level_is_refused_with_a_sentence() {
     let (catalog, bytes) = busy(Mode::Tag, 7);
     let refused = |catalog: &Arc<Catalog>, bytes: &[u8]| Room::restore(catalog, bytes).unwrap_err();
