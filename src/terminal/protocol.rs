@@ -74,6 +74,8 @@ pub struct Protocol {
     drawn: Option<Drawn>,
     extensions: Extensions,
     changes: Changes,
+    /// Whether the terminal is given back, so that no report is switched on any more.
+    is_ending: bool,
     /// The number of frames that were sent before the keyboard flags were pushed.
     frames_before_key_flags: u64,
 }
@@ -128,6 +130,7 @@ impl Protocol {
             drawn: None,
             extensions: Extensions::default(),
             changes: Changes::default(),
+            is_ending: false,
             frames_before_key_flags: 0,
         }
     }
@@ -165,6 +168,7 @@ impl Protocol {
 
     fn take_screen(&mut self) {
         let mut text = String::new();
+        self.is_ending = false;
         self.changes.push_start(&mut text);
         self.frames_before_key_flags = self.flow.frames_sent();
         self.confirm_key_flags();
@@ -188,6 +192,7 @@ impl Protocol {
     pub fn end(&mut self, now: Duration) {
         let text = self.changes.end(now);
         self.output.extend_from_slice(text.as_bytes());
+        self.is_ending = true;
     }
 
     /// Whether nothing is expected from the terminal after [`Protocol::end`] any more.

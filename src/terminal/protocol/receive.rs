@@ -52,7 +52,7 @@ impl Protocol {
     /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
     /// terminal can report them.
     pub fn set_mouse(&mut self, is_reported: bool) {
-        if self.mouse.units.is_some() != is_reported {
+        if self.mouse.units.is_some() != is_reported && !self.is_ending {
             self.mouse.units = is_reported.then(|| self.mouse_units());
             self.mouse.is_changing = false;
             self.send_mouse_units();
@@ -150,7 +150,7 @@ impl Protocol {
     /// If the mouse is reported, switches to the finest unit that is available.
     fn update_mouse_units(&mut self, now: Duration) {
         let finest = self.mouse_units();
-        if self.mouse.units.is_none_or(|units| units == finest) {
+        if self.mouse.units.is_none_or(|units| units == finest) || self.is_ending {
             return;
         }
         self.mouse.units = Some(finest);
@@ -169,6 +169,7 @@ impl Protocol {
     fn settle_key_releases(&mut self, agreed: bool) {
         if self.key_releases == KeyReleases::Asked {
             self.key_releases = KeyReleases::Settled;
+            let agreed = agreed && !self.is_ending;
             if agreed {
                 self.changes.reports.key_flags = KeyFlags::Pushed;
                 self.frames_before_key_flags = self.flow.frames_sent();

@@ -50,6 +50,22 @@ fn what_is_taken_is_given_back() {
     assert_eq!(sent(&mut protocol, now), "\x1b[?1049l");
 }
 
+#[test]
+fn answers_after_the_end_change_nothing() {
+    let now = Duration::from_millis(20);
+    let size = WindowSize::new((80, 24), (800, 600));
+    let mut protocol = Protocol::new(options("xterm-kitty"), size);
+    protocol.begin(Duration::ZERO);
+    protocol.set_mouse(true);
+    sent(&mut protocol, now);
+    protocol.end(now);
+    sent(&mut protocol, now);
+    protocol.receive(b"\x1b[?0u\x1b[?1016;2$y\x1b[0n\x1b[?62;22c", now);
+    protocol.set_mouse(false);
+    protocol.set_mouse(true);
+    assert_eq!(sent(&mut protocol, now), "");
+}
+
 /// A pop without its push would take the flags of another program.
 #[test]
 fn keyboard_flags_are_popped_after_a_loss_only_if_they_were_received() {
