@@ -19,6 +19,7 @@ mod key;
 mod printable;
 
 use std::fmt;
+use std::sync::LazyLock;
 
 use unicode_normalization::UnicodeNormalization;
 use unicode_script::{Script, UnicodeScript};
@@ -143,11 +144,12 @@ impl Name {
     /// Whether only the host can have it: it looks like `guest`, begins like that, or is a word for the
     /// host or for nobody.
     fn is_reserved(&self) -> bool {
-        let keys = self.keys();
-        let is_guest =
-            |key: &str| key::of(GUEST).iter().any(|guest| key.starts_with(guest.as_str()));
-        keys.iter().any(|key| is_guest(key))
-            || RESERVED.iter().any(|word| key::of(word).iter().any(|key| keys.contains(key)))
+        // Made once: that takes some thirty times as long as the keys of one name.
+        static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| key::of(GUEST));
+        static WORDS: LazyLock<Vec<String>> =
+            LazyLock::new(|| RESERVED.iter().flat_map(|word| key::of(word)).collect());
+        let is_guest = |key: &String| GUESTS.iter().any(|guest| key.starts_with(guest.as_str()));
+        self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
     }
 
     /// The keys of the name: two names that share one are not told from each other.
