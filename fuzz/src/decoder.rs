@@ -2,7 +2,8 @@
 //!
 //! The first two bytes choose the terminal and where the stream is cut, the others are the stream.
 //!
-//! - Events and answers do not depend on where the stream is cut. Memory is bounded by its length.
+//! - Events and answers do not depend on where the stream is cut. Their number, the memory that is held and all that is
+//!   allocated are bounded by its length.
 //! - After any stream and a pause, a key is a key.
 //! - Among frames, changes of the window and an emulator's own answers, the protocol gives the terminal
 //!   back as it was.
@@ -24,6 +25,10 @@ const TERMS: [&str; 8] =
 const PAUSE: Duration = Duration::from_secs(20);
 /// The most parts that a stream is cut into.
 const MOST_PARTS: usize = 64;
+/// The bytes that are allocated for a byte that arrives alone, with what answers it.
+const BYTES_OF_A_BYTE: u64 = 4 << 10;
+/// The events that no byte causes, such as the first size of the window.
+const FIRST_EVENTS: usize = 4;
 
 /// Receives the stream whole, in parts, and among frames.
 pub fn run(data: &[u8]) {
@@ -65,11 +70,14 @@ fn received<'a>(kind: u8, parts: impl IntoIterator<Item = &'a [u8]>) -> (Vec<Eve
         }
     });
     let most = 64 * 1024 + 512 * length as u64;
-    assert!(used.bytes_max <= most, "{} bytes for {length}", used.bytes_max);
+    assert!(used.bytes_max <= most, "{} bytes at once for {length}", used.bytes_max);
+    let most = 64 * 1024 + BYTES_OF_A_BYTE * length as u64;
+    assert!(used.bytes_total <= most, "{} bytes for {length}", used.bytes_total);
     let mut output = take_output(&mut protocol, Duration::ZERO);
     protocol.wake(PAUSE);
     output.extend(take_output(&mut protocol, PAUSE));
     let mut events: Vec<Event> = std::iter::from_fn(|| protocol.next_event()).collect();
+    assert!(events.len() <= length + FIRST_EVENTS, "{} events for {length} bytes", events.len());
     protocol.receive(b"w", PAUSE);
     let key = KeyEvent {
         key: Key::Char('w'),
@@ -167,8 +175,7 @@ impl Conversation {
         assert!(self.protocol.has_ended(self.now), "the end does not come");
         self.protocol.finish();
         self.send();
-        let modes = self.terminal.modes();
-        assert_eq!(modes, Alacritty::new(40, 10).modes(), "modes are left");
+        assert_eq!(self.terminal.modes(), Alacritty::new(1, 1).modes(), "modes are left");
         assert_eq!(self.terminal.entries_defined(), std::collections::BTreeSet::new());
     }
 }

@@ -5,16 +5,16 @@
 //! - A damaged file of progress is read as far as it can be, is kept, and does not hinder a record.
 
 use std::fs;
-use std::path::PathBuf;
 
 use cellcaster::app::Configuration;
 use cellcaster::game::{Game, Script};
 use cellcaster::map::builtin;
-use cellcaster::store::{Preferences, Slot, Store};
+use cellcaster::store::{Preferences, Store};
 use cellcaster::terminal::{Fidelity, Key};
 use cellcaster::world::Difficulty;
 
 use crate::faults::check_faults;
+use crate::folder::Folder;
 
 /// The most steps of a script that are played.
 const MOST_STEPS: usize = 300;
@@ -73,31 +73,10 @@ fn names(text: &str) {
     }
 }
 
-/// A folder in memory if there is one, which is removed.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        let memory = PathBuf::from("/dev/shm");
-        let parent = if memory.is_dir() { memory } else { std::env::temp_dir() };
-        let folder = parent.join(format!("cellcaster-fuzz-{}", std::process::id()));
-        _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).expect("a folder for temporary files");
-        Self(folder)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn progress(content: &[u8]) {
     let folder = Folder::new();
-    let file = folder.0.join("progress.toml");
-    fs::write(&file, content).expect("a full disk");
-    let (mut store, sentence) = Store::open(&folder.0);
+    let file = folder.write("progress.toml", content);
+    let (mut store, sentence) = Store::open(folder.path());
     let seen = look_at(&store);
     let is_newer = sentence.as_deref().is_some_and(|it| it.contains("newer"));
     let preferences = Preferences { compass: !store.preferences().compass, ..store.preferences() };
@@ -110,7 +89,7 @@ fn progress(content: &[u8]) {
     }
     assert_eq!(store.trouble().filter(|it| !it.contains("damaged")), None);
     // Everything that was read is still there, and nothing is damaged any more.
-    let (again, sentence) = Store::open(&folder.0);
+    let (again, sentence) = Store::open(folder.path());
     assert_eq!(sentence, None, "damaged again:\n{}", fs::read_to_string(&file).unwrap_or_default());
     assert_eq!(again.preferences(), preferences);
     assert_eq!(look_at(&again), Seen { had_daily: true, ..seen });
@@ -131,8 +110,8 @@ fn look_at(store: &Store) -> Seen {
     let bests = difficulties
         .iter()
         .flat_map(|&it| store.won(it).map(move |level| format!("{:?}", store.best(level, it))));
-    for slot in [Slot::Level, Slot::Descent] {
-        _ = store.saved(slot);
+    for save in store.saves() {
+        _ = store.saved(save.id());
     }
     Seen {
         won: won.collect(),

@@ -16,7 +16,7 @@ mod client;
 mod merging;
 mod operator;
 #[cfg(unix)]
-mod socket;
+pub(super) mod socket;
 
 use serde::{Deserialize, Serialize};
 

@@ -22,6 +22,8 @@
 
 mod bus;
 mod directory;
+#[cfg(fuzzing)]
+pub(super) mod fuzzing;
 mod lease_worker;
 mod log_message;
 mod nats;

@@ -1,12 +1,15 @@
-//! A room and the sessions of its visitors without connections and tasks, for a fuzz target outside of the
-//! crate. It is compiled with `--cfg fuzzing` only.
+//! Parts of the server without connections and tasks, for fuzz targets outside of the crate. It is compiled with
+//! `--cfg fuzzing` only.
 
+mod desk;
 mod resumed;
 
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
+pub use self::desk::Desk;
 pub use self::resumed::{CHECKPOINTS, checkpoint, resume};
+pub use super::cluster::fuzzing::SharedRoom;
 use super::line::Line;
 use super::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue,
@@ -14,8 +17,10 @@ use super::room::{
 };
 use super::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
 use super::summary::{RoomId, RoomSummary};
+pub use super::transport::fuzzing::serve;
 use crate::app::Configuration;
 use crate::game::PlayerColor;
+use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
 use crate::store::Preferences;
 use crate::store::host::AccountSettings;
@@ -56,7 +61,17 @@ impl Hall {
             catalog.names().iter().filter(|name| catalog.suits(name, mode)).collect();
         let level = suited[rng.below(suited.len())];
         let difficulty = [Difficulty::Easy, Difficulty::Normal, Difficulty::Hard][rng.below(3)];
-        let header = Header::new(level, mode, difficulty, rng.bits());
+        Self::of(Header::new(level, mode, difficulty, rng.bits()))
+    }
+
+    /// A room of the first level.
+    pub fn small(seed: u64) -> Self {
+        let mode = Mode::ALL[seed as usize % Mode::ALL.len()];
+        Self::of(Header::new(LEVELS[0].name, mode, Difficulty::Normal, seed))
+    }
+
+    fn of(header: Header) -> Self {
+        let catalog = Arc::clone(&CATALOG);
         let mut log = Recorded::new(Queue::default(), Vec::new());
         log.begin(&header).expect("it is in memory");
         let room = Room::new(&catalog, header).expect("the catalog has the level");
@@ -91,6 +106,11 @@ impl Hall {
     pub fn receive(&mut self, visitor: usize, bytes: &[u8]) {
         self.visitors[visitor].session.receive(bytes, self.now);
         self.answer(visitor);
+    }
+
+    /// As [`receive`](Self::receive), but what the session asks for waits for the next output.
+    pub fn press(&mut self, visitor: usize, bytes: &[u8]) {
+        self.visitors[visitor].session.receive(bytes, self.now);
     }
 
     /// A visitor's window changes its size.

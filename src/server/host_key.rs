@@ -49,6 +49,12 @@ impl HostKey {
         self.key.fingerprint(HashAlg::Sha256).to_string()
     }
 
+    /// The key of a seed that everybody knows.
+    #[cfg(fuzzing)]
+    pub(super) fn of_seed(seed: [u8; 32]) -> Self {
+        Self { key: PrivateKey::from(Ed25519Keypair::from_seed(&seed)) }
+    }
+
     pub(super) fn private_key(&self) -> PrivateKey {
         self.key.clone()
     }

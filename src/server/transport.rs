@@ -3,6 +3,8 @@
 mod client;
 mod connection;
 mod explanation;
+#[cfg(fuzzing)]
+pub(super) mod fuzzing;
 mod handler;
 mod hello;
 mod inbound;
@@ -187,6 +189,8 @@ impl Server {
                 accepted = listener.accept() => match accepted {
                     Ok((socket, peer)) => match gate.admit(&shared, peer) {
                         Ok(entry) => {
+                            // Frames are small, and whole when they are written.
+                            _ = socket.set_nodelay(true);
                             let (shared, host) = (shared.clone(), host.clone());
                             tasks.spawn(async move {
                                 let visit = entry.visit;

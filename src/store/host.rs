@@ -50,6 +50,9 @@ pub use presence::{
 };
 pub use rate::{AccountRate, Origin};
 pub use score::{DailyScore, DailyTry, LevelBoard, LevelScore};
+#[cfg(fuzzing)]
+#[doc(hidden)]
+pub use sqlite::ColumnValue;
 pub use sqlite::SqliteStore;
 pub use time::{Day, UnixTime};
 pub use verify::{

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use std::{fs, os};
 
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
 use tokio::sync::Semaphore;
 use tokio::task::JoinSet;
@@ -79,7 +79,15 @@ async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()>
     if user != 0 && user != rustix::process::geteuid().as_raw() {
         return Ok(());
     }
-    let reply = match request(&mut stream).await?.as_deref().map(serde_json::from_slice) {
+    answer(&mut stream, operator).await
+}
+
+/// Answers the one request of a connection.
+pub(in crate::server) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result<()>
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let reply = match request(stream).await?.as_deref().map(serde_json::from_slice) {
         Some(Ok(request)) => operator.answer(&request).await,
         Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
         None => AdminReply::Fault(format!("a request is a line of at most {MOST_REQUEST} bytes")),
@@ -90,7 +98,7 @@ async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()>
 }
 
 /// The first line; `None` if it is too long or has no end.
-async fn request(stream: &mut UnixStream) -> io::Result<Option<Vec<u8>>> {
+async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     let mut buffer = [0; 1024];
     while bytes.len() < MOST_REQUEST {

@@ -13,7 +13,7 @@ use russh::server::{self, Handle};
 use russh::{
     Disconnect, Error, MethodKind, MethodSet, Preferred, SshId, cipher, compression, kex, mac,
 };
-use tokio::net::TcpStream;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
@@ -89,13 +89,11 @@ impl Shared {
 pub(super) async fn serve<H: Host>(
     shared: Arc<Shared>,
     host: Arc<H>,
-    socket: TcpStream,
+    socket: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
     peer: SocketAddr,
     Entry { visit, displaced }: Entry,
 ) {
     let _open = Counted::new(&shared.counters.connections);
-    // Frames are small, and whole when they are written.
-    _ = socket.set_nodelay(true);
     let config = shared.config.get();
     let limits =
         ByteLimits { before_login: config.login_bytes, per_second: config.bytes_per_second };
@@ -281,7 +279,8 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
 /// Algorithms and limits. Groups of Diffie-Hellman are not offered: the largest cost a tenth of a
 /// second of processor time before authentication. Neither is `zlib`, which compresses before
 /// authentication; `none` comes first in no client that is asked to compress. RSA keys are named so
-/// that clients offer them, and their users can be told why they are guests.
+/// that clients offer them, and their users can be told why they are guests. A fuzz target cannot encrypt, so
+/// there the client may choose the null transport.
 fn ssh_config(key: &HostKey) -> server::Config {
     const KEX: &[kex::Name] = &[
         kex::MLKEM768X25519_SHA256,
@@ -289,6 +288,8 @@ fn ssh_config(key: &HostKey) -> server::Config {
         kex::CURVE25519_PRE_RFC_8731,
         kex::EXTENSION_SUPPORT_AS_SERVER,
         kex::EXTENSION_OPENSSH_STRICT_KEX_AS_SERVER,
+        #[cfg(fuzzing)]
+        kex::NONE,
     ];
     const KEYS: &[Algorithm] = &[
         Algorithm::Ed25519,
@@ -300,9 +301,21 @@ fn ssh_config(key: &HostKey) -> server::Config {
         Algorithm::Rsa { hash: Some(HashAlg::Sha512) },
         Algorithm::Rsa { hash: Some(HashAlg::Sha256) },
     ];
-    const CIPHERS: &[cipher::Name] =
-        &[cipher::CHACHA20_POLY1305, cipher::AES_256_GCM, cipher::AES_256_CTR, cipher::AES_128_CTR];
-    const MACS: &[mac::Name] = &[mac::HMAC_SHA256_ETM, mac::HMAC_SHA512_ETM, mac::HMAC_SHA256];
+    const CIPHERS: &[cipher::Name] = &[
+        cipher::CHACHA20_POLY1305,
+        cipher::AES_256_GCM,
+        cipher::AES_256_CTR,
+        cipher::AES_128_CTR,
+        #[cfg(fuzzing)]
+        cipher::NONE,
+    ];
+    const MACS: &[mac::Name] = &[
+        mac::HMAC_SHA256_ETM,
+        mac::HMAC_SHA512_ETM,
+        mac::HMAC_SHA256,
+        #[cfg(fuzzing)]
+        mac::NONE,
+    ];
     const COMPRESSION: &[compression::Name] = &[compression::NONE, compression::ZLIB_LEGACY];
     let methods = [MethodKind::PublicKey, MethodKind::KeyboardInteractive];
     server::Config {

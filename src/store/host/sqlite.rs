@@ -27,6 +27,9 @@ use std::path::Path;
 use rusqlite::types::{ToSqlOutput, Value as SqliteValue, ValueRef};
 use rusqlite::{Connection, ErrorCode, ToSql, TransactionBehavior, params_from_iter};
 
+#[cfg(fuzzing)]
+pub use rusqlite::types::Value as ColumnValue;
+
 use super::StoreFailure;
 use super::sql::{Database, Row, SqlStore, Statements, Value};
 
@@ -161,5 +164,39 @@ impl SqliteStore {
         connection.execute_batch("PRAGMA foreign_keys = ON").unwrap();
         schema::migrate(&mut connection, schema::MIGRATIONS).unwrap();
         Self { database: SqliteFile { connection } }
+    }
+}
+
+#[cfg(fuzzing)]
+impl SqliteStore {
+    /// Removes all rows.
+    ///
+    /// # Panics
+    /// Without memory for it.
+    #[doc(hidden)]
+    pub fn clear(&mut self) {
+        let tables = schema::TABLES.iter().rev().map(|(table, _)| *table);
+        for table in tables.chain(["sqlite_sequence"]) {
+            let sql = format!("DELETE FROM {table}");
+            self.database.connection.execute_batch(&sql).unwrap();
+        }
+    }
+
+    /// Puts a row into the table with that number, whatever refers to what. Returns whether the table takes it.
+    ///
+    /// # Panics
+    /// If the database does not stop to look at references.
+    #[doc(hidden)]
+    pub fn put(&mut self, table: usize, values: &[ColumnValue]) -> bool {
+        let connection = &self.database.connection;
+        let open = "PRAGMA foreign_keys = OFF; PRAGMA ignore_check_constraints = ON";
+        connection.execute_batch(open).unwrap();
+        let (table, columns) = schema::TABLES[table % schema::TABLES.len()];
+        let count = columns.split(", ").count();
+        let parameters: Vec<String> = (1..=count).map(|number| format!("?{number}")).collect();
+        let parameters = parameters.join(", ");
+        let sql = format!("INSERT OR REPLACE INTO {table} ({columns}) VALUES ({parameters})");
+        let values = values.iter().chain(std::iter::repeat(&ColumnValue::Null)).take(count);
+        connection.execute(&sql, params_from_iter(values)).is_ok()
     }
 }

@@ -1,0 +1,53 @@
+//! What the hosts of a cluster tell each other of a room: messages of its log, broadcasts, records, and the first
+//! line of a checkpoint.
+//!
+//! The first byte says where the room comes from: a mode, a record, or a checkpoint; then parts follow, each behind a
+//! byte for its kind and one for a number, and up to the next byte 0. What reads as a message is written as bytes that
+//! read as the same, and no message ends a host.
+
+use allocation_counter::measure;
+use cellcaster::server::fuzzing::SharedRoom;
+
+/// Ends a part.
+const END: u8 = 0;
+const MOST_PARTS: usize = 32;
+/// The most steps of a message, and of all of them.
+const MOST_STEPS: u64 = 60;
+/// The most bytes that are allocated for a step, as long as nobody draws.
+const BYTES_OF_A_STEP: u64 = 64 << 10;
+/// The most bytes that are allocated for a byte of a message.
+const BYTES_OF_A_BYTE: u64 = 256;
+
+/// Lets a host hear all parts.
+pub fn run(data: &[u8]) {
+    let Some((&from, rest)) = data.split_first() else { return };
+    let mut parts = rest.split(|&byte| byte == END);
+    let first = || parts.next().unwrap_or_default();
+    let Some(mut room) = begun(from, first) else { return };
+    let mut steps = 0;
+    for part in parts.take(MOST_PARTS) {
+        let Some(([kind, number], text)) = part.split_first_chunk() else { continue };
+        let count = u64::from(*number).min(MOST_STEPS);
+        steps += count;
+        if steps > MOST_STEPS {
+            break;
+        }
+        let used = measure(|| match kind % 4 {
+            0 => room.follow(count, &String::from_utf8_lossy(text)),
+            1 => room.hear(text),
+            2 => room.lead(count),
+            _ => room.read(text),
+        });
+        let most = 64 * 1024 + BYTES_OF_A_STEP * count + BYTES_OF_A_BYTE * text.len() as u64;
+        assert!(used.bytes_total <= most || kind % 4 == 3, "{} bytes", used.bytes_total);
+        room = room.put();
+    }
+}
+
+fn begun<'a>(from: u8, mut part: impl FnMut() -> &'a [u8]) -> Option<SharedRoom> {
+    match from % 8 {
+        6 => SharedRoom::of_record(part()),
+        7 => SharedRoom::new((from / 8).into()).restored(part()).ok(),
+        mode => Some(SharedRoom::new(mode.into())),
+    }
+}

@@ -1,0 +1,19 @@
+//! A recorded room: it is played again or refused, twice the same. The bytes that are allocated for it are bounded: a
+//! round has a game of its own and at most 1,200 steps, and a header takes a hundred bytes.
+
+use allocation_counter::measure;
+use cellcaster::server::fuzzing::Hall;
+
+/// For the first round, and for each byte.
+const BYTES_OF_A_ROUND: u64 = 16 << 20;
+const BYTES_OF_A_BYTE: u64 = 160 << 10;
+
+/// Plays a recording twice.
+pub fn run(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let mut played = None;
+    let used = measure(|| played = Some(Hall::replayed(&text)));
+    let most = BYTES_OF_A_ROUND + BYTES_OF_A_BYTE * data.len() as u64;
+    assert!(used.bytes_total <= most, "{} bytes for {}", used.bytes_total, data.len());
+    assert_eq!(Some(Hall::replayed(&text)), played);
+}

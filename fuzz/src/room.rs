@@ -1,0 +1,142 @@
+//! A room and its visitors: their terminals send anything, and the log of the round gives the room, bit for bit. A
+//! session ends only after it has given its terminal back.
+
+use cellcaster::server::fuzzing::Hall;
+use cellcaster::terminal::{Options, WindowSize};
+
+use crate::alacritty::Alacritty;
+use crate::bytes::Bytes;
+
+const MOST_VISITORS: usize = 4;
+const MOST_OPERATIONS: usize = 200;
+/// The most steps of a round that is played again.
+const MOST_STEPS: u64 = 1200;
+/// Bytes that a visitor sends.
+const KEYS: [&str; 24] = [
+    "\r",
+    "\x1b",
+    "\x1b[A",
+    "\x1b[B",
+    "\x1b[C",
+    "\x1b[D",
+    "w",
+    "a",
+    "s",
+    "d",
+    " ",
+    "t",
+    "hi\r",
+    "/leave\r",
+    "\t",
+    "q",
+    "?",
+    "\x1b[<35;3;4M",
+    "\x1b[119;1:3u",
+    "\x1b[119;1:1u",
+    "\x03",
+    "\x1b[I",
+    "\x7f",
+    "m",
+];
+
+/// A visitor's terminal; `None` for one that does not read.
+struct Terminal {
+    screen: Alacritty,
+    answers: Vec<u8>,
+    is_honest: bool,
+}
+
+/// Lets visitors come and do things.
+pub fn run(data: &[u8]) {
+    let mut choices = Bytes::new(data);
+    let choices = &mut choices;
+    let mut hall = Hall::new(choices.double_word().into());
+    let mut terminals: Vec<Terminal> = Vec::new();
+    for _ in 0..MOST_OPERATIONS {
+        if choices.is_empty() || hall.steps() > MOST_STEPS {
+            break;
+        }
+        let what = choices.below(16);
+        if terminals.is_empty() || what == 0 && terminals.len() < MOST_VISITORS {
+            terminals.push(arrive(&mut hall, choices));
+        }
+        let visitor = choices.below(terminals.len());
+        let terminal = &mut terminals[visitor];
+        show(&mut hall, visitor, terminal);
+        if hall.is_over(visitor) {
+            // Nothing more arrives from there.
+            continue;
+        }
+        match what {
+            0..8 => hall.receive(visitor, choices.pick(&KEYS).as_bytes()),
+            8 => {
+                let count = choices.below(24);
+                hall.receive(visitor, choices.take(count));
+            }
+            9 => {
+                let size = size(choices);
+                terminal.screen.resize(size.columns.max(1), size.rows.max(1));
+                hall.resize(visitor, size);
+            }
+            10 => hall.notify(visitor, choices.byte().into()),
+            11 => hall.pass(choices.byte().into()),
+            _ => {
+                let answers = std::mem::take(&mut terminal.answers);
+                hall.receive(visitor, &answers);
+                hall.pass(1);
+            }
+        }
+        show(&mut hall, visitor, &mut terminals[visitor]);
+    }
+    hall.pass(1);
+    check_recording(&hall);
+}
+
+fn arrive(hall: &mut Hall, choices: &mut Bytes) -> Terminal {
+    let kind = choices.byte();
+    let options = Options::from_environment(|name| match name {
+        "TERM" => {
+            Some(["xterm-256color", "linux", "tmux", "dumb"][usize::from(kind & 3)].to_owned())
+        }
+        "SSH_CONNECTION" => Some("a far one".to_owned()),
+        "COLORTERM" if kind >> 2 & 1 == 1 => Some("truecolor".to_owned()),
+        _ => None,
+    });
+    let size = size(choices);
+    hall.arrive(
+        ["Ada", "Bo", "字", "a name of a guest"][usize::from(kind >> 4 & 3)],
+        options,
+        size,
+    );
+    let screen = Alacritty::new(size.columns.max(1), size.rows.max(1));
+    Terminal { screen, answers: Vec::new(), is_honest: true }
+}
+
+fn size(choices: &mut Bytes) -> WindowSize {
+    let (columns, rows) = (choices.byte(), choices.byte());
+    let pixels = if columns & 1 == 1 { (800, 600) } else { (0, 0) };
+    WindowSize::new(((columns % 90).into(), (rows % 30).into()), pixels)
+}
+
+/// Shows what a session sends, and checks its end.
+fn show(hall: &mut Hall, visitor: usize, terminal: &mut Terminal) {
+    let output = hall.output(visitor);
+    terminal.answers.extend(terminal.screen.process(&output));
+    terminal.answers.truncate(4096);
+    if hall.is_over(visitor) && terminal.is_honest {
+        let new = Alacritty::new(1, 1);
+        assert_eq!(terminal.screen.modes(), new.modes(), "modes are left");
+        terminal.is_honest = false;
+    }
+}
+
+/// Checks that the log of the round gives the room.
+fn check_recording(hall: &Hall) {
+    if hall.steps() >= MOST_STEPS {
+        return;
+    }
+    let (text, checksum) = hall.recording();
+    // An entry of nobody, so that the round is played up to the present step.
+    let text = format!("{text}{} leave 0\n", hall.steps());
+    assert_eq!(Hall::replayed(&text), Ok(Some(checksum)), "the log gives another room:\n{text}");
+}

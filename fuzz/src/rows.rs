@@ -1,0 +1,133 @@
+//! Rows of a host's store as another program, or a damaged disk, may have left them.
+//!
+//! The input is rows: a byte for the table, and for each column a byte for the kind of its value. Everything is read
+//! and changed with them. It succeeds or fails with a sentence.
+
+use std::cell::RefCell;
+
+use cellcaster::game::{Rank, Share, Tally};
+use cellcaster::store::host::{
+    AccountKey, AccountSettings, BanTarget, ColumnValue, Day, HostStore, LevelBoard, Name,
+    SqliteStore, UnixTime, VerifiedLevel,
+};
+use cellcaster::world::Difficulty;
+
+use crate::bytes::Bytes;
+
+const MOST_ROWS: usize = 24;
+/// The most columns of a table.
+const COLUMNS: usize = 14;
+const WORDS: [&str; 16] = [
+    "",
+    "Ada",
+    "ada",
+    "cellar",
+    "museum",
+    "normal",
+    "hard",
+    "gold",
+    "bronze",
+    "name",
+    "key",
+    "addresses",
+    "10.0.0.0/8",
+    "half",
+    "true",
+    "fps = 60\n",
+];
+const NUMBERS: [i64; 12] = [
+    0,
+    1,
+    -1,
+    2,
+    60,
+    20_261_122,
+    1_795_300_000,
+    u32::MAX as i64,
+    1 << 53,
+    i64::MAX,
+    i64::MIN,
+    20_261_399,
+];
+
+thread_local! {
+    static STORE: RefCell<SqliteStore> = RefCell::new(SqliteStore::in_memory());
+}
+
+/// Puts the rows into a store, and uses all of it.
+pub fn run(data: &[u8]) {
+    let mut choices = Bytes::new(data);
+    STORE.with_borrow_mut(|store| {
+        store.clear();
+        for _ in 0..MOST_ROWS {
+            if choices.is_empty() {
+                break;
+            }
+            let table = choices.byte().into();
+            let row: Vec<ColumnValue> = (0..COLUMNS).map_while(|_| value(&mut choices)).collect();
+            store.put(table, &row);
+        }
+        use_all(store);
+    });
+}
+
+/// The next value of a row; `None` at its end.
+fn value(choices: &mut Bytes) -> Option<ColumnValue> {
+    Some(match choices.below(8) {
+        0 => return None,
+        1 => ColumnValue::Null,
+        2 => ColumnValue::Integer(choices.byte().into()),
+        3 => ColumnValue::Integer(choices.pick(&NUMBERS)),
+        4 => ColumnValue::Text(choices.pick(&WORDS).to_owned()),
+        5 => {
+            let length = choices.below(40);
+            ColumnValue::Text(String::from_utf8_lossy(choices.take(length)).into_owned())
+        }
+        6 => ColumnValue::Blob(vec![choices.byte() % 4; 32]),
+        _ => {
+            let length = choices.below(40);
+            ColumnValue::Blob(choices.take(length).to_owned())
+        }
+    })
+}
+
+fn use_all(store: &mut SqliteStore) {
+    let now = UnixTime::new(1_795_300_000);
+    let name = Name::new("Ada").expect("it is a name");
+    let board = LevelBoard::new("cellar", Difficulty::Normal).expect("it is built in");
+    let share = Share { found: 1, total: 2 };
+    let tally =
+        Tally { steps: 7, treasure: share, secrets: share, alarms: 1, deaths: 2, stunned: 3 };
+    let run = VerifiedLevel::made_up(board.clone(), tally, Rank::ALL[0], "4 s forward\n");
+    check(store.bans(now));
+    check(store.level_boards());
+    check(store.level_scores(&board, 10));
+    check(store.account_named(&name));
+    for day in [20_261_122, 20_261_123].into_iter().filter_map(Day::from_number) {
+        check(store.daily_scores(day, 10));
+    }
+    for byte in 0..2 {
+        let key = AccountKey::new([byte; 32]);
+        _ = store.create_account(&key, &name, now);
+        let Ok(Some(account)) = store.account(&key) else { continue };
+        let account = account.id;
+        check(store.settings(account));
+        check(store.bests(account));
+        check(store.script(account, &board));
+        check(store.record(account, &run, now));
+        check(store.set_settings(account, &AccountSettings::default()));
+        check(store.note_visit(account, now));
+        _ = store.rename(account, &name, now);
+        if let Some(day) = Day::from_number(20_261_122) {
+            check(store.begin_daily(account, day, now));
+        }
+    }
+    check(store.unban(&BanTarget::Name(name)));
+}
+
+/// A failure is a sentence.
+fn check<T>(answer: Result<T, impl std::fmt::Display>) {
+    if let Err(failure) = answer {
+        assert!(!failure.to_string().is_empty());
+    }
+}
