@@ -225,7 +225,9 @@ impl<K: Copy + Eq> HeldKeys<K> {
         let Some(last) = meant.last().map(|last| (*last).clone()) else { return };
         let is_any_held = meant.iter().any(|held| held.is_held());
         if !is_any_held && last.may_be_down_at(newest, self.timing) {
-            meant.iter_mut().for_each(|held| held.join(&last));
+            for held in meant {
+                held.join(&last);
+            }
         }
     }
 

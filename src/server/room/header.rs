@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(read("7", "member 7 red 0 Mara"), None);
         assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
         assert_eq!(read("7", "member 3 red 0 Mara\nkept 3 1 3601"), None);
-        let many: String = (1..=99).map(|id| format!("member {id} red 0 Mara\n")).collect();
-        assert_eq!(read("100", &many), None);
+        let many: Vec<String> = (1..=99).map(|id| format!("member {id} red 0 Mara")).collect();
+        assert_eq!(read("100", &many.join("\n")), None);
     }
 }

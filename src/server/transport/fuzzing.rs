@@ -4,9 +4,9 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::{Arc, LazyLock};
 
 use tokio::io::{AsyncRead, AsyncWrite};
-use tokio::sync::watch;
+use tokio::sync::{oneshot, watch};
 
-use super::connection::{self, Shared};
+use super::connection::{self, Entry, Shared};
 use super::{Arrival, Counters, Departure, Host, Link, Phase, Visitor};
 use crate::rng::SplitMix64;
 use crate::server::{Config, HostKey, LiveConfig};
@@ -40,7 +40,10 @@ pub async fn serve(stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static)
     let config = LiveConfig::new(Config::default());
     let shared = Arc::new(Shared::new(config, &KEY, Arc::<Counters>::default(), phases));
     let visit = shared.admission(|admission, now| {
-        admission.arrive(peer, now, &mut SplitMix64::new(1)).expect("there is no other one")
+        admission.arrive(peer, now, &mut SplitMix64::new(1)).expect("there is no other one").id
     });
-    connection::serve(shared, Arc::new(Echo), stream, SocketAddr::from((peer, 22)), visit).await;
+    // Nothing displaces it while this end is kept.
+    let (_displaces, displaced) = oneshot::channel();
+    let entry = Entry { visit, displaced };
+    connection::serve(shared, Arc::new(Echo), stream, SocketAddr::from((peer, 22)), entry).await;
 }
