@@ -221,7 +221,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
     /// jumps wants to jump in that direction. Does nothing if one of those keys is held already.
     pub fn join_newest(&mut self, is_meant: impl Fn(K) -> bool) {
         let Some((newest, others)) = self.keys.split_last_mut() else { return };
-        let mut meant: Vec<_> = others.iter_mut().filter(|held| is_meant(held.key)).collect();
+        let meant: Vec<_> = others.iter_mut().filter(|held| is_meant(held.key)).collect();
         let Some(last) = meant.last().map(|last| (*last).clone()) else { return };
         let is_any_held = meant.iter().any(|held| held.is_held());
         if !is_any_held && last.may_be_down_at(newest, self.timing) {

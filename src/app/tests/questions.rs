@@ -188,7 +188,8 @@ fn on_a_result_only_enter_and_the_arrows_act_and_the_selection_stops_at_both_end
     };
     let won = |rate| at_the_exit(rate, Key::Char('k'), 1);
     for rate in KEYBOARDS {
-        for mut rig in vec![dead(rate), won(rate)] {
+        for result in [&dead as &dyn Fn(_) -> _, &won] {
+            let mut rig = result(rate);
             rig.release(Key::Char('k'));
             rig.wait(1100);
             let screen = rig.app.screen;

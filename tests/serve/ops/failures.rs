@@ -51,7 +51,7 @@ fn paths(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn sample(failures: Vec<Failure>) -> Vec<Failure> {
-    let is_taken = |it: &Failure| it.number <= SAMPLED || it.number % SAMPLED == 0;
+    let is_taken = |it: &Failure| it.number <= SAMPLED || it.number.is_multiple_of(SAMPLED);
     failures.into_iter().filter(is_taken).collect()
 }
 
