@@ -31,6 +31,7 @@ use std::fmt;
 
 pub(crate) use self::codec::{Reader, Stored, StoredPart, Writer, check, check_on_map};
 pub(crate) use self::macros::stored;
+#[cfg(feature = "cluster")]
 pub(crate) use self::numbers::MOST_COUNT;
 
 /// The version of the rules. It grows with every change after which the same intents may give another
