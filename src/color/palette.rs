@@ -26,6 +26,18 @@ pub enum ColorDepth {
     Mono,
 }
 
+/// How a terminal draws the shades ░, ▒ and ▓.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum ShadeInk {
+    /// As dots of the text colour, whose light the eye mixes with that of the background.
+    Dots,
+    /// As one colour between the two, which the terminal mixes in sRGB.
+    Flat,
+    /// As dots or as one colour.
+    #[default]
+    Unknown,
+}
+
 /// The index of the cube's first colour. The colours before it are the named ones, which users
 /// redefine.
 const CUBE: u8 = 16;

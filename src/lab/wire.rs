@@ -30,7 +30,7 @@ use encoder::{Encoder, Extensions, Stock, Writer};
 use encoder_run::EncoderRun;
 
 pub use encoder_run::{Bytes, Compressed, Part, Seen};
-pub use palettes::{GREY, PalettePlan, PaletteRow, report_palettes};
+pub use palettes::{PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
 
 /// The options of a measurement.

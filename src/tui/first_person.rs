@@ -9,7 +9,7 @@ use ratatui::widgets::StatefulWidget;
 use super::outline::{Edge, outline};
 use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
 use crate::canvas::Canvas;
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
     Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
 };
@@ -42,6 +42,7 @@ pub struct FirstPerson<'a, S: Renderable = World> {
     camera: &'a S::Camera,
     glyphs: GlyphMode,
     depth: ColorDepth,
+    shade_ink: ShadeInk,
     cell_aspect: CellAspect,
     filter: Filter,
     seconds: f64,
@@ -56,6 +57,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
             camera,
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
+            shade_ink: ShadeInk::default(),
             cell_aspect: CellAspect::default(),
             filter: Filter::default(),
             seconds: 0.0,
@@ -74,6 +76,12 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     #[must_use]
     pub fn color_depth(self, depth: ColorDepth) -> Self {
         Self { depth, ..self }
+    }
+
+    /// Sets how the terminal draws the shades ░, ▒ and ▓, which mix the colours of a small palette.
+    #[must_use]
+    pub fn shade_ink(self, shade_ink: ShadeInk) -> Self {
+        Self { shade_ink, ..self }
     }
 
     /// Sets the shape of a cell.
@@ -137,7 +145,8 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         let surface = |x, y| S::surface(renderer, x, y);
         match self.glyphs {
             GlyphMode::Half => {
-                half_blocks::draw_frame(area, canvas, self.depth, above, frame, surface);
+                let colors = (self.depth, self.shade_ink);
+                half_blocks::draw_frame(area, canvas, colors, above, frame, surface);
             }
             GlyphMode::Ascii => {
                 let is_beside_thing =

@@ -15,7 +15,7 @@ use ratatui::style::Color;
 use super::glyphs::color_at;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::color::palette::{ColorDepth, mixture};
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{Frame, Surface};
 
 /// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
@@ -23,14 +23,15 @@ use crate::render::{Frame, Surface};
 pub(super) fn draw_frame(
     area: Rect,
     canvas: &mut impl Canvas,
-    depth: ColorDepth,
+    (depth, ink): (ColorDepth, ShadeInk),
     above: u32,
     frame: &Frame,
     surface: impl Fn(u32, u32) -> Option<Surface>,
 ) {
     match depth {
-        ColorDepth::Indexed256 => mixed::draw(area, canvas, &mixture::OF_256, above, frame),
-        ColorDepth::Indexed16 => mixed::draw(area, canvas, &mixture::OF_16, above, frame),
+        ColorDepth::Indexed256 | ColorDepth::Indexed16 => {
+            mixed::draw(area, canvas, depth, ink, above, frame);
+        }
         ColorDepth::True => draw(area, canvas, depth, above, |y| frame.row(y)),
         ColorDepth::Mono => mono::draw(area, canvas, above, frame, surface),
     }
@@ -65,6 +66,18 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
             }
         }
     }
+}
+
+/// How much brighter a pixel is than those around it, in steps of luma.
+fn local_contrast(frame: &Frame, x: u32, y: u32) -> i32 {
+    /// The distance of the eight pixels that are compared.
+    const DISTANCE: u32 = 3;
+    let [columns, rows] = [(x, frame.width()), (y, frame.height())].map(|(at, count)| {
+        [at.saturating_sub(DISTANCE), at.min(count - 1), (at + DISTANCE).min(count - 1)]
+    });
+    let luma = |x: usize, y: usize| i32::from(frame.pixel(columns[x], rows[y]).luma());
+    let around = (0..9).filter(|&at| at != 4).map(|at| luma(at % 3, at / 3));
+    luma(1, 1) - around.sum::<i32>() / 8
 }
 
 /// The character whose halves are lit or unlit.

@@ -17,7 +17,7 @@ const DISTANCES: [(f64, usize, usize); 3] = [(2.0, 20, 18), (5.0, 16, 12), (9.0,
 /// from each other kind, at each distance.
 const DEPTHS: [(&str, [usize; 3], [usize; 3]); 3] = [
     ("true", [70, 10, 10], [200, 40, 12]),
-    ("256", [70, 8, 6], [200, 25, 8]),
+    ("256", [70, 8, 4], [200, 25, 8]),
     ("mono", [40, 8, 6], [120, 16, 6]),
 ];
 const COLUMNS: usize = 80;
@@ -51,14 +51,29 @@ fn picture(thing: &str, depth: &str, (distance, columns, rows): (f64, usize, usi
     halves.flat_map(|(upper, lower)| [upper, lower]).collect()
 }
 
-/// The colours of the halves of a cell: three digits each, or a sign in a picture without colours.
+/// The colours of the halves of a cell: three digits each, or a sign in a picture without colours. A
+/// shade is as bright as its dots.
 fn halves(cell: &Value) -> (String, String) {
+    let glyph = cell["ch"].as_str().unwrap();
+    if let Some(quarters) = ["░", "▒", "▓"].iter().position(|shade| *shade == glyph) {
+        let channel = |name: &str, at: usize| {
+            cell[name].as_str().map(|color| u32::from_str_radix(&color[at..at + 2], 16).unwrap())
+        };
+        let mixed = [1, 3, 5].map(|at| {
+            let (text, ground) = (channel("fg", at)?, channel("bg", at)?);
+            let quarters = quarters as u32 + 1;
+            char::from_digit((text * quarters + ground * (4 - quarters)) / 64, 16)
+        });
+        let mixed: Option<String> = mixed.into_iter().collect();
+        let mixed = mixed.unwrap_or_else(|| glyph.to_owned());
+        return (mixed.clone(), mixed);
+    }
     let color = |name: &str| match cell[name].as_str() {
         Some(color) => [1, 3, 5].map(|digit| &color[digit..=digit]).concat(),
         None => if name == "fg" { "#" } else { "." }.to_owned(),
     };
     let (front, back) = (color("fg"), color("bg"));
-    match cell["ch"].as_str().unwrap() {
+    match glyph {
         "▀" => (front, back),
         "▄" => (back, front),
         "█" => (front.clone(), front),

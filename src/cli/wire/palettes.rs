@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::cli::arguments::{Wire, WireFormat};
 use crate::color::palette::ColorDepth;
-use crate::lab::wire::{GREY, PalettePlan, PaletteRow, report_palettes};
+use crate::lab::wire::{PalettePlan, PaletteRow, report_palettes};
 use crate::map::builtin;
 
 pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
@@ -29,13 +29,14 @@ pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
 fn write_table(plan: &PalettePlan, rows: &[PaletteRow], output: &mut impl Write) -> io::Result<()> {
     writeln!(
         output,
-        "{}×{} cells, {} frames a second. Error: blurred over 2×2 cells, in Oklab. Grey: chroma below {GREY},\n\
-         blurred, in percent; beside it in true colour, and of pixels without a blur.\n",
+        "{}×{} cells, {} frames a second. Errors in Oklab after a blur; lightness: how much lighter than\n\
+         true colour; changes: percent of cells between block and shade, from frame to frame.\n",
         plan.size.width, plan.size.height, plan.frames_per_second
     )?;
+    writeln!(output, "                     first picture")?;
     writeln!(
         output,
-        "level         method    grey   true  pixels    error  ratio  bytes a frame  ratio"
+        "level        method   error  chroma  lightness   error  changes  bytes a frame"
     )?;
     let mut level = rows.first().map(|row| &row.level);
     for row in rows {
@@ -44,16 +45,15 @@ fn write_table(plan: &PalettePlan, rows: &[PaletteRow], output: &mut impl Write)
         }
         writeln!(
             output,
-            "{:<12}  {:<7}  {:>5.1}  {:>5.1}  {:>6.1}  {:>7.4}  {:>5.2}  {:>13.0}  {:>5.2}",
+            "{:<11}  {:<7}  {:>5.4}  {:>5.4}  {:>9.4}  {:>5.4}  {:>7.1}  {:>13.0}",
             row.level,
             row.method,
-            100.0 * row.grey,
-            100.0 * row.true_grey,
-            100.0 * row.grey_pixels,
+            row.start_error,
+            row.start_chroma_error,
+            row.start_lightness,
             row.error,
-            row.error_ratio,
+            100.0 * row.changes,
             row.bytes,
-            row.bytes_ratio,
         )?;
     }
     Ok(())
@@ -64,7 +64,6 @@ fn write_json(plan: &PalettePlan, rows: &[PaletteRow], output: &mut impl Write) 
     let report = json!({
         "size": { "columns": plan.size.width, "rows": plan.size.height },
         "frames_per_second": plan.frames_per_second,
-        "grey_chroma": GREY,
         "rows": rows,
     });
     serde_json::to_writer_pretty(&mut *output, &report)?;
@@ -75,34 +74,32 @@ fn row(row: &PaletteRow) -> Value {
     json!({
         "level": row.level,
         "method": row.method,
-        "grey": row.grey,
-        "true_grey": row.true_grey,
-        "grey_pixels": row.grey_pixels,
+        "start_error": row.start_error,
+        "start_chroma_error": row.start_chroma_error,
+        "start_lightness": row.start_lightness,
         "error": row.error,
-        "error_ratio": row.error_ratio,
+        "changes": row.changes,
         "mean_bytes": row.bytes,
-        "bytes_ratio": row.bytes_ratio,
     })
 }
 
 fn write_csv(rows: &[PaletteRow], output: &mut impl Write) -> io::Result<()> {
     writeln!(
         output,
-        "level,method,grey,true_grey,grey_pixels,error,error_ratio,mean_bytes,bytes_ratio"
+        "level,method,start_error,start_chroma_error,start_lightness,error,changes,mean_bytes"
     )?;
     for row in rows {
         writeln!(
             output,
-            "{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{}",
             row.level,
             row.method,
-            row.grey,
-            row.true_grey,
-            row.grey_pixels,
+            row.start_error,
+            row.start_chroma_error,
+            row.start_lightness,
             row.error,
-            row.error_ratio,
+            row.changes,
             row.bytes,
-            row.bytes_ratio,
         )?;
     }
     Ok(())

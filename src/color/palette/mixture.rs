@@ -1,219 +1,626 @@
-//! Mixtures: two colours of a palette that look like a given colour when they alternate in a
-//! pattern.
+//! Mixtures: the two colours of a palette, and the glyph, that make a cell look like given colours.
 //!
-//! Each pair of colours near the wanted one is tried. The best mixture is the one whose mean light is
-//! nearest to the wanted colour in Oklab; the contrast between its two colours counts almost as much
-//! as the error of the mean. A pixel of a half block is large, so that the eye sees the pixels of a
-//! mixture and not their mean: a mixture of grey and a bright hue is a chessboard, and a quarter of
-//! the pixels is a grid of lone dots. The two colours therefore differ by at most 0.18, and each has
-//! half of the pixels.
+//! A cell has two parts, such as the halves of a half block. In a small palette it shows each part in
+//! the palette colour nearest to its own, or all of the cell in one of the shades ░ ▒ ▓, which mix
+//! two palette colours with a grain of one dot. The 240 fixed colours have no dark hues: the darkest
+//! red has an Oklab lightness of 0.31, the darkest brown 0.51. The shades give some 40,000 mixtures
+//! of colours that are near each other.
 //!
-//! The palette of 256 has few colours between grey and its hues: its darkest red has a lightness of
-//! 0.31, its darkest yellow 0.47, and its darkest brown 0.51. The nearest colour of most surfaces in
-//! a room is grey. Colours are therefore changed before they are mixed:
+//! - An error is a squared distance in Oklab, with chroma weighted by [`CHROMA_WEIGHT`].
+//! - The contrast of the two colours of a shade is an error of its own, since the dots can be seen.
+//! - The eye blurs the parts of a cell: most of its error is that of its mean.
+//! - A cell keeps the two colours of the cell to its left unless that adds [`Limits::sharing`] to its
+//!   error: colours that are not sent again save bytes, and surfaces look calmer.
+//! - Choices are made in integers from tables, the same on every machine.
 //!
-//! - [`ToneCurve`] lifts dark colours to where the palette has hues.
-//! - Saturation is increased, more in the dark. Colours that are almost grey remain as they are.
-//!
-//! Hues differ from the wanted one by at most 26 degrees, and colours with little chroma are mixed of
-//! greys only.
-//!
-//! The idea is Joel Yliluoma's ("Arbitrary-palette positional dithering algorithm", 2011), who
-//! weighs contrast, too. A weight of a tenth was refused, with one mixture for each two cells: the
-//! mean over 2×2 cells is nearer to the wanted colour, but bricks, joints and stones are no longer
-//! seen among red, olive and orange dots. Sets of four colours were refused, too.
-//!
-//! Mixtures are stored by 64 levels of each channel, and computed on first use: a picture needs some
-//! hundreds of them, and computing all 262,144 would take seconds. The levels are equal steps of the
-//! cube root of light, which are equal steps of lightness. The upper six bits of sRGB were refused:
-//! their lowest levels are as far apart as black and the darkest grey.
-
-mod candidates;
-mod tone;
-mod weights;
+//! The tables have 64 levels a channel. Their entries are computed on first use: a picture needs some
+//! thousands of them, and all 262,144 would take half a second. The levels are equal steps of the
+//! cube root of light, and so of lightness. Rejected: the upper six bits of sRGB, whose lowest levels
+//! are as far apart as black and the darkest grey.
 
 use std::array;
+use std::iter;
+use std::ops::RangeInclusive;
 use std::sync::LazyLock;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::{CUBE, of_256};
-use crate::color::oklab::{self, Oklab};
+use super::{CUBE, ColorDepth, ShadeInk, of_256};
+use crate::color::Rgb;
+use crate::color::oklab::Oklab;
 use crate::color::srgb::linear;
-use candidates::{Candidates, Wanted};
-pub(crate) use tone::ToneCurve;
-use weights::{WEIGHTS_OF_16, WEIGHTS_OF_256, Weights};
 
-/// Two colours and their shares.
+/// What a cell shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Mixture {
-    /// The indices of the darker and the brighter colour.
-    pub(crate) colors: [u8; 2],
-    /// The number of pixels, of [`Mixture::WHOLE`], that have the brighter colour; less than all.
-    pub(crate) share: u8,
+pub(crate) enum Look {
+    /// Each part in its own palette colour.
+    Parts([u8; 2]),
+    /// A shade of this number of quarters, from 1 to 3, in a text and a background colour.
+    Shade(u8, [u8; 2]),
 }
 
-impl Mixture {
-    /// The number of pixels of a mixture.
-    pub(crate) const WHOLE: u8 = 4;
-    const NONE: Self = Self { colors: [0; 2], share: 0 };
+/// Chooses the looks of cells from left to right.
+pub(crate) struct Mixer {
+    mixtures: &'static Mixtures,
+    /// The text and the background colour of the cell to the left.
+    left: [u8; 2],
 }
 
-/// The mixtures for all colours, each computed on first use.
-pub(crate) struct Mixtures {
-    palette: fn() -> Palette,
-    /// The tones of the colours that are mixed.
-    pub(crate) tones: &'static LazyLock<ToneCurve>,
-    /// A static of its own: beside a pointer, its megabyte of zeros would be part of the program's file.
-    entries: &'static Entries,
+/// The share of a cell that is all of it, for [`Mixer::look`]: divisible by the numbers of dots of
+/// all glyph sets.
+pub(crate) const WHOLE: u8 = 24;
+
+impl Mixer {
+    /// A mixer for `depth`, 256 or 16 colours, on a terminal that draws shades as `ink`.
+    pub(crate) fn new(depth: ColorDepth, ink: ShadeInk) -> Self {
+        let black = if depth == ColorDepth::Indexed16 { 0 } else { CUBE };
+        Self { mixtures: Mixtures::of(depth, ink), left: [black; 2] }
+    }
+
+    /// The look of a cell whose parts have these colours. The first covers this share of the cell,
+    /// from 0 to [`WHOLE`].
+    #[inline]
+    pub(crate) fn look(&mut self, colors: [Rgb; 2], share: u8) -> Look {
+        let shares = [share, WHOLE - share].map(u32::from);
+        let (look, pair) = self.mixtures.look(colors, shares, self.left);
+        self.left = pair;
+        look
+    }
 }
 
-type Entries = [AtomicU32; 1 << (3 * BITS)];
+/// The limits of mixing in a palette.
+struct Limits {
+    indices: RangeInclusive<u8>,
+    /// The largest distances of two mixed colours, in lightness and in chroma.
+    lightness: f64,
+    chroma: f64,
+    /// The error of a shade's contrast, in 4096ths of the squared distance of its two colours.
+    contrast: u32,
+    /// The error that a cell may add to keep the colours of the cell to its left.
+    sharing: u32,
+}
+
+impl Limits {
+    /// The error of the contrast of two mixed colours.
+    #[inline]
+    fn contrast(&self, [one, other]: [Place; 2]) -> u32 {
+        (distance(one, other) >> 12) * self.contrast
+    }
+}
+
+static LIMITS_OF_256: Limits = Limits {
+    indices: CUBE..=u8::MAX,
+    lightness: 0.5,
+    chroma: 0.2,
+    contrast: 10,
+    sharing: squared(0.015),
+};
+static LIMITS_OF_16: Limits = Limits {
+    indices: 0..=CUBE - 1,
+    lightness: 1.0,
+    chroma: 0.35,
+    contrast: 7,
+    sharing: squared(0.015),
+};
+
+/// The weight of the red–green and the yellow–blue component.
+const CHROMA_WEIGHT: f64 = 1.5;
+/// The weight of the errors of a cell's parts, beside that of the whole, in 256ths.
+const DETAIL_WEIGHT: u32 = 90;
+
+/// A colour in Oklab, weighted, in steps of which [`UNIT`] are one.
+type Place = [i16; 3];
+
+const UNIT: f64 = 8192.0;
+
+/// The squared distance of two places.
+#[inline]
+fn distance(one: Place, other: Place) -> u32 {
+    (0..3).fold(0, |sum, i| {
+        let part = i32::from(one[i]) - i32::from(other[i]);
+        sum + (part * part) as u32
+    })
+}
+
+/// The square of a distance in Oklab, as an error.
+const fn squared(distance: f64) -> u32 {
+    (distance * distance * UNIT * UNIT) as u32
+}
+
+fn place(Oklab([lightness, red, yellow]): Oklab) -> Place {
+    [lightness, CHROMA_WEIGHT * red, CHROMA_WEIGHT * yellow]
+        .map(|part| libm::round(part * UNIT) as i16)
+}
+
+/// The mixtures of one palette on one kind of terminal, with tables of what was computed.
+struct Mixtures {
+    limits: &'static Limits,
+    ink: ShadeInk,
+    shades: Shades,
+    /// By level: the place of the colour, and the index of the palette colour nearest to it.
+    nearest: Table,
+    /// By level: the shade nearest to the colour, and its error.
+    mixed: Table,
+    /// By text colour, background colour and quarters: the place of a shade.
+    places: Table,
+}
+
+/// Words that are zero until they are computed. Every thread computes the same word, so that it does
+/// not matter which one stores it.
+struct Table(Box<[AtomicU64]>);
+
+impl Table {
+    fn new(bits: u32) -> Self {
+        Self(iter::repeat_with(|| AtomicU64::new(0)).take(1 << bits).collect())
+    }
+
+    /// The word at `index`, which must not be zero.
+    #[inline]
+    fn get(&self, index: usize, compute: impl FnOnce() -> u64) -> u64 {
+        let word = self.0[index].load(Ordering::Relaxed);
+        if word != 0 {
+            return word;
+        }
+        let word = compute();
+        self.0[index].store(word, Ordering::Relaxed);
+        word
+    }
+}
 
 /// The number of bits of a channel's level.
 const BITS: u32 = 6;
-/// The highest level.
-const FULL: u8 = (1 << BITS) - 1;
-/// The bit that marks an entry as computed, beside the share.
-const FOUND: u8 = 1 << 7;
+/// A bit that is set in every word of a table.
+const FOUND: u64 = 1 << 63;
 
-/// The mixtures of the 240 fixed colours of xterm.
-pub(crate) static OF_256: Mixtures = {
-    static ENTRIES: Entries = [const { AtomicU32::new(0) }; 1 << (3 * BITS)];
-    static PALETTE: LazyLock<Vec<PaletteColor>> =
-        LazyLock::new(|| (CUBE..=u8::MAX).map(PaletteColor::of).collect());
-    static TONES: LazyLock<ToneCurve> = LazyLock::new(ToneCurve::lifted);
-    Mixtures {
-        palette: || Palette { colors: &PALETTE, weights: &WEIGHTS_OF_256 },
-        tones: &TONES,
-        entries: &ENTRIES,
-    }
-};
-
-/// The mixtures of twelve of the 16 named colours. Cyan and magenta are left out: hardly anything
-/// in a room has their hue, and they show as stray dots on stone that is slightly blue.
-pub(crate) static OF_16: Mixtures = {
-    const LEFT_OUT: [u8; 4] = [5, 6, 13, 14];
-    static ENTRIES: Entries = [const { AtomicU32::new(0) }; 1 << (3 * BITS)];
-    static PALETTE: LazyLock<Vec<PaletteColor>> = LazyLock::new(|| {
-        (0..CUBE).filter(|index| !LEFT_OUT.contains(index)).map(PaletteColor::of).collect()
-    });
-    static TONES: LazyLock<ToneCurve> = LazyLock::new(ToneCurve::unchanged);
-    Mixtures {
-        palette: || Palette { colors: &PALETTE, weights: &WEIGHTS_OF_16 },
-        tones: &TONES,
-        entries: &ENTRIES,
-    }
-};
-
-/// The colours to mix, and the weights of differences.
-#[derive(Clone, Copy)]
-struct Palette {
-    colors: &'static [PaletteColor],
-    weights: &'static Weights,
+fn pack(place: Place, index: u8) -> u64 {
+    let [l, a, b] = place.map(|part| u64::from(part as u16));
+    FOUND | u64::from(index) << 48 | l << 32 | a << 16 | b
 }
 
-/// The level of a channel with that amount of light, from 0 to 1.
-pub(crate) fn level(light: f64) -> u8 {
-    libm::round(libm::cbrt(light) * f64::from(FULL)) as u8
-}
-
-fn light_of_level(level: u8) -> f64 {
-    let root = f64::from(level) / f64::from(FULL);
-    root * root * root
-}
-
-/// A colour of the palette.
-#[derive(Clone, Copy)]
-struct PaletteColor {
-    index: u8,
-    cones: [f32; 3],
-    lab: [f32; 3],
-}
-
-impl PaletteColor {
-    fn of(index: u8) -> Self {
-        let light = linear(of_256(index));
-        let Oklab(lab) = Oklab::from_linear(light);
-        Self {
-            index,
-            cones: oklab::cones(light).map(|share| share as f32),
-            lab: lab.map(|part| part as f32),
-        }
-    }
+#[inline]
+fn unpack(word: u64) -> (Place, u8) {
+    ([32, 16, 0].map(|bits| (word >> bits) as i16), (word >> 48) as u8)
 }
 
 impl Mixtures {
-    /// The mixture for a colour, given the [`level`] of red, green and blue.
-    #[inline]
-    pub(crate) fn of(&self, levels: [u8; 3]) -> Mixture {
-        let index =
-            levels.iter().fold(0, |index, &level| index << BITS | usize::from(level & FULL));
-        // Every thread computes the same entry, so that it does not matter which one stores it.
-        let stored = self.entries[index].load(Ordering::Relaxed);
-        let entry = if stored == 0 { self.find(index, levels) } else { stored };
-        let [_, share, darker, brighter] = entry.to_be_bytes();
-        Mixture { colors: [darker, brighter], share: share & !FOUND }
+    fn of(depth: ColorDepth, ink: ShadeInk) -> &'static Self {
+        use ShadeInk::{Dots, Flat, Unknown};
+        static MIXTURES: [LazyLock<Mixtures>; 6] = [
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_256, Dots)),
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_256, Flat)),
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_256, Unknown)),
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_16, Dots)),
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_16, Flat)),
+            LazyLock::new(|| Mixtures::new(&LIMITS_OF_16, Unknown)),
+        ];
+        let of_ink = match ink {
+            Dots => 0,
+            Flat => 1,
+            Unknown => 2,
+        };
+        &MIXTURES[if depth == ColorDepth::Indexed16 { 3 + of_ink } else { of_ink }]
     }
 
-    #[cold]
-    fn find(&self, index: usize, levels: [u8; 3]) -> u32 {
-        let Mixture { colors: [darker, brighter], share } =
-            (self.palette)().mixture(levels.map(light_of_level));
-        let entry = u32::from_be_bytes([0, FOUND | share, darker, brighter]);
-        self.entries[index].store(entry, Ordering::Relaxed);
-        entry
+    fn new(limits: &'static Limits, ink: ShadeInk) -> Self {
+        Self {
+            limits,
+            ink,
+            shades: Shades::new(limits, ink),
+            nearest: Table::new(3 * BITS),
+            mixed: Table::new(3 * BITS),
+            places: Table::new(18),
+        }
+    }
+
+    /// The look of a cell after one in the colours `left`, and the two colours of the cell.
+    #[inline]
+    fn look(&self, colors: [Rgb; 2], shares: [u32; 2], left: [u8; 2]) -> (Look, [u8; 2]) {
+        let light = Light::get();
+        let nearest = colors.map(|color| self.nearest(light.level(color)));
+        let level = light.level_of_mean(colors, shares);
+        let wanted =
+            Wanted { parts: nearest.map(|(place, _)| place), mean: self.nearest(level).0, shares };
+        let indices = nearest.map(|(_, index)| index);
+        let parts = (self.error_of_parts(&wanted, indices), Look::Parts(indices));
+        let (quarters, pair) = self.mixed(level);
+        let shade = (self.error_of_shade(&wanted, quarters, pair), Look::Shade(quarters, pair));
+        let best = if shade.0 < parts.0 { shade } else { parts };
+
+        let mut shared = (best.0 + self.limits.sharing, best.1);
+        let mut offer = |error, look| {
+            if error < shared.0 {
+                shared = (error, look);
+            }
+        };
+        let [text, ground] = left;
+        for pair in [[ground; 2], [text; 2], left, [ground, text]] {
+            offer(self.error_of_parts(&wanted, pair), Look::Parts(pair));
+        }
+        if text != ground {
+            for quarters in 1..=3 {
+                let error = self.error_of_shade(&wanted, quarters, left);
+                offer(error, Look::Shade(quarters, left));
+            }
+        }
+        let look = shared.1;
+        (look, colors_after(look, left))
+    }
+
+    /// The error of parts in these palette colours.
+    #[inline]
+    fn error_of_parts(&self, wanted: &Wanted, colors: [u8; 2]) -> u32 {
+        let [one, other] = colors.map(|color| self.place(color));
+        let shown = array::from_fn(|i| {
+            let [one, other] = [one[i], other[i]].map(i32::from);
+            let sum = one * wanted.shares[0] as i32 + other * wanted.shares[1] as i32;
+            (sum / i32::from(WHOLE)) as i16
+        });
+        wanted.error(shown, [one, other])
+    }
+
+    /// The error of a shade, with that of its contrast.
+    #[inline]
+    fn error_of_shade(&self, wanted: &Wanted, quarters: u8, colors: [u8; 2]) -> u32 {
+        let shown = self.place_of_shade(quarters, colors);
+        let contrast = self.limits.contrast(colors.map(|color| self.place(color)));
+        wanted.error(shown, [shown; 2]) + contrast
+    }
+
+    /// The place of the colour at that level, and the palette colour nearest to it.
+    #[inline]
+    fn nearest(&self, level: usize) -> (Place, u8) {
+        unpack(self.nearest.get(level, || {
+            let place = place(Oklab::from_linear(light_of_level(level)));
+            pack(place, self.shades.nearest_color(place))
+        }))
+    }
+
+    /// The quarters and the colours of the shade nearest to the colour at that level.
+    #[inline]
+    fn mixed(&self, level: usize) -> (u8, [u8; 2]) {
+        let word = self.mixed.get(level, || {
+            let Shade { quarters, colors: [text, ground], .. } =
+                *self.shades.nearest(self.nearest(level).0);
+            FOUND | u64::from(u32::from_be_bytes([0, quarters, text, ground]))
+        });
+        let [_, quarters, text, ground] = (word as u32).to_be_bytes();
+        (quarters, [text, ground])
+    }
+
+    /// The place of a palette colour.
+    #[inline]
+    fn place(&self, index: u8) -> Place {
+        self.place_of_shade(0, [index; 2])
+    }
+
+    /// The place of a shade.
+    #[inline]
+    fn place_of_shade(&self, quarters: u8, colors: [u8; 2]) -> Place {
+        let [text, ground] = colors.map(usize::from);
+        let index = text << 10 | ground << 2 | usize::from(quarters);
+        unpack(self.places.get(index, || pack(place(self.ink.mixed(quarters, colors)), 0))).0
     }
 }
 
-impl Palette {
-    fn mixture(self, light: [f64; 3]) -> Mixture {
-        let wanted = Wanted::new(self.saturated(light));
-        let candidates = Candidates::new(&wanted, self.colors, self.weights);
-        let candidates = candidates.as_slice();
-        let mut best = Mixture::NONE;
-        let mut least = f32::INFINITY;
-        let mut consider = |cost: f32, colors: [u8; 2], share: u8| {
-            if cost < least {
-                least = cost;
-                best = Mixture { colors, share };
+/// What a cell should look like.
+struct Wanted {
+    parts: [Place; 2],
+    /// The place of the mean light.
+    mean: Place,
+    shares: [u32; 2],
+}
+
+impl Wanted {
+    /// The error of a cell whose parts look like `parts`, and as a whole like `mean`. Most of it
+    /// is that of the whole, because the eye blurs the parts.
+    #[inline]
+    fn error(&self, mean: Place, parts: [Place; 2]) -> u32 {
+        let apart = [0, 1].map(|i| self.shares[i] * (distance(self.parts[i], parts[i]) >> 8));
+        let apart = (apart[0] + apart[1]) / u32::from(WHOLE);
+        apart * DETAIL_WEIGHT + (distance(self.mean, mean) >> 8) * (256 - DETAIL_WEIGHT)
+    }
+}
+
+/// The colours of a cell after one in the colours `left`. One of one colour keeps the other of `left`.
+#[inline]
+fn colors_after(look: Look, left: [u8; 2]) -> [u8; 2] {
+    match look {
+        Look::Parts([one, other]) if one == other => {
+            if left.contains(&one) {
+                left
+            } else {
+                [left[0], one]
             }
-        };
-        for (index, one) in candidates.iter().enumerate() {
-            consider(cost(one.error), [one.index; 2], 0);
-            for other in &candidates[index + 1..] {
-                let Some(contrast) = self.weights.contrast(one, other) else { continue };
-                for share in self.weights.shares.clone() {
-                    let part = f32::from(share) / f32::from(Mixture::WHOLE);
-                    let error =
-                        array::from_fn(|i| one.error[i] + (other.error[i] - one.error[i]) * part);
-                    let total = cost(error) + contrast * part * (1.0 - part);
-                    if one.lab[0] <= other.lab[0] {
-                        consider(total, [one.index, other.index], share);
-                    } else {
-                        consider(total, [other.index, one.index], Mixture::WHOLE - share);
+        }
+        Look::Parts([one, other]) if left == [other, one] => left,
+        Look::Parts(pair) | Look::Shade(_, pair) => pair,
+    }
+}
+
+/// A shade of two palette colours.
+#[derive(Clone, Copy)]
+struct Shade {
+    place: Place,
+    contrast: u32,
+    quarters: u8,
+    colors: [u8; 2],
+}
+
+/// All shades of a palette, and its colours.
+struct Shades {
+    colors: Vec<(u8, Place)>,
+    /// In the order of their bins.
+    shades: Vec<Shade>,
+    /// The index of the first shade of each bin, and the number of shades at the end.
+    starts: Vec<u32>,
+}
+
+/// The number of bins along each axis of Oklab, and their width in steps.
+const BINS: i32 = 17;
+const BIN_WIDTH: i32 = UNIT as i32 / 16;
+
+/// The bin of a place, along each axis.
+fn bin([l, a, b]: Place) -> [i32; 3] {
+    let middle = BINS / 2;
+    let along = |part: i16| i32::from(part).div_euclid(BIN_WIDTH);
+    [along(l), along(a) + middle, along(b) + middle].map(|bin| bin.clamp(0, BINS - 1))
+}
+
+fn bin_index([l, a, b]: [i32; 3]) -> usize {
+    ((l * BINS + a) * BINS + b) as usize
+}
+
+impl Shades {
+    fn new(limits: &Limits, ink: ShadeInk) -> Self {
+        let colors: Vec<(u8, Oklab)> =
+            limits.indices.clone().map(|index| (index, of_256(index).into())).collect();
+        let mut shades = Vec::new();
+        for (text, one) in &colors {
+            for (ground, other) in &colors {
+                let [l, a, b] = array::from_fn(|i| one.0[i] - other.0[i]);
+                // The text is the lighter colour.
+                let is_near = l <= limits.lightness && libm::hypot(a, b) <= limits.chroma;
+                if is_near && (l, text) > (0.0, ground) {
+                    let colors = [*text, *ground];
+                    let contrast = limits.contrast([place(*one), place(*other)]);
+                    shades.extend([1, 2, 3].map(|quarters| {
+                        let place = place(ink.mixed(quarters, colors));
+                        Shade { place, contrast, quarters, colors }
+                    }));
+                }
+            }
+        }
+        shades.sort_by_key(|shade| bin_index(bin(shade.place)));
+        let starts = (0..=(BINS * BINS * BINS) as usize).map(|index| {
+            shades.partition_point(|shade| bin_index(bin(shade.place)) < index) as u32
+        });
+        let starts = starts.collect();
+        let colors = colors.into_iter().map(|(index, color)| (index, place(color))).collect();
+        Self { colors, shades, starts }
+    }
+
+    fn nearest_color(&self, place: Place) -> u8 {
+        let by_distance = |&&(_, color): &&(u8, Place)| distance(place, color);
+        self.colors.iter().min_by_key(by_distance).map_or(0, |&(index, _)| index)
+    }
+
+    /// The shade with the least sum of error and contrast. The bins around the place are searched, farther and farther, until no shade in them can be better.
+    fn nearest(&self, place: Place) -> &Shade {
+        let mut best = (u32::MAX, &self.shades[0]);
+        let middle = bin(place);
+        for radius in 0..BINS {
+            let outside = (radius - 1).max(0) * BIN_WIDTH;
+            if radius > 0 && best.0 <= (outside * outside) as u32 {
+                break;
+            }
+            let along = |axis: usize| {
+                (middle[axis] - radius).max(0)..=(middle[axis] + radius).min(BINS - 1)
+            };
+            for l in along(0) {
+                for a in along(1) {
+                    for b in along(2) {
+                        let at = [l, a, b];
+                        if (0..3).all(|axis| (at[axis] - middle[axis]).abs() < radius) {
+                            continue;
+                        }
+                        let index = bin_index(at);
+                        let range = self.starts[index] as usize..self.starts[index + 1] as usize;
+                        for shade in &self.shades[range] {
+                            let error = distance(place, shade.place) + shade.contrast;
+                            if error < best.0 {
+                                best = (error, shade);
+                            }
+                        }
                     }
                 }
             }
         }
-        best
-    }
-
-    /// More saturated light of the same brightness.
-    fn saturated(self, light: [f64; 3]) -> [f64; 3] {
-        let Oklab([lightness, red, yellow]) = Oklab::from_linear(light);
-        let factor = self.weights.saturation(lightness, libm::hypot(red, yellow));
-        let grey = light.iter().sum::<f64>() / 3.0;
-        let least = light.into_iter().fold(grey, f64::min);
-        // No channel may become negative.
-        let factor = if least < grey { factor.min(grey / (grey - least)) } else { 1.0 };
-        light.map(|part| (grey + factor * (part - grey)).clamp(0.0, 1.0))
+        best.1
     }
 }
 
-/// The cost of a [`Candidate::error`].
-fn cost(error: [f32; 3]) -> f32 {
-    error.iter().map(|part| part * part).sum()
+impl ShadeInk {
+    /// The colour of a shade of so many quarters, in a text and a background colour.
+    pub(crate) fn mixed(self, quarters: u8, colors: [u8; 2]) -> Oklab {
+        let share = f64::from(quarters) / 4.0;
+        let colors = colors.map(of_256);
+        let between = |text: f64, ground: f64| ground + (text - ground) * share;
+        let dots = || {
+            let [text, ground] = colors.map(linear);
+            Oklab::from_linear(array::from_fn(|i| between(text[i], ground[i])))
+        };
+        let flat = || {
+            let [text, ground] = colors.map(|color| color.channels().map(f64::from));
+            let [red, green, blue] =
+                array::from_fn(|i| libm::round(between(text[i], ground[i])) as u8);
+            Oklab::from(Rgb::new(red, green, blue))
+        };
+        match self {
+            Self::Dots => dots(),
+            Self::Flat => flat(),
+            Self::Unknown => {
+                let (dots, flat) = (dots().0, flat().0);
+                Oklab(array::from_fn(|i| f64::midpoint(dots[i], flat[i])))
+            }
+        }
+    }
+}
+
+/// The light of colours, and the levels of light.
+struct Light {
+    of_channel: [u32; 256],
+    level_of_channel: [u8; 256],
+    /// The level of each step of light.
+    levels: [u8; Self::STEPS + 1],
+}
+
+impl Light {
+    const STEPS: usize = 1 << 12;
+    /// Full light, such that the sum of [`WHOLE`] shares has no more than 32 bits.
+    const FULL: f64 = (Self::STEPS << 3) as f64;
+
+    #[inline]
+    fn get() -> &'static Self {
+        static LIGHT: LazyLock<Light> = LazyLock::new(|| {
+            let of_channel = |value: usize| linear(Rgb::new(value as u8, 0, 0))[0];
+            let level =
+                |light: f64| libm::round(libm::cbrt(light) * f64::from((1 << BITS) - 1)) as u8;
+            Light {
+                of_channel: array::from_fn(|value| {
+                    libm::round(of_channel(value) * Light::FULL) as u32
+                }),
+                level_of_channel: array::from_fn(|value| level(of_channel(value))),
+                levels: array::from_fn(|step| level(step as f64 / Light::STEPS as f64)),
+            }
+        });
+        &LIGHT
+    }
+
+    /// The level of a colour, as an index of a table.
+    #[inline]
+    fn level(&self, color: Rgb) -> usize {
+        index(color.channels().map(|channel| self.level_of_channel[usize::from(channel)]))
+    }
+
+    /// The level of the mean light of two colours.
+    #[inline]
+    fn level_of_mean(&self, colors: [Rgb; 2], shares: [u32; 2]) -> usize {
+        let [one, other] = colors.map(Rgb::channels);
+        index(array::from_fn(|i| {
+            let light = [one, other].map(|color| self.of_channel[usize::from(color[i])]);
+            let sum = light[0] * shares[0] + light[1] * shares[1];
+            self.levels[(sum / (u32::from(WHOLE) << 3)) as usize]
+        }))
+    }
+}
+
+#[inline]
+fn index(levels: [u8; 3]) -> usize {
+    levels.into_iter().fold(0, |index, level| index << BITS | usize::from(level))
+}
+
+/// Red, green and blue light in the middle of a level.
+fn light_of_level(level: usize) -> [f64; 3] {
+    [2, 1, 0].map(|channel| {
+        let level = level >> (channel * BITS) & ((1 << BITS) - 1);
+        let root = level as f64 / f64::from((1 << BITS) - 1);
+        root * root * root
+    })
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    const LOOKS: [(ColorDepth, ShadeInk); 4] = [
+        (ColorDepth::Indexed256, ShadeInk::Dots),
+        (ColorDepth::Indexed256, ShadeInk::Flat),
+        (ColorDepth::Indexed256, ShadeInk::Unknown),
+        (ColorDepth::Indexed16, ShadeInk::Dots),
+    ];
+
+    /// The colour of a cell of one colour.
+    fn shown(color: Rgb, (depth, ink): (ColorDepth, ShadeInk)) -> Oklab {
+        match Mixer::new(depth, ink).look([color; 2], WHOLE / 2) {
+            Look::Parts([one, other]) => {
+                assert_eq!(one, other, "{color:?}");
+                of_256(one).into()
+            }
+            Look::Shade(quarters, colors) => ink.mixed(quarters, colors),
+        }
+    }
+
+    /// Colours of every hue and lightness.
+    fn colors() -> impl Iterator<Item = Rgb> {
+        let channel = |digit: usize| (36 * digit) as u8;
+        (0..512).map(move |n| Rgb::new(channel(n / 64), channel(n / 8 % 8), channel(n % 8)))
+    }
+
+    fn error(one: Oklab, other: Oklab) -> f64 {
+        let [l, a, b] = array::from_fn(|i| one.0[i] - other.0[i]);
+        libm::sqrt(l * l + (CHROMA_WEIGHT * CHROMA_WEIGHT) * (a * a + b * b))
+    }
+
+    #[test]
+    fn no_palette_colour_and_no_shade_is_much_nearer_than_the_look() {
+        for look in LOOKS {
+            let (depth, ink) = look;
+            let limits =
+                if depth == ColorDepth::Indexed16 { &LIMITS_OF_16 } else { &LIMITS_OF_256 };
+            let mut all: Vec<(Oklab, f64)> = Vec::new();
+            for text in limits.indices.clone() {
+                all.push((of_256(text).into(), 0.0));
+                for ground in limits.indices.clone() {
+                    let [one, other] = [text, ground].map(|index| Oklab::from(of_256(index)));
+                    let [l, a, b] = array::from_fn(|i| one.0[i] - other.0[i]);
+                    if l.abs() <= limits.lightness && libm::hypot(a, b) <= limits.chroma {
+                        let contrast =
+                            error(one, other) * libm::sqrt(f64::from(limits.contrast)) / 64.0;
+                        all.extend([1, 2, 3].map(|q| (ink.mixed(q, [text, ground]), contrast)));
+                    }
+                }
+            }
+            for color in colors().step_by(5) {
+                let wanted = Oklab::from(color);
+                let cost =
+                    |&(shown, contrast): &(Oklab, f64)| libm::hypot(error(shown, wanted), contrast);
+                let least = all.iter().map(cost).fold(f64::INFINITY, f64::min);
+                // A level is up to 0.008 off in lightness; a dark cell may keep the black at its left.
+                assert!(error(shown(color, look), wanted) < least + 0.02, "{look:?} {color:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn dark_wood_is_brown_and_dark_brick_red() {
+        let chroma = |color| {
+            let Oklab([_, redness, yellowness]) = color;
+            (redness, yellowness)
+        };
+        for look in &LOOKS[..3] {
+            for wood in [Rgb::new(96, 64, 36), Rgb::new(80, 52, 28), Rgb::new(72, 46, 26)] {
+                let (redness, yellowness) = chroma(shown(wood, *look));
+                assert!(redness > 0.0 && yellowness > 0.03, "{look:?} {wood:?}");
+            }
+            for brick in [Rgb::new(110, 48, 38), Rgb::new(90, 38, 30), Rgb::new(140, 70, 56)] {
+                assert!(chroma(shown(brick, *look)).0 > 0.05, "{look:?} {brick:?}");
+            }
+            for joint in [Rgb::new(92, 84, 80), Rgb::new(120, 112, 106), Rgb::new(70, 66, 64)] {
+                assert!(chroma(shown(joint, *look)).0 < 0.02, "{look:?} {joint:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_keeps_the_colours_at_its_left_and_an_edge_its_halves() {
+        let mut mixer = Mixer::new(ColorDepth::Indexed256, ShadeInk::Dots);
+        let pair = |look| match look {
+            Look::Shade(_, pair) | Look::Parts(pair) => pair,
+        };
+        let wall = |shade: u8| [Rgb::new(90 + shade, 60 + shade, 36 + shade); 2];
+        let pairs: Vec<_> = (0..40).map(|shade| pair(mixer.look(wall(shade), 12))).collect();
+        let changes = pairs.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!(changes < 15, "{pairs:?}");
+        let edge = mixer.look([Rgb::new(230, 220, 200), Rgb::new(20, 20, 20)], 12);
+        assert!(matches!(edge, Look::Parts([top, bottom]) if top != bottom), "{edge:?}");
+    }
+}

@@ -1,35 +1,28 @@
-//! Bytes and colour errors of methods to choose colours from a small palette.
+//! Bytes and colour errors of pictures in a small palette.
 //!
-//! A script walks through each level, and each method draws every frame in a small palette. The
-//! result is compared with the frame in true colour as both appear from a distance: the linear
-//! light of each window of 2×2 cells, which are 2×4 pixels, is averaged, and the error is the
-//! distance of the averages in Oklab. Choosing the nearest colour has the least error for each
-//! pixel, so that an error without such a blur could not tell a wall without hue from one with it.
-//!
-//! A colour with an Oklab chroma below [`GREY`] counts as grey: people can just tell such a colour
-//! from grey.
-
-mod blur;
-mod methods;
+//! A script walks through each level. Every frame is drawn in the nearest palette colours and as the
+//! game draws it, and compared with the frame in true colour as both appear to the eye: the linear
+//! light is blurred, and the error is the distance in Oklab. Without a blur, the nearest colours would
+//! have the least error, because no pixel can be nearer.
 
 use std::num::NonZeroU32;
 
 use ratatui::backend::Backend;
-use ratatui::layout::Size;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
+use ratatui::widgets::StatefulWidget;
 
 use crate::canvas::Canvas;
-use crate::color::palette::{ColorDepth, of_256};
+use crate::color::Rgb;
+use crate::color::oklab::Oklab;
+use crate::color::palette::{ColorDepth, ShadeInk, nearest_of_16, nearest_of_256, of_256};
 use crate::color::srgb::linear;
 use crate::game::{Game, STEPS_PER_SECOND, Script};
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
-use crate::world::{Camera, FieldOfView, World};
-use blur::BlurredPicture;
-use methods::{Method, method};
-
-/// The Oklab chroma below which a colour counts as grey.
-pub const GREY: f64 = 0.02;
+use crate::tui::{FirstPerson, View};
+use crate::world::{FieldOfView, World};
 
 /// The script for each level.
 const TOUR: &str = "\
@@ -55,28 +48,35 @@ pub struct PalettePlan {
     pub frames_per_second: NonZeroU32,
 }
 
-/// The results of one method in one level.
+/// The results of one method in one level. The errors are means over all pixels, in Oklab.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaletteRow {
-    /// The level's name; `all` for all of them.
+    /// The level's name; `all` for the mean of all levels.
     pub level: String,
-    /// The method's name. The first row of a level is `nearest`; the game uses `mixed`.
+    /// `nearest` for the nearest colours. Otherwise the game's mixtures, for a terminal that draws
+    /// shades as `dots`, as `flat` colours, or as is `unknown` to the game: as dots.
     pub method: &'static str,
-    /// The grey fraction of the blurred picture, from 0 to 1.
-    pub grey: f64,
-    /// The grey fraction of the blurred picture in true colour.
-    pub true_grey: f64,
-    /// The grey fraction of the pixels before the blur.
-    pub grey_pixels: f64,
-    /// The mean error of the blurred picture, in Oklab.
+    /// The error of the level's first picture.
+    pub start_error: f64,
+    /// The error of the first picture in its red–green and yellow–blue components alone.
+    pub start_chroma_error: f64,
+    /// How much lighter the first picture is than in true colour.
+    pub start_lightness: f64,
+    /// The error of all compared pictures.
     pub error: f64,
-    /// The ratio of the error to that of `nearest`.
-    pub error_ratio: f64,
+    /// The share of cells that change between a block and a shade, from one frame to the next.
+    pub changes: f64,
     /// The mean number of bytes per frame, without the first.
     pub bytes: f64,
-    /// The ratio of the bytes to those of `nearest`.
-    pub bytes_ratio: f64,
 }
+
+/// The names of the methods. The game's have the kind of shades for which they mix.
+const METHODS: [(&str, Option<ShadeInk>); 4] = [
+    ("nearest", None),
+    ("dots", Some(ShadeInk::Dots)),
+    ("flat", Some(ShadeInk::Flat)),
+    ("unknown", Some(ShadeInk::Unknown)),
+];
 
 /// Walks through each of `levels`, which have a name, and measures.
 ///
@@ -90,19 +90,19 @@ pub fn report_palettes<'a>(
         .into_iter()
         .flat_map(|(name, world)| report_level(plan, name, Game::new(world)))
         .collect();
-    let total = total(&rows);
-    rows.extend(total);
+    let means = METHODS.map(|(method, _)| mean(method, &rows));
+    rows.extend(means);
     rows
 }
 
-fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRow> {
+fn report_level(plan: &PalettePlan, level: &str, mut game: Game) -> Vec<PaletteRow> {
     let script = Script::parse(TOUR, "tour").unwrap_or_else(|faults| unreachable!("{faults}"));
     let size = FrameSize::new(u32::from(plan.size.width), 2 * u32::from(plan.size.height));
     let mut frame = Frame::new(size.expect("a picture has cells"), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
-    let mut runs: Vec<MethodRun> =
-        methods::NAMES.iter().map(|&name| MethodRun::new(name, plan)).collect();
-    let mut truth = BlurredPicture::default();
+    let mut view = View::default();
+    let mut runs = METHODS.map(|(_, ink)| MethodRun::new(plan, ink));
+    let mut truth = Vec::new();
     let mut is_due = true;
     let mut frames = 0;
     let mut steps = 0;
@@ -111,13 +111,20 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
         if is_due {
             let camera = game.camera(FieldOfView::default());
             renderer.render(game.world(), &camera, &mut frame);
-            let pixels = frame.rows().flatten().copied();
             let is_compared = frames % COMPARED == 0;
             if is_compared {
-                truth.add(frame.width() as usize, pixels.map(linear));
+                let light = frame.rows().flatten().map(|&pixel| linear(pixel)).collect();
+                truth = seen(frame.width() as usize, light);
             }
+            let truth = is_compared.then_some(&*truth);
             for run in &mut runs {
-                run.take(&game, &camera, &frame, is_compared.then_some(&truth));
+                run.take(truth, |ink, buffer| match ink {
+                    None => draw_nearest(plan.depth, &frame, buffer),
+                    Some(ink) => FirstPerson::new(game.world(), &camera)
+                        .color_depth(plan.depth)
+                        .shade_ink(ink)
+                        .render(buffer.area, buffer, &mut view),
+                });
             }
             frames += 1;
         }
@@ -128,111 +135,197 @@ fn report_level(plan: &PalettePlan, name: &str, mut game: Game) -> Vec<PaletteRo
         let after = steps * u64::from(plan.frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
         is_due = after > before;
     }
-    let mut rows: Vec<PaletteRow> = Vec::new();
-    for run in runs {
-        let row = run.finish(name, truth.share_of_grey(), rows.first());
-        rows.push(row);
-    }
-    rows
+    let runs = runs.into_iter().zip(METHODS);
+    runs.map(|(run, (name, _))| run.finish(level, name)).collect()
 }
 
-/// The means over all levels, one row for each method.
-fn total(rows: &[PaletteRow]) -> Vec<PaletteRow> {
-    let mut totals: Vec<PaletteRow> = Vec::new();
-    for &method in methods::NAMES {
-        let of_method: Vec<&PaletteRow> = rows.iter().filter(|row| row.method == method).collect();
-        let mean = |value: fn(&PaletteRow) -> f64| {
-            of_method.iter().map(|row| value(row)).sum::<f64>() / of_method.len().max(1) as f64
-        };
-        let (error, bytes) = (mean(|row| row.error), mean(|row| row.bytes));
-        let (first_error, first_bytes) =
-            totals.first().map_or((error, bytes), |first| (first.error, first.bytes));
-        totals.push(PaletteRow {
-            level: "all".to_owned(),
-            method,
-            grey: mean(|row| row.grey),
-            true_grey: mean(|row| row.true_grey),
-            grey_pixels: mean(|row| row.grey_pixels),
-            error,
-            error_ratio: error / first_error,
-            bytes,
-            bytes_ratio: bytes / first_bytes,
-        });
+/// The mean of a method's rows.
+fn mean(method: &'static str, rows: &[PaletteRow]) -> PaletteRow {
+    let rows: Vec<&PaletteRow> = rows.iter().filter(|row| row.method == method).collect();
+    let mean = |value: fn(&PaletteRow) -> f64| {
+        rows.iter().map(|row| value(row)).sum::<f64>() / rows.len().max(1) as f64
+    };
+    PaletteRow {
+        level: "all".to_owned(),
+        method,
+        start_error: mean(|row| row.start_error),
+        start_chroma_error: mean(|row| row.start_chroma_error),
+        start_lightness: mean(|row| row.start_lightness),
+        error: mean(|row| row.error),
+        changes: mean(|row| row.changes),
+        bytes: mean(|row| row.bytes),
     }
-    totals
+}
+
+/// Draws a frame in the nearest palette colours.
+fn draw_nearest(depth: ColorDepth, frame: &Frame, buffer: &mut Buffer) {
+    let nearest = |pixel| match depth {
+        ColorDepth::Indexed16 => Color::Indexed(nearest_of_16(pixel)),
+        _ => Color::Indexed(nearest_of_256(pixel)),
+    };
+    for (y, upper) in (0..buffer.area.height).zip((0..).step_by(2)) {
+        let halves = frame.row(upper).zip(frame.row(upper + 1));
+        buffer.draw_halves(0, y, halves.map(|(top, bottom)| [top, bottom].map(nearest)));
+    }
 }
 
 /// A method and its sums so far.
 struct MethodRun {
-    name: &'static str,
-    method: Box<dyn Method>,
+    ink: Option<ShadeInk>,
+    buffer: Buffer,
     writer: CellWriter<Vec<u8>>,
-    indices: Vec<u8>,
     /// The bytes of each frame.
     bytes: Vec<usize>,
-    blurred: BlurredPicture,
+    /// The errors of each compared frame.
+    errors: Vec<Errors>,
+    changes: usize,
+}
+
+/// The mean errors of a picture, as in [`PaletteRow`].
+#[derive(Clone, Copy)]
+struct Errors {
     error: f64,
-    windows: usize,
+    chroma: f64,
+    lightness: f64,
 }
 
 impl MethodRun {
-    fn new(name: &'static str, plan: &PalettePlan) -> Self {
+    fn new(plan: &PalettePlan, ink: Option<ShadeInk>) -> Self {
         Self {
-            name,
-            method: method(name, plan.depth),
+            ink,
+            buffer: Buffer::empty(Rect::from(plan.size)),
             writer: CellWriter::new(Vec::new(), plan.size),
-            indices: Vec::new(),
             bytes: Vec::new(),
-            blurred: BlurredPicture::default(),
-            error: 0.0,
-            windows: 0,
+            errors: Vec::new(),
+            changes: 0,
         }
     }
 
-    fn take(
-        &mut self,
-        game: &Game,
-        camera: &Camera,
-        frame: &Frame,
-        truth: Option<&BlurredPicture>,
-    ) {
-        self.indices.clear();
-        self.method.draw(game.world(), camera, frame, &mut self.indices);
-        let width = frame.width() as usize;
-        let indices = &self.indices;
+    fn take(&mut self, truth: Option<&[Oklab]>, draw: impl FnOnce(Option<ShadeInk>, &mut Buffer)) {
+        let before = self.buffer.clone();
+        draw(self.ink, &mut self.buffer);
+        let is_shade = |cell: &Cell| "░▒▓".contains(cell.symbol());
+        if !self.bytes.is_empty() {
+            let pairs = before.content().iter().zip(self.buffer.content());
+            self.changes += pairs.filter(|(one, other)| is_shade(one) != is_shade(other)).count();
+        }
+        let buffer = &self.buffer;
         self.writer.draw_frame(|screen| {
-            for (y, rows) in (0..).zip(indices.chunks_exact(2 * width)) {
-                let (upper, lower) = rows.split_at(width);
-                let halves = upper.iter().zip(lower);
-                let halves = halves.map(|(&top, &bottom)| [top, bottom].map(Color::Indexed));
-                screen.draw_halves(0, y, halves);
+            for (position, cell) in buffer.area.positions().zip(buffer.content()) {
+                let character = cell.symbol().chars().next().unwrap_or(' ');
+                screen.draw_character(position.x, position.y, character, [cell.fg, cell.bg]);
             }
         });
         // Writing to memory cannot fail.
         _ = Backend::flush(&mut self.writer);
         self.bytes.push(self.writer.output_mut().drain(..).len());
         if let Some(truth) = truth {
-            let light = |&index: &u8| linear(of_256(index));
-            self.blurred.add(width, self.indices.iter().map(light));
-            self.error += self.blurred.distances(truth).sum::<f64>();
-            self.windows += self.blurred.windows();
+            self.errors.push(errors(&shown(&self.buffer, self.ink), truth));
         }
     }
 
-    fn finish(self, level: &str, true_grey: f64, first: Option<&PaletteRow>) -> PaletteRow {
+    fn finish(self, level: &str, method: &'static str) -> PaletteRow {
         let later = self.bytes.get(1..).unwrap_or_default();
-        let bytes = later.iter().sum::<usize>() as f64 / later.len().max(1) as f64;
-        let error = self.error / self.windows.max(1) as f64;
+        let count = later.len().max(1) as f64;
+        let cells = self.buffer.content().len() as f64;
+        let start = self.errors[0];
+        let sum: f64 = self.errors.iter().map(|errors| errors.error).sum();
         PaletteRow {
             level: level.to_owned(),
-            method: self.name,
-            grey: self.blurred.share_of_grey(),
-            true_grey,
-            grey_pixels: self.blurred.share_of_grey_pixels(),
-            error,
-            error_ratio: error / first.map_or(error, |first| first.error),
-            bytes,
-            bytes_ratio: bytes / first.map_or(bytes, |first| first.bytes),
+            method,
+            start_error: start.error,
+            start_chroma_error: start.chroma,
+            start_lightness: start.lightness,
+            error: sum / self.errors.len() as f64,
+            changes: self.changes as f64 / cells / count,
+            bytes: later.iter().sum::<usize>() as f64 / count,
         }
     }
+}
+
+/// What the eye sees of the cells.
+fn shown(buffer: &Buffer, ink: Option<ShadeInk>) -> Vec<Oklab> {
+    let width = usize::from(buffer.area.width);
+    let mut light = Vec::with_capacity(2 * buffer.content().len());
+    for row in buffer.content().chunks_exact(width) {
+        for half in [0, 1] {
+            light.extend(row.iter().map(|cell| half_of(cell, half, ink)));
+        }
+    }
+    seen(width, light)
+}
+
+/// The light of a half of a cell.
+fn half_of(cell: &Cell, half: usize, ink: Option<ShadeInk>) -> [f64; 3] {
+    let color = |color| if let Color::Indexed(index) = color { of_256(index) } else { Rgb::BLACK };
+    let [text, ground] = [cell.fg, cell.bg].map(color);
+    let share = match (cell.symbol(), half) {
+        ("▀", 0) | ("▄", 1) | ("█", _) => 1.0,
+        ("░", _) => 0.25,
+        ("▒", _) => 0.5,
+        ("▓", _) => 0.75,
+        _ => 0.0,
+    };
+    let between = |one: f64, other: f64| other + share * (one - other);
+    if ink == Some(ShadeInk::Flat) {
+        let [text, ground] = [text, ground].map(|color| color.channels().map(f64::from));
+        let [red, green, blue] = [0, 1, 2].map(|i| between(text[i], ground[i]).round() as u8);
+        linear(Rgb::new(red, green, blue))
+    } else {
+        let [text, ground] = [text, ground].map(linear);
+        [0, 1, 2].map(|i| between(text[i], ground[i]))
+    }
+}
+
+fn errors(shown: &[Oklab], truth: &[Oklab]) -> Errors {
+    let mean = |value: fn([f64; 3]) -> f64| {
+        let pairs = shown.iter().zip(truth);
+        let values =
+            pairs.map(|(one, other)| value(std::array::from_fn(|i| one.0[i] - other.0[i])));
+        values.sum::<f64>() / truth.len() as f64
+    };
+    Errors {
+        error: mean(|[l, a, b]| libm::sqrt(l * l + a * a + b * b)),
+        chroma: mean(|[_, a, b]| libm::hypot(a, b)),
+        lightness: mean(|[l, _, _]| l),
+    }
+}
+
+/// A picture of linear light, blurred by a Gaussian of 0.6 pixels.
+fn seen(width: usize, light: Vec<[f64; 3]>) -> Vec<Oklab> {
+    let height = light.len() / width;
+    let across = blurred(&light, height, width, 1, width);
+    let down = blurred(&across, width, height, width, 1);
+    down.into_iter().map(Oklab::from_linear).collect()
+}
+
+/// Blurs `lines` lines of `length` pixels. The pixels of a line are `step` apart, and the lines `next`.
+fn blurred(
+    light: &[[f64; 3]],
+    lines: usize,
+    length: usize,
+    step: usize,
+    next: usize,
+) -> Vec<[f64; 3]> {
+    const SIGMA: f64 = 0.6;
+    const REACH: usize = 2;
+    let weights: [f64; 2 * REACH + 1] = std::array::from_fn(|at| {
+        let distance = at as f64 - REACH as f64;
+        libm::exp(-distance * distance / (2.0 * SIGMA * SIGMA))
+    });
+    let total: f64 = weights.iter().sum();
+    let mut blurred = vec![[0.0; 3]; light.len()];
+    for line in 0..lines {
+        for pixel in 0..length {
+            let mut sum = [0.0; 3];
+            for (at, weight) in weights.iter().enumerate() {
+                // The pixels at the edge continue outwards.
+                let from = (pixel + at).saturating_sub(REACH).min(length - 1);
+                let light = light[line * next + from * step];
+                sum = std::array::from_fn(|i| sum[i] + light[i] * weight / total);
+            }
+            blurred[line * next + pixel * step] = sum;
+        }
+    }
+    blurred
 }

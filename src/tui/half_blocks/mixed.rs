@@ -1,96 +1,59 @@
-//! Half blocks in a small palette: other colours are mixed from two colours side by side.
+//! Half blocks and shades in a small palette.
 //!
-//! Each pixel has one of the two colours of its [`Mixture`], chosen by Bayer's 2×2 matrix, which is
-//! fixed to the screen. A pixel's colour depends on nothing else, so that the details of textures
-//! remain visible, and a changed pixel changes no other.
-//!
-//! A mixture of halves is a chessboard: the cells in a row have the same two colours, and glyphs that
-//! differ, which take three bytes each. One mixture for the four pixels of two cells, with the error
-//! carried to the next two, was refused: joints and stones vanish.
+//! Each cell is a half block in two palette colours or one of the shades ░ ▒ ▓, whichever shows it
+//! better (see [`mixture`](crate::color::palette::mixture)). No cell depends on the frames before it,
+//! so that a still picture stays still.
 
-use std::array;
-use std::sync::LazyLock;
+use std::iter;
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::color::palette::mixture::{self, Mixture, Mixtures, ToneCurve};
-use crate::color::srgb::linear;
+use crate::color::palette::mixture::{Look, Mixer, WHOLE};
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::Frame;
+
+/// The shades of one, two and three quarters.
+pub(super) const SHADES: [char; 3] = ['░', '▒', '▓'];
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does.
 pub(super) fn draw(
     area: Rect,
     canvas: &mut impl Canvas,
-    mixtures: &Mixtures,
+    depth: ColorDepth,
+    ink: ShadeInk,
     above: u32,
     frame: &Frame,
 ) {
-    let tables = &*TABLES;
-    let row = |y: u32| if y < frame.height() { frame.row_slice(y) } else { &[] };
+    let is_coarse = depth == ColorDepth::Indexed16;
     for (y, upper) in (area.top()..area.bottom()).zip((above..).step_by(2)) {
-        let halves = row(upper).iter().zip(row(upper + 1)).zip(ORDER.iter().cycle());
-        let halves = halves.map(|((&upper, &lower), &[upper_threshold, lower_threshold])| {
-            [
-                Color::Indexed(tables.index(mixtures, upper, upper_threshold)),
-                Color::Indexed(tables.index(mixtures, lower, lower_threshold)),
-            ]
-        });
-        canvas.draw_halves(area.x, y, halves.take(usize::from(area.width)));
+        let mut mixer = Mixer::new(depth, ink);
+        for (column, x) in (0..).zip(area.left()..area.right()) {
+            let halves = [upper, upper + 1].map(|row| {
+                if is_coarse { clarified(frame, column, row) } else { frame.pixel(column, row) }
+            });
+            match mixer.look(halves, WHOLE / 2) {
+                Look::Parts(halves) => {
+                    canvas.draw_halves(x, y, iter::once(halves.map(Color::Indexed)));
+                }
+                Look::Shade(quarters, colors) => {
+                    let shade = SHADES[usize::from(quarters - 1)];
+                    canvas.draw_character(x, y, shade, colors.map(Color::Indexed));
+                }
+            }
+        }
     }
 }
 
-/// The order in which pixels get the brighter colour: Bayer's 2×2 matrix, by the column and by the
-/// half of the cell.
-const ORDER: [[u8; 2]; 2] = [[0, 3], [2, 1]];
-
-/// Red, green and blue light, each from 0 to [`Tables::WHITE`].
-type Light = [i32; 3];
-
-/// Tables that convert between colours and light.
-struct Tables {
-    of_channel: [i32; 256],
-    /// The [`mixture::level`] of each amount of light.
-    levels: [u8; Self::STEPS + 1],
-}
-
-static TABLES: LazyLock<Tables> = LazyLock::new(Tables::new);
-
-impl Tables {
-    const WHITE: i32 = 1 << 15;
-    /// The number of steps of light in `levels`.
-    const STEPS: usize = 1 << 12;
-
-    fn new() -> Self {
-        let of_channel = array::from_fn(|value| {
-            let [share, ..] = linear(Rgb::new(value as u8, 0, 0));
-            libm::round(share * f64::from(Self::WHITE)) as i32
-        });
-        let levels = array::from_fn(|step| mixture::level(step as f64 / Self::STEPS as f64));
-        Self { of_channel, levels }
-    }
-
-    /// The index of the colour that a pixel has, if it gets the brighter colour of a mixture from a
-    /// share above `threshold`.
-    #[inline]
-    fn index(&self, mixtures: &Mixtures, pixel: Rgb, threshold: u8) -> u8 {
-        let Mixture { colors, share } = mixtures.of(self.levels(self.light(mixtures, pixel)));
-        colors[usize::from(share > threshold)]
-    }
-
-    /// The light of a pixel, in the tones of the palette.
-    fn light(&self, mixtures: &Mixtures, pixel: Rgb) -> Light {
-        let factor = mixtures.tones.factor(pixel);
-        pixel.channels().map(|channel| {
-            let light = self.of_channel[usize::from(channel)];
-            (light * factor / ToneCurve::ONE).min(Self::WHITE)
-        })
-    }
-
-    fn levels(&self, light: Light) -> [u8; 3] {
-        let step = Self::WHITE / Self::STEPS as i32;
-        light.map(|part| self.levels[((part + step / 2) / step) as usize])
-    }
+/// The colour of a pixel with more contrast to those around it. In 16 colours, the shades of a dark
+/// wall would otherwise be one.
+fn clarified(frame: &Frame, x: u32, y: u32) -> Rgb {
+    let color = frame.pixel(x, y);
+    let luma = i32::from(color.luma());
+    let wanted = (luma + super::local_contrast(frame, x, y)).clamp(luma / 3, 2 * luma + 1);
+    let scaled = |channel: u8| (i32::from(channel) * wanted / luma.max(1)).min(255) as u8;
+    let [red, green, blue] = color.channels().map(scaled);
+    Rgb::new(red, green, blue)
 }
