@@ -26,6 +26,7 @@
 //! ```
 
 mod ascii;
+mod correction;
 mod first_person;
 mod glyphs;
 mod half_blocks;
@@ -35,6 +36,7 @@ mod outline;
 mod ramp;
 mod wanted;
 
+pub use correction::Correction;
 pub use first_person::{FirstPerson, View};
 #[cfg(feature = "serve")]
 pub(crate) use glyphs::color_at;

@@ -106,6 +106,7 @@ impl App {
             depth: self.depth,
             cell_aspect: self.cell_aspect,
             filter: self.settings.filter,
+            correction: self.store.preferences().correction,
             field_of_view: self.field_of_view,
             flash: flash.filter(|_| is_game),
             marks_middle: is_game && self.store.preferences().crosshair,

@@ -10,7 +10,7 @@ use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
-use crate::tui::{CellAspect, FirstPerson, GlyphMode, View};
+use crate::tui::{CellAspect, Correction, FirstPerson, GlyphMode, View};
 use crate::world::{FieldOfView, Heading};
 
 /// How a picture is drawn.
@@ -20,6 +20,7 @@ pub(crate) struct DrawOptions {
     pub(crate) depth: ColorDepth,
     pub(crate) cell_aspect: CellAspect,
     pub(crate) filter: Filter,
+    pub(crate) correction: Correction,
     pub(crate) field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
     pub(crate) flash: Option<(Flash, Heading)>,
@@ -56,6 +57,7 @@ impl DrawOptions {
             .color_depth(self.depth)
             .cell_aspect(self.cell_aspect)
             .filter(self.filter)
+            .correction(self.correction)
             .time(seconds)
     }
 

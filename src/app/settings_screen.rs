@@ -12,7 +12,7 @@ use super::menus::Choice;
 use super::{App, Given, MapDisplay, Origin};
 use crate::color::palette::ColorDepth;
 use crate::store::Preferences;
-use crate::tui::GlyphMode;
+use crate::tui::{Correction, GlyphMode};
 use crate::world::Difficulty;
 
 /// A setting on the screen.
@@ -27,11 +27,12 @@ pub(crate) enum Setting {
     Mouse,
     Glyphs,
     Colors,
+    Correction,
     FrameRate,
 }
 
 /// The settings in their order on the screen.
-const SETTINGS: [(Setting, &str); 10] = [
+const SETTINGS: [(Setting, &str); 11] = [
     (Setting::Difficulty, "Difficulty"),
     (Setting::Crosshair, "Crosshair"),
     (Setting::Compass, "Compass"),
@@ -41,6 +42,7 @@ const SETTINGS: [(Setting, &str); 10] = [
     (Setting::Mouse, "Mouse turns"),
     (Setting::Glyphs, "Characters"),
     (Setting::Colors, "Colours"),
+    (Setting::Correction, "Picture"),
     (Setting::FrameRate, "Frames a second"),
 ];
 
@@ -53,6 +55,12 @@ pub(crate) const COLORS: [(Option<ColorDepth>, &str); 5] = [
     (Some(ColorDepth::Indexed256), "256"),
     (Some(ColorDepth::Indexed16), "16"),
     (Some(ColorDepth::Mono), "none"),
+];
+
+pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
+    (Correction::None, "as it is"),
+    (Correction::Contrast, "more contrast"),
+    (Correction::RedGreen, "red and green apart"),
 ];
 
 impl App {
@@ -97,6 +105,10 @@ impl App {
                 preferences.colors = self.settings.depth;
                 self.depth = self.settings.depth.unwrap_or(self.terminal_depth);
             }
+            Setting::Correction => {
+                let correction = before.correction;
+                preferences.correction = after(&CORRECTIONS, |it| it.0 == correction, forward).0;
+            }
             Setting::FrameRate => {
                 let rate = self.frame_rate();
                 let rate = after(&FRAME_RATES, |&one| one >= rate, forward);
@@ -116,7 +128,7 @@ impl App {
     }
 
     fn value_of(&self, setting: Setting) -> String {
-        let Preferences { crosshair, compass, bell, ghost, difficulty, .. } =
+        let Preferences { crosshair, compass, bell, ghost, difficulty, correction, .. } =
             self.store.preferences();
         let Given { glyphs, depth, frame_time } = self.settings.given;
         match setting {
@@ -133,6 +145,7 @@ impl App {
             Setting::Mouse => on_or_off(self.pointer.is_on()),
             Setting::Glyphs => given(name(&GLYPHS, self.settings.glyphs), glyphs),
             Setting::Colors => given(name(&COLORS, self.settings.depth), depth),
+            Setting::Correction => name(&CORRECTIONS, correction),
             Setting::FrameRate => given(self.frame_rate().to_string(), frame_time),
         }
     }

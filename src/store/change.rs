@@ -102,6 +102,7 @@ impl Preferences {
         set(&mut self.difficulty, &before.difficulty, after.difficulty);
         set(&mut self.glyphs, &before.glyphs, after.glyphs);
         set(&mut self.colors, &before.colors, after.colors);
+        set(&mut self.correction, &before.correction, after.correction);
         set(&mut self.frames_per_second, &before.frames_per_second, after.frames_per_second);
     }
 }

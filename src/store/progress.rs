@@ -8,7 +8,7 @@ use super::best::{Best, Improved, Reached, Run};
 use super::names;
 use crate::color::palette::ColorDepth;
 use crate::game::Rules;
-use crate::tui::GlyphMode;
+use crate::tui::{Correction, GlyphMode};
 use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
@@ -106,6 +106,8 @@ pub struct Preferences {
     pub glyphs: Option<GlyphMode>,
     /// The colour depth; `None` for that of the terminal.
     pub colors: Option<ColorDepth>,
+    /// How pictures are changed for the player's eyes.
+    pub correction: Correction,
     /// The most frames per second; `None` for the default.
     pub frames_per_second: Option<NonZeroU32>,
 }
@@ -120,6 +122,7 @@ impl Default for Preferences {
             difficulty: Difficulty::Normal,
             glyphs: None,
             colors: None,
+            correction: Correction::None,
             frames_per_second: None,
         }
     }

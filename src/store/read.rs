@@ -12,7 +12,9 @@ use toml::de::DeValue;
 
 use super::best::{Best, Reached};
 use super::progress::{Daily, Descent, Preferences, Progress, Save, SavedEntry};
-use super::values::{COLORS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, SAVES, VERSION, named};
+use super::values::{
+    COLORS, CORRECTIONS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, SAVES, VERSION, named,
+};
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};
@@ -71,6 +73,9 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
             "difficulty" => set(&mut preferences.difficulty, difficulty(&entry)),
             "glyphs" => preferences.glyphs = checked(&entry, name_in(&entry, &GLYPHS)),
             "colors" => preferences.colors = checked(&entry, name_in(&entry, &COLORS)),
+            "correction" => {
+                set(&mut preferences.correction, checked(&entry, name_in(&entry, &CORRECTIONS)))
+            }
             "fps" => {
                 let frames = small_number(&entry).filter(|frames| (1..=240).contains(frames));
                 preferences.frames_per_second = checked(&entry, frames.and_then(NonZeroU32::new));

@@ -1,7 +1,7 @@
 //! The version of the file, and the names in it that are read and written.
 
 use crate::color::palette::ColorDepth;
-use crate::tui::GlyphMode;
+use crate::tui::{Correction, GlyphMode};
 
 /// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
 /// preferences about the terminal. Version 3 has any number of saved games.
@@ -22,6 +22,12 @@ pub(super) const COLORS: [(ColorDepth, &str); 4] = [
     (ColorDepth::Indexed256, "256"),
     (ColorDepth::Indexed16, "16"),
     (ColorDepth::Mono, "mono"),
+];
+
+pub(super) const CORRECTIONS: [(Correction, &str); 3] = [
+    (Correction::None, "none"),
+    (Correction::Contrast, "contrast"),
+    (Correction::RedGreen, "red-green"),
 ];
 
 /// The name of `value`, which has one.

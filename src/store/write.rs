@@ -4,8 +4,9 @@ use std::fmt::{self, Write};
 
 use super::best::{Best, Reached};
 use super::progress::{Preferences, Progress, Save, SavedEntry};
-use super::values::{COLORS, GLYPHS, SAVES, VERSION, name_of};
+use super::values::{COLORS, CORRECTIONS, GLYPHS, SAVES, VERSION, name_of};
 use crate::game::{Rules, Share};
+use crate::tui::Correction;
 
 impl fmt::Display for Progress {
     /// Writes the whole file.
@@ -42,6 +43,10 @@ fn write_preferences(f: &mut fmt::Formatter<'_>, preferences: Preferences) -> fm
     }
     if let Some(colors) = preferences.colors {
         writeln!(f, "colors = {}", quoted(name_of(&COLORS, colors)))?;
+    }
+    if preferences.correction != Correction::None {
+        let correction = name_of(&CORRECTIONS, preferences.correction);
+        writeln!(f, "correction = {}", quoted(correction))?;
     }
     match preferences.frames_per_second {
         Some(frames) => writeln!(f, "fps = {frames}"),

@@ -7,7 +7,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
 use super::outline::{Edge, outline};
-use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use super::{CellAspect, Correction, GlyphMode, ascii, half_blocks, ramp};
 use crate::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
@@ -43,6 +43,7 @@ pub struct FirstPerson<'a, S: Renderable = World> {
     glyphs: GlyphMode,
     depth: ColorDepth,
     shade_ink: ShadeInk,
+    correction: Correction,
     cell_aspect: CellAspect,
     filter: Filter,
     seconds: f64,
@@ -58,6 +59,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
             glyphs: GlyphMode::default(),
             depth: ColorDepth::default(),
             shade_ink: ShadeInk::default(),
+            correction: Correction::default(),
             cell_aspect: CellAspect::default(),
             filter: Filter::default(),
             seconds: 0.0,
@@ -84,6 +86,12 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Self { shade_ink, ..self }
     }
 
+    /// Sets how the picture is changed for the eyes that look at it.
+    #[must_use]
+    pub fn correction(self, correction: Correction) -> Self {
+        Self { correction, ..self }
+    }
+
     /// Sets the shape of a cell.
     #[must_use]
     pub fn cell_aspect(self, cell_aspect: CellAspect) -> Self {
@@ -108,8 +116,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     /// Rendering the widget calls this function and [`FirstPerson::paint`]. Call them separately to
     /// paint a large picture in bands of rows.
     pub fn draw(&self, size: Size, view: &mut View<S>) {
-        let Some(View { renderer, frame }) = self.resized(size, view) else { return };
-        self.scene.render(self.camera, self.options(), renderer, frame);
+        self.draw_while(size, view, &mut || true);
     }
 
     /// Does the same as [`FirstPerson::draw`], but may stop once `go_on` returns `false`. Returns whether
@@ -120,14 +127,19 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         view: &mut View<S>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> bool {
-        let Some(View { renderer, frame }) = self.resized(size, view) else { return true };
-        self.scene.render_while(self.camera, self.options(), renderer, frame, go_on)
+        let Some(View { renderer, frame, luma }) = self.resized(size, view) else { return true };
+        let is_complete =
+            self.scene.render_while(self.camera, self.options(), renderer, frame, go_on);
+        if is_complete {
+            self.correction.apply(frame, luma);
+        }
+        is_complete
     }
 
     /// Does the same as [`FirstPerson::draw`] and returns the frame's cost, or `None` if the area
     /// has no cells.
     pub fn explain(&self, size: Size, view: &mut View<S>) -> Option<S::Explanation> {
-        let View { renderer, frame } = self.resized(size, view)?;
+        let View { renderer, frame, .. } = self.resized(size, view)?;
         Some(self.scene.explain(self.camera, self.options(), renderer, frame))
     }
 
@@ -140,7 +152,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         if area.is_empty() {
             return;
         }
-        let View { renderer, frame } = view;
+        let View { renderer, frame, .. } = view;
         let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
         let surface = |x, y| S::surface(renderer, x, y);
         match self.glyphs {
@@ -201,13 +213,15 @@ impl<S: Renderable> Copy for FirstPerson<'_, S> {}
 pub struct View<S: Renderable = World> {
     renderer: S::Renderer,
     frame: Frame,
+    /// The memory of a [`Correction`].
+    luma: Vec<u8>,
 }
 
 impl<S: Renderable> Default for View<S> {
     fn default() -> Self {
         let smallest = FrameSize { width: NonZeroU32::MIN, height: NonZeroU32::MIN };
         let frame = Frame::new(smallest, PixelAspect::SQUARE);
-        Self { renderer: S::Renderer::default(), frame }
+        Self { renderer: S::Renderer::default(), frame, luma: Vec::new() }
     }
 }
 

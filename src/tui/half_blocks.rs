@@ -12,6 +12,7 @@ mod mono;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
+use super::correction;
 use super::glyphs::color_at;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
@@ -70,14 +71,8 @@ pub(super) fn draw<Row: Iterator<Item = Rgb>>(
 
 /// How much brighter a pixel is than those around it, in steps of luma.
 fn local_contrast(frame: &Frame, x: u32, y: u32) -> i32 {
-    /// The distance of the eight pixels that are compared.
-    const DISTANCE: u32 = 3;
-    let [columns, rows] = [(x, frame.width()), (y, frame.height())].map(|(at, count)| {
-        [at.saturating_sub(DISTANCE), at.min(count - 1), (at + DISTANCE).min(count - 1)]
-    });
-    let luma = |x: usize, y: usize| i32::from(frame.pixel(columns[x], rows[y]).luma());
-    let around = (0..9).filter(|&at| at != 4).map(|at| luma(at % 3, at / 3));
-    luma(1, 1) - around.sum::<i32>() / 8
+    let luma = |x, y| frame.pixel(x, y).luma();
+    correction::local_contrast([frame.width(), frame.height()], luma, x, y)
 }
 
 /// The character whose halves are lit or unlit.

@@ -6,7 +6,7 @@ use crate::color::palette::ColorDepth;
 use crate::render::Filter;
 use crate::store::Preferences;
 use crate::terminal::Protocol;
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, Correction, GlyphMode};
 use crate::world::FieldOfView;
 
 /// How far a key widens or narrows the view, and its limits, in degrees.
@@ -23,6 +23,7 @@ pub(super) struct Look {
     /// What the terminal shows best.
     terminal_depth: ColorDepth,
     terminal_glyphs: GlyphMode,
+    correction: Correction,
     marks_middle: bool,
     pub(super) shows_ghosts: bool,
 }
@@ -55,6 +56,7 @@ impl Look {
         self.glyphs = preferences.glyphs.unwrap_or(self.terminal_glyphs);
         self.depth = preferences.colors.unwrap_or(self.terminal_depth);
         self.marks_middle = preferences.crosshair;
+        self.correction = preferences.correction;
         self.shows_ghosts = preferences.ghost;
     }
 
@@ -71,6 +73,7 @@ impl Look {
             depth: self.depth,
             cell_aspect: self.cell_aspect,
             filter: Filter::default(),
+            correction: self.correction,
             field_of_view: self.field_of_view,
             flash: None,
             marks_middle: self.marks_middle,

@@ -6,7 +6,7 @@
 use super::choice::Choice;
 use super::messages::Request;
 use super::visit::{Visit, bindings_of};
-use crate::app::parts::{COLORS, GLYPHS, Menu, after, name, on_or_off};
+use crate::app::parts::{COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off};
 use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
 
@@ -24,10 +24,11 @@ pub(super) enum Preference {
     Chat,
     Glyphs,
     Colors,
+    Correction,
 }
 
 /// The settings of everybody, and those of a room that one is in.
-const USUAL: [(Preference, &str); 9] = [
+const USUAL: [(Preference, &str); 10] = [
     (Preference::Difficulty, "Difficulty"),
     (Preference::Keys, "Keys"),
     (Preference::Mouse, "Mouse turns"),
@@ -37,6 +38,7 @@ const USUAL: [(Preference, &str); 9] = [
     (Preference::Bell, "Bell when noticed or hurt"),
     (Preference::Glyphs, "Characters"),
     (Preference::Colors, "Colours"),
+    (Preference::Correction, "Picture"),
 ];
 const IN_A_ROOM: [(Preference, &str); 2] = [(Preference::Map, "Map"), (Preference::Chat, "Chat")];
 
@@ -87,6 +89,10 @@ impl Visit {
                 let colors = preferences.colors;
                 preferences.colors = after(&COLORS, |it| it.0 == colors, forward).0;
             }
+            Preference::Correction => {
+                let correction = preferences.correction;
+                preferences.correction = after(&CORRECTIONS, |it| it.0 == correction, forward).0;
+            }
             Preference::Keys => self.change_keys(forward),
             Preference::Mouse => self.switch_mouse(),
             Preference::Map => {
@@ -131,6 +137,7 @@ impl Visit {
             Preference::Chat => on_or_off(stay.is_some_and(|stay| stay.talk.is_on())),
             Preference::Glyphs => name(&GLYPHS, self.look.glyphs),
             Preference::Colors => name(&COLORS, preferences.colors),
+            Preference::Correction => name(&CORRECTIONS, preferences.correction),
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::color::Rgb;
 use crate::color::palette::mixture::{Look, Mixer, WHOLE};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::Frame;
+use crate::tui::correction::raised;
 
 /// The shades of one, two and three quarters.
 pub(super) const SHADES: [char; 3] = ['░', '▒', '▓'];
@@ -50,10 +51,5 @@ pub(super) fn draw(
 /// The colour of a pixel with more contrast to those around it. In 16 colours, the shades of a dark
 /// wall would otherwise be one.
 fn clarified(frame: &Frame, x: u32, y: u32) -> Rgb {
-    let color = frame.pixel(x, y);
-    let luma = i32::from(color.luma());
-    let wanted = (luma + super::local_contrast(frame, x, y)).clamp(luma / 3, 2 * luma + 1);
-    let scaled = |channel: u8| (i32::from(channel) * wanted / luma.max(1)).min(255) as u8;
-    let [red, green, blue] = color.channels().map(scaled);
-    Rgb::new(red, green, blue)
+    raised(frame.pixel(x, y), super::local_contrast(frame, x, y))
 }

@@ -8,7 +8,7 @@ use crate::store::host::sql::{Statements, values};
 /// The lock under which tables are made, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD];
+pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD, FOURTH];
 
 /// As those of SQLite. A text is compared by its bytes, whatever the language of the database.
 const FIRST: &str = r#"
@@ -122,6 +122,8 @@ CREATE TABLE account_rates (
     whole_at_ms BIGINT NOT NULL
 );
 "#;
+
+const FOURTH: &str = "ALTER TABLE settings ADD COLUMN correction TEXT";
 
 /// What a database has.
 enum Found {

@@ -9,7 +9,7 @@ use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin,
     RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban,
 };
-use crate::store::values::{self as words, COLORS, GLYPHS, name_of};
+use crate::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use crate::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";
@@ -96,13 +96,14 @@ pub(super) fn settings(
     id: AccountId,
 ) -> Result<AccountSettings, StoreFailure> {
     let sql = "SELECT crosshair, compass, bell, ghost, difficulty, glyphs, colors, \
-               frames_per_second, configuration FROM settings WHERE account = ?1";
+               frames_per_second, configuration, correction FROM settings WHERE account = ?1";
     let Some(row) = database.row(sql, values![id])? else {
         return Ok(AccountSettings::default());
     };
     let difficulty: String = row.get(4)?;
     let [glyphs, colors]: [Option<String>; 2] = [row.get(5)?, row.get(6)?];
     let frames: Option<u32> = row.get(7)?;
+    let correction: Option<String> = row.get(9)?;
     let preferences = Preferences {
         crosshair: row.get(0)?,
         compass: row.get(1)?,
@@ -111,6 +112,9 @@ pub(super) fn settings(
         difficulty: Difficulty::named(&difficulty).unwrap_or_default(),
         glyphs: glyphs.and_then(|name| words::named(&GLYPHS, &name)),
         colors: colors.and_then(|name| words::named(&COLORS, &name)),
+        correction: correction
+            .and_then(|name| words::named(&CORRECTIONS, &name))
+            .unwrap_or_default(),
         frames_per_second: frames.and_then(NonZeroU32::new),
     };
     Ok(AccountSettings { preferences, configuration: row.get(8)? })
@@ -129,13 +133,13 @@ pub(super) fn set_settings(
     ];
     let frames = preferences.frames_per_second.map(NonZeroU32::get);
     let sql = "INSERT INTO settings (account, crosshair, compass, bell, ghost, difficulty, glyphs, \
-               colors, frames_per_second, configuration) \
-               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10) \
+               colors, frames_per_second, configuration, correction) \
+               VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) \
                ON CONFLICT (account) DO UPDATE SET crosshair = excluded.crosshair, \
                compass = excluded.compass, bell = excluded.bell, ghost = excluded.ghost, \
                difficulty = excluded.difficulty, glyphs = excluded.glyphs, \
                colors = excluded.colors, frames_per_second = excluded.frames_per_second, \
-               configuration = excluded.configuration";
+               configuration = excluded.configuration, correction = excluded.correction";
     let values = values![
         id,
         crosshair,
@@ -146,7 +150,8 @@ pub(super) fn set_settings(
         glyphs,
         colors,
         frames,
-        configuration.as_str()
+        configuration.as_str(),
+        name_of(&CORRECTIONS, preferences.correction)
     ];
     database.execute(sql, values).map(|_| ())
 }

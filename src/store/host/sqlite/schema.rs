@@ -5,7 +5,7 @@ use rusqlite::{Connection, Result, TransactionBehavior};
 /// The mark of the file in its header, "Cell".
 pub(super) const APPLICATION: i32 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND];
+pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD];
 /// All tables with their columns, those first that others refer to.
 pub(super) const TABLES: [(&str, &str); 7] = [
     ("accounts", "id, key, name, named_at, created_at, seen_at"),
@@ -13,7 +13,7 @@ pub(super) const TABLES: [(&str, &str); 7] = [
     (
         "settings",
         "account, crosshair, compass, bell, ghost, difficulty, glyphs, colors, frames_per_second, \
-         configuration",
+         configuration, correction",
     ),
     ("bans", "id, kind, target, until, reason, made_by, made_at"),
     (
@@ -104,6 +104,8 @@ CREATE TABLE account_rates (
     whole_at_ms INTEGER NOT NULL
 ) STRICT;
 ";
+
+const THIRD: &str = "ALTER TABLE settings ADD COLUMN correction TEXT";
 
 /// The version of the file: the number of migrations that it has. In a file that no Cellcaster wrote, it
 /// may be negative.

@@ -15,7 +15,7 @@ const MOUTH: Paint = matt(0xd0, 0x28, 0x38);
 const TEETH: Paint = glowing(0xff, 0xff, 0xff);
 const EYES: Paint = glowing(0xff, 0xe8, 0x50);
 const LID: Paint = matt(0x40, 0x18, 0x1c);
-const COLLAR: Paint = matt(0xff, 0xd8, 0x80);
+const COLLAR: Paint = glowing(0xff, 0xd8, 0x80);
 
 /// How the hound is posed, in texels from the middle of its feet.
 #[derive(Clone, Copy)]

@@ -1,0 +1,140 @@
+//! Corrections of a picture for eyes that see less contrast, or no difference between red and green.
+//!
+//! A correction changes pixels, before they become cells of any depth. It depends on the picture
+//! alone, so that a still picture stays still.
+
+use crate::color::Rgb;
+use crate::render::Frame;
+
+/// How a picture is changed for the eyes that look at it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Correction {
+    /// Not at all.
+    #[default]
+    None,
+    /// Edges and things stand out from what is around them.
+    Contrast,
+    /// Reds and greens differ in blue, too, and edges stand out.
+    RedGreen,
+}
+
+impl Correction {
+    /// Changes the pixels of `frame`. `luma` is memory that is used again.
+    pub(super) fn apply(self, frame: &mut Frame, luma: &mut Vec<u8>) {
+        if self == Self::None {
+            return;
+        }
+        if self == Self::RedGreen {
+            frame.rows_mut().flatten().for_each(|pixel| *pixel = apart(*pixel));
+        }
+        luma.clear();
+        luma.extend(frame.rows().flatten().map(|pixel| pixel.luma()));
+        let (width, height) = (frame.width(), frame.height());
+        let luma = |x: u32, y: u32| luma[(y * width + x) as usize];
+        for (y, row) in (0..).zip(frame.rows_mut()) {
+            for (x, pixel) in (0..).zip(row) {
+                *pixel = raised(*pixel, local_contrast([width, height], luma, x, y));
+            }
+        }
+    }
+}
+
+/// How much brighter a pixel is than those around it, in steps of luma.
+pub(super) fn local_contrast(
+    [width, height]: [u32; 2],
+    luma: impl Fn(u32, u32) -> u8,
+    x: u32,
+    y: u32,
+) -> i32 {
+    /// The distance of the eight pixels that are compared.
+    const DISTANCE: u32 = 3;
+    let [columns, rows] = [(x, width), (y, height)].map(|(at, count)| {
+        [at.saturating_sub(DISTANCE), at, at + DISTANCE].map(|at| at.min(count - 1))
+    });
+    let luma = |at: usize| i32::from(luma(columns[at % 3], rows[at / 3]));
+    let around: i32 = (0..9).filter(|&at| at != 4).map(luma).sum();
+    luma(4) - around / 8
+}
+
+/// `color` made lighter or darker by `by` steps of luma, to between a third and twice of its own.
+pub(super) fn raised(color: Rgb, by: i32) -> Rgb {
+    let luma = i32::from(color.luma());
+    let wanted = (luma + by).clamp(luma / 3, 2 * luma + 1);
+    let scaled = |channel: u8| (i32::from(channel) * wanted / luma.max(1)).min(255) as u8;
+    let [red, green, blue] = color.channels().map(scaled);
+    Rgb::new(red, green, blue)
+}
+
+/// `color` with more blue the redder it is, and less the greener. People without red or green cones
+/// see blue.
+///
+/// Rejected: to move what they lose of red and green to green and blue (Fidaner and others, 2005). Two
+/// of six simulated pairs become more alike.
+fn apart(color: Rgb) -> Rgb {
+    let [red, green, blue] = color.channels();
+    let moved = (i32::from(red) - i32::from(green)) * 7 / 10;
+    Rgb::new(red, green, (i32::from(blue) + moved).clamp(0, 255) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::oklab::Oklab;
+    use crate::color::srgb::linear;
+    use crate::render::{FrameSize, PixelAspect};
+
+    /// What people without green cones see, and without red ones (Machado and others, 2009).
+    const BLIND: [[[f64; 3]; 3]; 2] = [
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+    ];
+
+    fn seen(color: Rgb, blind: [[f64; 3]; 3]) -> Oklab {
+        let light = linear(color);
+        Oklab::from_linear(blind.map(|row| {
+            let sum: f64 = row.iter().zip(light).map(|(weight, light)| weight * light).sum();
+            sum.clamp(0.0, 1.0)
+        }))
+    }
+
+    #[test]
+    fn reds_and_greens_of_one_lightness_differ_for_the_red_green_blind() {
+        let pairs = [
+            [Rgb::new(200, 60, 40), Rgb::new(110, 120, 30)],
+            [Rgb::new(150, 80, 60), Rgb::new(90, 105, 60)],
+            [Rgb::new(90, 160, 60), Rgb::new(190, 120, 60)],
+        ];
+        for pair in pairs {
+            for blind in BLIND {
+                let distance = |[one, other]: [Rgb; 2]| {
+                    libm::sqrt(seen(one, blind).distance_squared(&seen(other, blind)))
+                };
+                assert!(distance(pair.map(apart)) > distance(pair) + 0.02, "{pair:?}");
+            }
+        }
+        let grey = Rgb::new(90, 90, 90);
+        let [red, green, blue] = apart(grey).channels();
+        assert!(red.abs_diff(green) < 3 && red.abs_diff(blue) < 3);
+    }
+
+    #[test]
+    fn an_edge_stands_out_and_a_flat_wall_stays() {
+        let size = FrameSize::new(16, 4).unwrap();
+        let mut frame = Frame::new(size, PixelAspect::SQUARE);
+        for row in frame.rows_mut() {
+            row[..8].fill(Rgb::new(80, 60, 40));
+            row[8..].fill(Rgb::new(110, 90, 70));
+        }
+        Correction::Contrast.apply(&mut frame, &mut Vec::new());
+        assert_eq!(frame.pixel(0, 1), Rgb::new(80, 60, 40));
+        assert!(frame.pixel(7, 1).luma() < 60 && frame.pixel(8, 1).luma() > 96);
+    }
+}
