@@ -31,6 +31,7 @@ mod glyphs;
 mod half_blocks;
 pub(crate) mod held;
 mod minimap;
+pub(crate) mod mosaics;
 mod outline;
 mod ramp;
 mod wanted;
@@ -38,7 +39,7 @@ mod wanted;
 pub use first_person::{FirstPerson, View};
 #[cfg(feature = "serve")]
 pub(crate) use glyphs::color_at;
-pub use glyphs::{CellAspect, GlyphMode};
+pub use glyphs::{CellAspect, GlyphSet};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, MapMark, Minimap};
 pub use wanted::{tap_steps, wanted};

@@ -7,7 +7,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
 use super::outline::{Edge, outline};
-use super::{CellAspect, GlyphMode, ascii, half_blocks, ramp};
+use super::{CellAspect, GlyphSet, ascii, half_blocks, mosaics, ramp};
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::render::{
@@ -40,7 +40,7 @@ use crate::world::{Camera, Figure};
 pub struct FirstPerson<'a, S: Renderable = World> {
     scene: &'a S,
     camera: &'a S::Camera,
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
     cell_aspect: CellAspect,
     filter: Filter,
@@ -54,7 +54,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Self {
             scene,
             camera,
-            glyphs: GlyphMode::default(),
+            glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
             cell_aspect: CellAspect::default(),
             filter: Filter::default(),
@@ -62,11 +62,11 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// Sets the glyph mode. In [`GlyphMode::Ascii`] the characters of a grid show surfaces, and
+    /// Sets the glyph set. In [`GlyphSet::Ascii`] the characters of a grid show surfaces, and
     /// those of bodies show brightness: shading gives a body its shape, and a surface has four
     /// characters only.
     #[must_use]
-    pub fn glyphs(self, glyphs: GlyphMode) -> Self {
+    pub fn glyphs(self, glyphs: GlyphSet) -> Self {
         Self { glyphs, ..self }
     }
 
@@ -133,13 +133,20 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
             return;
         }
         let View { renderer, frame } = view;
-        let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
+        let [_, rows_per_cell] = self.glyphs.pixels_per_cell();
+        let above = u32::from(first_row) * rows_per_cell;
         let surface = |x, y| S::surface(renderer, x, y);
         match self.glyphs {
-            GlyphMode::Half => {
+            GlyphSet::Half => {
                 half_blocks::draw_frame(area, canvas, self.depth, above, frame, surface);
             }
-            GlyphMode::Ascii => {
+            GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
+                mosaics::draw(area, canvas, self.glyphs, self.depth, |y| {
+                    let row = frame.row_slice(above + y);
+                    move |x| row[x as usize]
+                });
+            }
+            GlyphSet::Ascii => {
                 let is_beside_thing =
                     |x, y| outline(frame.size(), surface, x, y) == Some(Edge::Outer);
                 ascii::draw_picture(area, canvas, self.depth, |x, y| {
@@ -153,7 +160,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
                     (color, character)
                 });
             }
-            GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
+            GlyphSet::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
             }),
@@ -163,17 +170,18 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     /// Resizes the frame of `view` to an area of that size. Returns `None` if the area has no
     /// cells.
     fn resized<'v>(&self, size: Size, view: &'v mut View<S>) -> Option<&'v mut View<S>> {
-        let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
-        let size = FrameSize::new(u32::from(size.width), height)?;
+        let [columns, rows] = self.glyphs.pixels_per_cell();
+        let (width, height) = (u32::from(size.width) * columns, u32::from(size.height) * rows);
+        let size = FrameSize::new(width, height)?;
         view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
         Some(view)
     }
 
     fn options(&self) -> Options {
         let keeps_surfaces = match self.glyphs {
-            GlyphMode::Half => self.depth == ColorDepth::Mono,
-            GlyphMode::Ascii => true,
-            GlyphMode::Ramp => false,
+            GlyphSet::Half => self.depth == ColorDepth::Mono,
+            GlyphSet::Ascii => true,
+            _ => false,
         };
         Options { filter: self.filter, seconds: self.seconds, keeps_surfaces }
     }

@@ -1,4 +1,4 @@
-//! The half-block glyph mode: a cell shows two pixels, one above the other.
+//! The half-block glyph set: a cell shows two pixels, one above the other.
 //!
 //! Frames in few colours are drawn by [`mixed`] and [`mono`], which consider several pixels at
 //! once. Flat colours, such as those of a map, become the nearest colours; without colour, a fixed
@@ -90,7 +90,7 @@ fn threshold_rank(x: u32, y: u32) -> u8 {
 }
 
 /// Whether a pixel with that colour and position is lit.
-fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
+pub(super) fn is_lit(color: Rgb, x: u32, y: u32) -> bool {
     color.luma() >= 16 * threshold_rank(x, y) + 8
 }
 
