@@ -216,8 +216,7 @@ mod tests {
             let character = char::from_u32(code).unwrap();
             assert_eq!(Mosaic::sextants(dots(digits)).character(), character, "{code:x}");
         }
-        let quadrants: String =
-            (0..16).map(|mask| Mosaic::quadrants(mask).character()).collect();
+        let quadrants: String = (0..16).map(|mask| Mosaic::quadrants(mask).character()).collect();
         assert_eq!(quadrants, " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█");
         assert_eq!(Mosaic::sextants(dots("135")).character(), '▌');
     }

@@ -238,7 +238,8 @@ impl Minimap<'_> {
                     places.map(|(x, y)| (picture.point(x, y), (x, y)))
                 };
                 let thing = dots().find(|(point, _)| point.is_thing());
-                let lit = || mosaics::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
+                let lit =
+                    || mosaics::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
                 let character =
                     thing.map_or_else(|| lit().character(), |(point, _)| point.character());
                 canvas.draw_character(x, y, character, [Color::Reset; 2]);

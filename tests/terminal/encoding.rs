@@ -69,7 +69,10 @@ enum Shown {
 
 impl Shown {
     fn new(character: char, [text, ground]: [Shade; 2]) -> Self {
-        match PARTS.get(&character).map(|parts| parts.map(|is_text| if is_text { text } else { ground })) {
+        match PARTS
+            .get(&character)
+            .map(|parts| parts.map(|is_text| if is_text { text } else { ground }))
+        {
             Some(parts) if !parts.contains(&Shade::Own) => Self::Parts(parts),
             _ => Self::Character(character, [text, ground]),
         }

@@ -31,7 +31,8 @@ impl SeenPicture {
     /// The view of `camera` in a window of `size` cells.
     pub(super) fn of_view(world: &World, camera: &Camera, size: Size) -> Self {
         let [width, height] = extent(size);
-        let side = |points: usize| NonZeroU32::new((points * SAMPLES) as u32).unwrap_or(NonZeroU32::MIN);
+        let side =
+            |points: usize| NonZeroU32::new((points * SAMPLES) as u32).unwrap_or(NonZeroU32::MIN);
         let samples = FrameSize { width: side(width), height: side(height) };
         let aspect = PixelAspect::new(2.0 * POINTS[0] as f64 / POINTS[1] as f64);
         let mut frame = Frame::new(samples, aspect.unwrap_or(PixelAspect::SQUARE));
@@ -61,7 +62,8 @@ impl SeenPicture {
 
     fn blurred(size: Size, light: impl Fn(usize, usize) -> [f64; 3]) -> Self {
         let [width, height] = extent(size);
-        let points: Vec<[f64; 3]> = (0..width * height).map(|at| light(at % width, at / width)).collect();
+        let points: Vec<[f64; 3]> =
+            (0..width * height).map(|at| light(at % width, at / width)).collect();
         let rows = blur(DEVIATION[0], width, height, |x, y| points[y * width + x]);
         let columns = blur(DEVIATION[1], height, width, |y, x| rows[y * width + x]);
         Self(columns.into_iter().map(Oklab::from_linear).collect())
@@ -88,7 +90,8 @@ fn blur(
     point: impl Fn(usize, usize) -> [f64; 3],
 ) -> Vec<[f64; 3]> {
     let reach = (3.0 * deviation) as i32;
-    let weight = |distance: i32| libm::exp(-f64::from(distance * distance) / (2.0 * deviation * deviation));
+    let weight =
+        |distance: i32| libm::exp(-f64::from(distance * distance) / (2.0 * deviation * deviation));
     let total: f64 = (-reach..=reach).map(weight).sum();
     let weights: Vec<f64> = (-reach..=reach).map(|distance| weight(distance) / total).collect();
     let mut blurred = Vec::with_capacity(length * count);
@@ -158,9 +161,15 @@ mod tests {
         ] {
             let errors = SETS.map(|glyphs| error(name, glyphs));
             assert!(errors.is_sorted_by(|coarser, finer| coarser > finer), "{name} {errors:.2?}");
-            assert!(errors.iter().zip(most).all(|(&error, most)| error <= most), "{name} {errors:.2?}");
+            assert!(
+                errors.iter().zip(most).all(|(&error, most)| error <= most),
+                "{name} {errors:.2?}"
+            );
             // Of the error of half blocks, sextants leave at most 0.71 and octants 0.64.
-            assert!(errors[2] <= 0.71 * errors[0] && errors[3] <= 0.64 * errors[0], "{name} {errors:.2?}");
+            assert!(
+                errors[2] <= 0.71 * errors[0] && errors[3] <= 0.64 * errors[0],
+                "{name} {errors:.2?}"
+            );
         }
     }
 }

@@ -146,9 +146,7 @@ fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Opti
     let (form, colors) = target.recolorable(glyph_table)?;
     let (shape, character) = match form {
         Form::Block(shape) => (shape, None),
-        Form::Glyph(id) => {
-            (Shape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8))
-        }
+        Form::Glyph(id) => (Shape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
     };
     Some(Wanted { inks: inks.of_both(colors), shape, character })
 }
@@ -209,7 +207,8 @@ impl Colors {
             [*l, *a, *b] = last.1;
         }
         if has_shapes {
-            let shape = |target: &PackedCell| target.block().map_or(Shape::HALF, |(shape, _)| shape);
+            let shape =
+                |target: &PackedCell| target.block().map_or(Shape::HALF, |(shape, _)| shape);
             self.shapes.extend(targets.iter().map(shape));
         }
     }

@@ -290,8 +290,7 @@ impl Pen {
 /// letters of some scripts.
 fn advances_by_one(symbol: &str) -> bool {
     let mut characters = symbol.chars();
-    let is_sure =
-        |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1cc00}'..'\u{1cec0}' | '\u{1fb00}'..'\u{1fc00}');
+    let is_sure = |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1cc00}'..'\u{1cec0}' | '\u{1fb00}'..'\u{1fc00}');
     characters.next().is_some_and(is_sure)
         && characters.next().is_none()
         && symbol.cell_width() == 1

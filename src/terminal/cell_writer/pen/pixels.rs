@@ -76,12 +76,7 @@ impl Pen {
 
     /// Adds a cell of pixels where the cursor is, and returns the colours after it.
     #[inline]
-    fn push_pixels(
-        &mut self,
-        shape: Shape,
-        pixels: [Shade; 2],
-        current: [Shade; 2],
-    ) -> [Shade; 2] {
+    fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
         let (element, colors) = block_element::cheapest_after(current, pixels);
         let mut piece = self.frame.piece();
         if colors != current {

@@ -184,7 +184,20 @@ pub(super) fn any_modifier() -> impl Strategy<Value = Modifier> {
 }
 
 pub(super) fn any_cell() -> impl Strategy<Value = Cell> {
-    let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "▌", "🬂", "\u{1CD09}", "\u{1CDE5}", "#", "a", "é", "字"]);
+    let symbol = prop::sample::select(vec![
+        " ",
+        "▀",
+        "▄",
+        "█",
+        "▌",
+        "🬂",
+        "\u{1CD09}",
+        "\u{1CDE5}",
+        "#",
+        "a",
+        "é",
+        "字",
+    ]);
     (symbol, any_color(), any_color(), any_modifier()).prop_map(|(symbol, fg, bg, modifier)| {
         let mut cell = colored(symbol, fg, bg);
         cell.modifier = modifier;

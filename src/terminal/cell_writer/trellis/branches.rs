@@ -197,7 +197,10 @@ impl<'a> Branches<'a> {
         self.offer_for_both(survivors, below, LOWER);
         // Halfway between two colours, the errors add up to at least their distance.
         let apart = upper.distance(lower);
-        let least = ONE_COLOR + SPACE + SHORTEST_COLOR + apart * min(self.prices[0].bytes, self.prices[1].bytes);
+        let least = ONE_COLOR
+            + SPACE
+            + SHORTEST_COLOR
+            + apart * min(self.prices[0].bytes, self.prices[1].bytes);
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
