@@ -8,12 +8,15 @@
 //! An intermediate type of cell, from which both canvases are filled, was refused: it would be one
 //! more copy of each picture.
 
+mod mosaic;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 use ratatui::widgets::{Clear, Widget};
 
 use crate::color::Rgb;
+pub use mosaic::Mosaic;
 
 /// Cells to draw on. Positions outside of the bounds are ignored.
 pub trait Canvas {
@@ -29,6 +32,9 @@ pub trait Canvas {
     fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
         self.draw_halves(x, y, row.map(|halves| halves.map(true_color)));
     }
+
+    /// Draws a mosaic in each cell from `(x, y)` to the right, in the colours of its dots and of the rest.
+    fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>);
 
     /// Draws a character that is one cell wide, in a foreground and a background colour.
     fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]);
@@ -49,6 +55,22 @@ impl Canvas for Buffer {
         for (x, [top, bottom]) in (x..self.area.right()).zip(row) {
             let (glyph, colors) = glyph_sharing_most([top, bottom], before);
             self.draw_character(x, y, glyph, colors);
+            before = colors;
+        }
+    }
+
+    /// Chooses between a mosaic and its inverse as [`Canvas::draw_halves`] does.
+    fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
+        let mut before = [Color::Reset; 2];
+        for (x, (mosaic, [dots, rest])) in (x..self.area.right()).zip(row) {
+            let (mosaic, colors) = if dots == rest {
+                (Mosaic::NONE, [dots; 2])
+            } else if shared([rest, dots], before) > shared([dots, rest], before) {
+                (mosaic.inverse(), [rest, dots])
+            } else {
+                (mosaic, [dots, rest])
+            };
+            self.draw_character(x, y, mosaic.character(), colors);
             before = colors;
         }
     }
@@ -82,16 +104,18 @@ pub(crate) fn true_color(color: Rgb) -> Color {
 /// The glyph that shows two halves, and its foreground and background colours. Shares as many
 /// colours as possible with `before`.
 fn glyph_sharing_most([top, bottom]: [Color; 2], before: [Color; 2]) -> (char, [Color; 2]) {
-    let shared = |[foreground, background]: [Color; 2]| {
-        u8::from(foreground == before[0]) + u8::from(background == before[1])
-    };
     if top == bottom {
         (' ', [top, top])
-    } else if shared([bottom, top]) > shared([top, bottom]) {
+    } else if shared([bottom, top], before) > shared([top, bottom], before) {
         ('▄', [bottom, top])
     } else {
         ('▀', [top, bottom])
     }
+}
+
+/// The number of colours that two cells share.
+fn shared(one: [Color; 2], other: [Color; 2]) -> u8 {
+    u8::from(one[0] == other[0]) + u8::from(one[1] == other[1])
 }
 
 #[cfg(test)]

@@ -26,10 +26,10 @@
 //! ```
 
 mod ascii;
+pub(crate) mod blocks;
 mod correction;
 mod first_person;
 mod glyphs;
-mod half_blocks;
 pub(crate) mod held;
 mod minimap;
 mod outline;
@@ -40,7 +40,7 @@ pub use correction::Correction;
 pub use first_person::{FirstPerson, View};
 #[cfg(feature = "serve")]
 pub(crate) use glyphs::color_at;
-pub use glyphs::{CellAspect, GlyphMode};
+pub use glyphs::{CellAspect, GlyphSet};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, MapMark, Minimap};
 pub use wanted::{tap_steps, wanted};

@@ -10,7 +10,7 @@ use ratatui::widgets::Block;
 
 use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 const NAME: &str = "CELLCASTER";
 /// The rows of each letter that the name needs, with a bit for each point, the left one first.
@@ -35,7 +35,7 @@ const LEAST_BELOW: u16 = 6;
 pub(crate) fn draw(
     canvas: &mut impl Canvas,
     picture: Rect,
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
 ) -> Rect {
     let lines = [2, 1].into_iter().map(|scale| lines(glyphs, scale));
@@ -75,7 +75,7 @@ fn style(depth: ColorDepth) -> Style {
 
 /// The name in lines of characters. Each point is `scale` columns wide, and as many half cells or
 /// cells high as fits the shape of a cell.
-fn lines(glyphs: GlyphMode, scale: usize) -> Vec<String> {
+fn lines(glyphs: GlyphSet, scale: usize) -> Vec<String> {
     let is_set = |x: usize, y: usize| {
         let letter = NAME.chars().nth(x / scale / ADVANCE);
         let row = FONT.iter().find(|(known, _)| Some(*known) == letter).map(|(_, rows)| rows);
@@ -84,13 +84,13 @@ fn lines(glyphs: GlyphMode, scale: usize) -> Vec<String> {
     };
     let columns = 0..COLUMNS * scale;
     match glyphs {
-        GlyphMode::Half => {
+        _ if glyphs.has_blocks() => {
             let rows = (0..(ROWS * scale).div_ceil(2)).map(|row| 2 * row);
             let half = |x, y| is_set(x, y / scale);
             rows.map(|y| columns.clone().map(|x| block(half(x, y), half(x, y + 1))).collect())
                 .collect()
         }
-        GlyphMode::Ascii | GlyphMode::Ramp => (0..ROWS)
+        _ => (0..ROWS)
             .map(|y| columns.clone().map(|x| if is_set(x, y) { '#' } else { ' ' }).collect())
             .collect(),
     }
@@ -112,13 +112,13 @@ mod tests {
 
     #[test]
     fn the_name_is_as_large_as_it_is_drawn() {
-        insta::assert_snapshot!(lines(GlyphMode::Half, 1).join("\n"));
-        insta::assert_snapshot!(lines(GlyphMode::Ascii, 1).join("\n"));
+        insta::assert_snapshot!(lines(GlyphSet::Half, 1).join("\n"));
+        insta::assert_snapshot!(lines(GlyphSet::Ascii, 1).join("\n"));
         for (glyphs, scale, size) in [
-            (GlyphMode::Half, 1, (39, 3)),
-            (GlyphMode::Half, 2, (78, 5)),
-            (GlyphMode::Ascii, 1, (39, 5)),
-            (GlyphMode::Ramp, 2, (78, 5)),
+            (GlyphSet::Half, 1, (39, 3)),
+            (GlyphSet::Half, 2, (78, 5)),
+            (GlyphSet::Ascii, 1, (39, 5)),
+            (GlyphSet::Ramp, 2, (78, 5)),
         ] {
             let lines = lines(glyphs, scale);
             assert!(lines.iter().all(|line| line.chars().count() == size.0), "{lines:?}");

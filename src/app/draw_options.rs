@@ -10,13 +10,13 @@ use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
-use crate::tui::{CellAspect, Correction, FirstPerson, GlyphMode, View};
+use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, View};
 use crate::world::{FieldOfView, Heading};
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawOptions {
-    pub(crate) glyphs: GlyphMode,
+    pub(crate) glyphs: GlyphSet,
     pub(crate) depth: ColorDepth,
     pub(crate) cell_aspect: CellAspect,
     pub(crate) filter: Filter,
@@ -83,7 +83,7 @@ impl DrawOptions {
         if let Some((flash, heading)) = &self.flash {
             hud::tint(frame, flash, *heading);
         }
-        if self.marks_middle && self.glyphs == GlyphMode::Half {
+        if self.marks_middle && self.glyphs.has_blocks() {
             hud::mark_middle(frame);
         }
     }

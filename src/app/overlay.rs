@@ -12,7 +12,7 @@ use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::{Game, PlayerId, PlayerView};
 use crate::store::Preferences;
-use crate::tui::{GlyphMode, MapMark, View};
+use crate::tui::{MapMark, View};
 
 /// A player of a game, and how their picture is drawn.
 pub(crate) struct Overlay<'a> {
@@ -94,7 +94,7 @@ impl DrawOptions {
     /// Marks the middle by a character, where pixels do not show it.
     pub(super) fn draw_middle(&self, canvas: &mut impl Canvas, area: Rect) {
         let is_plain = self.depth == ColorDepth::Mono;
-        if self.marks_middle && (is_plain || self.glyphs != GlyphMode::Half) {
+        if self.marks_middle && (is_plain || !self.glyphs.has_blocks()) {
             let (x, y) = (area.x + area.width / 2, area.y + area.height / 2);
             canvas.draw_character(x, y, '+', [Color::Reset; 2]);
         }

@@ -15,7 +15,7 @@ use crate::store::Store;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, GlyphSet};
 
 /// What the program begins with.
 #[derive(Debug)]
@@ -205,11 +205,8 @@ fn update_terminal(app: &mut App, session: &Session) {
 
 /// The locale setting that restricts output to ASCII; `None` if there is none, or if the chosen
 /// glyphs need more than ASCII.
-fn ascii_locale(glyphs: GlyphMode) -> Option<String> {
-    match glyphs {
-        GlyphMode::Ascii | GlyphMode::Ramp => locale_without_utf8(|name| env::var(name).ok()),
-        GlyphMode::Half => None,
-    }
+fn ascii_locale(glyphs: GlyphSet) -> Option<String> {
+    if glyphs.has_blocks() { None } else { locale_without_utf8(|name| env::var(name).ok()) }
 }
 
 /// Panics in the middle of a game, for tests of how it ends.

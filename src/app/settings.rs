@@ -31,7 +31,7 @@ use crate::color::palette::ColorDepth;
 use crate::render::{DynCaster, Filter};
 use crate::store::Preferences;
 use crate::terminal::Fidelity;
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 use value::PRESET;
 
@@ -46,8 +46,8 @@ pub struct Settings {
     pub field_of_view: FieldOfView,
     /// The shape of a cell; `None` for that of the terminal.
     pub cell_aspect: Option<CellAspect>,
-    /// The glyph mode.
-    pub glyphs: GlyphMode,
+    /// The glyph set.
+    pub glyphs: GlyphSet,
     /// The colour depth; `None` for that of the terminal.
     pub depth: Option<ColorDepth>,
     /// The caster that finds the walls.
@@ -73,7 +73,7 @@ pub struct Settings {
 /// chosen in an earlier game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Given {
-    /// Of the glyph mode.
+    /// Of the glyph set.
     pub glyphs: Option<Origin>,
     /// Of the colour depth.
     pub depth: Option<Origin>,
@@ -140,8 +140,8 @@ pub struct Configuration {
     pub bindings: Bindings,
     /// The colour depth; `None` for that of the terminal.
     pub colors: Option<ColorDepth>,
-    /// The glyph mode; `None` for the best that the terminal can show.
-    pub glyphs: Option<GlyphMode>,
+    /// The glyph set; `None` for the best that the terminal can show.
+    pub glyphs: Option<GlyphSet>,
     /// The field of view at first.
     pub field_of_view: FieldOfView,
     /// The most frames per second, from 1 to 240.

@@ -12,7 +12,7 @@ use super::menus::Choice;
 use super::{App, Given, MapDisplay, Origin};
 use crate::color::palette::ColorDepth;
 use crate::store::Preferences;
-use crate::tui::{Correction, GlyphMode};
+use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
 /// A setting on the screen.
@@ -47,8 +47,14 @@ const SETTINGS: [(Setting, &str); 11] = [
 ];
 
 const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
-pub(crate) const GLYPHS: [(GlyphMode, &str); 3] =
-    [(GlyphMode::Half, "half blocks"), (GlyphMode::Ascii, "ASCII"), (GlyphMode::Ramp, "ramp")];
+pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
+    (GlyphSet::Half, "half blocks"),
+    (GlyphSet::Quadrant, "quadrants"),
+    (GlyphSet::Sextant, "sextants"),
+    (GlyphSet::Octant, "octants"),
+    (GlyphSet::Ascii, "ASCII"),
+    (GlyphSet::Ramp, "ramp"),
+];
 pub(crate) const COLORS: [(Option<ColorDepth>, &str); 5] = [
     (None, "the terminal's"),
     (Some(ColorDepth::True), "all"),

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use super::status::{Part, StatusLine};
 use crate::color::palette::ColorDepth;
 use crate::game::{Alarm, Game, GuardView, Health, PlayerView, Share};
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 use crate::world::{FieldOfView, Supply};
 
 /// How health is written.
@@ -21,12 +21,9 @@ const DIM: u8 = 144;
 
 impl HealthSigns {
     /// The signs that a picture of that kind shows best.
-    pub(crate) fn for_picture(glyphs: GlyphMode, depth: ColorDepth) -> Self {
-        match (glyphs, depth) {
-            (_, ColorDepth::Mono) => Self::Digits,
-            (GlyphMode::Half, _) => Self::Hearts,
-            _ => Self::Digits,
-        }
+    pub(crate) fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
+        let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
+        if has_hearts { Self::Hearts } else { Self::Digits }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin
 use crate::game::{Header, LevelName, Rules};
 use crate::store::Store;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 use crate::world::Difficulty;
 
 /// Plays until the player quits.
@@ -108,10 +108,10 @@ fn say_farewell(Farewell { done, trouble }: &Farewell, damage: Option<String>) {
 }
 
 /// The glyphs that the locale can show.
-fn glyphs_of_locale() -> GlyphMode {
+fn glyphs_of_locale() -> GlyphSet {
     match locale_without_utf8(|name| env::var(name).ok()) {
-        Some(_) => GlyphMode::Ascii,
-        None => GlyphMode::default(),
+        Some(_) => GlyphSet::Ascii,
+        None => GlyphSet::default(),
     }
 }
 

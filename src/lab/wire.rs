@@ -16,6 +16,8 @@ mod encoder;
 mod encoder_run;
 mod palettes;
 mod pipeline;
+#[cfg(test)]
+mod seen;
 
 use std::num::NonZeroU32;
 

@@ -1,6 +1,6 @@
 //! The surface buffer: the surfaces of the layers that cover the pixels of the draw list.
 //!
-//! Only glyph modes that distinguish surfaces need it; for all others nothing is stored.
+//! Only glyph sets that distinguish surfaces need it; for all others nothing is stored.
 
 use std::num::NonZeroU32;
 

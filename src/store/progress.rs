@@ -8,7 +8,7 @@ use super::best::{Best, Improved, Reached, Run};
 use super::names;
 use crate::color::palette::ColorDepth;
 use crate::game::Rules;
-use crate::tui::{Correction, GlyphMode};
+use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
@@ -102,8 +102,8 @@ pub struct Preferences {
     pub ghost: bool,
     /// The difficulty of new games.
     pub difficulty: Difficulty,
-    /// The glyph mode; `None` for the best that the terminal can show.
-    pub glyphs: Option<GlyphMode>,
+    /// The glyph set; `None` for the best that the terminal can show.
+    pub glyphs: Option<GlyphSet>,
     /// The colour depth; `None` for that of the terminal.
     pub colors: Option<ColorDepth>,
     /// How pictures are changed for the player's eyes.

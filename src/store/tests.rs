@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use super::*;
 use crate::color::palette::ColorDepth;
 use crate::game::{Rank, Rules, Share, Tally};
-use crate::tui::{Correction, GlyphMode};
+use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty::{Easy, Hard, Normal};
 
 /// A folder that is removed at the end of a test.
@@ -107,7 +107,7 @@ fn fill(store: &mut Store) {
     store.set_preferences(Preferences {
         compass: true,
         ghost: false,
-        glyphs: Some(GlyphMode::Ascii),
+        glyphs: Some(GlyphSet::Ascii),
         colors: Some(ColorDepth::Indexed16),
         correction: Correction::RedGreen,
         frames_per_second: NonZeroU32::new(60),

@@ -1,7 +1,7 @@
 //! The version of the file, and the names in it that are read and written.
 
 use crate::color::palette::ColorDepth;
-use crate::tui::{Correction, GlyphMode};
+use crate::tui::{Correction, GlyphSet};
 
 /// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
 /// preferences about the terminal. Version 3 has any number of saved games.
@@ -15,8 +15,14 @@ pub(super) const SAVES: &str = "saves";
 pub(super) const SAVED: &str = "saved";
 pub(super) const SAVED_DESCENT: &str = "saved-descent";
 
-pub(super) const GLYPHS: [(GlyphMode, &str); 3] =
-    [(GlyphMode::Half, "half"), (GlyphMode::Ascii, "ascii"), (GlyphMode::Ramp, "ramp")];
+pub(super) const GLYPHS: [(GlyphSet, &str); 6] = [
+    (GlyphSet::Half, "half"),
+    (GlyphSet::Quadrant, "quadrant"),
+    (GlyphSet::Sextant, "sextant"),
+    (GlyphSet::Octant, "octant"),
+    (GlyphSet::Ascii, "ascii"),
+    (GlyphSet::Ramp, "ramp"),
+];
 pub(super) const COLORS: [(ColorDepth, &str); 4] = [
     (ColorDepth::True, "true"),
     (ColorDepth::Indexed256, "256"),

@@ -28,6 +28,7 @@ mod palette;
 mod pen;
 mod refinement;
 mod screen;
+mod shape;
 mod shift;
 mod style;
 mod symbol;
@@ -50,6 +51,8 @@ use self::style::Shade;
 #[cfg(feature = "cli")]
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
+#[cfg(feature = "lab")]
+use crate::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -156,10 +159,16 @@ impl<W: Write> CellWriter<W> {
         self.refinement.draw(&mut self.pen, &mut self.shifts, &mut self.screen);
     }
 
-    /// The colours that the terminal shows in the upper and the lower half of a cell, or of its
-    /// text and its background. `None` if they are unknown, and off the screen.
+    /// The colours that the terminal shows in the upper and the lower half of a cell, in the dots of a
+    /// finer block and in the rest, or of its text and its background. `None` if they are unknown, and off the screen.
     pub fn shown_colors(&self, column: u16, row: u16) -> Option<[Color; 2]> {
         Some(self.screen.shown_colors(column, row)?.map(Shade::color))
+    }
+
+    /// The mosaic that a cell shows in its colours; `None` if it shows none, or an unknown one.
+    #[cfg(feature = "lab")]
+    pub(crate) fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
+        self.screen.shown_mosaic(column, row)
     }
 
     /// Sets the size of the window. Ratatui clears it in the next frame.

@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// just noticeable side by side, and 100 is the distance from black to white. No colour exceeds it,
 /// and most are much nearer.
 ///
-/// The tolerance holds in every colour depth and glyph mode:
+/// The tolerance holds in every colour depth and glyph set:
 ///
 /// - Half blocks in true colour save the most.
 /// - A picture in 256 or 16 colours is compared after the widget has mixed the colours of the

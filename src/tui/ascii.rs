@@ -1,4 +1,4 @@
-//! The ASCII glyph mode: a cell shows one pixel. Its character says first which surface it is, and
+//! The `ascii` glyph set: a cell shows one pixel. Its character says first which surface it is, and
 //! then how bright.
 //!
 //! Each surface has its own characters, so that x sides and y sides of walls, floor, ceiling and

@@ -19,8 +19,8 @@ pub enum Correction {
 }
 
 impl Correction {
-    /// Changes the pixels of `frame`. `luma` is memory that is used again.
-    pub(super) fn apply(self, frame: &mut Frame, luma: &mut Vec<u8>) {
+    /// Changes the pixels of `frame`, in cells of `pixels_per_cell`. `luma` is memory that is used again.
+    pub(super) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
         if self == Self::None {
             return;
         }
@@ -33,25 +33,29 @@ impl Correction {
         let luma = |x: u32, y: u32| luma[(y * width + x) as usize];
         for (y, row) in (0..).zip(frame.rows_mut()) {
             for (x, pixel) in (0..).zip(row) {
-                *pixel = raised(*pixel, local_contrast([width, height], luma, x, y));
+                *pixel =
+                    raised(*pixel, local_contrast([width, height], luma, [x, y], pixels_per_cell));
             }
         }
     }
 }
 
-/// How much brighter a pixel is than those around it, in steps of luma.
+/// How much brighter the pixel at `[x, y]` is than those around it, in steps of luma. A cell is
+/// `pixels_per_cell` wide and high; the eight pixels that are compared are three columns of cells away,
+/// or one and a half rows.
 pub(super) fn local_contrast(
-    [width, height]: [u32; 2],
+    size: [u32; 2],
     luma: impl Fn(u32, u32) -> u8,
-    x: u32,
-    y: u32,
+    place: [u32; 2],
+    pixels_per_cell: [u32; 2],
 ) -> i32 {
-    /// The distance of the eight pixels that are compared.
-    const DISTANCE: u32 = 3;
-    let [columns, rows] = [(x, width), (y, height)].map(|(at, count)| {
-        [at.saturating_sub(DISTANCE), at, at + DISTANCE].map(|at| at.min(count - 1))
+    let [columns, rows] = pixels_per_cell;
+    let reach = [3 * columns, 3 * rows / 2];
+    let [xs, ys] = [0, 1].map(|axis| {
+        let at = place[axis];
+        [at.saturating_sub(reach[axis]), at, at + reach[axis]].map(|at| at.min(size[axis] - 1))
     });
-    let luma = |at: usize| i32::from(luma(columns[at % 3], rows[at / 3]));
+    let luma = |at: usize| i32::from(luma(xs[at % 3], ys[at / 3]));
     let around: i32 = (0..9).filter(|&at| at != 4).map(luma).sum();
     luma(4) - around / 8
 }
@@ -133,7 +137,7 @@ mod tests {
             row[..8].fill(Rgb::new(80, 60, 40));
             row[8..].fill(Rgb::new(110, 90, 70));
         }
-        Correction::Contrast.apply(&mut frame, &mut Vec::new());
+        Correction::Contrast.apply(&mut frame, [1, 2], &mut Vec::new());
         assert_eq!(frame.pixel(0, 1), Rgb::new(80, 60, 40));
         assert!(frame.pixel(7, 1).luma() < 60 && frame.pixel(8, 1).luma() > 96);
     }

@@ -7,7 +7,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
 use super::outline::{Edge, outline};
-use super::{CellAspect, Correction, GlyphMode, ascii, half_blocks, ramp};
+use super::{CellAspect, Correction, GlyphSet, ascii, blocks, ramp};
 use crate::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
@@ -40,7 +40,7 @@ use crate::world::{Camera, Figure};
 pub struct FirstPerson<'a, S: Renderable = World> {
     scene: &'a S,
     camera: &'a S::Camera,
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
     shade_ink: ShadeInk,
     correction: Correction,
@@ -56,7 +56,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         Self {
             scene,
             camera,
-            glyphs: GlyphMode::default(),
+            glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
             shade_ink: ShadeInk::default(),
             correction: Correction::default(),
@@ -66,11 +66,11 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         }
     }
 
-    /// Sets the glyph mode. In [`GlyphMode::Ascii`] the characters of a grid show surfaces, and
+    /// Sets the glyph set. In [`GlyphSet::Ascii`] the characters of a grid show surfaces, and
     /// those of bodies show brightness: shading gives a body its shape, and a surface has four
     /// characters only.
     #[must_use]
-    pub fn glyphs(self, glyphs: GlyphMode) -> Self {
+    pub fn glyphs(self, glyphs: GlyphSet) -> Self {
         Self { glyphs, ..self }
     }
 
@@ -131,7 +131,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
         let is_complete =
             self.scene.render_while(self.camera, self.options(), renderer, frame, go_on);
         if is_complete {
-            self.correction.apply(frame, luma);
+            self.correction.apply(frame, self.glyphs.pixels_per_cell(), luma);
         }
         is_complete
     }
@@ -153,14 +153,15 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
             return;
         }
         let View { renderer, frame, .. } = view;
-        let above = u32::from(first_row) * self.glyphs.pixels_per_cell();
+        let [_, rows_per_cell] = self.glyphs.pixels_per_cell();
+        let above = u32::from(first_row) * rows_per_cell;
         let surface = |x, y| S::surface(renderer, x, y);
         match self.glyphs {
-            GlyphMode::Half => {
+            GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
                 let colors = (self.depth, self.shade_ink);
-                half_blocks::draw_frame(area, canvas, colors, above, frame, surface);
+                blocks::draw_frame(area, canvas, self.glyphs, colors, above, frame, surface);
             }
-            GlyphMode::Ascii => {
+            GlyphSet::Ascii => {
                 let is_beside_thing =
                     |x, y| outline(frame.size(), surface, x, y) == Some(Edge::Outer);
                 ascii::draw_picture(area, canvas, self.depth, |x, y| {
@@ -174,7 +175,7 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
                     (color, character)
                 });
             }
-            GlyphMode::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
+            GlyphSet::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
                 let color = frame.pixel(x, above + y);
                 (color, ramp::character(color))
             }),
@@ -184,17 +185,18 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
     /// Resizes the frame of `view` to an area of that size. Returns `None` if the area has no
     /// cells.
     fn resized<'v>(&self, size: Size, view: &'v mut View<S>) -> Option<&'v mut View<S>> {
-        let height = u32::from(size.height) * self.glyphs.pixels_per_cell();
-        let size = FrameSize::new(u32::from(size.width), height)?;
+        let [columns, rows] = self.glyphs.pixels_per_cell();
+        let (width, height) = (u32::from(size.width) * columns, u32::from(size.height) * rows);
+        let size = FrameSize::new(width, height)?;
         view.frame.resize(size, self.cell_aspect.of_pixels(self.glyphs));
         Some(view)
     }
 
     fn options(&self) -> Options {
         let keeps_surfaces = match self.glyphs {
-            GlyphMode::Half => self.depth == ColorDepth::Mono,
-            GlyphMode::Ascii => true,
-            GlyphMode::Ramp => false,
+            GlyphSet::Ascii => true,
+            GlyphSet::Ramp => false,
+            _ => self.depth == ColorDepth::Mono,
         };
         Options { filter: self.filter, seconds: self.seconds, keeps_surfaces }
     }

@@ -1,4 +1,4 @@
-//! Glyph modes and the shape of cells: how pixels become characters.
+//! Glyph sets and the shape of cells: how pixels become characters.
 
 use ratatui::style::Color;
 
@@ -9,10 +9,17 @@ use crate::render::PixelAspect;
 
 /// The characters that pixels are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum GlyphMode {
+pub enum GlyphSet {
     /// Two pixels per cell, one above the other: `▀`, `▄`, `█` and space.
     #[default]
     Half,
+    /// Two by two pixels per cell: also `▘`, `▚`, `▙` and the like. Of this and the finer sets, each cell shows
+    /// the two colours and the dots with the least error.
+    Quadrant,
+    /// Two by three pixels per cell: the sextants of Unicode 13.
+    Sextant,
+    /// Two by four pixels per cell: the octants of Unicode 16, which few fonts and terminals have.
+    Octant,
     /// One pixel per cell. The shape of the character shows which surface it is: for terminals and
     /// fonts without block characters, and for readers without colour.
     Ascii,
@@ -20,13 +27,21 @@ pub enum GlyphMode {
     Ramp,
 }
 
-impl GlyphMode {
-    /// The number of pixels in a cell, one above the other.
-    pub const fn pixels_per_cell(self) -> u32 {
+impl GlyphSet {
+    /// The columns and the rows of pixels in a cell.
+    pub const fn pixels_per_cell(self) -> [u32; 2] {
         match self {
-            Self::Half => 2,
-            Self::Ascii | Self::Ramp => 1,
+            Self::Half => [1, 2],
+            Self::Quadrant => [2, 2],
+            Self::Sextant => [2, 3],
+            Self::Octant => [2, 4],
+            Self::Ascii | Self::Ramp => [1, 1],
         }
+    }
+
+    /// Whether pixels are parts of a cell and not characters.
+    pub const fn has_blocks(self) -> bool {
+        !matches!(self, Self::Ascii | Self::Ramp)
     }
 }
 
@@ -46,9 +61,9 @@ impl CellAspect {
     }
 
     /// The shape of the pixels into which `glyphs` divides such a cell.
-    pub fn of_pixels(self, glyphs: GlyphMode) -> PixelAspect {
-        PixelAspect::new(self.0 / f64::from(glyphs.pixels_per_cell()))
-            .unwrap_or(PixelAspect::SQUARE)
+    pub fn of_pixels(self, glyphs: GlyphSet) -> PixelAspect {
+        let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+        PixelAspect::new(self.0 * columns / rows).unwrap_or(PixelAspect::SQUARE)
     }
 }
 

@@ -18,10 +18,10 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
 use super::glyphs::color_at;
-use super::{GlyphMode, ascii, half_blocks};
+use super::{GlyphSet, ascii, blocks};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{self, ColorDepth};
 use crate::render::Column;
 use crate::world::{Camera, Heading, World};
 pub use explored::Explored;
@@ -43,7 +43,7 @@ pub struct Minimap<'a> {
     explored: Option<&'a Explored>,
     marks: &'a [MapMark],
     ghost: Option<MapMark>,
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
     zoom: i32,
     offset: DVec2,
@@ -59,7 +59,7 @@ impl<'a> Minimap<'a> {
             explored: None,
             marks: &[],
             ghost: None,
-            glyphs: GlyphMode::default(),
+            glyphs: GlyphSet::default(),
             depth: ColorDepth::default(),
             zoom: 0,
             offset: DVec2::ZERO,
@@ -105,9 +105,9 @@ impl<'a> Minimap<'a> {
         Self { offset: cells, ..self }
     }
 
-    /// Sets the glyph mode.
+    /// Sets the glyph set.
     #[must_use]
-    pub fn glyphs(self, glyphs: GlyphMode) -> Self {
+    pub fn glyphs(self, glyphs: GlyphSet) -> Self {
         Self { glyphs, ..self }
     }
 
@@ -136,8 +136,10 @@ impl Minimap<'_> {
         let top_view = TopView::new(self.world, self.camera, seen, window.pixel());
         let picture = Picture { top_view, window };
         match self.glyphs {
-            GlyphMode::Half => self.draw_halves(&picture, area, canvas),
-            GlyphMode::Ascii | GlyphMode::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
+                self.draw_mosaics(&picture, area, canvas);
+            }
+            GlyphSet::Ascii | GlyphSet::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
                 let point = picture.point(x, y);
                 (point.color(), point.character())
             }),
@@ -170,50 +172,44 @@ impl Minimap<'_> {
         Window::new(area, self.glyphs, self.world, center, self.zoom)
     }
 
-    fn draw_halves(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
-        let row = |y| {
-            let pixels = picture.row(y);
-            (0..u32::from(area.width)).map(move |x| pixels.point(x))
+    fn draw_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+        let color = |point: MapPoint| match self.depth {
+            ColorDepth::Indexed16 => palette::of_256(point.index_of_16()),
+            _ => point.color(),
         };
-        match self.depth {
-            ColorDepth::True => {
-                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    let halves = row(upper).zip(row(upper + 1));
-                    let pixels = halves.map(|(top, bottom)| [top.color(), bottom.color()]);
-                    canvas.draw_pixels(area.x, y, pixels);
-                }
-            }
-            ColorDepth::Indexed256 => {
-                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    let color = |point: MapPoint| color_at(self.depth, point.color());
-                    let halves = row(upper).zip(row(upper + 1));
-                    let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
-                    canvas.draw_halves(area.x, y, colors);
-                }
-            }
-            ColorDepth::Indexed16 => {
-                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    let color = |point: MapPoint| Color::Indexed(point.index_of_16());
-                    let halves = row(upper).zip(row(upper + 1));
-                    let colors = halves.map(|(top, bottom)| [color(top), color(bottom)]);
-                    canvas.draw_halves(area.x, y, colors);
-                }
-            }
-            ColorDepth::Mono => {
-                for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
-                    for (x, (top, bottom)) in (0..).zip(row(upper).zip(row(upper + 1))) {
-                        let character = in_mono((top, bottom), (x, upper));
-                        canvas.draw_character(area.x + x as u16, y, character, [Color::Reset; 2]);
-                    }
-                }
+        if self.depth == ColorDepth::Mono {
+            return self.draw_lit_mosaics(picture, area, canvas);
+        }
+        blocks::draw(area, canvas, self.glyphs, self.depth, |y| {
+            let row = picture.row(y);
+            move |x| color(row.point(x))
+        });
+    }
+
+    /// Draws the map without colour. Things are letters.
+    fn draw_lit_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
+        let [columns, rows] = self.glyphs.pixels_per_cell();
+        for (row, y) in (0..).zip(area.top()..area.bottom()) {
+            for (column, x) in (0..).zip(area.left()..area.right()) {
+                let dots = || {
+                    let places = (0..rows).flat_map(|row| (0..columns).map(move |x| (x, row)));
+                    let places = places.map(|(x, y)| (columns * column + x, rows * row + y));
+                    places.map(|(x, y)| (picture.point(x, y), (x, y)))
+                };
+                let thing = dots().find(|(point, _)| point.is_thing());
+                let lit =
+                    || blocks::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
+                let character =
+                    thing.map_or_else(|| lit().character(), |(point, _)| point.character());
+                canvas.draw_character(x, y, character, [Color::Reset; 2]);
             }
         }
     }
 
     fn mark_look(&self) -> Look {
         let pointers = match self.glyphs {
-            GlyphMode::Half => ['▸', '▾', '◂', '▴'],
-            GlyphMode::Ascii | GlyphMode::Ramp => [')', 'u', '(', 'n'],
+            GlyphSet::Ascii | GlyphSet::Ramp => [')', 'u', '(', 'n'],
+            _ => ['▸', '▾', '◂', '▴'],
         };
         (pointers, self.colors([MARK_TEXT, MARK], [15, 9]))
     }
@@ -221,8 +217,8 @@ impl Minimap<'_> {
     /// A ghost is hollow, or a letter, and pale: it is nobody who could see the player.
     fn ghost_look(&self) -> Look {
         let pointers = match self.glyphs {
-            GlyphMode::Half => ['▹', '▿', '◃', '▵'],
-            GlyphMode::Ascii | GlyphMode::Ramp => ['g'; 4],
+            GlyphSet::Ascii | GlyphSet::Ramp => ['g'; 4],
+            _ => ['▹', '▿', '◃', '▵'],
         };
         (pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]))
     }
@@ -241,8 +237,8 @@ impl Minimap<'_> {
     /// Draws the arrow in the cell at `x` and `y`.
     fn draw_player(&self, (x, y): (u16, u16), canvas: &mut impl Canvas) {
         let arrows = match self.glyphs {
-            GlyphMode::Half => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
-            GlyphMode::Ascii | GlyphMode::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
+            GlyphSet::Ascii | GlyphSet::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
+            _ => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
         };
         let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
         let colors = self.colors([Rgb::BLACK, PLAYER], [0, 11]);
@@ -287,15 +283,3 @@ const GHOST_TEXT: Rgb = Rgb::new(0xb8, 0xc0, 0xd0);
 const GHOST: Rgb = Rgb::new(0x38, 0x58, 0x78);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
-
-/// The character for two map points, one above the other, without colour. Things are letters.
-fn in_mono((top, bottom): (MapPoint, MapPoint), (x, y): (u32, u32)) -> char {
-    let letter = [top, bottom].into_iter().find(|point| {
-        use MapPoint::{Exit, Item, Key, Ornament};
-        matches!(point, Exit | Key | Item | Ornament)
-    });
-    letter.map_or_else(
-        || half_blocks::lit_glyph(top.is_lit(x, y), bottom.is_lit(x, y + 1)),
-        MapPoint::character,
-    )
-}

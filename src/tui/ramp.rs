@@ -1,4 +1,4 @@
-//! The ramp glyph mode: a character for each of sixteen shades, for every surface.
+//! The `ramp` glyph set: a character for each of sixteen shades, for every surface.
 
 use crate::color::Rgb;
 

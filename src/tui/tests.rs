@@ -13,7 +13,14 @@ use crate::render::Renderable;
 use crate::space::Scene;
 use crate::world::{FieldOfView, Heading, World};
 
-const MODES: [GlyphMode; 3] = [GlyphMode::Half, GlyphMode::Ascii, GlyphMode::Ramp];
+const MODES: [GlyphSet; 6] = [
+    GlyphSet::Half,
+    GlyphSet::Quadrant,
+    GlyphSet::Sextant,
+    GlyphSet::Octant,
+    GlyphSet::Ascii,
+    GlyphSet::Ramp,
+];
 const DEPTHS: [ColorDepth; 4] =
     [ColorDepth::True, ColorDepth::Indexed256, ColorDepth::Indexed16, ColorDepth::Mono];
 

@@ -9,7 +9,7 @@ use cellcaster::game::Script;
 use cellcaster::lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use cellcaster::map;
 use cellcaster::terminal::Fidelity;
-use cellcaster::tui::GlyphMode;
+use cellcaster::tui::GlyphSet;
 use cellcaster::world::World;
 use ratatui::layout::Size;
 
@@ -103,12 +103,12 @@ fn a_frame_takes_no_more_bytes_than_is_promised() {
 fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
     use ColorDepth::{Indexed16, Indexed256, Mono, True};
     for (glyphs, depth, most) in [
-        (GlyphMode::Half, Indexed256, [0.75, 0.50]),
-        (GlyphMode::Half, Indexed16, [0.92, 0.92]),
-        (GlyphMode::Ascii, True, [0.32, 0.25]),
-        (GlyphMode::Ascii, Indexed256, [0.88, 0.76]),
-        (GlyphMode::Ramp, True, [0.40, 0.32]),
-        (GlyphMode::Half, Mono, [1.0, 1.0]),
+        (GlyphSet::Half, Indexed256, [0.75, 0.50]),
+        (GlyphSet::Half, Indexed16, [0.92, 0.92]),
+        (GlyphSet::Ascii, True, [0.32, 0.25]),
+        (GlyphSet::Ascii, Indexed256, [0.88, 0.76]),
+        (GlyphSet::Ramp, True, [0.40, 0.32]),
+        (GlyphSet::Half, Mono, [1.0, 1.0]),
     ] {
         let settings = Settings { depth: Some(depth), glyphs, ..Settings::default() };
         let walk = Script::parse("1 s forward\n2 s turn-left", "walk").unwrap();

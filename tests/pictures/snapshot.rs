@@ -56,6 +56,15 @@ fn every_depth_and_glyph_mode_looks_as_it_did() {
 }
 
 #[test]
+fn finer_glyphs_look_as_they_did() {
+    for glyphs in ["quadrant", "sextant", "octant"] {
+        for format in ["ansi", "png"] {
+            assert_golden(LEVELS[0], "80x24", &[("--glyphs", glyphs)], format);
+        }
+    }
+}
+
+#[test]
 fn json_has_the_cells_of_the_widget() {
     const MUSEUM: &str = "tests/maps/museum.toml";
     let json: Value =

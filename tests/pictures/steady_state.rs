@@ -4,7 +4,7 @@ use allocation_counter::measure;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::{self, builtin};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::tui::{FirstPerson, GlyphMode, Minimap, View};
+use cellcaster::tui::{FirstPerson, GlyphSet, Minimap, View};
 use cellcaster::world::{Camera, Cell, FieldOfView, Figure, Heading, Opening};
 use glam::DVec2;
 use ratatui::buffer::Buffer;
@@ -60,10 +60,9 @@ fn drawing_the_widgets_allocates_nothing_after_the_first_time() {
     let mut buffer = Buffer::empty(picture);
     let depths =
         [ColorDepth::True, ColorDepth::Indexed256, ColorDepth::Indexed16, ColorDepth::Mono];
-    for (glyphs, depth) in depths
-        .into_iter()
-        .flat_map(|depth| [GlyphMode::Half, GlyphMode::Ascii].map(|glyphs| (glyphs, depth)))
-    {
+    for (glyphs, depth) in depths.into_iter().flat_map(|depth| {
+        [GlyphSet::Half, GlyphSet::Octant, GlyphSet::Ascii].map(|glyphs| (glyphs, depth))
+    }) {
         let mut view = View::default();
         for turn in 0..60 {
             camera.heading = camera.heading.turned(0.3);

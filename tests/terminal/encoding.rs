@@ -4,11 +4,13 @@
 #![cfg(feature = "terminal")]
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
-use cellcaster::canvas::Canvas;
+use cellcaster::canvas::{Canvas, Mosaic};
 use cellcaster::color::Rgb as Pixel;
 use cellcaster::color::palette::{ColorDepth, of_256};
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::GlyphSet;
 use proptest::prelude::*;
 use ratatui::Terminal;
 use ratatui::backend::Backend;
@@ -58,26 +60,21 @@ impl Shade {
     }
 }
 
-/// What a cell shows: the colours of its halves, or a character in two colours.
+/// The content of a cell: the colours of its parts, two by twelve, or a character in two colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shown {
-    Halves([Shade; 2]),
+    Parts([Shade; 24]),
     Character(char, [Shade; 2]),
 }
 
 impl Shown {
     fn new(character: char, [text, ground]: [Shade; 2]) -> Self {
-        let halves = match character {
-            '▀' => [text, ground],
-            '▄' => [ground, text],
-            '█' => [text; 2],
-            ' ' => [ground; 2],
-            _ => return Self::Character(character, [text, ground]),
-        };
-        if halves.contains(&Shade::Own) {
-            Self::Character(character, [text, ground])
-        } else {
-            Self::Halves(halves)
+        match PARTS
+            .get(&character)
+            .map(|parts| parts.map(|is_text| if is_text { text } else { ground }))
+        {
+            Some(parts) if !parts.contains(&Shade::Own) => Self::Parts(parts),
+            _ => Self::Character(character, [text, ground]),
         }
     }
 
@@ -85,19 +82,29 @@ impl Shown {
         Self::new(cell.symbol().chars().next().unwrap(), [cell.fg, cell.bg].map(Shade::of))
     }
 
-    /// How far off it is: the larger ΔE of its two colours.
+    /// How far off it is: the largest ΔE of its colours.
     fn distance(self, wanted: Self) -> f64 {
-        let (shown, wanted) = match (self, wanted) {
-            (Self::Halves(shown), Self::Halves(wanted)) => (shown, wanted),
+        let (shown, wanted) = match (&self, &wanted) {
+            (Self::Parts(shown), Self::Parts(wanted)) => (&shown[..], &wanted[..]),
             (Self::Character(one, shown), Self::Character(other, wanted)) if one == other => {
-                (shown, wanted)
+                (&shown[..], &wanted[..])
             }
             _ => return f64::INFINITY,
         };
-        let distances = shown.into_iter().zip(wanted).map(|(one, other)| one.distance(other));
+        let distances = shown.iter().zip(wanted).map(|(one, other)| one.distance(*other));
         distances.fold(0.0, f64::max)
     }
 }
+
+/// The parts of a cell, row by row, in which each mosaic shows the text's colour.
+static PARTS: LazyLock<BTreeMap<char, [bool; 24]>> = LazyLock::new(|| {
+    let parts = |mask: u8, rows: usize| {
+        std::array::from_fn(|part| mask >> (part / 2 / (12 / rows) * 2 + part % 2) & 1 == 1)
+    };
+    let octants = (0..=u8::MAX).map(|mask| (Mosaic::octants(mask).character(), parts(mask, 4)));
+    let sextants = (0..64).map(|mask| (Mosaic::sextants(mask).character(), parts(mask, 3)));
+    octants.chain(sextants).collect()
+});
 
 /// CIE76's ΔE, by the formulas of the standard (CIE 15).
 fn delta(one: Rgb, other: Rgb) -> f64 {
@@ -341,11 +348,30 @@ fn any_color(depth: ColorDepth) -> BoxedStrategy<Color> {
     }
 }
 
-/// A picture of half blocks and some text, or of text alone.
-fn any_picture(size: Size, depth: ColorDepth, is_text: bool) -> impl Strategy<Value = Buffer> {
+/// A mosaic of a set of glyphs.
+fn any_mosaic(glyphs: GlyphSet) -> BoxedStrategy<char> {
+    let mosaic = match glyphs {
+        GlyphSet::Octant => Mosaic::octants,
+        GlyphSet::Sextant => Mosaic::sextants,
+        GlyphSet::Quadrant => Mosaic::quadrants,
+        _ => return Just('▀').boxed(),
+    };
+    // Of few shapes, so that they meet in one place.
+    prop::sample::select(vec![1, 3, 5, 6, 15, 21, 28, 63, 90, 128, 254])
+        .prop_map(move |mask| mosaic(mask).character())
+        .boxed()
+}
+
+/// A picture of blocks and some text, or of text alone.
+fn any_picture(
+    size: Size,
+    depth: ColorDepth,
+    glyphs: GlyphSet,
+    is_text: bool,
+) -> impl Strategy<Value = Buffer> {
     let symbol = prop_oneof![
-        if is_text { 0 } else { 9 } => Just("▀"),
-        1 => prop::sample::select(vec![" ", ".", "a", "#", "é"]),
+        if is_text { 0 } else { 9 } => any_mosaic(glyphs),
+        1 => prop::sample::select(vec![' ', '.', 'a', '#', 'é']),
     ];
     let ground = match (is_text, depth) {
         (false, _) | (_, ColorDepth::Mono) => any_color(depth),
@@ -354,8 +380,8 @@ fn any_picture(size: Size, depth: ColorDepth, is_text: bool) -> impl Strategy<Va
         (_, ColorDepth::Indexed16) => Just(Color::Indexed(0)).boxed(),
     };
     let cell = (symbol, any_color(depth), ground).prop_map(|(symbol, text, ground)| {
-        let mut cell = Cell::new(symbol);
-        cell.set_fg(text).set_bg(ground);
+        let mut cell = Cell::EMPTY;
+        cell.set_char(symbol).set_fg(text).set_bg(ground);
         cell
     });
     prop::collection::vec(cell, usize::from(size.width) * usize::from(size.height))
@@ -378,10 +404,17 @@ fn any_history() -> impl Strategy<Value = Vec<Buffer>> {
         ColorDepth::Indexed16,
         ColorDepth::Mono,
     ]);
-    (size, depth, any::<bool>())
-        .prop_flat_map(|(size, depth, is_text)| {
+    let glyphs = prop::sample::select(vec![
+        GlyphSet::Half,
+        GlyphSet::Quadrant,
+        GlyphSet::Sextant,
+        GlyphSet::Octant,
+    ]);
+    (size, depth, glyphs, any::<bool>())
+        .prop_flat_map(|(size, depth, glyphs, is_text)| {
             let moves = prop::collection::vec((any::<u16>(), 0..6_usize, any::<bool>()), 1..6);
-            (prop::collection::vec(any_picture(size, depth, is_text), 1..3), moves)
+            let pictures = any_picture(size, depth, glyphs, is_text);
+            (prop::collection::vec(pictures, 1..3), moves)
         })
         .prop_map(|(mut pictures, moves)| {
             let mut picture = pictures[0].clone();

@@ -14,9 +14,10 @@ use std::path::Path;
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map::{self, Level, builtin};
 use cellcaster::render::{Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer};
+use cellcaster::tui::GlyphSet;
 use cellcaster::world::{FieldOfView, Heading, World};
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 15] = [
     Case { name: "rooms-80x48", work: Work::Frames("rooms", 80, 48) },
     Case { name: "rooms-160x90", work: Work::Frames("rooms", 160, 90) },
     Case { name: "area-160x90", work: Work::FramesByArea("rooms", 160, 90) },
@@ -28,7 +29,9 @@ const CASES: [Case; 13] = [
     Case { name: "mirrors-160x90", work: Work::Frames("mirrors", 160, 90) },
     Case { name: "bodies-160x90", work: Work::Frames("spheres", 160, 90) },
     Case { name: "steps-citadel", work: Work::Steps("citadel") },
-    Case { name: "pipeline-120x40", work: Work::Pipeline(120, 40) },
+    Case { name: "pipeline-120x40", work: Work::Pipeline(GlyphSet::Half, 120, 40) },
+    Case { name: "pipeline-80x24", work: Work::Pipeline(GlyphSet::Half, 80, 24) },
+    Case { name: "octants-80x24", work: Work::Pipeline(GlyphSet::Octant, 80, 24) },
     Case { name: "encode-120x40", work: Work::Encode(120, 40) },
 ];
 
@@ -45,8 +48,8 @@ enum Work {
     FramesByArea(&'static str, u32, u32),
     /// Steps of the game on this level, in which the player runs in circles.
     Steps(&'static str),
-    /// A played script in a window of this size: from intents to bytes.
-    Pipeline(u16, u16),
+    /// A played script in these glyphs and a window of this size: from intents to bytes.
+    Pipeline(GlyphSet, u16, u16),
     /// The encoder's part of that.
     Encode(u16, u16),
 }
@@ -118,7 +121,7 @@ fn main() {
             game.step(intents);
             counted(|| (0..STEPS).for_each(|_| _ = black_box(game.step(intents))));
         }
-        Work::Pipeline(columns, rows) => pipeline::play(columns, rows),
+        Work::Pipeline(glyphs, columns, rows) => pipeline::play(glyphs, columns, rows),
         Work::Encode(columns, rows) => pipeline::encode(columns, rows),
     }
 }

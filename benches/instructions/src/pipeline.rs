@@ -8,6 +8,7 @@ use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::game::{Intents, Script};
 use cellcaster::map::builtin;
 use cellcaster::terminal::CellWriter;
+use cellcaster::tui::GlyphSet;
 use ratatui::backend::Backend;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Size;
@@ -23,9 +24,9 @@ const SHARE: u32 = 16;
 type Changes = Vec<(u16, u16, Cell)>;
 
 /// Plays the script on a screen of this size.
-pub(crate) fn play(columns: u16, rows: u16) {
+pub(crate) fn play(glyphs: GlyphSet, columns: u16, rows: u16) {
     let size = Size::new(columns, rows);
-    let (mut replay, intents) = (replay(size), intents());
+    let (mut replay, intents) = (replay(glyphs, size), intents());
     let mut writer = CellWriter::new(Vec::new(), size);
     show(&mut replay, &mut writer, &[]);
     counted(|| {
@@ -64,7 +65,7 @@ fn send(writer: &mut CellWriter<Vec<u8>>) {
 }
 
 fn frames(size: Size) -> Vec<Changes> {
-    let mut replay = replay(size);
+    let mut replay = replay(GlyphSet::Half, size);
     let mut before = Buffer::empty(size.into());
     let mut frame = |steps: &[Intents]| {
         steps.iter().for_each(|&intents| replay.step(intents));
@@ -79,10 +80,11 @@ fn frames(size: Size) -> Vec<Changes> {
     frames
 }
 
-fn replay(size: Size) -> Replay {
+fn replay(glyphs: GlyphSet, size: Size) -> Replay {
     let citadel = builtin::LEVELS.iter().find(|level| level.name == "citadel");
     let world = citadel.expect("it is built in").world().expect("built-in levels have no faults");
-    Replay::new(Levels::new(world.into(), std::iter::empty()), Settings::default(), size)
+    let settings = Settings { glyphs, ..Settings::default() };
+    Replay::new(Levels::new(world.into(), std::iter::empty()), settings, size)
 }
 
 /// The intents of each step.

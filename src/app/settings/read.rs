@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use toml::de::{DeTable, DeValue};
 
-use super::value::{self, DEPTHS, DISPLAYS, GLYPH_MODES, Names, SETTINGS};
+use super::value::{self, DEPTHS, DISPLAYS, GLYPH_SETS, Names, SETTINGS};
 use super::{Configuration, keys};
 use crate::app::bindings::PRESETS;
 use crate::color::palette::ColorDepth;
@@ -44,7 +44,7 @@ impl Configuration {
                     }
                 }
                 "colors" => read_colors(&entry, &mut self.colors),
-                "glyphs" => set(&mut self.glyphs, named(&entry, &GLYPH_MODES)),
+                "glyphs" => set(&mut self.glyphs, named(&entry, &GLYPH_SETS)),
                 "fov" => set(&mut self.field_of_view, field_of_view(&entry)),
                 "fps" => set(&mut self.frames_per_second, frames_per_second(&entry)),
                 "mouse" => set(&mut self.mouse, boolean(&entry)),

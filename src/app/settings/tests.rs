@@ -37,7 +37,7 @@ fn a_file_changes_every_setting() {
                 minimap = \"off\"\nfidelity = 7\n";
     let read = parse(text);
     assert_eq!(read.colors, Some(ColorDepth::Indexed256));
-    assert_eq!(read.glyphs, Some(GlyphMode::Ascii));
+    assert_eq!(read.glyphs, Some(GlyphSet::Ascii));
     assert_eq!(read.field_of_view.degrees(), 90.5);
     assert_eq!(read.frames_per_second.get(), 60);
     assert!(read.mouse);
@@ -86,7 +86,7 @@ proptest! {
     #[test]
     fn a_printed_configuration_parses_to_itself(
         preset in prop::sample::select(&["qwerty", "azerty", "hjkl"][..]),
-        (colors, glyphs, minimap) in (0..5_usize, 0..4_usize, 0..3_usize),
+        (colors, glyphs, minimap) in (0..5_usize, 0..7_usize, 0..3_usize),
         (fov, fps, mouse) in (0.001..179.9, 1..=240_u32, any::<bool>()),
         fidelity in prop::option::of(any::<u8>()),
         actions in prop::collection::vec(0..Action::ALL.len(), 0..6),
@@ -104,7 +104,7 @@ proptest! {
         }
         configuration.bindings = configuration.bindings.rebound(&actions, bound);
         configuration.colors = value::DEPTHS[colors].1;
-        configuration.glyphs = value::GLYPH_MODES[glyphs].1;
+        configuration.glyphs = value::GLYPH_SETS[glyphs].1;
         configuration.minimap = value::DISPLAYS[minimap].1;
         configuration.field_of_view = FieldOfView::from_degrees(fov).unwrap();
         configuration.frames_per_second = NonZeroU32::new(fps).unwrap();

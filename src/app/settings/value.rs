@@ -2,7 +2,7 @@
 
 use super::MapDisplay;
 use crate::color::palette::ColorDepth;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// A setting in a file.
 pub(super) struct Setting {
@@ -25,8 +25,9 @@ pub(super) const COLORS: Setting = Setting {
 };
 pub(super) const GLYPHS: Setting = Setting {
     name: "glyphs",
-    meaning: "characters for pixels: \"half\" (two a cell), \"ascii\", \"ramp\" (by brightness),\n\
-              or \"auto\" for what the terminal can show",
+    meaning: "characters for pixels: \"half\" (two a cell), \"quadrant\" (four), \"sextant\" (six),\n\
+              \"octant\" (eight), \"ascii\", \"ramp\" (by brightness), or \"auto\" for what the\n\
+              terminal can show",
     default: "auto",
 };
 pub(super) const FOV: Setting = Setting {
@@ -67,11 +68,14 @@ pub(super) const DEPTHS: Names<Option<ColorDepth>, 5> = [
     ("16", Some(ColorDepth::Indexed16)),
     ("mono", Some(ColorDepth::Mono)),
 ];
-pub(super) const GLYPH_MODES: Names<Option<GlyphMode>, 4> = [
+pub(super) const GLYPH_SETS: Names<Option<GlyphSet>, 7> = [
     ("auto", None),
-    ("half", Some(GlyphMode::Half)),
-    ("ascii", Some(GlyphMode::Ascii)),
-    ("ramp", Some(GlyphMode::Ramp)),
+    ("half", Some(GlyphSet::Half)),
+    ("quadrant", Some(GlyphSet::Quadrant)),
+    ("sextant", Some(GlyphSet::Sextant)),
+    ("octant", Some(GlyphSet::Octant)),
+    ("ascii", Some(GlyphSet::Ascii)),
+    ("ramp", Some(GlyphSet::Ramp)),
 ];
 pub(super) const DISPLAYS: Names<MapDisplay, 3> =
     [("seen", MapDisplay::Seen), ("all", MapDisplay::All), ("off", MapDisplay::Off)];

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Configuration;
-use super::value::{self, DEPTHS, DISPLAYS, GLYPH_MODES, Names, Setting};
+use super::value::{self, DEPTHS, DISPLAYS, GLYPH_SETS, Names, Setting};
 use crate::app::Bindings;
 use crate::app::bindings::{Action, PRESETS};
 
@@ -13,7 +13,7 @@ impl fmt::Display for Configuration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_setting(f, &value::PRESET, &quoted(self.preset))?;
         write_setting(f, &value::COLORS, &quoted(name(&DEPTHS, self.colors)))?;
-        write_setting(f, &value::GLYPHS, &quoted(name(&GLYPH_MODES, self.glyphs)))?;
+        write_setting(f, &value::GLYPHS, &quoted(name(&GLYPH_SETS, self.glyphs)))?;
         write_setting(f, &value::FOV, &self.field_of_view.degrees().to_string())?;
         write_setting(f, &value::FPS, &self.frames_per_second.to_string())?;
         write_setting(f, &value::MOUSE, &self.mouse.to_string())?;

@@ -9,7 +9,7 @@ use crate::app::run_log::RunLog;
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
 use crate::store::{Run, map_key};
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.
 pub(super) const DANGER: &str = r##"
@@ -229,7 +229,7 @@ fn settings_change_by_enter_and_arrows_and_are_kept() {
     rig.choose("Frames a second");
     assert_eq!(rig.app.settings.frame_time, Duration::from_secs(1) / 60);
     rig.choose("Characters");
-    assert_eq!(rig.app.settings.glyphs, GlyphMode::Ascii);
+    assert_eq!(rig.app.settings.glyphs, GlyphSet::Quadrant);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::*;
 use crate::app::Offers;
 use crate::app::panels::{framed, leaving, message};
 use crate::canvas::Canvas;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// All screens, each with the game behind it.
 fn screens() -> Vec<(&'static str, Rig)> {
@@ -41,7 +41,7 @@ fn screens() -> Vec<(&'static str, Rig)> {
 #[test]
 fn every_screen_is_readable_in_80_and_in_40_columns_without_colours() {
     for (name, mut rig) in screens() {
-        rig.app.settings.glyphs = GlyphMode::Ascii;
+        rig.app.settings.glyphs = GlyphSet::Ascii;
         rig.app.depth = ColorDepth::Mono;
         for (columns, rows) in [(80, 24), (40, 12)] {
             let name = format!("{name}_{columns}x{rows}");
@@ -53,7 +53,7 @@ fn every_screen_is_readable_in_80_and_in_40_columns_without_colours() {
 #[test]
 fn every_screen_can_be_drawn_in_any_window_and_mode() {
     for (name, mut rig) in screens() {
-        for glyphs in [GlyphMode::Half, GlyphMode::Ascii, GlyphMode::Ramp] {
+        for glyphs in [GlyphSet::Half, GlyphSet::Ascii, GlyphSet::Ramp] {
             for depth in [ColorDepth::True, ColorDepth::Indexed16, ColorDepth::Mono] {
                 rig.app.settings.glyphs = glyphs;
                 rig.app.depth = depth;
@@ -102,7 +102,7 @@ fn panels_stay_in_areas_of_every_small_size() {
         message(canvas, area, "title", "some text\nin two lines".into());
         leaving(canvas, area, &rig.app.settings.bindings, "leaves");
         framed(canvas, area, "title");
-        banner::draw(canvas, area, GlyphMode::Half, ColorDepth::True);
+        banner::draw(canvas, area, GlyphSet::Half, ColorDepth::True);
         hud::draw_note(canvas, area, "a note that is long enough to be wrapped into lines");
         rig.app.menu.draw(canvas, area);
         let bindings = &rig.app.settings.bindings;

@@ -8,7 +8,7 @@ use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
 use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
 use crate::store::{MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// Leaves a game to the title, which keeps its store.
 fn leave(rig: &mut Rig) -> Game {
@@ -411,18 +411,18 @@ fn settings_are_kept_unless_a_flag_or_a_file_gives_them() {
         rig.choose(label);
     }
     let kept = rig.app.store.preferences();
-    assert_eq!(kept.glyphs, Some(GlyphMode::Ascii));
+    assert_eq!(kept.glyphs, Some(GlyphSet::Quadrant));
     assert_eq!(kept.colors, Some(ColorDepth::True));
     assert_eq!(kept.frames_per_second.map(u32::from), Some(60));
 
     let plain = Settings { frame_time: thirty, ..Settings::default() };
     let next = plain.clone().preferring(&kept);
-    assert_eq!((next.glyphs, next.depth), (GlyphMode::Ascii, Some(ColorDepth::True)));
+    assert_eq!((next.glyphs, next.depth), (GlyphSet::Quadrant, Some(ColorDepth::True)));
     assert_eq!(next.frame_time, Duration::from_secs(1) / 60);
 
     let given = Given { glyphs: Some(Origin::Flag), depth: None, frame_time: Some(Origin::File) };
     let next = Settings { given, ..plain }.preferring(&kept);
-    assert_eq!((next.glyphs, next.frame_time), (GlyphMode::Half, thirty));
+    assert_eq!((next.glyphs, next.frame_time), (GlyphSet::Half, thirty));
     assert_eq!(next.depth, Some(ColorDepth::True));
     let app = App::opened(Opening::Title(Offers::default()), next, Store::in_memory());
     let mut rig = Rig::of(app, Some((500, 30)));

@@ -1,6 +1,6 @@
 //! The cells of every screen.
 
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 
@@ -23,7 +23,7 @@ fn app_in(world: World, settings: Settings) -> App {
 
 fn ascii(minimap: MapDisplay) -> Settings {
     let depth = Some(ColorDepth::Mono);
-    Settings { glyphs: GlyphMode::Ascii, depth, minimap, ..Settings::default() }
+    Settings { glyphs: GlyphSet::Ascii, depth, minimap, ..Settings::default() }
 }
 
 fn press(app: &mut App, key: Key) {

@@ -13,7 +13,7 @@ use crate::color::palette::ColorDepth;
 use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 
 /// Options of `play`; `None` where the configuration or the terminal decides.
@@ -27,7 +27,7 @@ pub(in crate::cli) struct Play {
     pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,
     pub(in crate::cli) field_of_view: Option<FieldOfView>,
     pub(in crate::cli) cell_aspect: Option<CellAspect>,
-    pub(in crate::cli) glyphs: Option<GlyphMode>,
+    pub(in crate::cli) glyphs: Option<GlyphSet>,
     pub(in crate::cli) depth: Option<ColorDepth>,
     pub(in crate::cli) method: Option<Method>,
     pub(in crate::cli) filter: Option<Filter>,

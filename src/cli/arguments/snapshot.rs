@@ -12,7 +12,7 @@ use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
 use crate::lab::casters::Method;
 use crate::render::Filter;
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{FieldOfView, Heading, Pitch};
 
 /// Options of `snapshot`.
@@ -31,7 +31,7 @@ pub(in crate::cli) struct Snapshot {
     pub(in crate::cli) pitch: Option<Pitch>,
     pub(in crate::cli) field_of_view: FieldOfView,
     pub(in crate::cli) cell_aspect: CellAspect,
-    pub(in crate::cli) glyphs: GlyphMode,
+    pub(in crate::cli) glyphs: GlyphSet,
     pub(in crate::cli) depth: ColorDepth,
     pub(in crate::cli) format: Format,
     pub(in crate::cli) method: Method,

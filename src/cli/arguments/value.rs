@@ -7,7 +7,7 @@ use crate::color::palette::ColorDepth;
 use crate::lab::casters::{Method, ParseMethodError};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
-use crate::tui::{CellAspect, GlyphMode};
+use crate::tui::{CellAspect, GlyphSet};
 use crate::world::FieldOfView;
 
 /// The largest number of frames per second, from 1 to 240.
@@ -89,18 +89,21 @@ pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     repeats: false,
 };
 
-pub(super) const GLYPHS: ValueOption<GlyphMode> = ValueOption {
+pub(super) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
     name: "glyphs",
-    value: "MODE",
-    takes: "half, ascii or ramp",
-    help: "What a cell shows: two pixels (half), one as a character (ascii), or one as a character \
-           for its brightness (ramp)",
+    value: "SET",
+    takes: "half, quadrant, sextant, octant, ascii or ramp",
+    help: "What a cell shows: two pixels (half), four (quadrant), six (sextant) or eight (octant) in two \
+           colours, one as a character (ascii), or one as a character for its brightness (ramp)",
     default: "half",
-    choices: &["half", "ascii", "ramp"],
+    choices: &["half", "quadrant", "sextant", "octant", "ascii", "ramp"],
     read: Parser::Optional(|text| match text {
-        "half" => Some(GlyphMode::Half),
-        "ascii" => Some(GlyphMode::Ascii),
-        "ramp" => Some(GlyphMode::Ramp),
+        "half" => Some(GlyphSet::Half),
+        "quadrant" => Some(GlyphSet::Quadrant),
+        "sextant" => Some(GlyphSet::Sextant),
+        "octant" => Some(GlyphSet::Octant),
+        "ascii" => Some(GlyphSet::Ascii),
+        "ramp" => Some(GlyphSet::Ramp),
         _ => None,
     }),
     repeats: false,

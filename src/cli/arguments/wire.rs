@@ -10,7 +10,7 @@ use super::value::{self, FramesPerSecond, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
 use crate::terminal::Fidelity;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// Options of `wire`.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub(in crate::cli) struct Wire {
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     pub(in crate::cli) depth: ColorDepth,
-    pub(in crate::cli) glyphs: GlyphMode,
+    pub(in crate::cli) glyphs: GlyphSet,
     /// The named fidelities if empty.
     pub(in crate::cli) fidelities: Vec<Fidelity>,
     /// The palette whose methods are compared, instead of encoders.

@@ -8,6 +8,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 
 use super::rgb;
+use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::tui::CellAspect;
 
@@ -55,14 +56,13 @@ fn cell_size(size: Size, aspect: CellAspect) -> (u32, u32) {
 impl<W: Write + 'static> super::Writer for Png<W> {
     fn write_row(&mut self, cells: &[Cell]) -> io::Result<()> {
         for y in 0..self.cell_height {
-            let glyph_row = (y * GLYPH_SIDE / self.cell_height) as usize;
             self.line.clear();
             for cell in cells {
-                let dots = glyph(cell.symbol())[glyph_row];
+                let glyph = Glyph::of(cell.symbol());
                 let foreground = rgb(cell.fg).unwrap_or(FOREGROUND).channels();
                 let background = rgb(cell.bg).unwrap_or(BACKGROUND).channels();
                 for x in 0..self.cell_width {
-                    let is_set = dots >> (x * GLYPH_SIDE / self.cell_width) & 1 == 1;
+                    let is_set = glyph.covers([x, y], [self.cell_width, self.cell_height]);
                     self.line.extend(if is_set { foreground } else { background });
                 }
             }
@@ -76,10 +76,36 @@ impl<W: Write + 'static> super::Writer for Png<W> {
     }
 }
 
-/// The rows of a glyph from the top. The lowest bit of each is the leftmost dot.
-fn glyph(symbol: &str) -> [u8; GLYPH_SIDE as usize] {
-    let character = symbol.chars().next().unwrap_or(' ');
-    BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character)).unwrap_or_default()
+/// The picture of a character.
+enum Glyph {
+    /// Dots that fill the cell whatever its size, as terminals draw them.
+    Mosaic(Mosaic),
+    /// Rows from the top. The lowest bit of each is the leftmost dot.
+    Bitmap([u8; GLYPH_SIDE as usize]),
+}
+
+impl Glyph {
+    fn of(symbol: &str) -> Self {
+        let character = symbol.chars().next().unwrap_or(' ');
+        match Mosaic::of_character(character) {
+            Some(mosaic) => Self::Mosaic(mosaic),
+            None => {
+                let bitmap = BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character));
+                Self::Bitmap(bitmap.unwrap_or_default())
+            }
+        }
+    }
+
+    /// Whether a pixel of a cell of this size has the text colour.
+    fn covers(&self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> bool {
+        match self {
+            Self::Mosaic(mosaic) => mosaic.has(x * 2 / width, y * 12 / height),
+            Self::Bitmap(rows) => {
+                let row = rows[(y * GLYPH_SIDE / height) as usize];
+                row >> (x * GLYPH_SIDE / width) & 1 == 1
+            }
+        }
+    }
 }
 
 fn into_io(error: EncodingError) -> io::Error {

@@ -29,7 +29,7 @@ use super::timing::time_in_rounds;
 use crate::color::palette::ColorDepth;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
 use crate::sort;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 use crate::world::{Camera, World};
 use cells::Window;
 use differences::Differences;
@@ -39,16 +39,16 @@ use truth::Truth;
 #[derive(Clone, Copy, Debug)]
 struct Display {
     name: &'static str,
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
 }
 
 const DISPLAYS: [Display; 5] = [
-    Display { name: "half", glyphs: GlyphMode::Half, depth: ColorDepth::True },
-    Display { name: "half, 256 colours", glyphs: GlyphMode::Half, depth: ColorDepth::Indexed256 },
-    Display { name: "half, 16 colours", glyphs: GlyphMode::Half, depth: ColorDepth::Indexed16 },
-    Display { name: "ascii", glyphs: GlyphMode::Ascii, depth: ColorDepth::True },
-    Display { name: "ramp", glyphs: GlyphMode::Ramp, depth: ColorDepth::True },
+    Display { name: "half", glyphs: GlyphSet::Half, depth: ColorDepth::True },
+    Display { name: "half, 256 colours", glyphs: GlyphSet::Half, depth: ColorDepth::Indexed256 },
+    Display { name: "half, 16 colours", glyphs: GlyphSet::Half, depth: ColorDepth::Indexed16 },
+    Display { name: "ascii", glyphs: GlyphSet::Ascii, depth: ColorDepth::True },
+    Display { name: "ramp", glyphs: GlyphSet::Ramp, depth: ColorDepth::True },
 ];
 
 /// The sizes of windows, in cells.
@@ -73,7 +73,7 @@ const STRIDE: f64 = 0.01;
 /// The errors on the diagrams.
 const RANGE: [f64; 2] = [0.1, 255.0];
 
-/// The errors of each filter and each glyph mode, in pictures of `world`. Each is timed in `rounds`
+/// The errors of each filter and each glyph set, in pictures of `world`. Each is timed in `rounds`
 /// rounds.
 pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     let ways: Vec<Vec<Camera>> = cameras(world, seed).take(CAMERAS).map(way).collect();

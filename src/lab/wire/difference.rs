@@ -1,17 +1,18 @@
 //! The difference between the colours that a viewer sees and those that were drawn.
 
-use ratatui::buffer::{Buffer, Cell};
+use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
+use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::color::lab::Lab;
 use crate::color::palette::of_256;
 
-/// The sum of pixel differences. A cell has two pixels: its halves, or the colours of its text and its background.
+/// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Difference {
-    pixels: u64,
+    parts: u64,
     /// The sum of squared differences of the channels.
     squares: u64,
     distances: f64,
@@ -25,32 +26,50 @@ impl Difference {
         let columns = usize::from(drawn.area.width).max(1);
         for (row, cells) in (0..).zip(drawn.content.chunks(columns)) {
             for (column, cell) in (0..).zip(cells) {
-                difference.pixels += 2;
-                let shown = encoder.shown(column, row);
-                let shown = shown.and_then(|[upper, lower]| Some([rgb(upper)?, rgb(lower)?]));
-                if let Some((shown, wanted)) = shown.zip(pixels(cell)) {
-                    difference.add_pixel(shown[0], wanted[0]);
-                    difference.add_pixel(shown[1], wanted[1]);
+                difference.parts += 24;
+                if let Some((mosaic, colors)) = encoder.shown(column, row)
+                    && cell.modifier == Modifier::empty()
+                {
+                    let wanted = cell.symbol().chars().next().and_then(Mosaic::of_character);
+                    // Text is compared with the same text.
+                    let mosaics = mosaic.zip(wanted).unwrap_or([Mosaic::UPPER_HALF; 2].into());
+                    difference.add_cell(mosaics, [colors, [cell.fg, cell.bg]]);
                 }
             }
         }
         difference
     }
 
-    fn add_pixel(&mut self, shown: Rgb, wanted: Rgb) {
-        if shown == wanted {
+    /// Adds a cell by the parts in which each pair of colours meets.
+    fn add_cell(&mut self, (shown, wanted): (Mosaic, Mosaic), colors: [[Color; 2]; 2]) {
+        let mut parts = [[0; 2]; 2];
+        for (x, y) in (0..24).map(|part| (part % 2, part / 2)) {
+            parts[usize::from(!shown.has(x, y))][usize::from(!wanted.has(x, y))] += 1;
+        }
+        for (shown, parts) in colors[0].into_iter().zip(parts) {
+            for (wanted, parts) in colors[1].into_iter().zip(parts) {
+                // The terminal's own colours are shown as they were drawn.
+                if let Some((shown, wanted)) = rgb(shown).zip(rgb(wanted)) {
+                    self.add_parts(parts, shown, wanted);
+                }
+            }
+        }
+    }
+
+    fn add_parts(&mut self, parts: u64, shown: Rgb, wanted: Rgb) {
+        if shown == wanted || parts == 0 {
             return;
         }
         let channels = shown.channels().into_iter().zip(wanted.channels());
         let squares = channels.map(|(one, other)| u64::from(one.abs_diff(other)).pow(2));
-        self.squares += squares.sum::<u64>();
+        self.squares += parts * squares.sum::<u64>();
         let distance = Lab::from(shown).distance(wanted.into());
-        self.distances += distance;
+        self.distances += parts as f64 * distance;
         self.largest = self.largest.max(distance);
     }
 
     pub(super) fn add(&mut self, other: Self) {
-        self.pixels += other.pixels;
+        self.parts += other.parts;
         self.squares += other.squares;
         self.distances += other.distances;
         self.largest = self.largest.max(other.largest);
@@ -58,31 +77,16 @@ impl Difference {
 
     /// The peak signal-to-noise ratio in decibels; infinite if there is no difference.
     pub(super) fn signal_to_noise(&self) -> f64 {
-        let mean_square = self.squares as f64 / (3 * self.pixels.max(1)) as f64;
+        let mean_square = self.squares as f64 / (3 * self.parts.max(1)) as f64;
         10.0 * libm::log10(255.0 * 255.0 / mean_square)
     }
 
     pub(super) fn mean_distance(&self) -> f64 {
-        self.distances / self.pixels.max(1) as f64
+        self.distances / self.parts.max(1) as f64
     }
 
     pub(super) fn largest_distance(&self) -> f64 {
         self.largest
-    }
-}
-
-/// The two pixels of a cell, unless it is in the terminal's own colours or has modifiers, and so is shown as it was
-/// drawn.
-fn pixels(cell: &Cell) -> Option<[Rgb; 2]> {
-    if cell.modifier != Modifier::empty() {
-        return None;
-    }
-    let (foreground, background) = (rgb(cell.fg), rgb(cell.bg));
-    match cell.symbol() {
-        "▄" => Some([background?, foreground?]),
-        "█" => Some([foreground?; 2]),
-        " " => Some([background?; 2]),
-        _ => Some([foreground?, background?]),
     }
 }
 

@@ -9,6 +9,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
+use crate::canvas::Mosaic;
 use crate::color::palette::ColorDepth;
 use crate::terminal::{CellWriter, Fidelity};
 
@@ -21,9 +22,9 @@ pub(super) trait Encoder {
     /// its backend.
     fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>);
 
-    /// The colours shown by the upper and the lower half of a cell; `None` if they are the
-    /// requested ones.
-    fn shown(&self, column: u16, row: u16) -> Option<[Color; 2]>;
+    /// The colours shown by the dots of a cell's mosaic and by the rest, or by its text and its background;
+    /// `None` if they are the requested ones.
+    fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])>;
 }
 
 /// A writer shared with a backend.
@@ -75,7 +76,7 @@ impl Encoder for Stock {
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    fn shown(&self, _: u16, _: u16) -> Option<[Color; 2]> {
+    fn shown(&self, _: u16, _: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
         None
     }
 }
@@ -125,7 +126,8 @@ impl Encoder for Writer {
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    fn shown(&self, column: u16, row: u16) -> Option<[Color; 2]> {
-        self.backend.shown_colors(column, row)
+    fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
+        let colors = self.backend.shown_colors(column, row)?;
+        Some((self.backend.shown_mosaic(column, row), colors))
     }
 }

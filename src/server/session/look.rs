@@ -6,7 +6,7 @@ use crate::color::palette::ColorDepth;
 use crate::render::Filter;
 use crate::store::Preferences;
 use crate::terminal::Protocol;
-use crate::tui::{CellAspect, Correction, GlyphMode};
+use crate::tui::{CellAspect, Correction, GlyphSet};
 use crate::world::FieldOfView;
 
 /// How far a key widens or narrows the view, and its limits, in degrees.
@@ -16,13 +16,13 @@ const WIDEST_VIEW: f64 = 120.0;
 /// How pictures are drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Look {
-    pub(super) glyphs: GlyphMode,
+    pub(super) glyphs: GlyphSet,
     pub(super) depth: ColorDepth,
     pub(super) field_of_view: FieldOfView,
     cell_aspect: CellAspect,
     /// What the terminal shows best.
     terminal_depth: ColorDepth,
-    terminal_glyphs: GlyphMode,
+    terminal_glyphs: GlyphSet,
     correction: Correction,
     marks_middle: bool,
     pub(super) shows_ghosts: bool,
@@ -31,7 +31,7 @@ pub(super) struct Look {
 impl Look {
     /// For a terminal that shows only ASCII, or not, and the visitor `identity`.
     pub(super) fn new(is_ascii: bool, identity: &Identity) -> Self {
-        let terminal_glyphs = if is_ascii { GlyphMode::Ascii } else { GlyphMode::Half };
+        let terminal_glyphs = if is_ascii { GlyphSet::Ascii } else { GlyphSet::Half };
         let field_of_view = identity.configuration.field_of_view;
         let mut look = Self { field_of_view, terminal_glyphs, ..Self::default() };
         look.follow(&identity.preferences);
@@ -40,7 +40,7 @@ impl Look {
 
     /// Whether only ASCII is sent: the terminal shows no more, and the visitor did not ask for it.
     pub(super) fn is_ascii(&self) -> bool {
-        self.terminal_glyphs == GlyphMode::Ascii && self.glyphs != GlyphMode::Half
+        self.terminal_glyphs == GlyphSet::Ascii && !self.glyphs.has_blocks()
     }
 
     /// Takes over what is known of the terminal.

@@ -53,6 +53,12 @@ impl BlockElement {
         }
     }
 
+    /// Whether it shows one colour.
+    #[inline]
+    pub(super) fn is_flat(self) -> bool {
+        matches!(self, Self::Full | Self::Space)
+    }
+
     /// The colours of the upper and the lower half.
     #[inline]
     pub(super) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {

@@ -56,9 +56,9 @@ pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
 #[inline(never)]
 fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
     let position = Position { x: column as u16, y: row.y };
-    if let Some(halves) = target.halves() {
-        let (element, style) = block_element::cheapest(halves, pen.style());
-        pen.draw_block(position, element, style);
+    if let Some((shape, colors)) = target.block() {
+        let (element, style) = block_element::cheapest(colors, pen.style());
+        pen.draw_block(position, (shape, element), style);
     } else {
         draw_text(pen, row, position, target);
     }

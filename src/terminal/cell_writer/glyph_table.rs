@@ -58,7 +58,7 @@ impl GlyphId {
     /// The id of an upper half block without modifiers, in every table.
     pub(super) const UPPER_HALF: Self = Self(1);
     /// The maximum number of glyphs in a table.
-    pub(super) const COUNT: u16 = 4000;
+    pub(super) const COUNT: u16 = 3900;
 
     /// The id as a number, which is less than [`GlyphId::COUNT`].
     pub(super) const fn get(self) -> u16 {

@@ -13,11 +13,12 @@ use ratatui::layout::Position;
 use super::block_element::BlockElement;
 use super::exact;
 use super::glyph_table::{GlyphId, GlyphTable};
-use super::ink::{Ink, Inks, Notation, Price};
+use super::ink::{self, Ink, Inks, Notation, Price};
 use super::packed_cell::{Form, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
-use super::shift::{BYTE, CELL, Loss, Shifts};
+use super::shape::Shape;
+use super::shift::{BYTE, CELL, Loss, Shift, Shifts};
 use super::style::Style;
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
 use crate::terminal::{Fidelity, thread_memory};
@@ -42,7 +43,11 @@ pub(super) struct RowEncoder {
 /// Characters are far from blocks and from other characters. A cell that may only be shown exactly
 /// is far from every colour and from every cell that looks different.
 #[derive(Debug, Default)]
-struct Colors([Vec<[f32; 2]>; 3]);
+struct Colors {
+    components: [Vec<[f32; 2]>; 3],
+    /// The shapes of all cells, or nothing if all are halves and characters.
+    shapes: Vec<Shape>,
+}
 
 thread_local! {
     static ENCODER: Cell<Option<Box<RowEncoder>>> = const { Cell::new(None) };
@@ -100,9 +105,7 @@ impl RowEncoder {
         {
             pen.shift_row(&shift, row.y);
             row.shift(&shift);
-            for components in &mut self.shown.0 {
-                shift.apply(components, [-FAR; 2]);
-            }
+            self.shown.shift(&shift);
         }
         shifts.end(row);
     }
@@ -123,10 +126,11 @@ fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
     [0, 1, 2].map(|index| [one.lab[index], other.lab[index]])
 }
 
-/// The colours of a cell that is not a block.
+/// The colours of a cell that does not consist of halves.
 #[inline(never)]
-fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
+fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
     match target.recolorable(glyph_table) {
+        Some((Form::Block(_), colors)) => components(inks.of_both(colors)),
         Some((Form::Glyph(id), colors)) => {
             let (apart, components) = (apart(id), components(inks.of_both(colors)));
             [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
@@ -140,11 +144,11 @@ fn of_character(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -
 #[inline]
 fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
     let (form, colors) = target.recolorable(glyph_table)?;
-    let character = match form {
-        Form::Block => None,
-        Form::Glyph(id) => Some(glyph_table.glyph(id).character().len_utf8() as u8),
+    let (shape, character) = match form {
+        Form::Block(shape) => (shape, None),
+        Form::Glyph(id) => (Shape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
     };
-    Some(Wanted { inks: inks.of_both(colors), character })
+    Some(Wanted { inks: inks.of_both(colors), shape, character })
 }
 
 /// Draws a cell in these colours, as a block or as its own character.
@@ -155,8 +159,10 @@ fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, s
     let target = row.targets[column];
     row.shown[column] = match target.text(row.glyph_table) {
         None => {
-            pen.draw_block(position, element, style);
-            PackedCell::of_block(element, style)
+            let shape = target.block().map_or(Shape::HALF, |(shape, _)| shape);
+            let drawn = if element.is_flat() { Shape::HALF } else { shape };
+            pen.draw_block(position, (drawn, element), style);
+            PackedCell::of_block(drawn, element, style)
         }
         Some((character, _)) => {
             pen.draw_text(position, character.encode_utf8(&mut [0; 4]), style);
@@ -179,10 +185,12 @@ const FAR: f32 = 1e6;
 impl Colors {
     /// Computes the colours of cells.
     fn fill(&mut self, targets: &[PackedCell], glyph_table: &GlyphTable, inks: &mut Inks) {
-        for components in &mut self.0 {
+        for components in &mut self.components {
             components.resize(targets.len(), [0.0; 2]);
         }
-        let [ls, as_, bs] = &mut self.0;
+        self.shapes.clear();
+        let mut has_shapes = false;
+        let [ls, as_, bs] = &mut self.components;
         let places = ls.iter_mut().zip(as_).zip(bs);
         let mut last = (PackedCell::UNKNOWN, [[FAR; 2]; 3]);
         for (&target, ((l, a), b)) in targets.iter().zip(places) {
@@ -190,10 +198,28 @@ impl Colors {
                 last.0 = target;
                 last.1 = match target.halves() {
                     Some(halves) => components(inks.of_both(halves)),
-                    None => of_character(target, glyph_table, inks),
+                    None => {
+                        has_shapes |= target.block().is_some();
+                        of_other(target, glyph_table, inks)
+                    }
                 };
             }
             [*l, *a, *b] = last.1;
+        }
+        if has_shapes {
+            let shape =
+                |target: &PackedCell| target.block().map_or(Shape::HALF, |(shape, _)| shape);
+            self.shapes.extend(targets.iter().map(shape));
+        }
+    }
+
+    /// Moves the cells as the terminal does. The uncovered ones are far from all others.
+    fn shift(&mut self, shift: &Shift) {
+        for components in &mut self.components {
+            shift.apply(components, [-FAR; 2]);
+        }
+        if !self.shapes.is_empty() {
+            shift.apply(&mut self.shapes, Shape::HALF);
         }
     }
 
@@ -206,10 +232,19 @@ impl Colors {
         price: Price,
         costs: &mut Vec<[f32; 2]>,
     ) {
-        let count = others.0[0].len() - from.max(to);
+        let count = others.components[0].len() - from.max(to);
         costs.resize(count, [0.0; 2]);
-        let [ls, as_, bs] = self.0.each_ref().map(|shown| shown[from..][..count].as_flattened());
-        let wanted = others.0.each_ref().map(|wanted| wanted[to..][..count].as_flattened());
+        if !self.shapes.is_empty() || !others.shapes.is_empty() {
+            let places = (0..count).map(|place| [from + place, to + place]);
+            for (cost, places) in costs.iter_mut().zip(places) {
+                *cost = self.cost_of_shapes(others, places, price);
+            }
+            return;
+        }
+        let shown = self.components.each_ref();
+        let [ls, as_, bs] = shown.map(|shown| shown[from..][..count].as_flattened());
+        let wanted = others.components.each_ref();
+        let wanted = wanted.map(|wanted| wanted[to..][..count].as_flattened());
         let shown = ls.iter().zip(as_).zip(bs);
         let wanted = wanted[0].iter().zip(wanted[1]).zip(wanted[2]);
         for (cost, (((l, a), b), ((l2, a2), b2))) in
@@ -218,5 +253,31 @@ impl Colors {
             let [l, a, b] = [l - l2, a - a2, b - b2];
             *cost = price.of_distance((l * l + a * a + b * b).sqrt());
         }
+    }
+
+    /// The cost of showing one cell in place of another of any shape: of its dots, and of the rest.
+    #[inline]
+    fn cost_of_shapes(&self, others: &Self, [from, to]: [usize; 2], price: Price) -> [f32; 2] {
+        let lab = |colors: &Self, place: usize, which: usize| {
+            colors.components.each_ref().map(|components| components[place][which])
+        };
+        let cost = |one: usize, other: usize, parts: u8| {
+            if parts == 0 {
+                return 0.0;
+            }
+            let distance = ink::distance(lab(self, from, one), lab(others, to, other));
+            price.of_parts(parts).of_distance(distance)
+        };
+        let (shape, other) = (self.shape(from), others.shape(to));
+        if shape == other {
+            let [dots, rest] = shape.parts();
+            return [cost(0, 0, dots), cost(1, 1, rest)];
+        }
+        let [both, dots, rest, neither] = shape.overlap(other).pairs().map(|(_, parts)| parts);
+        [cost(0, 0, both) + cost(0, 1, dots), cost(1, 0, rest) + cost(1, 1, neither)]
+    }
+
+    fn shape(&self, place: usize) -> Shape {
+        self.shapes.get(place).copied().unwrap_or(Shape::HALF)
     }
 }

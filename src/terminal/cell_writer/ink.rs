@@ -1,6 +1,7 @@
 //! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
 use super::packed_cell::PackedCell;
+use super::shape::Shape;
 use super::style::{Kind, Shade};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
@@ -173,6 +174,13 @@ impl Price {
             Notation::Rgb => 10.5,
         };
         Self { farthest, bytes: worth / farthest }
+    }
+
+    /// The price in so many parts of a cell, as [`Shape`] counts them.
+    #[inline]
+    pub(super) fn of_parts(self, parts: u8) -> Self {
+        const HALF: f32 = Shape::PARTS as f32 / 2.0;
+        Self { bytes: self.bytes * f32::from(parts) / HALF, ..self }
     }
 
     /// The price of an error of `distance`, in bytes; infinite if it exceeds the maximum.

@@ -7,38 +7,41 @@ use ratatui::style::Color;
 
 use super::block_element::BlockElement;
 use super::glyph_table::{Glyph, GlyphId, GlyphTable};
+use super::shape::Shape;
 use super::style::{Shade, Style};
 use super::symbol::Symbol;
+use crate::canvas::Mosaic;
 use crate::color::Rgb;
 
 /// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// Two halves of one colour each, with any block element.
-    Block,
+    /// Two colours with any block element, or with a mosaic or its inverse.
+    Block(Shape),
     /// A glyph without modifiers, in a text and a background colour.
     Glyph(GlyphId),
 }
 
 /// A cell in one word. Equal words look the same.
 ///
-/// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half,
-/// or of the text and the background.
+/// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half, of a
+/// shape's dots and the rest, or of the text and the background. A block of one colour is one of halves.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct PackedCell(u64);
 
 impl PackedCell {
     /// An unknown cell. No target is equal to it.
-    pub(super) const UNKNOWN: Self = Self(1 << Self::KIND);
+    pub(super) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
     /// A cell of several characters, of a character wider than a cell, or of a glyph without an id.
     /// It is sent whenever its row changes.
-    const INTRICATE: Self = Self(2 << Self::KIND);
+    const INTRICATE: Self = Self((Self::SHAPES + 1) << Self::KIND);
     /// A space in the terminal's default colours.
     pub(super) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
-    /// The position of the form: zero for blocks; from this value on, the ids of glyphs.
+    /// The position of the form: the shape of blocks, zero for halves; after two others, the ids of glyphs.
     const KIND: u32 = 2 * Shade::BITS;
-    const FIRST_GLYPH: u64 = 3;
+    const SHAPES: u64 = Shape::COUNT as u64;
+    const FIRST_GLYPH: u64 = Self::SHAPES + 2;
     const _KINDS_FIT: () =
         assert!(Self::FIRST_GLYPH + (GlyphId::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
 
@@ -75,6 +78,41 @@ impl PackedCell {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
+    /// A mosaic in the colours of its dots and of the rest.
+    #[inline]
+    pub(super) fn of_mosaic(
+        mosaic: Mosaic,
+        colors: [Color; 2],
+        glyph_table: &mut GlyphTable,
+    ) -> Self {
+        let shades = colors.map(Shade::of);
+        if shades.contains(&Shade::DEFAULT) {
+            let [foreground, background] = shades;
+            let style = Style::plain(foreground, background);
+            return Self::of_glyph(mosaic.character(), style, glyph_table);
+        }
+        let (shape, is_inverse) = Shape::of(mosaic);
+        let [dots, rest] = shades;
+        Self::of_shape(shape, if is_inverse { [rest, dots] } else { [dots, rest] })
+    }
+
+    /// The colours of a shape's dots and of the rest.
+    #[inline]
+    fn of_shape(shape: Shape, colors: [Shade; 2]) -> Self {
+        let [dots, rest] = colors;
+        if dots == rest || shape == Shape::NONE {
+            return Self::of_halves([rest; 2]);
+        }
+        Self(u64::from(shape.get()) << Self::KIND | Self::of_halves(colors).0)
+    }
+
+    /// The mosaic with this character; `None` if another character would look different in this style.
+    fn mosaic(character: char, style: Style) -> Option<Mosaic> {
+        let has_own = style.colors().contains(&Shade::DEFAULT);
+        let is_plain = character >= FIRST_MOSAIC && style.has_no_modifiers() && !has_own;
+        Mosaic::of_character(character).filter(|_| is_plain)
+    }
+
     /// A character in a text and a background colour.
     pub(super) fn of_character(
         character: char,
@@ -86,6 +124,11 @@ impl PackedCell {
         let symbol = &*character.encode_utf8(&mut encoded);
         if let Some(element) = BlockElement::of(symbol) {
             return Self::of_element(element, style, glyph_table);
+        }
+        if character >= FIRST_MOSAIC
+            && let Some(mosaic) = Self::mosaic(character, style)
+        {
+            return Self::of_mosaic(mosaic, colors, glyph_table);
         }
         // Finding the width of a character takes ten times as long.
         if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
@@ -105,6 +148,13 @@ impl PackedCell {
     fn of_symbol(symbol: Symbol, style: Style, glyph_table: &mut GlyphTable) -> Self {
         match symbol {
             Symbol::Blank => Self::of_element(BlockElement::Space, style, glyph_table),
+            Symbol::Character(character @ FIRST_MOSAIC..) => match Self::mosaic(character, style) {
+                Some(mosaic) => {
+                    let colors = style.colors().map(Shade::color);
+                    Self::of_mosaic(mosaic, colors, glyph_table)
+                }
+                None => Self::of_glyph(character, style, glyph_table),
+            },
             Symbol::Character(character) => Self::of_glyph(character, style, glyph_table),
             Symbol::Intricate => Self::INTRICATE,
         }
@@ -118,9 +168,10 @@ impl PackedCell {
         id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
     }
 
-    /// A block element in this style.
-    pub(super) fn of_block(element: BlockElement, style: Style) -> Self {
-        Self::of_halves(element.halves(style.foreground, style.background))
+    /// A shape as `element` draws it in this style.
+    #[inline]
+    pub(super) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
+        Self::of_shape(shape, element.halves(style.foreground, style.background))
     }
 
     #[inline]
@@ -169,7 +220,7 @@ impl PackedCell {
     #[inline]
     pub(super) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
         let form = match self.0 >> Self::KIND {
-            0 => Form::Block,
+            shape @ ..Self::SHAPES => Form::Block(Shape::new(shape as u8)),
             id => {
                 let id = GlyphId::new(id.checked_sub(Self::FIRST_GLYPH)? as u16);
                 let glyph = glyph_table.glyph(id);
@@ -190,14 +241,22 @@ impl PackedCell {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
-    /// The colours of the upper and the lower half of a block of two pixels.
+    /// The shape of a block, and the colours of its dots and of the rest.
     #[inline]
-    pub(super) fn pixels(self) -> Option<[Shade; 2]> {
+    pub(super) fn block(self) -> Option<(Shape, [Shade; 2])> {
+        let kind = self.0 >> Self::KIND;
+        (kind < Self::SHAPES).then(|| (Shape::new(kind as u8), self.colors()))
+    }
+
+    /// The same for a block of pixels.
+    #[inline]
+    pub(super) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
         const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
         const PIXELS: u64 = PIXEL << Shade::BITS | PIXEL;
         const BOTH_KINDS: u64 = 3 * (PIXELS / 2);
-        const MASK: u64 = u64::MAX << PackedCell::KIND | BOTH_KINDS;
-        (self.0 & MASK == PIXELS).then(|| self.colors())
+        const BLOCKS: u64 = PackedCell::SHAPES << PackedCell::KIND;
+        let is_of_pixels = self.0 & BOTH_KINDS == PIXELS && self.0 < BLOCKS;
+        is_of_pixels.then(|| (Shape::new((self.0 >> Self::KIND) as u8), self.colors()))
     }
 
     /// The two colours of any cell.
@@ -214,6 +273,9 @@ impl fmt::Debug for PackedCell {
         write!(f, "{:x}", self.0)
     }
 }
+
+/// The first character that may be a mosaic and is no space.
+const FIRST_MOSAIC: char = '\u{2580}';
 
 /// The colours of the upper and the lower half; `None` if another block would look different: with
 /// the terminal's default colours, which differ as text and as background, and with modifiers.

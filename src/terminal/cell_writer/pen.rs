@@ -15,6 +15,7 @@ use super::motion;
 use super::packed_position::PackedPosition;
 use super::palette::Palette;
 use super::screen::Screen;
+use super::shape::Shape;
 use super::shift::{Shift, Way};
 use super::style::Style;
 
@@ -32,7 +33,7 @@ pub(super) struct Pen {
     /// Whether the terminal repeats characters (REP).
     repeats: bool,
     /// The last block drawn, unless other bytes were written since.
-    last: Option<BlockElement>,
+    last: Option<(Shape, BlockElement)>,
     /// The number of repetitions of that block that are drawn but not written yet.
     repeated: u16,
     palette: Palette,
@@ -160,12 +161,18 @@ impl Pen {
         }
     }
 
-    /// Draws a block at a position on the screen.
-    pub(super) fn draw_block(&mut self, position: Position, element: BlockElement, style: Style) {
+    /// Draws a block at a position on the screen: a shape as `element` draws it, that of the halves if it has one
+    /// colour.
+    pub(super) fn draw_block(
+        &mut self,
+        position: Position,
+        (shape, element): (Shape, BlockElement),
+        style: Style,
+    ) {
         let current = self.style;
         if self.cursor != Some(PackedPosition::of(position)) {
             self.move_to(position);
-        } else if self.last == Some(element) && current == Some(style) {
+        } else if self.last == Some((shape, element)) && current == Some(style) {
             self.repeated += 1;
             self.advance(position);
             return;
@@ -176,20 +183,20 @@ impl Pen {
         if current != Some(style) {
             style.push_from(current, |shade| palette.told(shade), &mut piece);
         }
-        let (encoded, count) = element.encoded();
+        let (encoded, count) = shape.encoded(element);
         piece.push(encoded, count);
         piece.finish();
         self.style = Some(style);
-        self.last = self.repeats.then_some(element);
+        self.last = self.repeats.then_some((shape, element));
         self.advance(position);
     }
 
     /// Writes the repetitions that are drawn but not written.
     #[cold]
     fn write_repeated(&mut self) {
-        let Some(element) = self.last else { return };
+        let Some((shape, element)) = self.last else { return };
         let count = usize::from(std::mem::take(&mut self.repeated));
-        let (encoded, bytes) = element.encoded();
+        let (encoded, bytes) = shape.encoded(element);
         let digits = if count > 1 { motion::digits(count as u16) } else { 0 };
         if count * bytes <= 3 + digits {
             (0..count).for_each(|_| self.frame.push_text(&encoded[..bytes]));
@@ -283,8 +290,7 @@ impl Pen {
 /// letters of some scripts.
 fn advances_by_one(symbol: &str) -> bool {
     let mut characters = symbol.chars();
-    let is_sure =
-        |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1fb00}'..'\u{1fc00}');
+    let is_sure = |it| matches!(it, ..'\u{590}' | '\u{1e00}'..'\u{2e00}' | '\u{1cc00}'..'\u{1cec0}' | '\u{1fb00}'..'\u{1fc00}');
     characters.next().is_some_and(is_sure)
         && characters.next().is_none()
         && symbol.cell_width() == 1

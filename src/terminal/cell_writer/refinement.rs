@@ -10,9 +10,10 @@ use std::cell;
 use super::exact;
 use super::glyph_table::GlyphTable;
 use super::ink::Inks;
-use super::packed_cell::PackedCell;
+use super::packed_cell::{Form, PackedCell};
 use super::pen::Pen;
 use super::screen::{Row, Screen};
+use super::shape::Shape;
 use super::shift::Shifts;
 use crate::terminal::thread_memory;
 
@@ -139,13 +140,17 @@ fn errors<'a>(row: &'a Row, inks: &'a mut Inks) -> impl Iterator<Item = Cell> + 
     )
 }
 
-/// The larger of the two colours' distances; infinite if the cells cannot be compared.
+/// The largest distance of two colours in the same place; infinite if the cells cannot be compared.
 fn error(shown: PackedCell, wanted: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> f32 {
     let parts = shown.recolorable(glyph_table).zip(wanted.recolorable(glyph_table));
     let Some(((shown_form, shown), (form, wanted))) = parts else { return f32::INFINITY };
-    if shown_form != form {
-        return f32::INFINITY;
-    }
-    let pairs = shown.into_iter().zip(wanted);
-    pairs.map(|(shown, wanted)| inks.of(shown).distance(inks.of(wanted))).fold(0.0, f32::max)
+    let pairs = match (shown_form, form) {
+        (Form::Block(one), Form::Block(other)) => one.overlap(other).pairs(),
+        _ if shown_form == form => Shape::HALF.overlap(Shape::HALF).pairs(),
+        _ => return f32::INFINITY,
+    };
+    let distances = pairs.into_iter().filter(|&(_, parts)| parts > 0);
+    distances
+        .map(|([one, other], _)| inks.of(shown[one]).distance(inks.of(wanted[other])))
+        .fold(0.0, f32::max)
 }

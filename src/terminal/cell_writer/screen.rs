@@ -9,9 +9,11 @@ use ratatui::layout::{Position, Size};
 
 use super::ascii;
 use super::glyph_table::GlyphTable;
-use super::packed_cell::PackedCell;
+use super::packed_cell::{Form, PackedCell};
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
+#[cfg(feature = "lab")]
+use crate::canvas::Mosaic;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
@@ -202,6 +204,14 @@ impl Screen {
         Some(colors)
     }
 
+    /// The mosaic that a shown cell is, if it is one.
+    #[cfg(feature = "lab")]
+    pub(super) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
+        let place = usize::from(y) * self.width + usize::from(x);
+        let (shape, _) = self.shown.get(place)?.block()?;
+        Some(shape.mosaic())
+    }
+
     /// The shown cells and the targets of each row.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
@@ -265,7 +275,11 @@ impl Row<'_> {
         let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
         let mut targets = self.shown.iter().zip(self.targets);
         targets.all(|(&shown, &target)| {
-            shown == target || form(target).is_some() && form(shown) == form(target)
+            shown == target
+                || match (form(shown), form(target)) {
+                    (Some(Form::Block(_)), Some(Form::Block(_))) => true,
+                    (shown, target) => target.is_some() && shown == target,
+                }
         })
     }
 

@@ -27,12 +27,15 @@ use self::survivors::{Survivors, Turn, colors_of, key};
 use super::block_element::BlockElement;
 use super::ink::{Ink, Inks, Price};
 use super::palette::Palette;
+use super::shape::Shape;
 use super::style::{Shade, Style};
 
 /// The target of a cell: the colours of its halves, or of its character and its background.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub(super) inks: [Ink; 2],
+    /// The shape of a block; that of the halves for a character.
+    pub(super) shape: Shape,
     /// The bytes of its only glyph; `None` if any block element will do.
     pub(super) character: Option<u8>,
 }
@@ -103,6 +106,8 @@ struct Paths {
     cursor: Lanes,
     /// The block element drawn last.
     last: [Option<BlockElement>; KEPT],
+    /// The shape of the cell that was drawn last by any path.
+    last_shape: Shape,
 }
 
 /// The assumed column of a cursor with unknown position, far to the left.
@@ -141,7 +146,7 @@ impl Trellis {
                 Branches::new(&wanted, terms, &paths, column).draw(&mut survivors, store);
                 is_drawn = survivors.is_changed();
                 if is_drawn {
-                    paths.go_on(&survivors, column);
+                    paths.go_on(&survivors, column, wanted.shape);
                     let Survivors { turns, keys, .. } = survivors;
                     self.steps.push(Step { column, turns, keys });
                 }
@@ -192,6 +197,7 @@ impl Paths {
             labs: inks.map(|ink| ink.lab.map(|component| [component; KEPT])),
             cursor: [cursor.map_or(NOWHERE, f32::from); KEPT],
             last: [None; KEPT],
+            last_shape: Shape::HALF,
         }
     }
 
@@ -208,8 +214,9 @@ impl Paths {
     }
 
     /// Continues with the survivors past the cell in column `x`.
-    fn go_on(&mut self, survivors: &Survivors, x: u16) {
+    fn go_on(&mut self, survivors: &Survivors, x: u16, shape: Shape) {
         let before = self.labs;
+        self.last_shape = shape;
         self.cost = survivors.cost;
         self.keys = survivors.keys;
         let next = f32::from(x + 1);

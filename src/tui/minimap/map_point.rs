@@ -181,6 +181,11 @@ impl MapPoint {
         }
     }
 
+    /// Whether the point is a letter among the patterns of a map without colour.
+    pub(super) fn is_thing(self) -> bool {
+        matches!(self, Self::Exit | Self::Key | Self::Item | Self::Ornament)
+    }
+
     pub(super) fn character(self) -> char {
         match self {
             Self::Void => ' ',

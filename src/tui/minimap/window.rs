@@ -3,7 +3,7 @@
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
 
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 use crate::world::World;
 
 /// The numbers of pixels per cell of the map, for the levels of the zoom; below 1, a pixel shows
@@ -21,14 +21,14 @@ pub(super) struct Window {
     corner: DVec2,
     /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
     cells_per_pixel: [u32; 2],
-    pixels_per_cell: u32,
+    pixels_per_cell: [u32; 2],
 }
 
 impl Window {
     /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
     pub(super) fn new(
         area: Rect,
-        glyphs: GlyphMode,
+        glyphs: GlyphSet,
         world: &World,
         center: DVec2,
         zoom: i32,
@@ -79,7 +79,8 @@ impl Window {
     pub(super) fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
         let pixel = (point * self.scale - self.corner).floor();
         let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
-        shows.then(|| (pixel.x as u16, (pixel.y as u32 / self.pixels_per_cell) as u16))
+        let [columns, rows] = self.pixels_per_cell;
+        shows.then(|| ((pixel.x as u32 / columns) as u16, (pixel.y as u32 / rows) as u16))
     }
 
     /// The numbers of the map's cells that are shown from left to right and from top to bottom.
@@ -91,12 +92,12 @@ impl Window {
 
 /// The part of `room` that the map fills; the rest would be blank.
 #[cfg(feature = "terminal")]
-pub(super) fn size_within(room: Size, glyphs: GlyphMode, world: &World, zoom: i32) -> Size {
+pub(super) fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
     let pixels = pixels_within(room, glyphs);
     let needed = map_size(world) * scale(world, pixels, glyphs, zoom);
     let needed = needed.ceil().min(pixels);
-    let rows = needed.y / f64::from(glyphs.pixels_per_cell());
-    Size::new(needed.x as u16, rows.ceil() as u16)
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
 }
 
 /// The width and the height of the map in cells.
@@ -104,20 +105,18 @@ pub(super) fn map_size(world: &World) -> DVec2 {
     DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
 }
 
-fn pixels_within(cells: Size, glyphs: GlyphMode) -> DVec2 {
-    let height = u32::from(cells.height) * glyphs.pixels_per_cell();
-    DVec2::new(f64::from(cells.width), f64::from(height))
+fn pixels_within(cells: Size, glyphs: GlyphSet) -> DVec2 {
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    DVec2::new(f64::from(cells.width) * columns, f64::from(cells.height) * rows)
 }
 
 /// The number of pixels per cell of the map: the largest whole number with which the whole map fits
 /// into `pixels`, but at least one, enlarged or reduced by `zoom` levels. The map is not reduced
 /// further than to fit.
-fn scale(world: &World, pixels: DVec2, glyphs: GlyphMode, zoom: i32) -> DVec2 {
-    // A half-block pixel is about square, a cell about twice as high as wide.
-    let smallest = match glyphs {
-        GlyphMode::Half => DVec2::new(1.0, 1.0),
-        GlyphMode::Ascii | GlyphMode::Ramp => DVec2::new(2.0, 1.0),
-    };
+fn scale(world: &World, pixels: DVec2, glyphs: GlyphSet, zoom: i32) -> DVec2 {
+    // A cell is about twice as high as wide.
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    let smallest = DVec2::new(2.0 * columns / rows, 1.0);
     let exact = (pixels / (map_size(world) * smallest)).min_element();
     let fit = exact.floor().max(1.0);
     smallest

@@ -10,12 +10,12 @@ use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, of_256};
 use crate::color::srgb::{encoded, linear};
 use crate::render::Filter;
-use crate::tui::{FirstPerson, GlyphMode, View};
+use crate::tui::{FirstPerson, GlyphSet, View};
 use crate::world::{Camera, World};
 
 /// A window that shows pictures.
 pub(super) struct Window {
-    glyphs: GlyphMode,
+    glyphs: GlyphSet,
     depth: ColorDepth,
     filter: Filter,
     view: View,
@@ -24,7 +24,7 @@ pub(super) struct Window {
 
 impl Window {
     /// A window of `size` cells.
-    pub(super) fn new(size: Size, glyphs: GlyphMode, depth: ColorDepth, filter: Filter) -> Self {
+    pub(super) fn new(size: Size, glyphs: GlyphSet, depth: ColorDepth, filter: Filter) -> Self {
         let buffer = Buffer::empty(Rect::from(size));
         Self { glyphs, depth, filter, view: View::default(), buffer }
     }

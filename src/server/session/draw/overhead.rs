@@ -41,9 +41,9 @@ pub(super) fn draw(
     room: &RoomView,
     ghosts: &[Ghost],
 ) {
-    let rows_per_cell = options.glyphs.pixels_per_cell();
-    let height = u32::from(area.height) * rows_per_cell;
-    let Some(size) = FrameSize::new(area.width.into(), height) else { return };
+    let [columns, rows] = options.glyphs.pixels_per_cell();
+    let (width, height) = (u32::from(area.width) * columns, u32::from(area.height) * rows);
+    let Some(size) = FrameSize::new(width, height) else { return };
     let camera = player.camera(options.field_of_view);
     let aspect = options.cell_aspect.of_pixels(options.glyphs);
     let projection = Projection::new(&camera, size, aspect);
@@ -60,8 +60,8 @@ pub(super) fn draw(
     for Overhead { position, head, text, color } in all {
         let place = projection.place(position);
         if place.depth > 0.1 {
-            let row = projection.row_at(head, place.depth) / f64::from(rows_per_cell) - 1.0;
-            let left = place.column - text.width() as f64 / 2.0;
+            let row = projection.row_at(head, place.depth) / f64::from(rows) - 1.0;
+            let left = place.column / f64::from(columns) - text.width() as f64 / 2.0;
             let style = style(color, options.depth);
             draw_clipped(canvas, area, [left, row.max(0.0)], &text, style);
         }

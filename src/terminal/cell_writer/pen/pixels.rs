@@ -11,6 +11,7 @@ use crate::terminal::cell_writer::block_element;
 use crate::terminal::cell_writer::control::ControlSequence;
 use crate::terminal::cell_writer::packed_cell::PackedCell;
 use crate::terminal::cell_writer::packed_position::PackedPosition;
+use crate::terminal::cell_writer::shape::Shape;
 use crate::terminal::cell_writer::style::{Shade, Style};
 
 /// The state of the terminal between cells of pixels.
@@ -33,7 +34,7 @@ impl Pen {
     ) {
         let mut state = self.pixel_state(y);
         for (column, target) in cells {
-            let Some((now, pixels)) = state.zip(target.pixels()) else {
+            let Some((now, (shape, pixels))) = state.zip(target.pixels()) else {
                 self.keep_pixel_state(y, state);
                 draw_other(self, column, target);
                 state = self.pixel_state(y);
@@ -43,7 +44,7 @@ impl Pen {
                 self.keep_pixel_state(y, state);
                 self.move_to(Position { x: column as u16, y });
             }
-            let colors = self.push_pixels(pixels, now.colors);
+            let colors = self.push_pixels(shape, pixels, now.colors);
             state = Some(PixelState { colors, column: column + 1 });
         }
         self.keep_pixel_state(y, state);
@@ -75,7 +76,7 @@ impl Pen {
 
     /// Adds a cell of pixels where the cursor is, and returns the colours after it.
     #[inline]
-    fn push_pixels(&mut self, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
+    fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
         let (element, colors) = block_element::cheapest_after(current, pixels);
         let mut piece = self.frame.piece();
         if colors != current {
@@ -83,7 +84,8 @@ impl Pen {
             Shade::push_change(colors, current, |shade| shade, &mut rendition);
             rendition.end(b'm');
         }
-        let (encoded, count) = element.encoded();
+        let (encoded, count) =
+            if shape == Shape::HALF { element.encoded() } else { shape.encoded(element) };
         piece.push(encoded, count);
         piece.finish();
         colors

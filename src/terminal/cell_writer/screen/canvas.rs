@@ -9,7 +9,7 @@ use ratatui::widgets::Widget;
 
 use super::super::packed_cell::PackedCell;
 use super::Screen;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Mosaic};
 use crate::color::Rgb;
 use crate::terminal::thread_memory;
 
@@ -41,6 +41,19 @@ impl Canvas for Screen {
         }
         for (target, pixels) in self.targets_from(x, y).iter_mut().zip(row) {
             *target = PackedCell::of_pixels(pixels);
+        }
+    }
+
+    #[inline]
+    fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row.map(|(_, colors)| colors));
+        }
+        let start = usize::from(y) * self.width;
+        let cells = start + usize::from(x).min(self.width)..start + self.width;
+        let Some(targets) = self.targets.get_mut(cells) else { return };
+        for (target, (mosaic, colors)) in targets.iter_mut().zip(row) {
+            *target = PackedCell::of_mosaic(mosaic, colors, &mut self.glyph_table);
         }
     }
 

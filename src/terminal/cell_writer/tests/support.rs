@@ -12,6 +12,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier};
 
 use super::super::CellWriter;
+use crate::canvas::Mosaic;
 
 /// A terminal's screen that counts the writes to it.
 #[derive(Clone)]
@@ -122,27 +123,30 @@ pub(super) fn assert_shown(screen: &Screen, content: &Buffer) {
     }
 }
 
-/// The appearance of a cell; of block elements, the colours of the halves.
+/// The appearance of a cell; of mosaics, the one without the last dot, and the colours of its dots and of the rest.
 #[derive(Debug, PartialEq)]
 enum Looks {
-    Halves(vt100::Color, vt100::Color),
+    Mosaic(Mosaic, vt100::Color, vt100::Color),
     Text(String, vt100::Color, vt100::Color, Modifier),
 }
 
 impl Looks {
     fn new(symbol: &str, fg: vt100::Color, bg: vt100::Color, modifier: Modifier) -> Self {
-        let halves = match symbol {
-            "▀" => (fg, bg),
-            "▄" => (bg, fg),
-            "█" => (fg, fg),
-            " " => (bg, bg),
-            _ => return Self::Text(symbol.to_owned(), fg, bg, modifier),
+        let text = || Self::Text(symbol.to_owned(), fg, bg, modifier);
+        let Some(mosaic) = symbol.chars().next().and_then(Mosaic::of_character) else {
+            return text();
         };
+        let (has_dots, has_rest) = (mosaic != Mosaic::NONE, mosaic != Mosaic::ALL);
         let is_own = |color| color == vt100::Color::Default;
-        if modifier.is_empty() && !is_own(halves.0) && !is_own(halves.1) {
-            Self::Halves(halves.0, halves.1)
+        if !modifier.is_empty() || has_dots && is_own(fg) || has_rest && is_own(bg) {
+            return text();
+        }
+        let (mosaic, dots, rest) =
+            if mosaic.has(1, 11) { (mosaic.inverse(), bg, fg) } else { (mosaic, fg, bg) };
+        if dots == rest || mosaic == Mosaic::NONE {
+            Self::Mosaic(Mosaic::NONE, rest, rest)
         } else {
-            Self::Text(symbol.to_owned(), fg, bg, modifier)
+            Self::Mosaic(mosaic, dots, rest)
         }
     }
 }
@@ -180,7 +184,20 @@ pub(super) fn any_modifier() -> impl Strategy<Value = Modifier> {
 }
 
 pub(super) fn any_cell() -> impl Strategy<Value = Cell> {
-    let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "#", "a", "é", "字"]);
+    let symbol = prop::sample::select(vec![
+        " ",
+        "▀",
+        "▄",
+        "█",
+        "▌",
+        "🬂",
+        "\u{1CD09}",
+        "\u{1CDE5}",
+        "#",
+        "a",
+        "é",
+        "字",
+    ]);
     (symbol, any_color(), any_color(), any_modifier()).prop_map(|(symbol, fg, bg, modifier)| {
         let mut cell = colored(symbol, fg, bg);
         cell.modifier = modifier;
@@ -222,7 +239,7 @@ pub(super) fn any_size() -> impl Strategy<Value = Size> {
 /// Pixels of few colours, so that glyphs often have a choice.
 pub(super) fn any_pixels(count: usize) -> impl Strategy<Value = Vec<Cell>> {
     let shade = || (0..3_u8).prop_map(|red| Color::Rgb(red, 7, 200));
-    let symbol = prop::sample::select(vec![" ", "▀", "▄", "█"]);
+    let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "▞", "▚", "🬂", "\u{1CD09}"]);
     let cell = (symbol, shade(), shade()).prop_map(|(symbol, fg, bg)| colored(symbol, fg, bg));
     prop::collection::vec(cell, count)
 }

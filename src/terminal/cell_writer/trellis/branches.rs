@@ -3,6 +3,7 @@
 use super::super::block_element::BlockElement;
 use super::super::ink::Price;
 use super::super::palette::{Palette, Telling};
+use super::super::shape::Shape;
 use super::lanes::{
     Blocks, Errors, HALF_BLOCK, Lanes, SPACE, add_motions, choose, least, measure, min, plus, sum,
 };
@@ -13,6 +14,10 @@ use super::{KEPT, Paths, StepKind, Store, Terms, Wanted};
 pub(super) struct Branches<'a> {
     wanted: &'a Wanted,
     price: Price,
+    /// The prices of errors in the upper half and in the lower, or in the dots and the rest.
+    prices: [Price; 2],
+    /// The bytes of the glyph that shows both colours.
+    bytes: f32,
     paths: &'a Paths,
     x: u16,
     repeats: bool,
@@ -43,7 +48,12 @@ impl<'a> Branches<'a> {
         let mut start = [0.0; KEPT];
         add_motions(paths, x, &mut start);
         let least = least(&start);
-        Self { wanted, price, paths, x, repeats, start, least }
+        let (prices, bytes) = match wanted.character {
+            Some(bytes) => ([price; 2], f32::from(bytes)),
+            None if wanted.shape == Shape::HALF => ([price; 2], HALF_BLOCK),
+            None => (wanted.shape.parts().map(|parts| price.of_parts(parts)), wanted.shape.bytes()),
+        };
+        Self { wanted, price, prices, bytes, paths, x, repeats, start, least }
     }
 
     /// Draws in the terminal's present colours, in one new colour and in two. A cell that is
@@ -62,9 +72,10 @@ impl<'a> Branches<'a> {
             return;
         }
         let (mut errors, mut blocks) = (Errors::default(), Blocks::default());
-        measure(&self.paths.labs, &self.wanted.inks, self.price, &mut errors, &mut blocks);
+        let Self { wanted, prices, bytes, .. } = self;
+        measure(&self.paths.labs, &wanted.inks, prices, *bytes, &mut errors, &mut blocks);
         match self.wanted.character {
-            Some(bytes) => self.draw_character(&errors, f32::from(bytes), survivors),
+            Some(_) => self.draw_character(&errors, survivors),
             None => self.draw_in_old_colors(&mut blocks, survivors),
         }
         if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + SHORTEST_COLOR) {
@@ -74,9 +85,9 @@ impl<'a> Branches<'a> {
 
     /// Draws the character in the old colours.
     #[inline]
-    fn draw_character(&self, errors: &Errors, bytes: f32, survivors: &mut Survivors) {
+    fn draw_character(&self, errors: &Errors, survivors: &mut Survivors) {
         let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
-        self.offer(survivors, &plus(&costs, bytes), BlockElement::Upper, Told::NOTHING);
+        self.offer(survivors, &plus(&costs, self.bytes), BlockElement::Upper, Told::NOTHING);
     }
 
     #[inline]
@@ -111,6 +122,7 @@ impl<'a> Branches<'a> {
     /// Reduces the cost of repeating the last block.
     #[inline]
     fn repeat(&self, Blocks { space, full, upper, lower }: &mut Blocks) {
+        let is_same = self.paths.last_shape == self.wanted.shape;
         for path in 0..KEPT {
             if self.paths.cursor[path] != f32::from(self.x) {
                 continue;
@@ -118,9 +130,9 @@ impl<'a> Branches<'a> {
             match self.paths.last[path] {
                 Some(BlockElement::Space) => space[path] += REPETITION - SPACE,
                 Some(BlockElement::Full) => full[path] += REPETITION - HALF_BLOCK,
-                Some(BlockElement::Upper) => upper[path] += REPETITION - HALF_BLOCK,
-                Some(BlockElement::Lower) => lower[path] += REPETITION - HALF_BLOCK,
-                None => {}
+                Some(BlockElement::Upper) if is_same => upper[path] += REPETITION - self.bytes,
+                Some(BlockElement::Lower) if is_same => lower[path] += REPETITION - self.bytes,
+                _ => {}
             }
         }
     }
@@ -133,8 +145,8 @@ impl<'a> Branches<'a> {
             return;
         }
         let tellings = [
-            store.palette.telling(upper, bytes_above, self.price),
-            store.palette.telling(lower, bytes_below, self.price),
+            store.palette.telling(upper, bytes_above, self.prices[0]),
+            store.palette.telling(lower, bytes_below, self.prices[1]),
         ];
         survivors.fresh[usize::from(UPPER)] = tellings[0].ink.lab;
         survivors.fresh[usize::from(LOWER)] = tellings[1].ink.lab;
@@ -152,7 +164,7 @@ impl<'a> Branches<'a> {
         survivors: &mut Survivors,
         [upper, lower]: &[Telling; 2],
     ) {
-        let half = ONE_COLOR + self.bytes_of_half();
+        let half = ONE_COLOR + self.bytes;
         let (above, below) = (half + upper.cost(), half + lower.cost());
         let (upper, lower) = (upper.ink.shade, lower.ink.shade);
         let Errors { text_above, text_below, ground_above, ground_below } = errors;
@@ -185,7 +197,10 @@ impl<'a> Branches<'a> {
         self.offer_for_both(survivors, below, LOWER);
         // Halfway between two colours, the errors add up to at least their distance.
         let apart = upper.distance(lower);
-        let least = ONE_COLOR + SPACE + SHORTEST_COLOR + apart * self.price.bytes;
+        let least = ONE_COLOR
+            + SPACE
+            + SHORTEST_COLOR
+            + apart * min(self.prices[0].bytes, self.prices[1].bytes);
         let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
         if is_needed && survivors.would_keep(self.least + least) {
             let both = store.inks.between(upper, lower);
@@ -199,7 +214,7 @@ impl<'a> Branches<'a> {
     fn offer_for_both(&self, survivors: &mut Survivors, telling: &Telling, source: u8) {
         let Telling { ink, bytes, .. } = *telling;
         let [upper, lower] = self.wanted.inks;
-        let error = self.price.of(ink, upper) + self.price.of(ink, lower);
+        let error = self.prices[0].of(ink, upper) + self.prices[1].of(ink, lower);
         let cost = ONE_COLOR + SPACE + bytes + error;
         if survivors.would_keep(self.least + cost) {
             let told = Told::NOTHING.ground(ink.shade, source);
@@ -211,7 +226,7 @@ impl<'a> Branches<'a> {
     /// is added.
     #[inline]
     fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
-        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes_of_half();
+        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes;
         if !survivors.would_keep(cost) {
             return;
         }
@@ -223,12 +238,6 @@ impl<'a> Branches<'a> {
             let told = Told::NOTHING.text(lower, LOWER).ground(upper, UPPER);
             self.add(survivors, cost, path, BlockElement::Lower, told);
         }
-    }
-
-    /// The bytes of a half block, or of the character.
-    #[inline]
-    fn bytes_of_half(&self) -> f32 {
-        self.wanted.character.map_or(HALF_BLOCK, f32::from)
     }
 
     /// Adds the paths that would survive if they draw `element` at these costs.

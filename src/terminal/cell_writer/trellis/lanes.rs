@@ -53,27 +53,29 @@ pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
 pub(super) fn measure(
     labs: &[Labs; 2],
     wanted: &[Ink; 2],
-    price: Price,
+    prices: &[Price; 2],
+    bytes: f32,
     errors: &mut Errors,
     blocks: &mut Blocks,
 ) {
     let [text, ground] = labs;
     let [upper, lower] = wanted;
+    let &[above, below] = prices;
     for path in 0..KEPT {
-        let of = |[ls, as_, bs]: &Labs, ink: &Ink| {
+        let of = |[ls, as_, bs]: &Labs, ink: &Ink, price: Price| {
             let [l, a, b] = [ls[path] - ink.lab[0], as_[path] - ink.lab[1], bs[path] - ink.lab[2]];
             price.of_distance((l * l + a * a + b * b).sqrt())
         };
-        let (text_above, text_below) = (of(text, upper), of(text, lower));
-        let (ground_above, ground_below) = (of(ground, upper), of(ground, lower));
+        let (text_above, text_below) = (of(text, upper, above), of(text, lower, below));
+        let (ground_above, ground_below) = (of(ground, upper, above), of(ground, lower, below));
         errors.text_above[path] = text_above;
         errors.text_below[path] = text_below;
         errors.ground_above[path] = ground_above;
         errors.ground_below[path] = ground_below;
         blocks.space[path] = ground_above + ground_below + SPACE;
         blocks.full[path] = text_above + text_below + HALF_BLOCK;
-        blocks.upper[path] = text_above + ground_below + HALF_BLOCK;
-        blocks.lower[path] = ground_above + text_below + HALF_BLOCK;
+        blocks.upper[path] = text_above + ground_below + bytes;
+        blocks.lower[path] = ground_above + text_below + bytes;
     }
 }
 

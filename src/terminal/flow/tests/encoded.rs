@@ -9,7 +9,7 @@ use crate::color::palette::ColorDepth;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
 use crate::map::builtin;
 use crate::terminal::CellWriter;
-use crate::tui::GlyphMode;
+use crate::tui::GlyphSet;
 
 /// A game in which the player moves without a pause, and its encoder.
 struct Game {
@@ -21,7 +21,7 @@ struct Game {
 }
 
 impl Game {
-    fn new(glyphs: GlyphMode, depth: ColorDepth) -> Self {
+    fn new(glyphs: GlyphSet, depth: ColorDepth) -> Self {
         let size = Size::new(120, 40);
         let level = builtin::LEVELS.iter().find(|level| level.name == "citadel").unwrap();
         let levels = Levels::new(level.world().unwrap().into(), std::iter::empty());
@@ -60,10 +60,10 @@ impl FrameSource for Game {
 fn in_every_depth_and_glyph_mode_a_megabit_carries_twenty_frames_a_second() {
     let link = Conditions { delay: 50 * MILLISECOND, jitter: Duration::ZERO, rate: MEGABIT };
     for (glyphs, depth) in [
-        (GlyphMode::Half, ColorDepth::True),
-        (GlyphMode::Half, ColorDepth::Indexed256),
-        (GlyphMode::Half, ColorDepth::Indexed16),
-        (GlyphMode::Ascii, ColorDepth::True),
+        (GlyphSet::Half, ColorDepth::True),
+        (GlyphSet::Half, ColorDepth::Indexed256),
+        (GlyphSet::Half, ColorDepth::Indexed16),
+        (GlyphSet::Ascii, ColorDepth::True),
     ] {
         let mut simulation = Simulation::of_source(link, Game::new(glyphs, depth));
         simulation.walk(10 * SECOND);

@@ -1,0 +1,245 @@
+//! Block mosaics: characters that divide a cell into dots, each in the text or the background colour.
+//!
+//! A cell has two columns and two, three or four rows of dots: quadrants, sextants and octants. Quadrants,
+//! halves and the whole cell are octants in pairs, so that they need no shape of their own; of the sextants,
+//! four are. A mosaic is known by its dots and not by its character, so that two that look the same are equal.
+//!
+//! Octants are in Unicode since version 16, sextants since version 13. Both blocks leave out the patterns
+//! that had a character before.
+
+/// The dots of a cell that have the text colour; the others have the background colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Mosaic(u16);
+
+/// The number of octant patterns. Those of sextants follow.
+const OCTANTS: u16 = 256;
+
+impl Mosaic {
+    /// No dot.
+    pub const NONE: Self = Self(0);
+    /// Every dot.
+    pub const ALL: Self = Self(0xFF);
+    /// The upper half.
+    pub const UPPER_HALF: Self = Self(0x0F);
+
+    /// A mosaic of two halves: the lowest bit of `mask` is the upper one.
+    pub const fn halves(mask: u8) -> Self {
+        const MOSAICS: [u16; 4] = [0, 0x0F, 0xF0, 0xFF];
+        Self(MOSAICS[(mask & 3) as usize])
+    }
+
+    /// A mosaic of two by two dots. The lowest bit of `mask` is the upper left dot, the next one the dot to the
+    /// right of it, and so on by rows; bits without a dot are ignored.
+    pub const fn quadrants(mask: u8) -> Self {
+        const ROWS: [u16; 4] = [0, 0x05, 0x0A, 0x0F];
+        Self(ROWS[(mask & 3) as usize] | ROWS[(mask >> 2 & 3) as usize] << 4)
+    }
+
+    /// A mosaic of two by three dots, in the order of [`Mosaic::quadrants`].
+    pub const fn sextants(mask: u8) -> Self {
+        match mask & 0x3F {
+            0 => Self::NONE,
+            LEFT_SEXTANTS => Self(0x55),
+            RIGHT_SEXTANTS => Self(0xAA),
+            0x3F => Self::ALL,
+            mask => Self(OCTANTS | mask as u16),
+        }
+    }
+
+    /// A mosaic of two by four dots, in the order of [`Mosaic::quadrants`].
+    pub const fn octants(mask: u8) -> Self {
+        Self(mask as u16)
+    }
+
+    /// The mosaic whose other dots have the text colour.
+    #[must_use]
+    pub const fn inverse(self) -> Self {
+        if self.0 < OCTANTS { Self(self.0 ^ 0xFF) } else { Self(self.0 ^ 0x3F) }
+    }
+
+    /// The mask of octants, or the mask of sextants.
+    pub(crate) const fn mask(self) -> Result<u8, u8> {
+        if self.0 < OCTANTS { Ok(self.0 as u8) } else { Err((self.0 - OCTANTS) as u8) }
+    }
+
+    /// The character.
+    pub const fn character(self) -> char {
+        let code = match self.mask() {
+            Ok(mask) => OCTANT_CODES[mask as usize],
+            Err(mask) => FIRST_SEXTANT + sextants_before(mask),
+        };
+        match char::from_u32(code) {
+            Some(character) => character,
+            None => unreachable!(),
+        }
+    }
+
+    /// The mosaic with this character.
+    pub fn of_character(character: char) -> Option<Self> {
+        let code = u32::from(character);
+        match code {
+            FIRST_SEXTANT..=LAST_SEXTANT => {
+                let place = code - FIRST_SEXTANT + 1;
+                let skipped = u32::from(place >= u32::from(LEFT_SEXTANTS))
+                    + u32::from(place + 1 >= u32::from(RIGHT_SEXTANTS));
+                Some(Self::sextants((place + skipped) as u8))
+            }
+            FIRST_OCTANT..=LAST_OCTANT => {
+                Some(Self::octants(NEW_OCTANTS[(code - FIRST_OCTANT) as usize]))
+            }
+            _ => {
+                let (mask, _) = OLDER.iter().find(|(_, older)| *older == character)?;
+                Some(Self::octants(*mask))
+            }
+        }
+    }
+
+    /// Whether the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
+    /// and octants are rows of such parts.
+    pub(crate) const fn has(self, x: u32, y: u32) -> bool {
+        match self.mask() {
+            Ok(mask) => mask >> (y / 3 * 2 + x) & 1 == 1,
+            Err(mask) => mask >> (y / 4 * 2 + x) & 1 == 1,
+        }
+    }
+}
+
+const FIRST_SEXTANT: u32 = 0x1FB00;
+const LAST_SEXTANT: u32 = 0x1FB3B;
+const LEFT_SEXTANTS: u8 = 0b01_01_01;
+const RIGHT_SEXTANTS: u8 = 0b10_10_10;
+const FIRST_OCTANT: u32 = 0x1CD00;
+const LAST_OCTANT: u32 = FIRST_OCTANT + NEW_OCTANTS.len() as u32 - 1;
+
+/// The place of a sextant among the 60 that have a character of their own.
+const fn sextants_before(mask: u8) -> u32 {
+    mask as u32 - 1 - (mask > LEFT_SEXTANTS) as u32 - (mask > RIGHT_SEXTANTS) as u32
+}
+
+/// The octant patterns that had a character before Unicode 16, in order.
+const OLDER: [(u8, char); 26] = [
+    (0x00, ' '),
+    (0x01, '\u{1CEA8}'),
+    (0x02, '\u{1CEAB}'),
+    (0x03, '\u{1FB82}'),
+    (0x05, '▘'),
+    (0x0A, '▝'),
+    (0x0F, '▀'),
+    (0x14, '\u{1FBE6}'),
+    (0x28, '\u{1FBE7}'),
+    (0x3F, '\u{1FB85}'),
+    (0x40, '\u{1CEA3}'),
+    (0x50, '▖'),
+    (0x55, '▌'),
+    (0x5A, '▞'),
+    (0x5F, '▛'),
+    (0x80, '\u{1CEA0}'),
+    (0xA0, '▗'),
+    (0xA5, '▚'),
+    (0xAA, '▐'),
+    (0xAF, '▜'),
+    (0xC0, '▂'),
+    (0xF0, '▄'),
+    (0xF5, '▙'),
+    (0xFA, '▟'),
+    (0xFC, '▆'),
+    (0xFF, '█'),
+];
+
+/// The character of each octant pattern. Those that had none before follow each other in Unicode.
+const OCTANT_CODES: [u32; OCTANTS as usize] = {
+    let mut codes = [0; OCTANTS as usize];
+    let (mut mask, mut older, mut next) = (0, 0, FIRST_OCTANT);
+    while mask < codes.len() {
+        if older < OLDER.len() && OLDER[older].0 as usize == mask {
+            codes[mask] = OLDER[older].1 as u32;
+            older += 1;
+        } else {
+            codes[mask] = next;
+            next += 1;
+        }
+        mask += 1;
+    }
+    codes
+};
+
+/// The patterns of the octants from [`FIRST_OCTANT`] on.
+const NEW_OCTANTS: [u8; OCTANTS as usize - OLDER.len()] = {
+    let mut masks = [0; OCTANTS as usize - OLDER.len()];
+    let mut mask = 0;
+    while mask < OCTANT_CODES.len() {
+        let place = OCTANT_CODES[mask].wrapping_sub(FIRST_OCTANT) as usize;
+        if place < masks.len() {
+            masks[place] = mask as u8;
+        }
+        mask += 1;
+    }
+    masks
+};
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    fn all() -> impl Iterator<Item = Mosaic> {
+        (0..=u8::MAX).map(Mosaic::octants).chain((0..64).map(Mosaic::sextants))
+    }
+
+    /// The dots that Unicode counts in the name of a character, such as BLOCK OCTANT-1235.
+    fn dots(digits: &str) -> u8 {
+        digits.bytes().map(|digit| 1 << (digit - b'1')).sum()
+    }
+
+    /// From the names in UnicodeData.txt, version 16.
+    #[test]
+    fn characters_have_the_dots_of_their_names() {
+        for (code, digits) in [
+            (0x1CD00, "3"),
+            (0x1CD01, "23"),
+            (0x1CD02, "123"),
+            (0x1CD03, "4"),
+            (0x1CD04, "14"),
+            (0x1CD09, "5"),
+            (0x1CD18, "6"),
+            (0x1CD42, "1347"),
+            (0x1CD7C, "348"),
+            (0x1CDA9, "134568"),
+            (0x1CDE5, "2345678"),
+        ] {
+            let character = char::from_u32(code).unwrap();
+            assert_eq!(Mosaic::octants(dots(digits)).character(), character, "{code:x}");
+        }
+        for (code, digits) in [
+            (0x1FB00, "1"),
+            (0x1FB13, "35"),
+            (0x1FB14, "235"),
+            (0x1FB27, "146"),
+            (0x1FB28, "1246"),
+            (0x1FB3B, "23456"),
+        ] {
+            let character = char::from_u32(code).unwrap();
+            assert_eq!(Mosaic::sextants(dots(digits)).character(), character, "{code:x}");
+        }
+        let quadrants: String = (0..16).map(|mask| Mosaic::quadrants(mask).character()).collect();
+        assert_eq!(quadrants, " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█");
+        assert_eq!(Mosaic::sextants(dots("135")).character(), '▌');
+    }
+
+    #[test]
+    fn every_mosaic_has_a_character_of_its_own() {
+        let characters: HashSet<char> = all().map(Mosaic::character).collect();
+        assert_eq!(characters.len(), 256 + 60);
+        for mosaic in all() {
+            assert_eq!(Mosaic::of_character(mosaic.character()), Some(mosaic));
+            assert_eq!(mosaic.inverse().inverse(), mosaic);
+            for (x, y) in (0..24).map(|part| (part % 2, part / 2)) {
+                assert_ne!(mosaic.has(x, y), mosaic.inverse().has(x, y));
+            }
+        }
+        for other in ['a', '▁', '░', '\u{1CE90}', '\u{1FB3C}'] {
+            assert_eq!(Mosaic::of_character(other), None);
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Shapes: mosaics, regardless of which of their two colours is the text's.
+//!
+//! A mosaic and its inverse with swapped colours look the same. A shape is the one of the two without the last
+//! dot, so that cells that look the same are equal. The first colour of a cell is that of the shape's dots, the
+//! second that of the rest. A half block is the shape of the upper half.
+//!
+//! Two cells of different shapes are compared by the parts of a cell that their colours have in common. An edge
+//! that moves by a dot within one wall then leaves the cells whose colours are near.
+
+use super::block_element::BlockElement;
+use crate::canvas::Mosaic;
+
+/// A mosaic without the last dot. There are fewer than [`Shape::COUNT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shape(u8);
+
+/// The number of shapes of octants; those of sextants follow.
+const OCTANTS: u8 = 128;
+
+/// The parts that the dots and the rest of a cell have in common with the dots and the rest of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Overlap {
+    /// Of dots and dots, and of rest and rest.
+    straight: [u8; 2],
+    /// Of the first cell's dots and the other's rest, and the reverse.
+    crossed: [u8; 2],
+}
+
+impl Overlap {
+    /// For each pair of colours, the index of the first cell's and of the other's, and the number of parts.
+    #[inline]
+    pub(super) fn pairs(self) -> [([usize; 2], u8); 4] {
+        let Self { straight, crossed } = self;
+        [([0, 0], straight[0]), ([0, 1], crossed[0]), ([1, 0], crossed[1]), ([1, 1], straight[1])]
+    }
+}
+
+impl Shape {
+    /// The upper half, in cells of two pixels.
+    pub(super) const HALF: Self = Self(0);
+    /// No dot: a cell has another shape.
+    pub(super) const NONE: Self = Self(Self::HALF_MASK);
+    pub(super) const COUNT: u8 = OCTANTS + 32;
+    /// The numbers of octant shapes are counted from that of the upper half.
+    const HALF_MASK: u8 = 0x0F;
+
+    /// The shape of a mosaic, and whether its colours change places.
+    #[inline]
+    pub(super) const fn of(mosaic: Mosaic) -> (Self, bool) {
+        match mosaic.mask() {
+            Ok(mask) => {
+                let is_inverse = mask & 0x80 != 0;
+                let mask = if is_inverse { !mask } else { mask };
+                (Self(mask ^ Self::HALF_MASK), is_inverse)
+            }
+            Err(mask) => {
+                let is_inverse = mask & 0x20 != 0;
+                let mask = if is_inverse { mask ^ 0x3F } else { mask };
+                (Self(OCTANTS + mask), is_inverse)
+            }
+        }
+    }
+
+    pub(super) const fn mosaic(self) -> Mosaic {
+        match self.0.checked_sub(OCTANTS) {
+            None => Mosaic::octants(self.0 ^ Self::HALF_MASK),
+            Some(mask) => Mosaic::sextants(mask),
+        }
+    }
+
+    /// The number of the shape, less than [`Shape::COUNT`].
+    #[inline]
+    pub(super) const fn get(self) -> u8 {
+        self.0
+    }
+
+    /// The shape with this number, which must be from [`Shape::get`].
+    #[inline]
+    pub(super) const fn new(number: u8) -> Self {
+        Self(number)
+    }
+
+    /// The character that shows the shape as `element` does a half block, in UTF-8, and the number of its bytes.
+    #[inline]
+    pub(super) fn encoded(self, element: BlockElement) -> ([u8; 4], usize) {
+        let inverse = match element {
+            BlockElement::Upper => 0,
+            BlockElement::Lower => 1,
+            BlockElement::Full | BlockElement::Space => return element.encoded(),
+        };
+        let encoded = ENCODED[usize::from(self.0)][inverse];
+        (encoded, if encoded[3] == 0 { 3 } else { 4 })
+    }
+
+    /// The bytes of its character.
+    #[inline]
+    pub(super) fn bytes(self) -> f32 {
+        if ENCODED[usize::from(self.0)][0][3] == 0 { 3.0 } else { 4.0 }
+    }
+
+    /// The parts of a cell, in twenty-fourths, with the colour of the dots and with the other.
+    #[inline]
+    pub(super) fn parts(self) -> [u8; 2] {
+        let dots = PARTS[usize::from(self.0)].count_ones() as u8;
+        [dots, Self::PARTS - dots]
+    }
+
+    /// The number of parts of a cell.
+    pub(super) const PARTS: u8 = 24;
+
+    /// The parts of a cell of this shape that another shape colours alike, and otherwise.
+    #[inline]
+    pub(super) fn overlap(self, other: Self) -> Overlap {
+        let [one, other] = [self, other].map(|shape| PARTS[usize::from(shape.0)]);
+        let count = |parts: u32| parts.count_ones() as u8;
+        let both = count(one & other);
+        let (only_one, only_other) = (count(one) - both, count(other) - both);
+        Overlap {
+            straight: [both, Self::PARTS - both - only_one - only_other],
+            crossed: [only_one, only_other],
+        }
+    }
+}
+
+/// The characters of each shape and of its inverse in UTF-8. The last byte is zero if there are three.
+static ENCODED: [[[u8; 4]; 2]; Shape::COUNT as usize] = {
+    let mut table = [[[0; 4]; 2]; Shape::COUNT as usize];
+    let mut number = 0;
+    while number < Shape::COUNT {
+        let mosaic = Shape::new(number).mosaic();
+        table[number as usize] = [encoded(mosaic), encoded(mosaic.inverse())];
+        number += 1;
+    }
+    table
+};
+
+const fn encoded(mosaic: Mosaic) -> [u8; 4] {
+    let mut bytes = [0; 4];
+    mosaic.character().encode_utf8(&mut bytes);
+    bytes
+}
+
+/// The twenty-fourths of a cell, two by twelve, in which each shape has dots.
+static PARTS: [u32; Shape::COUNT as usize] = {
+    let mut table = [0; Shape::COUNT as usize];
+    let mut number = 0;
+    while number < Shape::COUNT {
+        let mut part = 0;
+        while part < Shape::PARTS as u32 {
+            let is_dot = Shape::new(number).mosaic().has(part % 2, part / 2);
+            table[number as usize] |= (is_dot as u32) << part;
+            part += 1;
+        }
+        number += 1;
+    }
+    table
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mosaic_and_its_inverse_have_one_shape() {
+        let all = (0..=u8::MAX).map(Mosaic::octants).chain((0..64).map(Mosaic::sextants));
+        for mosaic in all {
+            let ((shape, is_inverse), (other, is_other_inverse)) =
+                (Shape::of(mosaic), Shape::of(mosaic.inverse()));
+            assert_eq!((shape, is_inverse), (other, !is_other_inverse));
+            assert!(shape.get() < Shape::COUNT);
+            if shape == Shape::NONE {
+                continue;
+            }
+            let element = if is_inverse { BlockElement::Lower } else { BlockElement::Upper };
+            let (encoded, bytes) = shape.encoded(element);
+            assert_eq!(encoded[..bytes], *mosaic.character().to_string().as_bytes());
+        }
+        assert_eq!(Shape::of(Mosaic::UPPER_HALF), (Shape::HALF, false));
+    }
+
+    #[test]
+    fn overlaps_are_those_of_the_dots() {
+        let shape = |mask| Shape::of(Mosaic::octants(mask)).0;
+        let (upper, left) = (shape(0x0F), shape(0x55));
+        assert_eq!(upper.overlap(left), Overlap { straight: [6, 6], crossed: [6, 6] });
+        assert_eq!(upper.overlap(upper), Overlap { straight: [12, 12], crossed: [0, 0] });
+        let third = Shape::of(Mosaic::sextants(0b11)).0;
+        assert_eq!(third.overlap(upper), Overlap { straight: [8, 12], crossed: [0, 4] });
+        assert_eq!(third.parts(), [8, 16]);
+    }
+}
