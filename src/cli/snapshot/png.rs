@@ -87,13 +87,11 @@ enum Glyph {
 impl Glyph {
     fn of(symbol: &str) -> Self {
         let character = symbol.chars().next().unwrap_or(' ');
-        match Mosaic::of_character(character) {
-            Some(mosaic) => Self::Mosaic(mosaic),
-            None => {
-                let bitmap = BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character));
-                Self::Bitmap(bitmap.unwrap_or_default())
-            }
+        if let Some(mosaic) = Mosaic::of_character(character) {
+            return Self::Mosaic(mosaic);
         }
+        let bitmap = BLOCK_FONTS.get(character).or_else(|| BASIC_FONTS.get(character));
+        Self::Bitmap(bitmap.unwrap_or_default())
     }
 
     /// Whether a pixel of a cell of this size has the text colour.

@@ -196,12 +196,11 @@ impl Colors {
         for (&target, ((l, a), b)) in targets.iter().zip(places) {
             if target != last.0 {
                 last.0 = target;
-                last.1 = match target.halves() {
-                    Some(halves) => components(inks.of_both(halves)),
-                    None => {
-                        has_shapes |= target.block().is_some();
-                        of_other(target, glyph_table, inks)
-                    }
+                last.1 = if let Some(halves) = target.halves() {
+                    components(inks.of_both(halves))
+                } else {
+                    has_shapes |= target.block().is_some();
+                    of_other(target, glyph_table, inks)
                 };
             }
             [*l, *a, *b] = last.1;
