@@ -141,6 +141,9 @@ impl<W: Write> CellWriter<W> {
     /// The terminal then shows ratatui's indexed colours from the sixteenth on as in xterm's
     /// standard palette.
     pub fn set_palette(&mut self, uses_palette: bool) {
+        if self.pen.palette().is_quantizing() {
+            self.screen.redraw();
+        }
         self.pen.palette().set_on(uses_palette);
     }
 

@@ -104,6 +104,11 @@ impl Palette {
         *self = Self { is_on: true, quantizer, ..Self::default() };
     }
 
+    /// Whether all colours are told as entries.
+    pub(super) fn is_quantizing(&self) -> bool {
+        self.quantizer.is_some()
+    }
+
     /// Replaces the colours of all targets by those of entries, if all colours are told as entries.
     /// Returns the definitions of entries that the terminal must receive before them.
     pub(super) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
