@@ -111,6 +111,24 @@ mod tests {
     }
 
     #[test]
+    fn the_line_about_tmux_says_what_gives_more() {
+        let said = |answer, depth, source| {
+            let tmux = TmuxClient::parse(answer);
+            let detection =
+                Detection { depth, source, tmux, is_tmux: true, ..Detection::default() };
+            lines(&detection).join("\n")
+        };
+        let few = ColorDepth::Indexed256;
+        let tmux = Some(ColorSource::Tmux);
+        insta::assert_snapshot!(said("title|kitty(0.42.1)|xterm-kitty", few, tmux), @"256 colours: tmux sends your terminal no more. Add to ~/.tmux.conf: set -as terminal-features ',xterm-kitty:RGB' (or run: tmux set -as terminal-features ',xterm-kitty:RGB'), then detach and attach again");
+        insta::assert_snapshot!(said("title||vt340", few, tmux), @"256 colours: tmux sends your terminal no more; see docs/terminals.md");
+        insta::assert_snapshot!(said("", few, Some(ColorSource::Nothing)), @"256 colours: tmux did not say which terminal is around it; see docs/terminals.md");
+        assert_eq!(said("RGB|iTerm2 3.5|xterm-256color", ColorDepth::True, tmux), "");
+        let own = Some(ColorSource::Palette);
+        insta::assert_snapshot!(said("", ColorDepth::True, own), @"24-bit colours in a palette of 232: your terminal did not offer more");
+    }
+
+    #[test]
     fn every_line_names_a_limit_and_its_reason() {
         let plain = Detection {
             depth: ColorDepth::Indexed256,

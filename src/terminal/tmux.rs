@@ -51,7 +51,7 @@ impl TmuxClient {
     }
 
     /// The client in tmux's answer; `None` if the answer has another form.
-    fn parse(answer: &str) -> Option<Self> {
+    pub(crate) fn parse(answer: &str) -> Option<Self> {
         let mut parts = answer.trim_end_matches('\n').split(SEPARATOR);
         let (features, name, term) = (parts.next()?, parts.next()?, parts.next()?);
         if parts.next().is_some() || term.is_empty() {

@@ -276,11 +276,14 @@ impl Screen {
     }
 }
 
+/// Replaces the colours of `cells`. A cell of which one becomes [`Shade::NONE`] is then unknown.
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {
         if *cell != last[0] {
-            last = [*cell, cell.recolored(cell.colors().map(&mut color))];
+            let colors = cell.colors().map(&mut color);
+            let is_known = !colors.contains(&Shade::NONE);
+            last = [*cell, if is_known { cell.recolored(colors) } else { PackedCell::UNKNOWN }];
         }
         *cell = last[1];
     }
