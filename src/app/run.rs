@@ -83,7 +83,7 @@ pub fn play(
             Some(Event::Mouse(event)) => app.mouse(event, time.now()),
             Some(Event::FocusLost) => app.focus_lost(time.now()),
             Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => {
-                update_terminal(&mut app, &session)
+                update_terminal(&mut app, &session);
             }
             Some(Event::KeyReleases(reported)) => {
                 app.controls.held.set_reports_releases(reported);

@@ -248,5 +248,5 @@ fn a_terminal_is_known_by_its_name() {
     protocol.receive(b"\x1bP>|kitty(0.42.1)\x1b\\", now);
     assert_eq!(protocol.next_event(), Some(Event::Identified));
     assert_eq!(protocol.glyph_support(), BlockGlyphs::Octant);
-    assert_eq!(protocol.shade_ink(), crate::color::palette::ShadeInk::Dots);
+    assert_eq!(protocol.shade_ink(), ShadeInk::Dots);
 }
