@@ -21,6 +21,7 @@ mod flow;
 mod guard;
 mod input;
 mod key;
+mod known;
 mod mouse;
 mod options;
 mod protocol;
@@ -29,6 +30,7 @@ mod sequence;
 mod session;
 mod size;
 pub(crate) mod thread_memory;
+mod tmux;
 #[cfg(unix)]
 mod unix;
 #[cfg(not(unix))]
@@ -48,6 +50,7 @@ pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
+pub use self::known::BlockGlyphs;
 pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
 pub use self::options::Options;
 #[cfg(feature = "cli")]
@@ -56,3 +59,4 @@ pub use self::protocol::Protocol;
 pub use self::recorder::Recorder;
 pub use self::session::Session;
 pub use self::size::WindowSize;
+pub use self::tmux::TmuxClient;

@@ -2,7 +2,7 @@
 //! The help shows these lines, where users look for them.
 
 use crate::color::palette::ColorDepth;
-use crate::terminal::ColorSource;
+use crate::terminal::{ColorSource, TmuxClient};
 
 /// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
@@ -10,6 +10,9 @@ pub(crate) struct Detection {
     pub(crate) depth: ColorDepth,
     /// The source of the colour depth; `None` if it is the command line or the configuration.
     pub(crate) source: Option<ColorSource>,
+    /// Whether the terminal is tmux, and its client, if it has said which.
+    pub(crate) is_tmux: bool,
+    pub(crate) tmux: Option<TmuxClient>,
     /// Whether key releases are reported; `None` if that is not known yet.
     pub(crate) reports_releases: Option<bool>,
     /// The locale setting that restricts output to ASCII.
@@ -27,6 +30,12 @@ impl Detection {
     /// The reason why there are not all colours.
     fn colors(&self) -> Option<String> {
         let count = match self.depth {
+            ColorDepth::True if self.source == Some(ColorSource::Palette) => {
+                return Some(
+                    "24-bit colours in a palette of 232: your terminal did not offer more"
+                        .to_owned(),
+                );
+            }
             ColorDepth::True => return None,
             ColorDepth::Indexed256 => "256 colours",
             ColorDepth::Indexed16 => "16 colours",
@@ -38,11 +47,29 @@ impl Detection {
             Some(ColorSource::NoColor) => "NO_COLOR is set",
             Some(ColorSource::ForceColor) => "FORCE_COLOR or CLICOLOR_FORCE says so",
             Some(ColorSource::Term) => "TERM names no more; see docs/terminals.md",
-            Some(ColorSource::ColorTerm | ColorSource::Answer | ColorSource::Nothing) => {
-                "your terminal did not offer more; see docs/terminals.md"
+            Some(ColorSource::Tmux) => return Some(format!("{count}: {}", self.tmux())),
+            Some(ColorSource::Nothing) if self.is_tmux => {
+                "tmux did not say which terminal is around it; see docs/terminals.md"
             }
+            Some(
+                ColorSource::ColorTerm
+                | ColorSource::Answer
+                | ColorSource::Palette
+                | ColorSource::Nothing,
+            ) => "your terminal did not offer more; see docs/terminals.md",
         };
         Some(format!("{count}: {reason}"))
+    }
+
+    /// The reason why tmux sends no 24-bit colours, and the remedy.
+    fn tmux(&self) -> String {
+        match self.tmux.as_ref().and_then(TmuxClient::remedy) {
+            Some(remedy) => format!(
+                "tmux sends your terminal no more. Add to ~/.tmux.conf: {remedy} (or run: tmux \
+                 {remedy}), then detach and attach again"
+            ),
+            None => "tmux sends your terminal no more; see docs/terminals.md".to_owned(),
+        }
     }
 
     /// The line about missing key releases.
@@ -74,6 +101,8 @@ mod tests {
         let best = Detection {
             depth: ColorDepth::True,
             source: Some(ColorSource::Answer),
+            is_tmux: false,
+            tmux: None,
             reports_releases: Some(true),
             ascii_locale: None,
             is_visitor: false,
@@ -82,10 +111,30 @@ mod tests {
     }
 
     #[test]
+    fn the_line_about_tmux_says_what_gives_more() {
+        let said = |answer, depth, source| {
+            let tmux = TmuxClient::parse(answer);
+            let detection =
+                Detection { depth, source, tmux, is_tmux: true, ..Detection::default() };
+            lines(&detection).join("\n")
+        };
+        let few = ColorDepth::Indexed256;
+        let tmux = Some(ColorSource::Tmux);
+        insta::assert_snapshot!(said("title|kitty(0.42.1)|xterm-kitty", few, tmux), @"256 colours: tmux sends your terminal no more. Add to ~/.tmux.conf: set -as terminal-features ',xterm-kitty:RGB' (or run: tmux set -as terminal-features ',xterm-kitty:RGB'), then detach and attach again");
+        insta::assert_snapshot!(said("title||vt340", few, tmux), @"256 colours: tmux sends your terminal no more; see docs/terminals.md");
+        insta::assert_snapshot!(said("", few, Some(ColorSource::Nothing)), @"256 colours: tmux did not say which terminal is around it; see docs/terminals.md");
+        assert_eq!(said("RGB|iTerm2 3.5|xterm-256color", ColorDepth::True, tmux), "");
+        let own = Some(ColorSource::Palette);
+        insta::assert_snapshot!(said("", ColorDepth::True, own), @"24-bit colours in a palette of 232: your terminal did not offer more");
+    }
+
+    #[test]
     fn every_line_names_a_limit_and_its_reason() {
         let plain = Detection {
             depth: ColorDepth::Indexed256,
             source: Some(ColorSource::Nothing),
+            is_tmux: false,
+            tmux: None,
             reports_releases: Some(false),
             ascii_locale: Some("LANG=C".to_owned()),
             is_visitor: false,

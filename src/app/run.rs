@@ -82,7 +82,9 @@ pub fn play(
             }
             Some(Event::Mouse(event)) => app.mouse(event, time.now()),
             Some(Event::FocusLost) => app.focus_lost(time.now()),
-            Some(Event::Resized | Event::ColorDepth(_)) => update_terminal(&mut app, &session),
+            Some(Event::Resized | Event::ColorDepth(_) | Event::Identified) => {
+                update_terminal(&mut app, &session);
+            }
             Some(Event::KeyReleases(reported)) => {
                 app.controls.held.set_reports_releases(reported);
                 app.detection.reports_releases = Some(reported);
@@ -200,6 +202,8 @@ fn update_terminal(app: &mut App, session: &Session) {
     app.terminal_changed(aspect, session.color_depth());
     app.pointer.set_columns(session.size().columns);
     app.detection.depth = app.depth;
+    app.detection.is_tmux = session.is_tmux();
+    app.detection.tmux = session.tmux_client().cloned();
     app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
 }
 

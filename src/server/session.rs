@@ -287,7 +287,7 @@ impl Session {
             match event {
                 Event::Key(event) if !self.takes_key(event, now) => continue,
                 Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
-                Event::Resized | Event::ColorDepth(_) => self.follow_terminal(),
+                Event::Resized | Event::ColorDepth(_) | Event::Identified => self.follow_terminal(),
                 _ => {}
             }
             if let Event::Key(_) = event {
@@ -341,6 +341,7 @@ impl Session {
         visit.look.follow_terminal(protocol, &visit.identity.preferences);
         visit.detection.depth = visit.look.depth;
         let is_chosen = visit.identity.preferences.colors.is_some();
+        visit.detection.is_tmux = protocol.is_tmux();
         visit.detection.source = (!is_chosen).then(|| protocol.color_source());
         visit.pointer.set_columns(protocol.size().columns);
     }

@@ -144,7 +144,22 @@ impl<W: Write> CellWriter<W> {
     /// The terminal then shows ratatui's indexed colours from the sixteenth on as in xterm's
     /// standard palette.
     pub fn set_palette(&mut self, uses_palette: bool) {
+        if self.pen.palette().is_quantizing() {
+            self.screen.redraw();
+        }
         self.pen.palette().set_on(uses_palette);
+    }
+
+    /// Shows all colours as entries 24 to 255 of the terminal's palette, which are defined to be near
+    /// the colours of the frames, from the next frame on. It is drawn whole. For terminals that show
+    /// 256 colours and let programs define them (OSC 4); the caller must reset the palette at the
+    /// end (OSC 104).
+    ///
+    /// [`CellWriter::shown_colors`] then returns colours of entries, and a screen that shows these is
+    /// settled. The 16 named colours and the terminal's own are not changed.
+    pub fn set_own_palette(&mut self) {
+        self.pen.palette().set_quantizing();
+        self.screen.redraw();
     }
 
     /// Whether the terminal shows exactly the last frame drawn. If it does not, each further draw
@@ -204,6 +219,7 @@ impl<W: Write> CellWriter<W> {
     pub fn draw_frame(&mut self, draw: impl FnOnce(&mut Screen)) {
         self.screen.begin_frame();
         draw(&mut self.screen);
+        self.pen.quantize(&mut self.screen);
         self.screen.end_frame();
         self.update();
     }

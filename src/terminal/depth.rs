@@ -37,6 +37,10 @@ pub enum ColorSource {
     Term,
     /// The terminal's answer to a query.
     Answer,
+    /// The terminal shows 256 colours, and lets the program define them.
+    Palette,
+    /// The answer of tmux about the terminal around it.
+    Tmux,
     /// No evidence; the depth is that of most terminals.
     Nothing,
 }
@@ -67,7 +71,10 @@ fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSourc
         None => variable("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
     };
     if matches!(variable("COLORTERM").as_deref(), Some("truecolor" | "24bit")) {
-        return certain(ColorDepth::True, ColorTerm);
+        // tmux passes on the variable of the terminal in which it began, and knows better itself.
+        let is_certain = variable("TMUX").is_none();
+        let depth = if is_certain { Detected::Certain } else { Detected::Guess };
+        return (depth(ColorDepth::True), ColorTerm);
     }
     let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
     match named {

@@ -17,9 +17,13 @@ pub enum Event {
     FocusLost,
     /// The window may have another size, and the next frame repaints it.
     Resized,
-    /// The terminal has answered that it shows this number of colours, which is more than the
-    /// guess.
+    /// The terminal, or tmux around the program, has answered that it shows this number of colours,
+    /// which is not the one assumed before.
     ColorDepth(ColorDepth),
+    /// The terminal has said its name, so that
+    /// [`Session::glyph_support`](super::Session::glyph_support) and
+    /// [`Session::shade_ink`](super::Session::shade_ink) may have changed.
+    Identified,
     /// The terminal has answered whether it reports key releases. Sent at most once; before it,
     /// releases are not reported.
     KeyReleases(bool),

@@ -19,8 +19,11 @@ pub struct Options {
     pub ask_for_key_releases: bool,
     /// Whether to ask if mouse positions can be in pixels.
     pub ask_for_mouse_pixels: bool,
-    /// Whether to ask for the terminal's version if the colour depth is a guess.
+    /// Whether to ask for the terminal's name and version.
     pub ask_for_version: bool,
+    /// Whether the program runs in a tmux of this machine, which a [`Session`](super::Session) asks
+    /// about the terminal around it.
+    pub ask_tmux: bool,
     /// Whether the terminal is across a network. The first frame is then coarse; later frames make
     /// it exact.
     pub is_remote: bool,
@@ -46,8 +49,22 @@ impl Options {
     /// would print that query.
     pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
         /// Terminals that ignore unknown control sequences.
-        const KNOWN: [&str; 9] =
-            ["xterm", "vte", "gnome", "konsole", "mintty", "iterm", "st-", "tmux", "rxvt-unicode"];
+        const KNOWN: [&str; 14] = [
+            "xterm",
+            "vte",
+            "gnome",
+            "konsole",
+            "mintty",
+            "iterm",
+            "st-",
+            "tmux",
+            "rxvt-unicode",
+            "foot",
+            "alacritty",
+            "contour",
+            "ghostty",
+            "wezterm",
+        ];
         let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
         let term = environment("TERM").unwrap_or_default();
         let multiplexed = is_set("TMUX")
@@ -63,6 +80,7 @@ impl Options {
             ask_for_mouse_pixels: !multiplexed
                 && environment("TERM_PROGRAM").as_deref() != Some("Apple_Terminal"),
             ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
+            ask_tmux: is_set("TMUX"),
             is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
             probe_extensions: !multiplexed && !is_plain,
             fidelity: None,

@@ -22,9 +22,13 @@ pub(super) use self::changes::Changes;
 use self::extensions::Extensions;
 use super::flow::{Flow, Request};
 use super::input::Decoder;
+use super::known::Known;
 use super::mouse::MouseUnits;
-use super::{CellWriter, ColorSource, Detected, Event, Fidelity, Options, WindowSize, sequence};
-use crate::color::palette::ColorDepth;
+use super::{
+    BlockGlyphs, CellWriter, ColorSource, Detected, Event, Fidelity, Options, TmuxClient,
+    WindowSize, sequence,
+};
+use crate::color::palette::{ColorDepth, ShadeInk};
 
 /// One side of the protocol between a program and a terminal: it turns the terminal's bytes into
 /// [`Event`]s, and frames into bytes.
@@ -65,6 +69,10 @@ pub struct Protocol {
     size: WindowSize,
     color_depth: Detected,
     color_source: ColorSource,
+    /// What the terminal's name says.
+    known: Known,
+    /// The client of the tmux in which the program runs.
+    tmux: Option<TmuxClient>,
     key_releases: KeyReleases,
     mouse: Mouse,
     flow: Flow,
@@ -123,6 +131,8 @@ impl Protocol {
             size,
             color_depth: options.color_depth,
             color_source: options.color_source,
+            known: Known::default(),
+            tmux: None,
             key_releases: KeyReleases::Unasked,
             mouse: Mouse::default(),
             flow: Flow::new(options.is_remote),
@@ -146,7 +156,7 @@ impl Protocol {
         if self.options.ask_for_mouse_pixels {
             queries.push_str(sequence::QUERY_MOUSE_PIXELS);
         }
-        if matches!(self.color_depth, Detected::Guess(_)) && self.options.ask_for_version {
+        if self.options.ask_for_version {
             queries.push_str(sequence::QUERY_VERSION);
         }
         if self.options.probe_extensions && !self.options.is_ascii {
@@ -235,6 +245,26 @@ impl Protocol {
     /// The source of [`Protocol::color_depth`].
     pub fn color_source(&self) -> ColorSource {
         self.color_source
+    }
+
+    /// The finest block glyphs that the terminal is known to draw.
+    pub fn glyph_support(&self) -> BlockGlyphs {
+        self.known.blocks
+    }
+
+    /// How the terminal draws shades, as far as it is known.
+    pub fn shade_ink(&self) -> ShadeInk {
+        self.known.shades
+    }
+
+    /// Whether the terminal has answered that it is tmux.
+    pub fn is_tmux(&self) -> bool {
+        self.known.is_tmux
+    }
+
+    /// The client of the tmux in which the program runs, if that has answered.
+    pub fn tmux_client(&self) -> Option<&TmuxClient> {
+        self.tmux.as_ref()
     }
 }
 

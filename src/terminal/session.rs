@@ -12,8 +12,10 @@ use std::time::Duration;
 use self::receive::Received;
 use super::guard::Guard;
 use super::platform::{Device, Signals};
+use super::tmux::{Question, Reply};
+use super::{BlockGlyphs, TmuxClient};
 use super::{ColorSource, Error, Event, Options, Protocol, Recorder, WindowSize};
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{ColorDepth, ShadeInk};
 
 /// A terminal in use by the program: it delivers keys and shows frames.
 ///
@@ -29,6 +31,9 @@ pub struct Session {
     protocol: Protocol,
     /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
+    /// Whether the program runs in tmux, and a question to it without an answer.
+    is_in_tmux: bool,
+    tmux: Option<Question>,
 }
 
 impl Session {
@@ -67,11 +72,18 @@ impl Session {
         // A recording must play on any terminal.
         options.probe_extensions &= !guard.recording().is_on();
         let protocol = Protocol::new(options, size);
-        let mut session =
-            Self { guard: Arc::clone(guard), signals, protocol, awaits_readiness: false };
+        let mut session = Self {
+            guard: Arc::clone(guard),
+            signals,
+            protocol,
+            awaits_readiness: false,
+            is_in_tmux: options.ask_tmux,
+            tmux: None,
+        };
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
         session.protocol.begin(guard.now());
         session.send().map_err(Error::while_doing("asking the terminal what it can do"))?;
+        session.ask_tmux();
         Ok(session)
     }
 
@@ -83,7 +95,12 @@ impl Session {
     pub fn next_event(&mut self, timeout: Option<Duration>) -> Result<Option<Event>, Error> {
         let deadline = timeout.and_then(|timeout| self.guard.now().checked_add(timeout));
         loop {
+            self.take_tmux_reply();
             if let Some(event) = self.protocol.next_event() {
+                if matches!(event, Event::FocusGained | Event::Resized) {
+                    // Another client may be attached.
+                    self.ask_tmux();
+                }
                 return Ok(Some(event));
             }
             if self.awaits_readiness {
@@ -97,7 +114,9 @@ impl Session {
             }
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
-            let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at).min();
+            let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at);
+            let tmux_at = self.tmux.is_some().then(|| self.guard.now() + TMUX_POLL);
+            let wake_at = wake_at.chain(tmux_at).min();
             let now = |session: &Self| session.guard.now();
             match self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
                 Received::Nothing if is_past(gives_up_at, now(self)) => self.protocol.give_up(),
@@ -127,6 +146,22 @@ impl Session {
         self.protocol.interrupt();
         self.signals.stop_until_continued().map_err(Error::while_doing("stopping the program"))?;
         self.take_again().map_err(Error::while_doing("taking the terminal again"))
+    }
+
+    /// Asks tmux about the terminal around it, unless a question is open.
+    fn ask_tmux(&mut self) {
+        if self.is_in_tmux && self.tmux.is_none() {
+            self.tmux = Some(Question::ask());
+        }
+    }
+
+    fn take_tmux_reply(&mut self) {
+        match self.tmux.as_ref().map(Question::reply) {
+            None | Some(Reply::Pending) => return,
+            Some(Reply::Client(client)) => self.protocol.take_tmux_client(client),
+            Some(Reply::Nothing) => {}
+        }
+        self.tmux = None;
     }
 
     fn take_again(&mut self) -> io::Result<()> {
@@ -159,7 +194,30 @@ impl Session {
     pub fn color_source(&self) -> ColorSource {
         self.protocol.color_source()
     }
+
+    /// The finest block glyphs that the terminal is known to draw.
+    pub fn glyph_support(&self) -> BlockGlyphs {
+        self.protocol.glyph_support()
+    }
+
+    /// How the terminal draws shades, as far as it is known.
+    pub fn shade_ink(&self) -> ShadeInk {
+        self.protocol.shade_ink()
+    }
+
+    /// Whether the terminal has answered that it is tmux.
+    pub fn is_tmux(&self) -> bool {
+        self.protocol.is_tmux()
+    }
+
+    /// The client of the tmux in which the program runs, if that has answered.
+    pub fn tmux_client(&self) -> Option<&TmuxClient> {
+        self.protocol.tmux_client()
+    }
 }
+
+/// The time between looks for an answer of tmux.
+const TMUX_POLL: Duration = Duration::from_millis(10);
 
 fn is_past(time: Option<Duration>, now: Duration) -> bool {
     time.is_some_and(|time| time <= now)

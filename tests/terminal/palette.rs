@@ -2,8 +2,14 @@
 //! the colours of its palette, are those that the writer says are on the screen, and no cell ever changes
 //! colour because its entry was defined anew.
 
+use std::collections::HashMap;
+
 use cellcaster::canvas::Canvas;
+use cellcaster::game::{Game, Script};
+use cellcaster::map::builtin;
+use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::world::{FieldOfView, World};
 use proptest::prelude::*;
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
@@ -32,6 +38,8 @@ struct Screen {
     writer: CellWriter<Vec<u8>>,
     terminal: Alacritty,
     size: Size,
+    /// Whether all colours are entries, so that a definition may change what a cell shows.
+    is_own: bool,
 }
 
 impl Screen {
@@ -40,7 +48,15 @@ impl Screen {
         writer.set_fidelity(fidelity);
         writer.set_repeats(true);
         writer.set_palette(true);
-        Self { writer, terminal: Alacritty::new(size.width, size.height), size }
+        Self { writer, terminal: Alacritty::new(size.width, size.height), size, is_own: false }
+    }
+
+    /// A terminal that shows all colours as entries.
+    fn with_own_palette(size: Size, fidelity: Fidelity) -> Self {
+        let mut screen = Self::new(size, fidelity);
+        screen.writer.set_own_palette();
+        screen.is_own = true;
+        screen
     }
 
     /// Draws a frame, and returns what it took.
@@ -59,7 +75,12 @@ impl Screen {
         let bytes = String::from_utf8(std::mem::take(self.writer.output_mut())).unwrap();
         // Alacritty keeps what is between these marks, and takes it all at the second one.
         let text = bytes.replace("\x1b[?2026h", "").replace("\x1b[?2026l", "");
-        self.show(&text);
+        if self.is_own {
+            assert!(!text.contains("8;2;"), "a colour was sent in 24 bits");
+            self.terminal.process(text.as_bytes());
+        } else {
+            self.show(&text);
+        }
         bytes
     }
 
@@ -168,6 +189,104 @@ proptest! {
         }
         screen.check(last, true);
     }
+}
+
+proptest! {
+    #[test]
+    fn a_palette_of_ones_own_shows_what_the_writer_says(
+        history in any_history(),
+        tolerance in prop_oneof![Just(0_u8), 1..60_u8, any::<u8>()],
+    ) {
+        let mut screen = Screen::with_own_palette(history.size, Fidelity::new(tolerance));
+        for frame in &history.frames {
+            screen.draw(frame);
+            screen.check(frame, false);
+        }
+        while !screen.writer.is_settled() {
+            screen.draw(history.frames.last().unwrap());
+        }
+        screen.check(history.frames.last().unwrap(), false);
+        prop_assert!(screen.terminal.entries_defined().iter().all(|&entry| entry >= 24));
+    }
+}
+
+const TOUR: &str = "[tour]\n1 s forward\n1 s turn-left\n0.5 s forward turn-right\n1 s turn-right aim\n\
+    0.5 s strafe-left\n";
+
+/// A colour in Oklab, by the formula of its inventor.
+fn oklab(color: Rgb) -> [f64; 3] {
+    let [r, g, b] = color.map(|channel| {
+        let signal = f64::from(channel) / 255.0;
+        if signal <= 0.04045 { signal / 12.92 } else { ((signal + 0.055) / 1.055).powf(2.4) }
+    });
+    let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
+    let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
+    let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
+    [
+        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+    ]
+}
+
+/// The mean error of a tour, that of its first frame, and the bytes of a frame in relation to those in
+/// 24 bits.
+fn tour(world: World) -> [f64; 3] {
+    let size = Size::new(80, 24);
+    let script = Script::parse(TOUR, "tour").unwrap();
+    let mut game = Game::new(world);
+    let mut frame = Frame::new(FrameSize::new(80, 48).unwrap(), PixelAspect::SQUARE);
+    let mut renderer = Renderer::new();
+    let mut writers = [(); 2].map(|()| CellWriter::new(Vec::new(), size));
+    writers[1].set_own_palette();
+    let (mut bytes, mut errors) = ([0; 2], Vec::new());
+    for (step, (_, intents)) in script.iter().enumerate() {
+        if step % 2 == 0 {
+            let camera = game.camera(FieldOfView::default());
+            renderer.render(game.world(), &camera, &mut frame);
+            let pixels: Vec<Rgb> = frame.rows().flatten().map(|pixel| pixel.channels()).collect();
+            for (writer, bytes) in writers.iter_mut().zip(&mut bytes) {
+                writer.draw_frame(|screen| {
+                    for (y, rows) in (0..).zip(pixels.chunks_exact(160)) {
+                        let halves = (0..80).map(|x| {
+                            [rows[x], rows[80 + x]]
+                                .map(|[red, green, blue]| Color::Rgb(red, green, blue))
+                        });
+                        screen.draw_halves(0, y, halves);
+                    }
+                });
+                writer.flush().unwrap();
+                *bytes += writer.output_mut().drain(..).len();
+            }
+            let (mut error, mut known) = (0.0, HashMap::new());
+            for (place, &wanted) in pixels.iter().enumerate() {
+                let shown = writers[1].shown_colors((place % 80) as u16, (place / 160) as u16);
+                let shown = rgb(shown.unwrap()[place / 80 % 2]);
+                error += *known.entry((wanted, shown)).or_insert_with(|| {
+                    let squares = oklab(wanted).into_iter().zip(oklab(shown));
+                    squares.map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+                });
+            }
+            errors.push(error / pixels.len() as f64);
+        }
+        game.step(intents);
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    [mean, errors[0], f64::from(bytes[1] as u32) / f64::from(bytes[0] as u32)]
+}
+
+#[test]
+fn a_palette_of_ones_own_is_near_true_colour_in_every_level() {
+    let mut bytes = Vec::new();
+    for level in builtin::LEVELS {
+        let [mean, first, ratio] = tour(level.world().unwrap());
+        println!("{:12} error {mean:.4}, at the start {first:.4}, bytes {ratio:.2}", level.name);
+        assert!(mean <= 0.010 && first <= 0.010, "{}: {mean} {first}", level.name);
+        bytes.push(ratio);
+    }
+    let mean = bytes.iter().sum::<f64>() / bytes.len() as f64;
+    println!("bytes {mean:.3}");
+    assert!(mean <= 0.8, "{bytes:?}");
 }
 
 /// More colours than the palette has entries, frame after frame.

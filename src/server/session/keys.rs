@@ -30,7 +30,7 @@ impl Visit {
                 self.detection.reports_releases = Some(reported);
                 self.is_stale = true;
             }
-            Event::Resized | Event::ColorDepth(_) => self.is_stale = true,
+            Event::Resized | Event::ColorDepth(_) | Event::Identified => self.is_stale = true,
             Event::Quit(QuitReason::Interrupted) => {
                 self.idle.restart(now);
                 self.interrupted();

@@ -21,6 +21,7 @@ impl<W: Write> Backend for CellWriter<W> {
         for (x, y, cell) in content {
             self.screen.want(x, y, cell);
         }
+        self.pen.quantize(&mut self.screen);
         self.update();
         Ok(())
     }

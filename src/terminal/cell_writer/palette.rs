@@ -10,12 +10,16 @@
 //! safe.
 //!
 //! A palette without definitions, as of most terminals, has no memory; one with them has 75 KB.
+//! A terminal without 24-bit colours shows all colours as entries, by a [`Quantizer`].
 
 mod definitions;
+mod quantizer;
 
 use super::bytes::Bytes;
 use super::ink::{Ink, Price};
+use super::screen::Screen;
 use super::style::{Kind, Shade};
+use quantizer::Quantizer;
 
 /// The known entries of the terminal's palette.
 #[derive(Debug, Default)]
@@ -42,6 +46,8 @@ pub(super) struct Palette {
     frequent: Vec<Count>,
     free: Vec<u8>,
     definitions: Bytes,
+    /// Replaces all colours by entries, on a terminal without 24-bit colours.
+    quantizer: Option<Box<Quantizer>>,
 }
 
 /// The number of recent uses of a colour; older ones count less.
@@ -92,6 +98,25 @@ impl Palette {
         *self = if is_on { Self::on() } else { Self::default() };
     }
 
+    /// Sets that all colours are told as entries, and forgets all definitions.
+    pub(super) fn set_quantizing(&mut self) {
+        let quantizer = Some(Box::new(Quantizer::new()));
+        *self = Self { is_on: true, quantizer, ..Self::default() };
+    }
+
+    /// Whether all colours are told as entries.
+    pub(super) fn is_quantizing(&self) -> bool {
+        self.quantizer.is_some()
+    }
+
+    /// Replaces the colours of all targets by those of entries, if all colours are told as entries.
+    /// Returns the definitions of entries that the terminal must receive before them.
+    pub(super) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
+        let mut definitions = Bytes::default();
+        self.quantizer.as_mut()?.quantize(screen, &mut definitions);
+        (!definitions.is_empty()).then_some(definitions)
+    }
+
     /// Whether entries may be defined.
     pub(super) fn is_on(&self) -> bool {
         self.is_on
@@ -99,7 +124,11 @@ impl Palette {
 
     /// Forgets all definitions.
     pub(super) fn forget(&mut self) {
-        self.set_on(self.is_on);
+        if self.quantizer.is_some() {
+            self.set_quantizing();
+        } else {
+            self.set_on(self.is_on);
+        }
     }
 
     /// The entry that holds a colour.
@@ -116,6 +145,9 @@ impl Palette {
     }
 
     fn entry_or_itself(&self, shade: Shade) -> Shade {
+        if let Some(quantizer) = &self.quantizer {
+            return quantizer.told(shade).map_or(shade, |(_, entry)| Shade::indexed(entry));
+        }
         match shade.kind() {
             // The entry with this index may have been redefined.
             Kind::Indexed(index @ 16..) => Shade::rgb(standard(index)),
@@ -136,6 +168,9 @@ impl Palette {
     /// Replaces the colour by an entry if that costs less.
     #[inline(never)]
     fn shorten(&mut self, telling: &mut Telling, price: Price) {
+        if let Some(quantizer) = &mut self.quantizer {
+            return quantizer.telling(telling, price);
+        }
         let wanted = telling.ink;
         if let Some(entry) = self.entry(wanted.shade) {
             telling.bytes = Shade::indexed(entry).bytes() as f32;
@@ -196,6 +231,7 @@ impl Palette {
             frequent: Vec::with_capacity(places),
             free: Vec::with_capacity(ENTRIES),
             definitions: Bytes::default(),
+            quantizer: None,
         }
     }
 

@@ -79,6 +79,16 @@ impl Pen {
         }
     }
 
+    /// Replaces the colours of all targets by those of the palette's entries, if the terminal shows no
+    /// others, and defines these.
+    pub(super) fn quantize(&mut self, screen: &mut Screen) {
+        if let Some(definitions) = self.palette.quantize(screen) {
+            self.frame().push_text(definitions.as_slice());
+            // Its colours may be those of entries that have changed.
+            self.style = None;
+        }
+    }
+
     /// Whether the terminal repeats characters (REP).
     pub(super) fn repeats(&self) -> bool {
         self.repeats

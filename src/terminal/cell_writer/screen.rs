@@ -93,6 +93,11 @@ impl Screen {
     /// Sets whether targets are restricted to ASCII, from the next frame on.
     pub(super) fn set_ascii(&mut self, is_ascii: bool) {
         self.is_ascii = is_ascii;
+        self.redraw();
+    }
+
+    /// Forgets the shown cells and has all rows drawn again.
+    pub(super) fn redraw(&mut self) {
         self.forget();
         self.changed.fill(true);
     }
@@ -218,6 +223,23 @@ impl Screen {
         self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
+    /// The targets of all cells, row by row.
+    pub(super) fn targets(&self) -> impl Iterator<Item = &PackedCell> {
+        self.targets.iter()
+    }
+
+    /// Replaces the colours of all targets.
+    pub(super) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
+        recolor(&mut self.targets, color);
+    }
+
+    /// Records that the terminal shows other colours in place of some, so that all rows must be
+    /// compared with their targets.
+    pub(super) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
+        recolor(&mut self.shown, color);
+        self.changed.fill(true);
+    }
+
     /// The styles of the intricate targets.
     pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
@@ -261,6 +283,19 @@ impl Screen {
                 Row { y, glyph_table, shown, targets, marks, wanted, intricate, exact, rested };
             is_asked(*row.exact, changed).then_some(row)
         })
+    }
+}
+
+/// Replaces the colours of `cells`. A cell of which one becomes [`Shade::NONE`] is then unknown.
+fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
+    let mut last = [PackedCell::UNKNOWN; 2];
+    for cell in cells {
+        if *cell != last[0] {
+            let colors = cell.colors().map(&mut color);
+            let is_known = !colors.contains(&Shade::NONE);
+            last = [*cell, if is_known { cell.recolored(colors) } else { PackedCell::UNKNOWN }];
+        }
+        *cell = last[1];
     }
 }
 

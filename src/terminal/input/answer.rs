@@ -1,5 +1,6 @@
 //! Answers of the terminal to queries.
 
+use super::super::known::{Known, known};
 use super::super::sequence;
 
 /// An answer of the terminal.
@@ -11,8 +12,8 @@ pub(in super::super) enum Answer {
     TrueColor,
     /// The terminal can report mouse positions in pixels.
     PixelMouse,
-    /// The terminal is xterm, which can be asked for 24-bit colours.
-    XtermVersion,
+    /// The terminal's name and version.
+    Version(Known),
     /// The answer to a fence, after those to all earlier queries.
     Fence,
     /// The answer to a status request.
@@ -62,28 +63,9 @@ fn channel(digits: &[u8]) -> Option<u16> {
 /// of this program.
 pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
     if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
-        return version(name);
+        let name = name.strip_suffix(b"\x1b\\").unwrap_or(name);
+        return str::from_utf8(name).ok().map(|name| Answer::Version(known(name)));
     }
     let capability = unit.strip_prefix(b"\x1bP1+r")?;
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
-}
-
-/// The answer that a terminal's name and version implies.
-///
-/// A query of the capability itself (XTGETTCAP) is right for xterm alone, which can be built with
-/// and without it. Other terminals print the query (blessed#382 names `QTerminal`, `PuTTY`,
-/// `ConEmu` and Apple's Terminal), so that only a terminal that identifies as xterm receives it.
-fn version(name: &[u8]) -> Option<Answer> {
-    /// Terminals that show 24-bit colours in every version that answers this query.
-    const TRUE: [&[u8]; 10] = [
-        b"kitty", b"foot", b"wezterm", b"iterm2", b"ghostty", b"contour", b"mintty", b"rio",
-        b"konsole", b"vte(",
-    ];
-    let is =
-        |known: &[u8]| name.len() >= known.len() && name[..known.len()].eq_ignore_ascii_case(known);
-    if TRUE.into_iter().any(is) {
-        Some(Answer::TrueColor)
-    } else {
-        is(b"xterm(").then_some(Answer::XtermVersion)
-    }
 }

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::super::key::{Key, Modifiers, Phase};
 use super::super::mouse::{MouseButton, MouseEventKind};
 use super::*;
+use crate::terminal::known::known;
 
 const PLAIN: Modifiers = Modifiers { shift: false, control: false, alt: false };
 const SHIFT: Modifiers = Modifiers { shift: true, ..PLAIN };
@@ -94,13 +95,13 @@ fn vocabulary() -> Vec<(&'static str, Option<Input>)> {
         ("\x1b[3n", answer(Answer::Status)),
         ("\x1bP1+r524742=382F382F38\x1b\\", answer(Answer::TrueColor)),
         ("\x1bP1+r524742\x1b\\", answer(Answer::TrueColor)),
-        ("\x1bP>|XTerm(390)\x1b\\", answer(Answer::XtermVersion)),
-        ("\x1bP>|kitty(0.40.1)\x1b\\", answer(Answer::TrueColor)),
-        ("\x1bP>|WezTerm 20240203\x1b\\", answer(Answer::TrueColor)),
+        ("\x1bP>|XTerm(390)\x1b\\", answer(Answer::Version(known("XTerm(390)")))),
+        ("\x1bP>|kitty(0.40.1)\x1b\\", answer(Answer::Version(known("kitty(0.40.1)")))),
+        ("\x1bP>|tmux 3.4\x1b\\", answer(Answer::Version(known("tmux 3.4")))),
+        ("\x1bP>|WezTerm 20240203\x1b\\", answer(Answer::Version(known("WezTerm 20240203")))),
     ];
     let meaningless = [
         "\x1bP0+r524742\x1b\\",
-        "\x1bP>|tmux 3.4\x1b\\",
         "\x1b[?2026;2$y",
         "\x1b[>1;4000;19c",
         "\x1b[?997;1n",

@@ -6,18 +6,23 @@
 //! repeat characters and fail on half blocks, so that no terminal is trusted by its name or
 //! version.
 //!
+//! A terminal of 256 colours whose palette can be defined and reset shows 24-bit colours as entries of
+//! its own.
+//!
 //! Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
 //! the sent bytes, since a recording must play on any terminal.
 
 use super::Protocol;
 use crate::color::palette::ColorDepth;
-use crate::terminal::sequence;
+use crate::terminal::{ColorSource, Detected, Event, sequence};
 
 /// The results of the probes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Extensions {
     is_probed: bool,
     palette: Palette,
+    /// Whether all colours are shown as entries of the palette.
+    owns_palette: bool,
 }
 
 /// The reported state of the probed palette entry, as colours of 16 bits a channel.
@@ -73,8 +78,24 @@ impl Protocol {
 
     /// Uses the palette if it can be defined and reset and the terminal shows 24-bit colours.
     pub(super) fn use_palette(&mut self) {
-        if self.extensions.palette == Palette::Reset && self.color_depth() == ColorDepth::True {
+        let is_true = matches!(self.color_depth, Detected::Certain(ColorDepth::True))
+            || self.color_depth() == ColorDepth::True && !self.extensions.owns_palette;
+        if self.extensions.palette == Palette::Reset && is_true {
+            self.extensions.owns_palette = false;
             self.writer.set_palette(true);
+        }
+    }
+
+    /// Shows all colours as entries of the palette if they can be defined and reset and the terminal
+    /// has not answered that it shows 24-bit colours. Called after all its answers.
+    pub(super) fn use_own_palette(&mut self) {
+        let shows_few = self.color_depth == Detected::Guess(ColorDepth::Indexed256);
+        if self.extensions.palette == Palette::Reset && shows_few && !self.is_ending {
+            self.extensions.owns_palette = true;
+            self.writer.set_own_palette();
+            self.color_depth = Detected::Guess(ColorDepth::True);
+            self.color_source = ColorSource::Palette;
+            self.events.push_back(Event::ColorDepth(ColorDepth::True));
         }
     }
 }

@@ -8,9 +8,11 @@ use super::reports::KeyFlags;
 use super::{KeyReleases, Protocol};
 use crate::color::palette::ColorDepth;
 use crate::terminal::input::{Answer, Input};
+use crate::terminal::known::{Colors, Known};
 use crate::terminal::mouse::{MouseReport, MouseUnits};
 use crate::terminal::{
-    ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, WindowSize, sequence,
+    ColorSource, Detected, Event, Key, KeyEvent, Phase, QuitReason, TmuxClient, WindowSize,
+    sequence,
 };
 
 impl Protocol {
@@ -113,7 +115,7 @@ impl Protocol {
             }
             Answer::KeyFlags => self.settle_key_releases(true),
             Answer::TrueColor => self.raise_color_depth(),
-            Answer::XtermVersion => self.ask_for_true_color(now),
+            Answer::Version(known) => self.identify(known, now),
             Answer::Repeats => self.repeats_blocks(),
             Answer::PaletteEntry(color) => self.palette_reported(color),
             Answer::Status => {
@@ -128,6 +130,9 @@ impl Protocol {
                 self.changes.awaits_statuses = self.flow.awaits_answers();
                 self.confirm_key_flags();
                 self.settle_key_releases(false);
+                if !self.changes.fences.are_open() {
+                    self.use_own_palette();
+                }
             }
         }
     }
@@ -188,6 +193,44 @@ impl Protocol {
             && self.flow.frames_answered() >= self.frames_before_key_flags
         {
             *key_flags = KeyFlags::Received;
+        }
+    }
+
+    fn identify(&mut self, known: Known, now: Duration) {
+        match known.colors {
+            Colors::True => self.raise_color_depth(),
+            Colors::Ask => self.ask_for_true_color(now),
+            Colors::Unknown => {}
+        }
+        // In tmux, its answer about the terminal around it says more.
+        if self.tmux.is_none() {
+            self.set_known(known);
+        }
+    }
+
+    fn set_known(&mut self, known: Known) {
+        if self.known != known {
+            self.known = known;
+            self.events.push_back(Event::Identified);
+        }
+    }
+
+    /// Records what tmux says of the client that shows the program. A depth that the user has chosen
+    /// stays.
+    pub(in crate::terminal) fn take_tmux_client(&mut self, client: TmuxClient) {
+        if let Detected::Guess(before) = self.color_depth {
+            let depth =
+                if client.has_true_color() { ColorDepth::True } else { ColorDepth::Indexed256 };
+            self.color_depth = Detected::Guess(depth);
+            self.color_source = ColorSource::Tmux;
+            if depth != before {
+                self.events.push_back(Event::ColorDepth(depth));
+            }
+        }
+        if self.tmux.as_ref() != Some(&client) {
+            self.known = Known { is_tmux: true, ..client.known() };
+            self.tmux = Some(client);
+            self.events.push_back(Event::Identified);
         }
     }
 

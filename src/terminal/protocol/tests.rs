@@ -193,3 +193,60 @@ fn a_resized_window_is_drawn_whole() {
     draw(&mut protocol, '#');
     assert!(sent(&mut protocol, now).contains('#'));
 }
+
+const PROVEN: &[u8] = b"\x1b]4;255;rgb:eeee/eeee/eeee\x07\x1b]4;255;rgb:1212/abab/5656\x07\
+    \x1b]4;255;rgb:eeee/eeee/eeee\x07";
+
+fn draw_color(protocol: &mut Protocol) {
+    protocol.draw(|screen| screen.draw_character(0, 0, 'x', [Color::Rgb(18, 52, 86); 2]));
+}
+
+fn depths(protocol: &mut Protocol) -> Vec<ColorDepth> {
+    let events = std::iter::from_fn(|| protocol.next_event());
+    let depth = |event| if let Event::ColorDepth(depth) = event { Some(depth) } else { None };
+    events.filter_map(depth).collect()
+}
+
+#[test]
+fn a_terminal_of_256_colours_that_proves_its_palette_shows_all() {
+    let mut protocol = begun("xterm-256color");
+    let now = Duration::from_millis(20);
+    sent(&mut protocol, now);
+    protocol.receive(PROVEN, now);
+    assert_eq!(depths(&mut protocol), []);
+    protocol.receive(ANSWERS, now);
+    assert_eq!(depths(&mut protocol), [ColorDepth::True]);
+    assert_eq!(protocol.color_source(), ColorSource::Palette);
+    draw_color(&mut protocol);
+    let text = sent(&mut protocol, now);
+    assert!(text.contains(";#123456") && !text.contains("38;2;"), "{text:?}");
+    protocol.end(now);
+    assert!(sent(&mut protocol, now).contains("\x1b]104;24;"));
+}
+
+#[test]
+fn the_answer_for_24_bit_colours_comes_before_a_palette_of_ones_own() {
+    let mut protocol = begun("xterm-256color");
+    let now = Duration::from_millis(20);
+    sent(&mut protocol, now);
+    protocol.receive(b"\x1bP>|XTerm(390)\x1b\\", now);
+    assert!(sent(&mut protocol, now).contains(sequence::QUERY_TRUE_COLOR));
+    protocol.receive(PROVEN, now);
+    protocol.receive(ANSWERS, now);
+    assert_eq!(protocol.color_depth(), ColorDepth::Indexed256, "an answer is missing");
+    protocol.receive(b"\x1bP1+r524742=38\x1b\\\x1b[?62;22c", now);
+    assert_eq!(depths(&mut protocol), [ColorDepth::True]);
+    assert_eq!(protocol.color_source(), ColorSource::Answer);
+}
+
+#[test]
+fn a_terminal_is_known_by_its_name() {
+    let mut protocol = begun("xterm-kitty");
+    let now = Duration::from_millis(20);
+    assert!(sent(&mut protocol, now).contains(sequence::QUERY_VERSION));
+    assert_eq!(protocol.glyph_support(), BlockGlyphs::Half);
+    protocol.receive(b"\x1bP>|kitty(0.42.1)\x1b\\", now);
+    assert_eq!(protocol.next_event(), Some(Event::Identified));
+    assert_eq!(protocol.glyph_support(), BlockGlyphs::Octant);
+    assert_eq!(protocol.shade_ink(), ShadeInk::Dots);
+}

@@ -63,7 +63,9 @@ fn without_releases_a_tap_walks_a_little_and_stops() {
 }
 
 fn speaks_kitty(bytes: &[u8]) -> bool {
-    [&b"\x1b[?u"[..], b"\x1b[>"].iter().any(|query| bytes.windows(query.len()).any(|w| w == *query))
+    [&b"\x1b[?u"[..], b"\x1b[>15u"]
+        .iter()
+        .any(|query| bytes.windows(query.len()).any(|w| w == *query))
 }
 
 #[test]

@@ -31,7 +31,7 @@ impl Palette {
         style: Option<Style>,
         price: Option<Price>,
     ) -> Option<Bytes> {
-        if !self.is_on {
+        if !self.is_on || self.quantizer.is_some() {
             return None;
         }
         self.frame += 1;
@@ -142,18 +142,14 @@ impl Palette {
         };
         self.frequent.retain(|count| !is_told_of(count.shade));
         let definitions = self.free.len().min(self.frequent.len());
+        let mut defined = Vec::with_capacity(definitions);
         for at in 0..definitions {
             let (entry, Count { shade, .. }) = (self.free[at], self.frequent[at]);
             let Kind::Rgb(channels) = shade.kind() else { continue };
-            bytes.push_text(if at % AT_ONCE == 0 { b"\x1b]4" } else { b"" });
-            push_definition(entry, channels, bytes);
-            bytes.push_text(if (at + 1) % AT_ONCE == 0 || at + 1 == definitions {
-                b"\x07"
-            } else {
-                b""
-            });
+            defined.push((entry, channels));
             self.define(entry, shade, channels);
         }
+        push_definitions(&defined, bytes);
     }
 
     fn define(&mut self, entry: u8, shade: Shade, channels: [u8; 3]) {
@@ -171,6 +167,17 @@ impl Palette {
         self.entries[entry_place(shade)] = entry;
         self.wanted_at[index] = self.frame;
         self.counts[place(shade)] = Count { shade: Shade::DEFAULT, count: 0 };
+    }
+}
+
+/// Adds the definitions of entries.
+pub(super) fn push_definitions(definitions: &[(u8, [u8; 3])], bytes: &mut Bytes) {
+    for at_once in definitions.chunks(AT_ONCE) {
+        bytes.push_text(b"\x1b]4");
+        for &(entry, channels) in at_once {
+            push_definition(entry, channels, bytes);
+        }
+        bytes.push_text(b"\x07");
     }
 }
 
