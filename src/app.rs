@@ -73,10 +73,10 @@ use run_log::RunLog;
 use screen::{Screen, Shelved};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::STEP;
 use crate::store::{Reached, Store};
-use crate::tui::{CellAspect, View};
+use crate::tui::{CellAspect, GlyphSet, View};
 use crate::world::{Difficulty, FieldOfView, Figure};
 use clock::Clock;
 use controls::Controls;
@@ -97,6 +97,16 @@ struct Shown {
     revision: u64,
     /// The figures in view.
     figures: Vec<Figure>,
+}
+
+/// How the terminal shows pictures, as far as it is known.
+#[derive(Clone, Copy, Debug, Default)]
+struct TerminalLook {
+    aspect: Option<CellAspect>,
+    depth: ColorDepth,
+    shade_ink: ShadeInk,
+    /// The finest blocks that it is known to draw well.
+    glyphs: GlyphSet,
 }
 
 struct App {
@@ -135,7 +145,7 @@ struct App {
     demo: Option<Demo>,
     settings: Settings,
     depth: ColorDepth,
-    terminal_depth: ColorDepth,
+    terminal: TerminalLook,
     cell_aspect: CellAspect,
     field_of_view: FieldOfView,
     controls: Controls,
@@ -203,7 +213,7 @@ impl App {
             demo: None,
             field_of_view: settings.field_of_view,
             depth: settings.depth.unwrap_or_default(),
-            terminal_depth: ColorDepth::default(),
+            terminal: TerminalLook::default(),
             cell_aspect: settings.cell_aspect.unwrap_or_default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             shows_stats: settings.shows_stats,
@@ -266,10 +276,16 @@ impl App {
     }
 
     /// Handles a new size or new properties of the terminal.
-    fn terminal_changed(&mut self, aspect: Option<CellAspect>, depth: ColorDepth) {
+    fn terminal_changed(&mut self, terminal: TerminalLook) {
+        let TerminalLook { aspect, depth, glyphs, .. } = terminal;
+        self.terminal = terminal;
         self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
-        self.terminal_depth = depth;
         self.depth = self.settings.depth.unwrap_or(depth);
+        let is_chosen =
+            self.settings.given.glyphs.is_some() || self.store.preferences().glyphs.is_some();
+        if !is_chosen && self.settings.glyphs.has_blocks() {
+            self.settings.glyphs = glyphs;
+        }
         self.redraw_whole();
     }
 

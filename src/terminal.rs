@@ -50,7 +50,6 @@ pub use self::error::Error;
 pub use self::event::{Event, QuitReason};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
-pub use self::known::BlockGlyphs;
 pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
 pub use self::options::Options;
 #[cfg(feature = "cli")]

@@ -104,6 +104,7 @@ impl App {
         DrawOptions {
             glyphs: self.settings.glyphs,
             depth: self.depth,
+            shade_ink: self.terminal.shade_ink,
             cell_aspect: self.cell_aspect,
             filter: self.settings.filter,
             correction: self.store.preferences().correction,

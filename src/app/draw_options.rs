@@ -7,7 +7,7 @@ use ratatui::layout::Size;
 use super::hud;
 #[cfg(feature = "serve")]
 use crate::canvas::Canvas;
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
 use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, View};
@@ -18,6 +18,7 @@ use crate::world::{FieldOfView, Heading};
 pub(crate) struct DrawOptions {
     pub(crate) glyphs: GlyphSet,
     pub(crate) depth: ColorDepth,
+    pub(crate) shade_ink: ShadeInk,
     pub(crate) cell_aspect: CellAspect,
     pub(crate) filter: Filter,
     pub(crate) correction: Correction,
@@ -55,6 +56,7 @@ impl DrawOptions {
         FirstPerson::new(scene, camera)
             .glyphs(self.glyphs)
             .color_depth(self.depth)
+            .shade_ink(self.shade_ink)
             .cell_aspect(self.cell_aspect)
             .filter(self.filter)
             .correction(self.correction)

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::interruption::Rendered;
 use super::stats::{Meter, Stats};
 use super::time::Time;
-use super::{App, Levels, Offers, Recording, Settings};
+use super::{App, Levels, Offers, Recording, Settings, TerminalLook};
 use crate::canvas::Canvas;
 use crate::store::Store;
 #[cfg(debug_assertions)]
@@ -199,7 +199,12 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
     let aspect = session.size().cell_aspect.and_then(CellAspect::new);
-    app.terminal_changed(aspect, session.color_depth());
+    app.terminal_changed(TerminalLook {
+        aspect,
+        depth: session.color_depth(),
+        shade_ink: session.shade_ink(),
+        glyphs: session.glyph_support(),
+    });
     app.pointer.set_columns(session.size().columns);
     app.detection.depth = app.depth;
     app.detection.is_tmux = session.is_tmux();

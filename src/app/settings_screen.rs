@@ -109,7 +109,7 @@ impl App {
                 self.settings.depth = after(&COLORS, |one| one.0 == depth, forward).0;
                 self.settings.given.depth = None;
                 preferences.colors = self.settings.depth;
-                self.depth = self.settings.depth.unwrap_or(self.terminal_depth);
+                self.depth = self.settings.depth.unwrap_or(self.terminal.depth);
             }
             Setting::Correction => {
                 let correction = before.correction;

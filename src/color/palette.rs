@@ -95,18 +95,6 @@ pub fn of_256(index: u8) -> Rgb {
     }
 }
 
-/// How a terminal draws the shades ░▒▓.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ShadeInk {
-    /// As dots of the text colour, which mix with the background in linear light.
-    Dots,
-    /// As one colour between text and background, in sRGB.
-    Flat,
-    /// It is not known which.
-    #[default]
-    Unknown,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,26 +9,14 @@
 //! Rejected: the width of a glyph by a cursor report. It proves the width, never the ink.
 
 use crate::color::palette::ShadeInk;
-
-/// The finest block glyphs that a terminal is known to draw well. Each includes those before it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum BlockGlyphs {
-    /// Half blocks, 1×2 pixels a cell.
-    #[default]
-    Half,
-    /// Quadrants, 2×2 pixels.
-    Quadrant,
-    /// Sextants, 2×3 pixels.
-    Sextant,
-    /// Octants, 2×4 pixels.
-    Octant,
-}
+use crate::tui::GlyphSet;
 
 /// What is known of a terminal from its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Known {
     pub(super) colors: Colors,
-    pub(super) blocks: BlockGlyphs,
+    /// The finest blocks that it is known to draw well.
+    pub(super) blocks: GlyphSet,
     pub(super) shades: ShadeInk,
     pub(super) is_tmux: bool,
 }
@@ -63,16 +51,16 @@ const ALL: Option<Version> = Some((0, 0));
 
 /// Every version of these that answers the query shows 24-bit colours, except xterm.
 const TERMINALS: [Terminal; 13] = [
-    // Octants: kitty's changelog, 0.40. Dots: measured with 0.26.
-    terminal("kitty", [ALL, Some((0, 23)), Some((0, 40))], ShadeInk::Dots),
+    // Octants: kitty's changelog, 0.40. Sextants and dots: seen with 0.26.
+    terminal("kitty", [ALL, Some((0, 26)), Some((0, 40))], ShadeInk::Dots),
     // Octants: foot's changelog, 1.20.
-    terminal("foot", [ALL, Some((1, 8)), Some((1, 20))], ShadeInk::Unknown),
+    terminal("foot", [ALL, Some((1, 20)), Some((1, 20))], ShadeInk::Unknown),
     // Octants: ghostty's release notes, 1.2. Shades are an alpha: its `sprite` code.
-    terminal("ghostty", [ALL, ALL, Some((1, 2))], ShadeInk::Flat),
+    terminal("ghostty", [ALL, Some((1, 2)), Some((1, 2))], ShadeInk::Flat),
     // VTE reports 7800 for 0.78, which has octants. Shades are an alpha: its `minifont`.
-    terminal("vte", [ALL, Some((6200, 0)), Some((7800, 0))], ShadeInk::Flat),
-    // Sextants in its last stable release; octants after it (WezTerm#6502).
-    terminal("wezterm", [ALL, ALL, None], ShadeInk::Flat),
+    terminal("vte", [ALL, Some((7800, 0)), Some((7800, 0))], ShadeInk::Flat),
+    // Octants come after its last stable release (WezTerm#6502).
+    terminal("wezterm", [ALL, None, None], ShadeInk::Flat),
     // Sextants: alacritty#7534. It has no answer in most versions.
     terminal("alacritty", [ALL, ALL, None], ShadeInk::Flat),
     terminal("contour", [ALL, ALL, None], ShadeInk::Unknown),
@@ -113,12 +101,12 @@ pub(super) fn known(report: &str) -> Known {
         return Known::default();
     };
     let version = numbers(version);
-    let kinds = [BlockGlyphs::Quadrant, BlockGlyphs::Sextant, BlockGlyphs::Octant];
+    let kinds = [GlyphSet::Quadrant, GlyphSet::Sextant, GlyphSet::Octant];
     let drawn = kinds.into_iter().zip(terminal.blocks);
-    let blocks = drawn.filter(|(_, since)| since.is_some_and(|since| version >= since));
+    let blocks = drawn.filter(|(_, since)| since.is_some_and(|since| version >= since)).last();
     Known {
         colors: terminal.colors,
-        blocks: blocks.map(|(kind, _)| kind).max().unwrap_or_default(),
+        blocks: blocks.map_or(GlyphSet::Half, |(kind, _)| kind),
         shades: terminal.shades,
         is_tmux: false,
     }
@@ -140,22 +128,22 @@ mod tests {
     #[test]
     fn block_glyphs_depend_on_the_version() {
         for (report, blocks) in [
-            ("kitty(0.39.1)", BlockGlyphs::Sextant),
-            ("kitty(0.40.0)", BlockGlyphs::Octant),
-            ("kitty(1.0)", BlockGlyphs::Octant),
-            ("foot(1.19.0)", BlockGlyphs::Sextant),
-            ("foot(1.20.2)", BlockGlyphs::Octant),
-            ("ghostty 1.1.3", BlockGlyphs::Sextant),
-            ("ghostty 1.2.0-dev", BlockGlyphs::Octant),
-            ("VTE(7006)", BlockGlyphs::Sextant),
-            ("VTE(7800)", BlockGlyphs::Octant),
-            ("WezTerm 20240203-110809-5046fc22", BlockGlyphs::Sextant),
-            ("iTerm2 3.5.14", BlockGlyphs::Quadrant),
-            ("Konsole 22.12.3", BlockGlyphs::Quadrant),
-            ("XTerm(390)", BlockGlyphs::Half),
-            ("tmux 3.3a", BlockGlyphs::Half),
-            ("kitten(9)", BlockGlyphs::Half),
-            ("", BlockGlyphs::Half),
+            ("kitty(0.39.1)", GlyphSet::Sextant),
+            ("kitty(0.40.0)", GlyphSet::Octant),
+            ("kitty(1.0)", GlyphSet::Octant),
+            ("foot(1.19.0)", GlyphSet::Quadrant),
+            ("foot(1.20.2)", GlyphSet::Octant),
+            ("ghostty 1.1.3", GlyphSet::Quadrant),
+            ("ghostty 1.2.0-dev", GlyphSet::Octant),
+            ("VTE(7006)", GlyphSet::Quadrant),
+            ("VTE(7800)", GlyphSet::Octant),
+            ("Alacritty 0.14.0", GlyphSet::Sextant),
+            ("iTerm2 3.5.14", GlyphSet::Quadrant),
+            ("Konsole 22.12.3", GlyphSet::Quadrant),
+            ("XTerm(390)", GlyphSet::Half),
+            ("tmux 3.3a", GlyphSet::Half),
+            ("kitten(9)", GlyphSet::Half),
+            ("", GlyphSet::Half),
         ] {
             assert_eq!(known(report).blocks, blocks, "{report}");
         }

@@ -25,10 +25,10 @@ use super::input::Decoder;
 use super::known::Known;
 use super::mouse::MouseUnits;
 use super::{
-    BlockGlyphs, CellWriter, ColorSource, Detected, Event, Fidelity, Options, TmuxClient,
-    WindowSize, sequence,
+    CellWriter, ColorSource, Detected, Event, Fidelity, Options, TmuxClient, WindowSize, sequence,
 };
 use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::tui::GlyphSet;
 
 /// One side of the protocol between a program and a terminal: it turns the terminal's bytes into
 /// [`Event`]s, and frames into bytes.
@@ -248,7 +248,7 @@ impl Protocol {
     }
 
     /// The finest block glyphs that the terminal is known to draw.
-    pub fn glyph_support(&self) -> BlockGlyphs {
+    pub fn glyph_support(&self) -> GlyphSet {
         self.known.blocks
     }
 

@@ -10,12 +10,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use self::receive::Received;
+use super::TmuxClient;
 use super::guard::Guard;
 use super::platform::{Device, Signals};
 use super::tmux::{Question, Reply};
-use super::{BlockGlyphs, TmuxClient};
 use super::{ColorSource, Error, Event, Options, Protocol, Recorder, WindowSize};
 use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::tui::GlyphSet;
 
 /// A terminal in use by the program: it delivers keys and shows frames.
 ///
@@ -196,7 +197,7 @@ impl Session {
     }
 
     /// The finest block glyphs that the terminal is known to draw.
-    pub fn glyph_support(&self) -> BlockGlyphs {
+    pub fn glyph_support(&self) -> GlyphSet {
         self.protocol.glyph_support()
     }
 

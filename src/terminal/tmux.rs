@@ -131,7 +131,7 @@ fn answer(command: &mut Command, timeout: Duration) -> Option<TmuxClient> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terminal::BlockGlyphs;
+    use crate::tui::GlyphSet;
 
     #[test]
     fn the_answer_names_features_and_the_terminal() {
@@ -139,7 +139,7 @@ mod tests {
         assert!(with.has_true_color() && with.remedy().is_none());
         let without = TmuxClient::parse("256,title|kitty(0.42.1)|xterm-kitty\n").unwrap();
         assert!(!without.has_true_color());
-        assert_eq!(without.known().blocks, BlockGlyphs::Octant);
+        assert_eq!(without.known().blocks, GlyphSet::Octant);
         let remedy = "set -as terminal-features ',xterm-kitty:RGB'";
         assert_eq!(without.remedy().as_deref(), Some(remedy));
         let unknown = TmuxClient::parse("title||xterm-256color\n").unwrap();

@@ -7,6 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use super::*;
+use crate::app::TerminalLook;
 use crate::app::interruption::Rendered;
 use crate::terminal::{Event, QuitReason};
 
@@ -83,7 +84,7 @@ fn what_ends_the_program_or_changes_the_window_comes_first_and_other_keys_wait()
 fn after_a_new_size_nothing_partial_is_shown() {
     let mut rig = spheres();
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
-    rig.app.terminal_changed(None, ColorDepth::True);
+    rig.app.terminal_changed(TerminalLook::default());
     assert_eq!(render(&mut rig.app, Event::Resized, 1), (Rendered::Interrupted, 2));
 }
 

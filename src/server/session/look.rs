@@ -2,7 +2,7 @@
 
 use super::messages::Identity;
 use crate::app::parts::DrawOptions;
-use crate::color::palette::ColorDepth;
+use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::Filter;
 use crate::store::Preferences;
 use crate::terminal::Protocol;
@@ -23,6 +23,7 @@ pub(super) struct Look {
     /// What the terminal shows best.
     terminal_depth: ColorDepth,
     terminal_glyphs: GlyphSet,
+    shade_ink: ShadeInk,
     correction: Correction,
     marks_middle: bool,
     pub(super) shows_ghosts: bool,
@@ -48,6 +49,10 @@ impl Look {
         let aspect = protocol.size().cell_aspect.and_then(CellAspect::new);
         self.cell_aspect = aspect.unwrap_or_default();
         self.terminal_depth = protocol.color_depth();
+        self.shade_ink = protocol.shade_ink();
+        if self.terminal_glyphs.has_blocks() {
+            self.terminal_glyphs = protocol.glyph_support();
+        }
         self.follow(preferences);
     }
 
@@ -71,6 +76,7 @@ impl Look {
         DrawOptions {
             glyphs: self.glyphs,
             depth: self.depth,
+            shade_ink: self.shade_ink,
             cell_aspect: self.cell_aspect,
             filter: Filter::default(),
             correction: self.correction,

@@ -244,9 +244,9 @@ fn a_terminal_is_known_by_its_name() {
     let mut protocol = begun("xterm-kitty");
     let now = Duration::from_millis(20);
     assert!(sent(&mut protocol, now).contains(sequence::QUERY_VERSION));
-    assert_eq!(protocol.glyph_support(), BlockGlyphs::Half);
+    assert_eq!(protocol.glyph_support(), GlyphSet::Half);
     protocol.receive(b"\x1bP>|kitty(0.42.1)\x1b\\", now);
     assert_eq!(protocol.next_event(), Some(Event::Identified));
-    assert_eq!(protocol.glyph_support(), BlockGlyphs::Octant);
+    assert_eq!(protocol.glyph_support(), GlyphSet::Octant);
     assert_eq!(protocol.shade_ink(), ShadeInk::Dots);
 }
