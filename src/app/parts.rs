@@ -15,7 +15,9 @@ pub(crate) use super::panels::{
     is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
 };
 pub(crate) use super::question::{PendingKey, is_answerable};
-pub(crate) use super::settings_screen::{COLORS, CORRECTIONS, GLYPHS, after, name, on_or_off};
+pub(crate) use super::settings_screen::{
+    COLORS, CORRECTIONS, GLYPHS, after, name, on_or_off, with_card,
+};
 pub(crate) use super::stats::{Meter, Stats};
 pub(crate) use super::status::{Part, StatusLine, hint};
 pub(crate) use super::vitals::HealthSigns;

@@ -72,6 +72,7 @@ pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
 impl App {
     pub(super) fn settings_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("settings").line("Enter or left and right change a setting.");
+        let menu = if self.detection.ascii_locale.is_some() { menu } else { with_card(menu) };
         let menu = if self.settings.given == Given::default() {
             menu
         } else {
@@ -159,6 +160,13 @@ impl App {
     fn frame_rate(&self) -> u32 {
         (1.0 / self.settings.frame_time.as_secs_f64().max(1e-3)).round() as u32
     }
+}
+
+/// Adds a card that shows which characters the terminal has.
+pub(crate) fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
+    let menu = menu.line("Of these, the last smooth wedge is the best for you:");
+    let sets = GLYPHS.into_iter().filter(|(set, _)| set.has_blocks());
+    sets.fold(menu, |menu, (set, name)| menu.line(format!("{name:·<12} {}", set.wedge())))
 }
 
 /// `value` and where it is given.

@@ -2,6 +2,7 @@
 
 use ratatui::style::Color;
 
+use super::blocks;
 use crate::canvas::true_color;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
@@ -37,6 +38,24 @@ impl GlyphSet {
             Self::Octant => [2, 4],
             Self::Ascii | Self::Ramp => [1, 1],
         }
+    }
+
+    /// A wedge that falls from left to right, eight cells long. In a terminal without the glyphs of this
+    /// set, it looks broken: no query of a terminal can tell that.
+    #[cfg(feature = "terminal")]
+    pub(crate) fn wedge(self) -> String {
+        const CELLS: u32 = 8;
+        let [columns, rows] = self.pixels_per_cell();
+        let cell = |cell: u32| {
+            let dots = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+            // Whether the middle of a dot is below the line.
+            let dots = dots.map(|(column, row)| {
+                let across = cell * columns + column;
+                (2 * across + 1) * rows < (2 * row + 1) * CELLS * columns
+            });
+            blocks::lit(self, dots).character()
+        };
+        (0..CELLS).map(cell).collect()
     }
 
     /// Whether pixels are parts of a cell and not characters.

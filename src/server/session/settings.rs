@@ -6,7 +6,7 @@
 use super::choice::Choice;
 use super::messages::Request;
 use super::visit::{Visit, bindings_of};
-use crate::app::parts::{COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off};
+use crate::app::parts::{COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off, with_card};
 use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
 
@@ -50,6 +50,7 @@ impl Visit {
         } else {
             menu.line("You are a guest: they hold for this session.")
         };
+        let menu = if self.look.is_ascii() { menu } else { with_card(menu) };
         let in_a_room = IN_A_ROOM.into_iter().filter(|_| self.stay.is_some());
         USUAL.into_iter().chain(in_a_room).fold(menu, |menu, (setting, label)| {
             menu.entry_with(label, self.value_of(setting), Choice::Change(setting))

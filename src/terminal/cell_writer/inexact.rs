@@ -1,10 +1,10 @@
 //! Draws a row within a tolerance, for fewer bytes.
 //!
 //! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both
-//! blocks or both the same character without modifiers. All other cells are drawn exactly. Another
-//! character in place of the wanted one, such as its neighbour on a ramp of brightness, was
-//! refused: in ascii mode the character also identifies the surface, and most of the bytes are
-//! colours.
+//! blocks or both the same character without modifiers. A shade (░▒▓) is compared as a block of its
+//! mean colour. All other cells are drawn exactly. Rejected: another character in place of the wanted
+//! one, such as its neighbour on a ramp of brightness, because in ascii mode the character also
+//! identifies the surface, and most of the bytes are colours.
 
 use std::cell::Cell;
 
@@ -19,7 +19,7 @@ use super::pen::Pen;
 use super::screen::Row;
 use super::shape::Shape;
 use super::shift::{BYTE, CELL, Loss, Shift, Shifts};
-use super::style::Style;
+use super::style::{Shade, Style};
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
 use crate::terminal::{Fidelity, thread_memory};
 
@@ -132,12 +132,35 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
     match target.recolorable(glyph_table) {
         Some((Form::Block(_), colors)) => components(inks.of_both(colors)),
         Some((Form::Glyph(id), colors)) => {
-            let (apart, components) = (apart(id), components(inks.of_both(colors)));
-            [0, 1, 2].map(|index| components[index].map(|component| component + apart[index]))
+            let glyph = glyph_table.glyph(id).character();
+            let inks = inks.of_both(colors);
+            match share_of_text(glyph).filter(|_| !colors.contains(&Shade::DEFAULT)) {
+                Some(share) => components([mixed(inks, share); 2]),
+                None => {
+                    let (apart, components) = (apart(id), components(inks));
+                    [0, 1, 2].map(|at| components[at].map(|component| component + apart[at]))
+                }
+            }
         }
         // Cells that look different are far from each other.
         _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
     }
+}
+
+/// The share of the text colour in a shade; `None` for any other character.
+fn share_of_text(character: char) -> Option<f32> {
+    match character {
+        '░' => Some(0.25),
+        '▒' => Some(0.5),
+        '▓' => Some(0.75),
+        _ => None,
+    }
+}
+
+/// What a shade looks like: a block of one colour.
+fn mixed([text, ground]: [Ink; 2], share: f32) -> Ink {
+    let lab = [0, 1, 2].map(|at| ground.lab[at] + share * (text.lab[at] - ground.lab[at]));
+    Ink { lab, ..text }
 }
 
 /// The target of a cell for the search; `None` if it may only be drawn exactly.

@@ -15,7 +15,8 @@ const MOUTH: Paint = matt(0xd0, 0x28, 0x38);
 const TEETH: Paint = glowing(0xff, 0xff, 0xff);
 const EYES: Paint = glowing(0xff, 0xe8, 0x50);
 const LID: Paint = matt(0x40, 0x18, 0x1c);
-const COLLAR: Paint = glowing(0xff, 0xd8, 0x80);
+const COLLAR: Paint = matt(0xff, 0xd8, 0x80);
+const TAG: Paint = glowing(0xff, 0xe8, 0xa0);
 
 /// How the hound is posed, in texels from the middle of its feet.
 #[derive(Clone, Copy)]
@@ -180,6 +181,7 @@ fn head(model: &mut Model, pose: &Pose) {
     model.limb([shoulders + DVec3::new(1.0, 0.0, 1.0), middle], [3.0, 2.4], COAT);
     let collar = shoulders + DVec3::from(pose.head) * 0.6;
     model.ball(collar, 2.9, COLLAR);
+    model.ball(collar + DVec3::new(2.2, 0.0, -1.6), 1.7, TAG);
     let [upwards, right] = pose.looks;
     let head = turned(middle, upwards, right);
     let point = |x, y, z| head.transform_point3(DVec3::new(x, y, z));
