@@ -142,14 +142,14 @@ impl Palette {
         };
         self.frequent.retain(|count| !is_told_of(count.shade));
         let definitions = self.free.len().min(self.frequent.len());
-        let mut defined = Vec::with_capacity(definitions);
+        let mut sent = Definitions::begin(bytes);
         for at in 0..definitions {
             let (entry, Count { shade, .. }) = (self.free[at], self.frequent[at]);
             let Kind::Rgb(channels) = shade.kind() else { continue };
-            defined.push((entry, channels));
+            sent.push(entry, channels);
             self.define(entry, shade, channels);
         }
-        push_definitions(&defined, bytes);
+        sent.end();
     }
 
     fn define(&mut self, entry: u8, shade: Shade, channels: [u8; 3]) {
@@ -170,14 +170,34 @@ impl Palette {
     }
 }
 
-/// Adds the definitions of entries.
-pub(super) fn push_definitions(definitions: &[(u8, [u8; 3])], bytes: &mut Bytes) {
-    for at_once in definitions.chunks(AT_ONCE) {
-        bytes.push_text(b"\x1b]4");
-        for &(entry, channels) in at_once {
-            push_definition(entry, channels, bytes);
+/// Writes definitions of entries, several in each sequence.
+pub(super) struct Definitions<'a> {
+    bytes: &'a mut Bytes,
+    count: usize,
+}
+
+impl<'a> Definitions<'a> {
+    pub(super) fn begin(bytes: &'a mut Bytes) -> Self {
+        Self { bytes, count: 0 }
+    }
+
+    pub(super) fn push(&mut self, entry: u8, channels: [u8; 3]) {
+        if self.count % AT_ONCE == 0 {
+            self.end_sequence();
+            self.bytes.push_text(b"\x1b]4");
         }
-        bytes.push_text(b"\x07");
+        self.count += 1;
+        push_definition(entry, channels, self.bytes);
+    }
+
+    pub(super) fn end(mut self) {
+        self.end_sequence();
+    }
+
+    fn end_sequence(&mut self) {
+        if self.count > 0 {
+            self.bytes.push_text(b"\x07");
+        }
     }
 }
 

@@ -22,7 +22,7 @@ use super::super::ink::{Ink, Price};
 use super::super::packed_cell::PackedCell;
 use super::super::screen::Screen;
 use super::super::style::{Kind, Shade};
-use super::definitions::push_definitions;
+use super::definitions::Definitions;
 use super::{Telling, place, standard};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
@@ -178,17 +178,17 @@ impl Quantizer {
         let samples = samples(screen);
         let wanted = self.clusters.fit(&samples, &self.shades);
         let mut changes = Vec::new();
-        let mut definitions = Vec::new();
+        let mut definitions = Definitions::begin(bytes);
         for (place, (shade, wanted)) in (0_u8..).zip(self.shades.iter_mut().zip(wanted)) {
             let before = std::mem::replace(shade, wanted);
             if let (true, Kind::Rgb(channels)) = (before != wanted, wanted.kind()) {
-                definitions.push((place + PALETTE.start(), channels));
+                definitions.push(place + PALETTE.start(), channels);
             }
             if before != wanted {
                 changes.push((before.in_bits(), wanted));
             }
         }
-        push_definitions(&definitions, bytes);
+        definitions.end();
         changes.sort_unstable_by_key(|(before, _)| *before);
         screen.recolor_shown(|shade| {
             let found = changes.binary_search_by_key(&shade.in_bits(), |(before, _)| *before);
