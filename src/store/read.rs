@@ -74,7 +74,7 @@ fn read_preferences(section: &Entry<'_, '_>, preferences: &mut Preferences) {
             "glyphs" => preferences.glyphs = checked(&entry, name_in(&entry, &GLYPHS)),
             "colors" => preferences.colors = checked(&entry, name_in(&entry, &COLORS)),
             "correction" => {
-                set(&mut preferences.correction, checked(&entry, name_in(&entry, &CORRECTIONS)))
+                set(&mut preferences.correction, checked(&entry, name_in(&entry, &CORRECTIONS)));
             }
             "fps" => {
                 let frames = small_number(&entry).filter(|frames| (1..=240).contains(frames));

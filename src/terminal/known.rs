@@ -102,8 +102,8 @@ pub(super) fn known(report: &str) -> Known {
     };
     let version = numbers(version);
     let kinds = [GlyphSet::Quadrant, GlyphSet::Sextant, GlyphSet::Octant];
-    let drawn = kinds.into_iter().zip(terminal.blocks);
-    let blocks = drawn.filter(|(_, since)| since.is_some_and(|since| version >= since)).last();
+    let mut drawn = kinds.into_iter().zip(terminal.blocks);
+    let blocks = drawn.rfind(|(_, since)| since.is_some_and(|since| version >= since));
     Known {
         colors: terminal.colors,
         blocks: blocks.map_or(GlyphSet::Half, |(kind, _)| kind),

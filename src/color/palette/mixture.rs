@@ -349,7 +349,7 @@ struct Shade {
 struct Shades {
     colors: Vec<(u8, Place)>,
     /// In the order of their bins.
-    shades: Vec<Shade>,
+    all: Vec<Shade>,
     /// The index of the first shade of each bin, and the number of shades at the end.
     starts: Vec<u32>,
 }
@@ -395,7 +395,7 @@ impl Shades {
         });
         let starts = starts.collect();
         let colors = colors.into_iter().map(|(index, color)| (index, place(color))).collect();
-        Self { colors, shades, starts }
+        Self { colors, all: shades, starts }
     }
 
     fn nearest_color(&self, place: Place) -> u8 {
@@ -405,7 +405,7 @@ impl Shades {
 
     /// The shade with the least sum of error and contrast. The bins around the place are searched, farther and farther, until no shade in them can be better.
     fn nearest(&self, place: Place) -> &Shade {
-        let mut best = (u32::MAX, &self.shades[0]);
+        let mut best = (u32::MAX, &self.all[0]);
         let middle = bin(place);
         for radius in 0..BINS {
             let outside = (radius - 1).max(0) * BIN_WIDTH;
@@ -424,7 +424,7 @@ impl Shades {
                         }
                         let index = bin_index(at);
                         let range = self.starts[index] as usize..self.starts[index + 1] as usize;
-                        for shade in &self.shades[range] {
+                        for shade in &self.all[range] {
                             let error = distance(place, shade.place) + shade.contrast;
                             if error < best.0 {
                                 best = (error, shade);

@@ -113,8 +113,8 @@ fn report_level(plan: &PalettePlan, level: &str, mut game: Game) -> Vec<PaletteR
             renderer.render(game.world(), &camera, &mut frame);
             let is_compared = frames % COMPARED == 0;
             if is_compared {
-                let light = frame.rows().flatten().map(|&pixel| linear(pixel)).collect();
-                truth = seen(frame.width() as usize, light);
+                let light: Vec<_> = frame.rows().flatten().map(|&pixel| linear(pixel)).collect();
+                truth = seen(frame.width() as usize, &light);
             }
             let truth = is_compared.then_some(&*truth);
             for run in &mut runs {
@@ -252,7 +252,7 @@ fn shown(buffer: &Buffer, ink: Option<ShadeInk>) -> Vec<Oklab> {
             light.extend(row.iter().map(|cell| half_of(cell, half, ink)));
         }
     }
-    seen(width, light)
+    seen(width, &light)
 }
 
 /// The light of a half of a cell.
@@ -292,9 +292,9 @@ fn errors(shown: &[Oklab], truth: &[Oklab]) -> Errors {
 }
 
 /// A picture of linear light, blurred by a Gaussian of 0.6 pixels.
-fn seen(width: usize, light: Vec<[f64; 3]>) -> Vec<Oklab> {
+fn seen(width: usize, light: &[[f64; 3]]) -> Vec<Oklab> {
     let height = light.len() / width;
-    let across = blurred(&light, height, width, 1, width);
+    let across = blurred(light, height, width, 1, width);
     let down = blurred(&across, width, height, width, 1);
     down.into_iter().map(Oklab::from_linear).collect()
 }

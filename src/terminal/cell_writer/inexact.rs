@@ -134,13 +134,13 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
         Some((Form::Glyph(id), colors)) => {
             let glyph = glyph_table.glyph(id).character();
             let inks = inks.of_both(colors);
-            match share_of_text(glyph).filter(|_| !colors.contains(&Shade::DEFAULT)) {
-                Some(share) => components([mixed(inks, share); 2]),
-                None => {
-                    let (apart, components) = (apart(id), components(inks));
-                    [0, 1, 2].map(|at| components[at].map(|component| component + apart[at]))
-                }
+            if let Some(share) = share_of_text(glyph)
+                && !colors.contains(&Shade::DEFAULT)
+            {
+                return components([mixed(inks, share); 2]);
             }
+            let (apart, components) = (apart(id), components(inks));
+            [0, 1, 2].map(|at| components[at].map(|component| component + apart[at]))
         }
         // Cells that look different are far from each other.
         _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),

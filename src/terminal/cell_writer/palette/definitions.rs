@@ -182,7 +182,7 @@ impl<'a> Definitions<'a> {
     }
 
     pub(super) fn push(&mut self, entry: u8, channels: [u8; 3]) {
-        if self.count % AT_ONCE == 0 {
+        if self.count.is_multiple_of(AT_ONCE) {
             self.end_sequence();
             self.bytes.push_text(b"\x1b]4");
         }
