@@ -1,6 +1,7 @@
 //! `cellcaster wire`: error against bytes.
 
 mod csv;
+mod glyph_sets;
 mod json;
 mod palettes;
 mod table;
@@ -20,6 +21,9 @@ pub(super) fn run(options: &Wire) -> Result<(), Error> {
     if let Some(depth) = options.palette {
         return palettes::run(depth, options).map_err(|error| Error::of_output(&error));
     }
+    let Some(glyphs) = options.glyphs else {
+        return glyph_sets::run(options).map_err(|error| Error::of_output(&error));
+    };
     let (script, map) = match &options.script {
         Some(path) => (script::load(path)?, options.map.as_deref()),
         None => (SHOWCASE.script()?, options.map.as_deref().or(Some(OsStr::new(SHOWCASE.level)))),
@@ -34,8 +38,7 @@ pub(super) fn run(options: &Wire) -> Result<(), Error> {
             named => named.to_vec(),
         },
     };
-    let settings =
-        Settings { depth: Some(options.depth), glyphs: options.glyphs, ..Settings::default() };
+    let settings = Settings { depth: Some(options.depth), glyphs, ..Settings::default() };
     let mut replay = Replay::new(level::load_series(map)?, settings, plan.size);
     let report = wire::report(&plan, &mut replay);
     let output = BufWriter::new(io::stdout().lock());
@@ -51,7 +54,8 @@ fn write(
     match format {
         WireFormat::Table => table::write(plan, report, &mut output)?,
         WireFormat::Json => json::write(plan, report, &mut output)?,
-        WireFormat::Csv => csv::write(report, &mut output)?,
+        // A plot is of glyph sets only, as the arguments are.
+        WireFormat::Csv | WireFormat::Svg => csv::write(report, &mut output)?,
     }
     output.flush()
 }

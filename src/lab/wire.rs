@@ -14,10 +14,11 @@ mod compression;
 mod difference;
 mod encoder;
 mod encoder_run;
+mod glyph_sets;
 mod palettes;
 mod pipeline;
-#[cfg(test)]
 mod seen;
+mod tour;
 
 use std::num::NonZeroU32;
 
@@ -32,6 +33,7 @@ use encoder::{Encoder, Extensions, Stock, Writer};
 use encoder_run::EncoderRun;
 
 pub use encoder_run::{Bytes, Compressed, Part, Seen};
+pub use glyph_sets::{GlyphRow, report_glyphs};
 pub use palettes::{PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
 

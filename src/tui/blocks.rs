@@ -15,7 +15,7 @@ use std::array;
 
 use ratatui::layout::Rect;
 
-use self::split::Split;
+use self::split::{Split, Splits};
 use super::GlyphSet;
 use super::glyphs::color_at;
 use crate::canvas::{Canvas, Mosaic};
@@ -91,10 +91,8 @@ fn draw_cells<const PIXELS: usize, Row: Fn(u32) -> Rgb>(
     for (top, y) in (0..).step_by(rows as usize).zip(area.top()..area.bottom()) {
         // A row is there once for each of its pixels in a cell.
         let pixel_rows: [Row; PIXELS] = array::from_fn(|pixel| row(top + pixel as u32 / columns));
-        let cells = (0..u32::from(area.width)).map(|x| {
-            let pixels =
-                array::from_fn(|pixel| pixel_rows[pixel](columns * x + pixel as u32 % columns));
-            let Split { mask, colors } = Split::of::<PIXELS>(&pixels);
+        let pixel = |x: u32, place: usize| pixel_rows[place](columns * x + place as u32 % columns);
+        let cells = Splits::of_row::<PIXELS>(area.width, pixel).map(|Split { mask, colors }| {
             (mosaic::<PIXELS>(mask), colors.map(|color| color_at(depth, color)))
         });
         canvas.draw_mosaics(area.x, y, cells);

@@ -21,7 +21,8 @@ pub(in crate::cli) struct Wire {
     pub(in crate::cli) size: Size,
     pub(in crate::cli) frames_per_second: FramesPerSecond,
     pub(in crate::cli) depth: ColorDepth,
-    pub(in crate::cli) glyphs: GlyphSet,
+    /// The glyphs; `None` compares those of pixels, instead of encoders.
+    pub(in crate::cli) glyphs: Option<GlyphSet>,
     /// The named fidelities if empty.
     pub(in crate::cli) fidelities: Vec<Fidelity>,
     /// The palette whose methods are compared, instead of encoders.
@@ -36,6 +37,8 @@ pub(in crate::cli) enum WireFormat {
     Table,
     Json,
     Csv,
+    /// A plot; of glyph sets only.
+    Svg,
 }
 
 pub(super) const SUBCOMMAND: Subcommand = Subcommand {
@@ -49,7 +52,7 @@ pub(super) const SUBCOMMAND: Subcommand = Subcommand {
         &SCRIPT,
         &SIZE,
         &value::FRAMES_PER_SECOND,
-        &value::GLYPHS,
+        &GLYPHS,
         &value::COLORS,
         &FIDELITY,
         &PALETTE,
@@ -67,7 +70,7 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         size: SIZE.of(&mut matches).unwrap_or(Size { columns: 120, rows: 40 }),
         frames_per_second: value::FRAMES_PER_SECOND.of(&mut matches).unwrap_or_default(),
         depth: value::COLORS.of(&mut matches).unwrap_or_default(),
-        glyphs: value::GLYPHS.of(&mut matches).unwrap_or_default(),
+        glyphs: GLYPHS.of(&mut matches).unwrap_or(Some(GlyphSet::Half)),
         fidelities: FIDELITY.all_of(&mut matches),
         palette: PALETTE.of(&mut matches),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
@@ -77,6 +80,14 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         return Err(Error::mistake(
             "--palette compares in all levels: leave out the map, --script and --fidelity",
         ));
+    }
+    if wire.glyphs.is_none() && (is_played || wire.palette.is_some()) {
+        return Err(Error::mistake(
+            "--glyphs all compares in all levels: leave out the map, --script, --fidelity and --palette",
+        ));
+    }
+    if wire.glyphs.is_some() && matches!(wire.format, WireFormat::Svg) {
+        return Err(Error::mistake("--format svg needs --glyphs all"));
     }
     Ok(Command::Wire(wire))
 }
@@ -91,6 +102,26 @@ const FIDELITY: ValueOption<Fidelity> = ValueOption {
     default: "those that have a name",
     repeats: true,
     ..value::FIDELITY
+};
+
+const GLYPHS: ValueOption<Option<GlyphSet>> = ValueOption {
+    name: "glyphs",
+    value: "SET",
+    takes: "half, quadrant, sextant, octant, ascii, ramp or all",
+    help: "What a cell shows, as in play; `all` compares half, quadrant, sextant and octant in all levels",
+    default: "half",
+    choices: &["half", "quadrant", "sextant", "octant", "ascii", "ramp", "all"],
+    read: Parser::Optional(|text| match text {
+        "half" => Some(Some(GlyphSet::Half)),
+        "quadrant" => Some(Some(GlyphSet::Quadrant)),
+        "sextant" => Some(Some(GlyphSet::Sextant)),
+        "octant" => Some(Some(GlyphSet::Octant)),
+        "ascii" => Some(Some(GlyphSet::Ascii)),
+        "ramp" => Some(Some(GlyphSet::Ramp)),
+        "all" => Some(None),
+        _ => None,
+    }),
+    repeats: false,
 };
 
 const PALETTE: ValueOption<ColorDepth> = ValueOption {
@@ -111,14 +142,15 @@ const PALETTE: ValueOption<ColorDepth> = ValueOption {
 const FORMAT: ValueOption<WireFormat> = ValueOption {
     name: "format",
     value: "FORMAT",
-    takes: "table, json or csv",
+    takes: "table, json, csv or svg",
     help: "How the report is written",
     default: "table",
-    choices: &["table", "json", "csv"],
+    choices: &["table", "json", "csv", "svg"],
     read: Parser::Optional(|text| match text {
         "table" => Some(WireFormat::Table),
         "json" => Some(WireFormat::Json),
         "csv" => Some(WireFormat::Csv),
+        "svg" => Some(WireFormat::Svg),
         _ => None,
     }),
     repeats: false,

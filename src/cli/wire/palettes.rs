@@ -21,7 +21,7 @@ pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     match options.format {
         WireFormat::Table => write_table(&plan, &rows, &mut output)?,
         WireFormat::Json => write_json(&plan, &rows, &mut output)?,
-        WireFormat::Csv => write_csv(&rows, &mut output)?,
+        WireFormat::Csv | WireFormat::Svg => write_csv(&rows, &mut output)?,
     }
     output.flush()
 }

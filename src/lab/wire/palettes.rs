@@ -13,26 +13,18 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 use ratatui::widgets::StatefulWidget;
 
+use super::seen::blurred;
+use super::tour::walk;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 use crate::color::palette::{ColorDepth, ShadeInk, nearest_of_16, nearest_of_256, of_256};
 use crate::color::srgb::linear;
-use crate::game::{Game, STEPS_PER_SECOND, Script};
+use crate::game::Game;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
 use crate::tui::{FirstPerson, View};
 use crate::world::{FieldOfView, World};
-
-/// The script for each level.
-const TOUR: &str = "\
-[tour]
-1 s    forward
-1 s    turn-left
-0.5 s  forward turn-right
-1 s    turn-right aim
-0.5 s  strafe-left
-";
 
 /// One in this number of frames is compared; the bytes of all are counted.
 const COMPARED: usize = 6;
@@ -95,46 +87,32 @@ pub fn report_palettes<'a>(
     rows
 }
 
-fn report_level(plan: &PalettePlan, level: &str, mut game: Game) -> Vec<PaletteRow> {
-    let script = Script::parse(TOUR, "tour").unwrap_or_else(|faults| unreachable!("{faults}"));
+fn report_level(plan: &PalettePlan, level: &str, game: Game) -> Vec<PaletteRow> {
     let size = FrameSize::new(u32::from(plan.size.width), 2 * u32::from(plan.size.height));
     let mut frame = Frame::new(size.expect("a picture has cells"), PixelAspect::SQUARE);
     let mut renderer = Renderer::new();
     let mut view = View::default();
     let mut runs = METHODS.map(|(_, ink)| MethodRun::new(plan, ink));
     let mut truth = Vec::new();
-    let mut is_due = true;
-    let mut frames = 0;
-    let mut steps = 0;
-    let mut intents = script.iter().map(|(_, intents)| intents);
-    loop {
-        if is_due {
-            let camera = game.camera(FieldOfView::default());
-            renderer.render(game.world(), &camera, &mut frame);
-            let is_compared = frames % COMPARED == 0;
-            if is_compared {
-                let light: Vec<_> = frame.rows().flatten().map(|&pixel| linear(pixel)).collect();
-                truth = seen(frame.width() as usize, &light);
-            }
-            let truth = is_compared.then_some(&*truth);
-            for run in &mut runs {
-                run.take(truth, |ink, buffer| match ink {
-                    None => draw_nearest(plan.depth, &frame, buffer),
-                    Some(ink) => FirstPerson::new(game.world(), &camera)
-                        .color_depth(plan.depth)
-                        .shade_ink(ink)
-                        .render(buffer.area, buffer, &mut view),
-                });
-            }
-            frames += 1;
+    walk(game, plan.frames_per_second, |frames, game| {
+        let camera = game.camera(FieldOfView::default());
+        renderer.render(game.world(), &camera, &mut frame);
+        let is_compared = frames % COMPARED == 0;
+        if is_compared {
+            let light: Vec<_> = frame.rows().flatten().map(|&pixel| linear(pixel)).collect();
+            truth = blurred(&light, frame.width() as usize, DEVIATION);
         }
-        let Some(intents) = intents.next() else { break };
-        game.step(intents);
-        let before = steps * u64::from(plan.frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
-        steps += 1;
-        let after = steps * u64::from(plan.frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
-        is_due = after > before;
-    }
+        let truth = is_compared.then_some(&*truth);
+        for run in &mut runs {
+            run.take(truth, |ink, buffer| match ink {
+                None => draw_nearest(plan.depth, &frame, buffer),
+                Some(ink) => FirstPerson::new(game.world(), &camera)
+                    .color_depth(plan.depth)
+                    .shade_ink(ink)
+                    .render(buffer.area, buffer, &mut view),
+            });
+        }
+    });
     let runs = runs.into_iter().zip(METHODS);
     runs.map(|(run, (name, _))| run.finish(level, name)).collect()
 }
@@ -252,7 +230,7 @@ fn shown(buffer: &Buffer, ink: Option<ShadeInk>) -> Vec<Oklab> {
             light.extend(row.iter().map(|cell| half_of(cell, half, ink)));
         }
     }
-    seen(width, &light)
+    blurred(&light, width, DEVIATION)
 }
 
 /// The light of a half of a cell.
@@ -291,41 +269,5 @@ fn errors(shown: &[Oklab], truth: &[Oklab]) -> Errors {
     }
 }
 
-/// A picture of linear light, blurred by a Gaussian of 0.6 pixels.
-fn seen(width: usize, light: &[[f64; 3]]) -> Vec<Oklab> {
-    let height = light.len() / width;
-    let across = blurred(light, height, width, 1, width);
-    let down = blurred(&across, width, height, width, 1);
-    down.into_iter().map(Oklab::from_linear).collect()
-}
-
-/// Blurs `lines` lines of `length` pixels. The pixels of a line are `step` apart, and the lines `next`.
-fn blurred(
-    light: &[[f64; 3]],
-    lines: usize,
-    length: usize,
-    step: usize,
-    next: usize,
-) -> Vec<[f64; 3]> {
-    const SIGMA: f64 = 0.6;
-    const REACH: usize = 2;
-    let weights: [f64; 2 * REACH + 1] = std::array::from_fn(|at| {
-        let distance = at as f64 - REACH as f64;
-        libm::exp(-distance * distance / (2.0 * SIGMA * SIGMA))
-    });
-    let total: f64 = weights.iter().sum();
-    let mut blurred = vec![[0.0; 3]; light.len()];
-    for line in 0..lines {
-        for pixel in 0..length {
-            let mut sum = [0.0; 3];
-            for (at, weight) in weights.iter().enumerate() {
-                // The pixels at the edge continue outwards.
-                let from = (pixel + at).saturating_sub(REACH).min(length - 1);
-                let light = light[line * next + from * step];
-                sum = std::array::from_fn(|i| sum[i] + light[i] * weight / total);
-            }
-            blurred[line * next + pixel * step] = sum;
-        }
-    }
-    blurred
-}
+/// The standard deviation of the blur, in pixels.
+const DEVIATION: [f64; 2] = [0.6; 2];

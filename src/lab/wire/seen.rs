@@ -64,9 +64,7 @@ impl SeenPicture {
         let [width, height] = extent(size);
         let points: Vec<[f64; 3]> =
             (0..width * height).map(|at| light(at % width, at / width)).collect();
-        let rows = blur(DEVIATION[0], width, height, |x, y| points[y * width + x]);
-        let columns = blur(DEVIATION[1], height, width, |y, x| rows[y * width + x]);
-        Self(columns.into_iter().map(Oklab::from_linear).collect())
+        Self(blurred(&points, width, DEVIATION))
     }
 
     /// The mean distance from another picture of the same size, in Oklab.
@@ -82,6 +80,16 @@ fn extent(size: Size) -> [usize; 2] {
     [usize::from(size.width) * POINTS[0], usize::from(size.height) * POINTS[1]]
 }
 
+/// A picture of linear light, row by row, blurred by a Gaussian of this deviation across and down.
+pub(super) fn blurred(points: &[[f64; 3]], width: usize, deviation: [f64; 2]) -> Vec<Oklab> {
+    let height = points.len() / width;
+    let rows = blur(deviation[0], width, height, |x, y| points[y * width + x]);
+    let columns = blur(deviation[1], height, width, |y, x| rows[y * width + x]);
+    // The columns follow each other.
+    let rows = (0..height).flat_map(|y| columns.iter().skip(y).step_by(height));
+    rows.map(|&light| Oklab::from_linear(light)).collect()
+}
+
 /// Blurs along the first coordinate. The result is row by row of the second. Points beyond an edge equal the last.
 fn blur(
     deviation: f64,
@@ -89,7 +97,7 @@ fn blur(
     count: usize,
     point: impl Fn(usize, usize) -> [f64; 3],
 ) -> Vec<[f64; 3]> {
-    let reach = (3.0 * deviation) as i32;
+    let reach = libm::ceil(3.0 * deviation) as i32;
     let weight =
         |distance: i32| libm::exp(-f64::from(distance * distance) / (2.0 * deviation * deviation));
     let total: f64 = (-reach..=reach).map(weight).sum();

@@ -3,12 +3,12 @@
 //! Each cell is a block in two palette colours or one of the shades ░ ▒ ▓, whichever shows it better
 //! (see [`mixture`](crate::color::palette::mixture)).
 
-use std::{array, iter};
+use std::iter;
 
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use super::split::Split;
+use super::split::{Split, Splits};
 use super::{mosaic, pixels_per_cell};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
@@ -35,12 +35,11 @@ pub(super) fn draw<const PIXELS: usize, C: Canvas>(
     };
     for (top, y) in (above..).step_by(rows as usize).zip(area.top()..area.bottom()) {
         let mut mixer = Mixer::new(depth, ink);
-        for (left, x) in (0..).step_by(columns as usize).zip(area.left()..area.right()) {
-            let pixels: [Rgb; PIXELS] = array::from_fn(|at| {
-                let at = at as u32;
-                pixel(left + at % columns, top + at / columns)
-            });
-            let Split { mask, colors } = Split::of(&pixels);
+        let splits = Splits::of_row::<PIXELS>(area.width, |x, place| {
+            let place = place as u32;
+            pixel(columns * x + place % columns, top + place / columns)
+        });
+        for (Split { mask, colors }, x) in splits.zip(area.left()..area.right()) {
             let share = mask.count_ones() as u8 * (WHOLE / PIXELS as u8);
             match mixer.look(colors, share) {
                 Look::Parts(parts) => {

@@ -1,215 +1,315 @@
 //! The two colours of a cell and the dots that have the first of them.
 //!
 //! The best two colours for a set of points in a Euclidean space are the means of its two parts, and the best
-//! parts lie on either side of a plane. So of all thresholds along a direction, the one
-//! is taken that leaves the least squared error. The direction is the principal axis at first, and then the line
-//! between the two means, until the parts no longer change. Cells of at most two colours need no search.
+//! parts lie on either side of a plane. So the threshold with the least squared error is taken along one
+//! direction, from the mean of the darker to the mean of the lighter pixels.
 //!
-//! The space is linear light, weighted by channel: dots that blend in the eye blend in light, and the means are
-//! the mean light of their parts. Rejected: sRGB, whose pictures have 2 to 5 hundredths more error after a blur of
-//! half a cell in each direction; the exact search over all masks, which takes 127 of them for octants and gains
-//! nothing that can be seen (less than 0.001 of the error of random cells, 0.0001 of that of frames).
+//! The space is the square of each channel, weighted: linear light almost, since dots that blend in the eye
+//! blend in light. [`CELLS`] cells are split at once, without branches, as vectors of 16 bits.
+//!
+//! Rejected: one cell at a time, with up to three directions and tables of linear light, which took 153 million
+//! instructions for frames from intents to bytes that take 105 now. Its squared error was at most 0.8 hundredths
+//! less in pictures and 2 to 4 hundredths less in random cells. One colour for cells of nearly one: at 4 levels a
+//! channel these are 2 in 100. The exact search over all masks, 127 of them for octants.
 
 use std::array;
 
 use crate::color::Rgb;
-use crate::color::srgb::{from_linear_16, linear_16};
 
-/// The dots of a cell in two colours.
+/// The number of cells that are split at once: few enough for the first cache, and too many for the compiler to
+/// unroll its loops instead of using vectors. Windows are often a multiple of it wide.
+const CELLS: usize = 40;
+
+/// A number for each of several cells.
+type Lanes<T> = [T; CELLS];
+
+/// The dots of several cells in two colours each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Splits {
+    /// The dots with the first colour: the lowest bit is the first pixel. The last pixel is never among them.
+    masks: Lanes<u8>,
+    colors: [Lanes<Rgb>; 2],
+}
+
+/// One of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Split {
-    /// The dots with the first colour: the lowest bit is the first pixel. The last pixel is never among them.
     pub(crate) mask: u8,
     pub(crate) colors: [Rgb; 2],
 }
 
-/// The number of directions that are tried at most.
-const DIRECTIONS: usize = 3;
-
-impl Split {
-    /// The split of the pixels of a cell, of which there are at least two and at most eight.
-    #[inline]
-    pub(crate) fn of<const N: usize>(pixels: &[Rgb; N]) -> Self {
-        let last = pixels[N - 1];
-        let others = mask_of(pixels, |pixel| pixel != last);
-        if others == 0 {
-            return Self { mask: 0, colors: [last; 2] };
-        }
-        let first = pixels[others.trailing_zeros() as usize];
-        if mask_of(pixels, |pixel| pixel == first) == others {
-            return Self { mask: others, colors: [first, last] };
-        }
-        Self::search(pixels)
+impl Splits {
+    /// The splits of so many cells in a row. `pixel(x, place)` is the pixel at a place of the cell `x`.
+    pub(crate) fn of_row<const N: usize>(
+        width: u16,
+        pixel: impl Fn(u32, usize) -> Rgb,
+    ) -> impl Iterator<Item = Split> {
+        let last = u32::from(width).saturating_sub(1);
+        let splits = (0..u32::from(width)).step_by(CELLS).flat_map(move |first| {
+            let mut pixels = [[Rgb::BLACK; CELLS]; N];
+            for cell in 0..CELLS {
+                // The last cell is repeated if there are no more.
+                let x = (first + cell as u32).min(last);
+                for (place, pixels) in pixels.iter_mut().enumerate() {
+                    pixels[cell] = pixel(x, place);
+                }
+            }
+            let Self { masks, colors: [dots, rest] } = Self::of(&pixels);
+            (0..CELLS)
+                .map(move |cell| Split { mask: masks[cell], colors: [dots[cell], rest[cell]] })
+        });
+        splits.take(width.into())
     }
+}
 
-    /// The same for pixels of more than two colours.
+/// The share of red, green and blue light in what is seen, as two powers of two each: 0.56, 1 and 0.38 of the
+/// squares, which are light almost. The largest has 13 bits.
+const SHIFTS: [[u32; 2]; 3] = [[4, 7], [4, 4], [5, 6]];
+
+impl Splits {
+    /// The splits of cells by their pixels, of which each has at least two and at most eight.
     #[inline(never)]
-    fn search<const N: usize>(pixels: &[Rgb; N]) -> Self {
-        let light: [[u32; N]; 3] = {
-            let light = pixels.map(linear_16);
-            array::from_fn(|channel| light.map(|light| u32::from(light[channel])))
-        };
-        let points = Points::of(&light);
-        let mut best = points.best_along(points.principal_axis());
-        for _ in 1..DIRECTIONS {
-            if points.is_settled(&best) {
-                break;
-            }
-            let next = points.best_along(best.sum);
-            if next.gain <= best.gain {
-                break;
-            }
-            best = next;
+    fn of<const N: usize>(pixels: &[Lanes<Rgb>; N]) -> Self {
+        if let [first, last] = pixels.as_slice() {
+            let masks = array::from_fn(|cell| u8::from(first[cell] != last[cell]));
+            return Self { masks, colors: [*first, *last] };
         }
-        let whole = u8::MAX >> (8 - N);
-        let mask = if best.mask >> (N - 1) == 1 { best.mask ^ whole } else { best.mask };
-        Self { mask, colors: means(&light, mask) }
+        let channels = [16, 8, 0].map(|shift| {
+            let mut values = [[0; CELLS]; N];
+            for_each(&mut values, |value, place, cell| {
+                *value = (pixels[place][cell].to_bits() >> shift & 0xff) as u16;
+            });
+            values
+        });
+        let distances = distances(&points(&channels));
+        let threshold = threshold(distances);
+        let mut is_in = [[0; CELLS]; N];
+        for_each(&mut is_in, |is_in, place, cell| {
+            *is_in = to_mask(distances[place][cell] <= threshold[cell]);
+        });
+        let last = is_in[N - 1];
+        for_each(&mut is_in, |is_in, _, cell| *is_in ^= last[cell]);
+        let mut masks = [0; CELLS];
+        for place in 0..N {
+            let bit = 1_i16 << place;
+            for cell in 0..CELLS {
+                masks[cell] |= (is_in[place][cell] & bit) as u8;
+            }
+        }
+        Self { masks, colors: means(&channels, &is_in) }
     }
 }
 
-/// The pixels that fulfil a condition.
-#[inline]
-fn mask_of<const N: usize>(pixels: &[Rgb; N], is_in: impl Fn(Rgb) -> bool) -> u8 {
-    (0..N).fold(0, |mask, place| mask | u8::from(is_in(pixels[place])) << place)
+/// Does something with each number of several places and cells.
+#[inline(always)]
+fn for_each<T, const N: usize>(
+    values: &mut [Lanes<T>; N],
+    mut act: impl FnMut(&mut T, usize, usize),
+) {
+    for place in 0..N {
+        for cell in 0..CELLS {
+            act(&mut values[place][cell], place, cell);
+        }
+    }
 }
 
-/// The mean light of the pixels in `mask`, and of the others.
-#[inline]
-fn means<const N: usize>(light: &[[u32; N]; 3], mask: u8) -> [Rgb; 2] {
-    let is_in: [u32; N] = array::from_fn(|place| 0_u32.wrapping_sub(u32::from(mask >> place & 1)));
-    let count = mask.count_ones().max(1);
-    let others = (N as u32 - count).max(1);
-    let mean = |sum: u32, count: u32| ((sum + count / 2) / count) as u16;
-    let both = light.each_ref().map(|light| {
-        let sum: u32 = light.iter().zip(&is_in).map(|(light, is_in)| light & is_in).sum();
-        let rest = light.iter().sum::<u32>() - sum;
-        [mean(sum, count), mean(rest, others)]
+/// All bits, or none.
+#[inline(always)]
+fn to_mask(is_set: bool) -> i16 {
+    -i16::from(is_set)
+}
+
+/// The light of the pixels as points around the mean of their cell, channel by channel.
+#[inline(always)]
+fn points<const N: usize>(channels: &[[Lanes<u16>; N]; 3]) -> [[Lanes<i16>; N]; 3] {
+    let mut points = [[[0; CELLS]; N]; 3];
+    for channel in 0..3 {
+        let mut sums = [0_u16; CELLS];
+        for_each(&mut points[channel], |point, place, cell| {
+            let value = channels[channel][place][cell];
+            let square = value.wrapping_mul(value);
+            let [one, other] = SHIFTS[channel];
+            let light = (square >> one) + (square >> other);
+            sums[cell] = sums[cell].wrapping_add(light);
+            *point = light as i16;
+        });
+        for_each(&mut points[channel], |point, _, cell| {
+            *point = point.wrapping_sub((sums[cell] / N as u16) as i16);
+        });
+    }
+    points
+}
+
+/// The distance of each point along the line on which the points are spread most, approximately: first along the
+/// channel that varies most, and then along the line between the means of its lower and its upper half.
+#[inline(always)]
+fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
+    let mut spread = [[0_i16; CELLS]; 3];
+    for channel in 0..3 {
+        for place in 0..N {
+            for cell in 0..CELLS {
+                let point = points[channel][place][cell];
+                spread[channel][cell] += point.max(-point) >> 1;
+            }
+        }
+    }
+    let mut chosen = [[0_i16; CELLS]; 3];
+    for cell in 0..CELLS {
+        let [x, y, z] = [spread[0][cell], spread[1][cell], spread[2][cell]];
+        chosen[0][cell] = to_mask(x > y) & to_mask(x > z);
+        chosen[2][cell] = to_mask(z > y) & !chosen[0][cell];
+        chosen[1][cell] = !chosen[0][cell] & !chosen[2][cell];
+    }
+    let mut distances = [[0; CELLS]; N];
+    for_each(&mut distances, |distance, place, cell| {
+        *distance = points[0][place][cell] & chosen[0][cell]
+            | points[1][place][cell] & chosen[1][cell]
+            | points[2][place][cell] & chosen[2][cell];
     });
-    [0, 1].map(|part| from_linear_16(both.map(|means| means[part])))
+    for _ in 0..ROUNDS {
+        distances = along(points, &axis(points, &distances));
+    }
+    distances
 }
 
-/// The pixels of a cell as points around their mean, component by component.
-struct Points<const N: usize>([[f32; N]; 3]);
+/// The number of directions after the first.
+const ROUNDS: usize = 1;
 
-/// The points on one side of a plane.
-struct Half {
-    mask: u8,
-    /// The number of its points.
-    count: f32,
-    /// The sum of its points.
-    sum: [f32; 3],
-    /// The squared error that the split saves.
-    gain: f32,
-}
-
-/// The share of red, green and blue light in what is seen.
-const WEIGHTS: [f32; 3] = [0.55, 0.9, 0.35];
-
-impl<const N: usize> Points<N> {
-    #[inline]
-    fn of(light: &[[u32; N]; 3]) -> Self {
-        Self(array::from_fn(|channel| {
-            let scale = WEIGHTS[channel] / f32::from(u16::MAX);
-            let values = light[channel].map(|light| light.cast_signed() as f32 * scale);
-            let mean = values.iter().sum::<f32>() / N as f32;
-            values.map(|value| value - mean)
-        }))
-    }
-
-    /// Approximately the direction in which the points are spread most, of any length: by power iteration from
-    /// the component with the largest variance.
-    #[inline]
-    fn principal_axis(&self) -> [f32; 3] {
-        let [x, y, z] = &self.0;
-        let product = |one: &[f32; N], other: &[f32; N]| -> f32 {
-            one.iter().zip(other).map(|(one, other)| one * other).sum()
-        };
-        let (xx, xy, xz) = (product(x, x), product(x, y), product(x, z));
-        let (yy, yz, zz) = (product(y, y), product(y, z), product(z, z));
-        let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        let largest = if xx >= yy && xx >= zz {
-            0
-        } else if yy >= zz {
-            1
-        } else {
-            2
-        };
-        (0..2).fold(columns[largest], |axis, _| {
-            columns.map(|[x, y, z]| x * axis[0] + y * axis[1] + z * axis[2])
-        })
-    }
-
-    /// The distance of each point along a direction, of any unit.
-    #[inline]
-    fn along(&self, [dx, dy, dz]: [f32; 3]) -> [f32; N] {
-        let [x, y, z] = &self.0;
-        array::from_fn(|place| x[place] * dx + y[place] * dy + z[place] * dz)
-    }
-
-    /// Whether each point is nearer to the mean of its own part than to that of the other. Then the line between
-    /// the means has no better threshold nearby.
-    #[inline]
-    fn is_settled(&self, half: &Half) -> bool {
-        // The means are the sum divided by the count, and its opposite divided by the rest.
-        let [x, y, z] = half.sum;
-        let middle =
-            (x * x + y * y + z * z) * 0.5 * (1.0 / half.count - 1.0 / (N as f32 - half.count));
-        let distances = self.along(half.sum);
-        let near =
-            (0..N).fold(0, |mask, place| mask | u8::from(distances[place] >= middle) << place);
-        near == half.mask
-    }
-
-    /// The best of the parts on one side of a plane across `direction`. Rejected: the sums for all thresholds at
-    /// once, without an order, which take twice the instructions.
-    #[inline]
-    fn best_along(&self, direction: [f32; 3]) -> Half {
-        let [x, y, z] = &self.0;
-        let distances = self.along(direction);
-        let mut keys: [i32; N] = array::from_fn(|place| key(distances[place], place));
-        sort(&mut keys);
-        let mut best = Half { mask: 0, count: 1.0, sum: [0.0; 3], gain: -1.0 };
-        let (mut mask, mut count, mut sum) = (0, 0.0, [0.0; 3]);
-        for &key in &keys[..N - 1] {
-            let place = (key & 7) as usize % N;
-            mask |= 1 << place;
-            count += 1.0;
-            sum = [sum[0] + x[place], sum[1] + y[place], sum[2] + z[place]];
-            let square = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
-            let gain = square / (count * (N as f32 - count));
-            if gain > best.gain {
-                best = Half { mask, count, sum, gain };
+/// The sum of the points whose distance is positive. The largest component is about 32767.
+#[inline(always)]
+fn axis<const N: usize>(
+    points: &[[Lanes<i16>; N]; 3],
+    distances: &[Lanes<i16>; N],
+) -> [Lanes<i16>; 3] {
+    let mut axis = [[0_i16; CELLS]; 3];
+    for channel in 0..3 {
+        for place in 0..N {
+            for cell in 0..CELLS {
+                let is_upper = to_mask(distances[place][cell] > 0);
+                axis[channel][cell] =
+                    axis[channel][cell].wrapping_add(points[channel][place][cell] & is_upper);
             }
         }
-        best
     }
+    let mut scaled = [[0; CELLS]; 3];
+    for cell in 0..CELLS {
+        let [x, y, z] = [axis[0][cell], axis[1][cell], axis[2][cell]];
+        let most =
+            x.max(x.wrapping_neg()).max(y.max(y.wrapping_neg())).max(z.max(z.wrapping_neg()));
+        let scale = 32_000.0 / f32::from(most.max(1));
+        for channel in 0..3 {
+            scaled[channel][cell] = rounded(f32::from(axis[channel][cell]) * scale) as i16;
+        }
+    }
+    scaled
 }
 
-/// A number that sorts as `value` does, almost, with a place in its lowest bits.
-#[inline]
-fn key(value: f32, place: usize) -> i32 {
-    let bits = value.to_bits().cast_signed();
-    let ordered = bits ^ (bits >> 31 & i32::MAX);
-    ordered & !7 | place as i32
+/// The nearest integer in the low 16 bits, for numbers of at most 22 bits.
+#[inline(always)]
+fn rounded(value: f32) -> u32 {
+    const ONES: f32 = 12_582_912.0;
+    (value + ONES).to_bits()
 }
 
-/// Puts each pair of keys in order, one after another.
+/// The distance of each point along an axis.
+#[inline(always)]
+fn along<const N: usize>(points: &[[Lanes<i16>; N]; 3], axis: &[Lanes<i16>; 3]) -> [Lanes<i16>; N] {
+    let mut distances = [[0_i16; CELLS]; N];
+    for channel in 0..3 {
+        for_each(&mut distances, |distance, place, cell| {
+            let point = points[channel][place][cell].wrapping_mul(4);
+            let product = i32::from(point) * i32::from(axis[channel][cell]) >> 16;
+            *distance = distance.wrapping_add(product as i16);
+        });
+    }
+    distances
+}
+
+/// The largest distance in the lower part of the split with the least squared error.
+#[inline(always)]
+fn threshold<const N: usize>(mut distances: [Lanes<i16>; N]) -> Lanes<i16> {
+    sort(&mut distances);
+    let mut best = [0_i16; CELLS];
+    let mut most = [-1.0_f32; CELLS];
+    let mut sums = [0_i32; CELLS];
+    for count in 1..N {
+        let distances = &distances[count - 1];
+        let share = 1.0 / (count * (N - count)) as f32;
+        for cell in 0..CELLS {
+            sums[cell] += i32::from(distances[cell]);
+            let sum = sums[cell] as f32;
+            let gain = sum * sum * share;
+            let is_better = gain > most[cell];
+            most[cell] = if is_better { gain } else { most[cell] };
+            best[cell] = if is_better { distances[cell] } else { best[cell] };
+        }
+    }
+    best
+}
+
+/// The mean light of the pixels that are in a part, and of the others.
+#[inline(always)]
+fn means<const N: usize>(
+    channels: &[[Lanes<u16>; N]; 3],
+    is_in: &[Lanes<i16>; N],
+) -> [Lanes<Rgb>; 2] {
+    let mut counts = [0_i16; CELLS];
+    for place in 0..N {
+        for cell in 0..CELLS {
+            counts[cell] -= is_in[place][cell];
+        }
+    }
+    let mut shares = [[0.0_f32; CELLS]; 2];
+    for cell in 0..CELLS {
+        shares[0][cell] = 1.0 / f32::from(counts[cell].max(1));
+        shares[1][cell] = 1.0 / f32::from(N as i16 - counts[cell]);
+    }
+    let mut colors = [[0_u32; CELLS]; 2];
+    for channel in 0..3 {
+        let (mut all, mut sums) = ([0_u32; CELLS], [0_u32; CELLS]);
+        for place in 0..N {
+            for cell in 0..CELLS {
+                let value = channels[channel][place][cell];
+                let square = value.wrapping_mul(value);
+                all[cell] += u32::from(square);
+                sums[cell] += u32::from(square & is_in[place][cell] as u16);
+            }
+        }
+        for cell in 0..CELLS {
+            for (part, sum) in [sums[cell], all[cell] - sums[cell]].into_iter().enumerate() {
+                let value = (sum.cast_signed() as f32 * shares[part][cell]).sqrt();
+                colors[part][cell] = colors[part][cell] << 8 | rounded(value) & 0xff;
+            }
+        }
+    }
+    for cell in 0..CELLS {
+        colors[0][cell] = if counts[cell] == 0 { colors[1][cell] } else { colors[0][cell] };
+    }
+    colors.map(|colors| {
+        colors.map(|bits| Rgb::new((bits >> 16) as u8, (bits >> 8) as u8, bits as u8))
+    })
+}
+
+/// Puts pairs of places in order, one after another.
 macro_rules! exchange {
-    ($keys:ident: $($one:literal $other:literal),*) => {{$(
-        let (one, other) = ($keys[$one], $keys[$other]);
-        ($keys[$one], $keys[$other]) = (one.min(other), one.max(other));
+    ($values:ident: $($one:literal $other:literal),*) => {{$(
+        for cell in 0..CELLS {
+            let (one, other) = ($values[$one][cell], $values[$other][cell]);
+            $values[$one][cell] = one.min(other);
+            $values[$other][cell] = one.max(other);
+        }
     )*}};
 }
 
-/// Sorts four, six or eight numbers without branches, by Batcher's networks (1968).
-#[inline]
-fn sort<const N: usize>(keys: &mut [i32; N]) {
+/// Sorts four, six or eight numbers of each cell, by Batcher's networks (1968).
+#[inline(always)]
+fn sort<const N: usize>(values: &mut [Lanes<i16>; N]) {
     match N {
-        4 => exchange!(keys: 0 1, 2 3, 0 2, 1 3, 1 2),
-        6 => exchange!(keys: 0 5, 1 3, 2 4, 1 2, 3 4, 0 3, 2 5, 0 1, 2 3, 4 5, 1 2, 3 4),
+        4 => exchange!(values: 0 1, 2 3, 0 2, 1 3, 1 2),
+        6 => exchange!(values: 0 5, 1 3, 2 4, 1 2, 3 4, 0 3, 2 5, 0 1, 2 3, 4 5, 1 2, 3 4),
         _ => {
-            exchange!(keys: 0 2, 1 3, 4 6, 5 7, 0 4, 1 5, 2 6, 3 7, 0 1, 2 3, 4 5, 6 7, 2 4, 3 5);
-            exchange!(keys: 1 4, 3 6, 1 2, 3 4, 5 6);
+            exchange!(values: 0 2, 1 3, 4 6, 5 7, 0 4, 1 5, 2 6, 3 7, 0 1, 2 3, 4 5, 6 7, 2 4, 3 5);
+            exchange!(values: 1 4, 3 6, 1 2, 3 4, 5 6);
         }
     }
 }
@@ -217,20 +317,25 @@ fn sort<const N: usize>(keys: &mut [i32; N]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::srgb::linear;
     use crate::map::builtin;
     use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
     use crate::world::FieldOfView;
 
-    /// The squared error of a split, in the space of the search.
+    fn split<const N: usize>(pixels: &[Rgb; N]) -> Split {
+        Splits::of_row::<N>(1, |_, place| pixels[place]).next().unwrap()
+    }
+
+    /// The squared error of a split in linear light, with the channels weighted.
     fn error<const N: usize>(pixels: &[Rgb; N], mask: u8) -> f64 {
-        let light = pixels.map(linear_16);
-        let light = array::from_fn(|channel| light.map(|light| u32::from(light[channel])));
-        let points = Points::of(&light);
+        const WEIGHTS: [f64; 3] = [0.55, 0.9, 0.35];
+        let light = pixels.map(linear);
         let part = |is_in: bool| {
             let places = (0..N).filter(move |place| (mask >> place & 1 == 1) == is_in);
             let count = places.clone().count().max(1) as f64;
-            let of_channel = points.0.each_ref().map(|values| {
-                let values = || places.clone().map(|place| f64::from(values[place]));
+            let of_channel = [0, 1, 2].map(|channel| {
+                let values =
+                    || places.clone().map(|place| WEIGHTS[channel] * light[place][channel]);
                 let mean = values().sum::<f64>() / count;
                 values().map(|value| (value - mean) * (value - mean)).sum::<f64>()
             });
@@ -243,7 +348,7 @@ mod tests {
     fn excess<const N: usize>(cells: impl Iterator<Item = [Rgb; N]>) -> f64 {
         let (mut found, mut least) = (0.0, 0.0);
         for pixels in cells {
-            found += error(&pixels, Split::of(&pixels).mask);
+            found += error(&pixels, split(&pixels).mask);
             let masks = 0..1_u16 << (N - 1);
             least += masks.map(|mask| error(&pixels, mask as u8)).fold(f64::INFINITY, f64::min);
         }
@@ -265,14 +370,14 @@ mod tests {
     fn splits_of_random_cells_are_almost_the_best() {
         let excess =
             [excess::<4>(noise(20_000)), excess::<6>(noise(20_000)), excess::<8>(noise(20_000))];
-        assert!(excess.into_iter().all(|excess| excess < 0.002), "{excess:?}");
+        assert!(excess.into_iter().all(|excess| excess < 0.045), "{excess:?}");
     }
 
     #[test]
     fn splits_of_frames_are_almost_the_best() {
         for name in ["cellar", "museum", "citadel", "treasury"] {
             let excess = excess(cells(name));
-            assert!(excess < 0.0002, "{name} {excess}");
+            assert!(excess < 0.009, "{name} {excess}");
         }
     }
 
@@ -294,11 +399,11 @@ mod tests {
     #[test]
     fn cells_of_two_colours_are_exact() {
         let [a, b] = [Rgb::new(1, 2, 3), Rgb::new(200, 2, 3)];
-        assert_eq!(Split::of(&[a; 6]), Split { mask: 0, colors: [a; 2] });
+        assert_eq!(split(&[a; 6]), Split { mask: 0, colors: [a; 2] });
         for mask in 1..128 {
             let pixels: [Rgb; 8] =
                 array::from_fn(|place| if mask >> place & 1 == 1 { a } else { b });
-            assert_eq!(Split::of(&pixels), Split { mask, colors: [a, b] });
+            assert_eq!(split(&pixels), Split { mask, colors: [a, b] });
         }
     }
 }
