@@ -48,6 +48,7 @@ mod status;
 mod steps;
 mod summary;
 mod time;
+mod tmux_offer;
 mod vitals;
 mod watch;
 
@@ -88,6 +89,7 @@ use recording::ScriptRecorder;
 use reload::Reload;
 use stats::Stats;
 use status::StatusLine;
+use tmux_offer::TmuxOrder;
 use watch::Watch;
 
 /// The part of the game's state that a picture depends on.
@@ -173,6 +175,7 @@ struct App {
     status: StatusLine,
     /// The known properties of the terminal.
     detection: Detection,
+    tmux_order: TmuxOrder,
     /// Records the player's intents.
     script: Option<ScriptRecorder>,
     /// The source of changes of the level.
@@ -231,6 +234,7 @@ impl App {
             stats: None,
             status: StatusLine::default(),
             detection: Detection::default(),
+            tmux_order: TmuxOrder::default(),
             script: None,
             reload: changes.map(Reload::from),
         }

@@ -161,7 +161,6 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Selects the entry with that choice, if there is one. Returns whether there is.
-    #[cfg(feature = "serve")]
     pub(crate) fn select_choice(&mut self, choice: C) -> bool
     where
         C: PartialEq,

@@ -50,6 +50,8 @@ pub(super) enum Choice {
     NextLevel,
     /// Returns to the title.
     ToTitle,
+    /// Tells tmux that its terminal shows 24-bit colours.
+    TellTmux,
     /// Leaves the program.
     Leave,
 }
@@ -70,6 +72,7 @@ impl App {
             Screen::Outdated(id) => self.outdated_menu(id),
             Screen::Paused => self.pause_menu(),
             Screen::Settings => self.settings_menu(),
+            Screen::Tmux => self.tmux_menu(),
             Screen::Dead => self.death_menu(),
             Screen::LevelDone => self.level_done_menu(),
             Screen::End => self.end_menu(),
@@ -113,6 +116,7 @@ impl App {
             Choice::Restart => self.restart_level(),
             Choice::NextLevel => self.next_level(),
             Choice::ToTitle => self.return_to_title(),
+            Choice::TellTmux => self.order_tmux(),
             Choice::Leave => self.leave(),
         }
     }
@@ -146,9 +150,10 @@ impl App {
         let menu = self.with_descents(menu);
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
         let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
-        menu.entry("Settings", Choice::Open(Screen::Settings))
-            .entry("Help", Choice::Open(Screen::Help))
-            .entry("Leave", Choice::Leave)
+        let menu = menu
+            .entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help));
+        self.with_tmux_offer(menu).entry("Leave", Choice::Leave)
     }
 
     /// The built-in levels, each with the best time and the best rank.

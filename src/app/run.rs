@@ -65,6 +65,9 @@ pub fn play(
         if app.watch.take_ring() && app.store.preferences().bell {
             session.ring_bell();
         }
+        if app.take_tmux_order() {
+            session.tell_tmux();
+        }
         presenter.frame_time = app.settings.frame_time;
         presenter.update(&mut app, &mut session, time.now())?;
         let wakes_at = presenter.wakes_at(&app, &session, time.now());
@@ -89,6 +92,7 @@ pub fn play(
                 app.controls.held.set_reports_releases(reported);
                 app.detection.reports_releases = Some(reported);
             }
+            Some(Event::TmuxTold(has_worked)) => app.tmux_told(has_worked),
             Some(Event::Suspend) => {
                 session.suspend()?;
                 app.resumed(time.now());
@@ -198,6 +202,7 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
+    let offered = app.tmux_remedy();
     let aspect = session.size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(TerminalLook {
         aspect,
@@ -210,6 +215,7 @@ fn update_terminal(app: &mut App, session: &Session) {
     app.detection.is_tmux = session.is_tmux();
     app.detection.tmux = session.tmux_client().cloned();
     app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
+    app.renew_tmux_offer(offered.as_deref());
 }
 
 /// The locale setting that restricts output to ASCII; `None` if there is none, or if the chosen

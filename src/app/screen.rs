@@ -32,6 +32,8 @@ pub(super) enum Screen {
     /// The offer to begin a saved game anew that cannot go on.
     Outdated(SaveId),
     Settings,
+    /// The question whether to tell tmux that its terminal shows 24-bit colours.
+    Tmux,
     Playing,
     Paused,
     Help,

@@ -13,6 +13,7 @@ mod saved;
 mod screens;
 mod table;
 mod titles;
+mod tmux_offers;
 
 use std::iter;
 use std::time::Duration;

@@ -77,7 +77,12 @@ fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSourc
         return (depth(ColorDepth::True), ColorTerm);
     }
     let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
+    // In tmux, TERM may be `screen`, whatever tmux sends.
+    let is_tmux = variable("TMUX").is_some() && variable("STY").is_none();
     match named {
+        Detected::Certain(depth @ ColorDepth::Indexed256) if is_tmux => {
+            (Detected::Guess(depth), Nothing)
+        }
         Detected::Certain(ColorDepth::Mono) if forced => certain(ColorDepth::Indexed16, ForceColor),
         Detected::Certain(depth) => certain(depth, Term),
         Detected::Guess(depth) => (Detected::Guess(depth), Nothing),
@@ -124,12 +129,14 @@ mod tests {
 
     #[test]
     fn the_environment_is_read_in_the_documented_order() {
-        let cases: [(&str, Detected); 30] = [
+        let cases: [(&str, Detected); 32] = [
             ("", Guess(Indexed256)),
             ("TERM=xterm-256color", Guess(Indexed256)),
             ("TERM=tmux-256color", Guess(Indexed256)),
             ("TERM=screen-256color", Certain(Indexed256)),
             ("TERM=screen", Certain(Indexed256)),
+            ("TERM=screen TMUX=socket", Guess(Indexed256)),
+            ("TERM=screen TMUX=socket STY=1", Certain(Indexed256)),
             ("TERM=xterm", Guess(Indexed256)),
             ("TERM=xterm-kitty", Certain(True)),
             ("TERM=alacritty", Certain(True)),

@@ -27,6 +27,8 @@ pub enum Event {
     /// The terminal has answered whether it reports key releases. Sent at most once; before it,
     /// releases are not reported.
     KeyReleases(bool),
+    /// Whether [`Session::tell_tmux`](super::Session::tell_tmux) has worked.
+    TmuxTold(bool),
     /// The terminal is ready for the next frame. Sent only after
     /// [`Session::is_ready`](super::Session::is_ready) has returned `false`.
     Ready,

@@ -6,6 +6,7 @@ mod receive;
 mod show;
 
 use std::io;
+use std::mem;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,7 +14,7 @@ use self::receive::Received;
 use super::TmuxClient;
 use super::guard::Guard;
 use super::platform::{Device, Signals};
-use super::tmux::{Question, Reply};
+use super::tmux::{Reply, Request};
 use super::{ColorSource, Error, Event, Options, Protocol, Recorder, WindowSize};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::tui::GlyphSet;
@@ -32,9 +33,11 @@ pub struct Session {
     protocol: Protocol,
     /// Whether to report when a frame may be sent.
     awaits_readiness: bool,
-    /// Whether the program runs in tmux, and a question to it without an answer.
+    /// Whether the program runs in tmux, and the requests to it without an answer.
     is_in_tmux: bool,
-    tmux: Option<Question>,
+    tmux: Option<Request<TmuxClient>>,
+    tmux_remedy: Option<Request<()>>,
+    last_key_at: Duration,
 }
 
 impl Session {
@@ -80,6 +83,8 @@ impl Session {
             awaits_readiness: false,
             is_in_tmux: options.ask_tmux,
             tmux: None,
+            tmux_remedy: None,
+            last_key_at: Duration::ZERO,
         };
         guard.take().map_err(Error::while_doing("taking the terminal"))?;
         session.protocol.begin(guard.now());
@@ -96,10 +101,9 @@ impl Session {
     pub fn next_event(&mut self, timeout: Option<Duration>) -> Result<Option<Event>, Error> {
         let deadline = timeout.and_then(|timeout| self.guard.now().checked_add(timeout));
         loop {
-            self.take_tmux_reply();
+            self.take_tmux_replies();
             if let Some(event) = self.protocol.next_event() {
-                if matches!(event, Event::FocusGained | Event::Resized) {
-                    // Another client may be attached.
+                if self.may_have_another_client(event) {
                     self.ask_tmux();
                 }
                 return Ok(Some(event));
@@ -116,7 +120,8 @@ impl Session {
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
             let wake_at = deadline.into_iter().chain(gives_up_at).chain(opens_at);
-            let tmux_at = self.tmux.is_some().then(|| self.guard.now() + TMUX_POLL);
+            let awaits_tmux = self.tmux.is_some() || self.tmux_remedy.is_some();
+            let tmux_at = awaits_tmux.then(|| self.guard.now() + TMUX_POLL);
             let wake_at = wake_at.chain(tmux_at).min();
             let now = |session: &Self| session.guard.now();
             match self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
@@ -152,17 +157,47 @@ impl Session {
     /// Asks tmux about the terminal around it, unless a question is open.
     fn ask_tmux(&mut self) {
         if self.is_in_tmux && self.tmux.is_none() {
-            self.tmux = Some(Question::ask());
+            self.tmux = Some(Request::client());
         }
     }
 
-    fn take_tmux_reply(&mut self) {
-        match self.tmux.as_ref().map(Question::reply) {
-            None | Some(Reply::Pending) => return,
-            Some(Reply::Client(client)) => self.protocol.take_tmux_client(client),
-            Some(Reply::Nothing) => {}
+    /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] follows.
+    pub fn tell_tmux(&mut self) {
+        self.tmux_remedy = self.tmux_client().and_then(Request::remedy);
+        if self.tmux_remedy.is_none() {
+            self.protocol.push_event(Event::TmuxTold(false));
         }
-        self.tmux = None;
+    }
+
+    /// Whether `event` may come from a client of tmux that has just attached.
+    fn may_have_another_client(&mut self, event: Event) -> bool {
+        match event {
+            Event::FocusGained | Event::Resized => true,
+            Event::Key(_) => {
+                let now = self.guard.now();
+                let last = mem::replace(&mut self.last_key_at, now);
+                now.saturating_sub(last) >= TIME_TO_ATTACH
+            }
+            _ => false,
+        }
+    }
+
+    fn take_tmux_replies(&mut self) {
+        match self.tmux.as_ref().map_or(Reply::Pending, Request::reply) {
+            Reply::Pending => {}
+            Reply::Answer(client) => {
+                self.tmux = None;
+                self.protocol.take_tmux_client(client);
+            }
+            Reply::Nothing => self.tmux = None,
+        }
+        let has_worked = match self.tmux_remedy.as_ref().map_or(Reply::Pending, Request::reply) {
+            Reply::Pending => return,
+            Reply::Answer(()) => true,
+            Reply::Nothing => false,
+        };
+        self.tmux_remedy = None;
+        self.protocol.push_event(Event::TmuxTold(has_worked));
     }
 
     fn take_again(&mut self) -> io::Result<()> {
@@ -219,6 +254,8 @@ impl Session {
 
 /// The time between looks for an answer of tmux.
 const TMUX_POLL: Duration = Duration::from_millis(10);
+/// The least time without a key while somebody detaches and attaches again.
+const TIME_TO_ATTACH: Duration = Duration::from_secs(1);
 
 fn is_past(time: Option<Duration>, now: Duration) -> bool {
     time.is_some_and(|time| time <= now)

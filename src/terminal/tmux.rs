@@ -3,10 +3,14 @@
 //! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux
 //! itself knows which features the attached client has, and which terminal it is.
 //!
-//! - A thread runs `tmux display` and stops it after a time-out. The start never waits for it.
+//! - A thread runs each command of tmux and stops it after a time-out. The start never waits for it.
+//! - Only [`remedy`](TmuxClient::remedy) changes tmux, and only a player who has seen it runs it.
 //! - What a client reports is text from a stranger: names with unusual characters are dropped.
 //! - tmux reads a terminal's features only when a client attaches (measured with 3.3a: after
 //!   `set -as terminal-features`, an attached client got RGB by attaching again, not before).
+//!
+//! - Nothing tells a program that a client attaches if the window stays the same and `focus-events` is
+//!   off, as by default. A key after a pause may come from another client.
 //!
 //! Rejected: a palette of one's own in a pane without RGB, even if the pane answers OSC 4. tmux
 //! sends the nearest of its client's fixed 256 colours for a defined entry (measured with 3.3a).
@@ -18,6 +22,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::known::{Colors, Known, known};
+use crate::tui::GlyphSet;
 
 /// The client of tmux that shows the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,13 +46,25 @@ impl TmuxClient {
     /// The command that makes tmux send 24-bit colours to the client from the next attachment on; `None`
     /// if it does so already, and if the client's terminal is not known to show them.
     pub fn remedy(&self) -> Option<String> {
-        let is_missing = !self.has_true_color && self.known.colors != Colors::Unknown;
-        (is_missing && !self.term.is_empty())
-            .then(|| format!("set -as terminal-features ',{}:RGB'", self.term))
+        let feature = self.missing_feature()?;
+        Some(format!("set -as terminal-features '{feature}'"))
     }
 
+    /// The value that the remedy adds to `terminal-features`.
+    fn missing_feature(&self) -> Option<String> {
+        let is_missing = !self.has_true_color && self.known.colors != Colors::Unknown;
+        (is_missing && !self.term.is_empty()).then(|| format!(",{}:RGB", self.term))
+    }
+
+    /// What is known of the client's terminal, within what tmux passes on.
     pub(super) fn known(&self) -> Known {
-        self.known
+        // tmux drops characters that its C library does not know, and the rest of the line moves: with
+        // glibc 2.36 all octants (measured with 3.3a), with older ones also sextants.
+        let blocks = match self.known.blocks {
+            GlyphSet::Sextant | GlyphSet::Octant => GlyphSet::Quadrant,
+            blocks => blocks,
+        };
+        Known { is_tmux: true, blocks, ..self.known }
     }
 
     /// The client in tmux's answer; `None` if the answer has another form.
@@ -68,33 +85,54 @@ impl TmuxClient {
     }
 }
 
-/// A question to tmux that may still be unanswered.
+/// A command of tmux that may still run, and the part of its answer that matters.
 #[derive(Debug)]
-pub(super) struct Question(Receiver<Option<TmuxClient>>);
+pub(super) struct Request<T>(Receiver<Option<T>>);
 
-/// The state of a question.
+/// The state of a request.
 #[derive(Debug)]
-pub(super) enum Reply {
+pub(super) enum Reply<T> {
     Pending,
-    Client(TmuxClient),
+    Answer(T),
+    /// The command has failed, or its answer is unknown.
     Nothing,
 }
 
-impl Question {
-    /// Asks the tmux that the environment names.
-    pub(super) fn ask() -> Self {
+impl Request<TmuxClient> {
+    /// Asks the tmux that the environment names for its client.
+    pub(super) fn client() -> Self {
+        Self::begin(|| {
+            let text = output(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT)?;
+            TmuxClient::parse(&text)
+        })
+    }
+}
+
+impl Request<()> {
+    /// Runs the remedy for `client`; `None` if there is none.
+    pub(super) fn remedy(client: &TmuxClient) -> Option<Self> {
+        let feature = client.missing_feature()?;
+        Some(Self::begin(move || {
+            let mut command = Command::new("tmux");
+            output(command.args(["set", "-as", "terminal-features", &feature]), TIMEOUT).map(drop)
+        }))
+    }
+}
+
+impl<T: Send + 'static> Request<T> {
+    fn begin(work: impl FnOnce() -> Option<T> + Send + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
         // Without a thread there is no answer, as without tmux.
         _ = thread::Builder::new().name("tmux".to_owned()).spawn(move || {
             // The session may have ended.
-            _ = sender.send(answer(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT));
+            _ = sender.send(work());
         });
         Self(receiver)
     }
 
-    pub(super) fn reply(&self) -> Reply {
+    pub(super) fn reply(&self) -> Reply<T> {
         match self.0.try_recv() {
-            Ok(Some(client)) => Reply::Client(client),
+            Ok(Some(answer)) => Reply::Answer(answer),
             Err(TryRecvError::Empty) => Reply::Pending,
             Ok(None) | Err(TryRecvError::Disconnected) => Reply::Nothing,
         }
@@ -106,7 +144,8 @@ const TIMEOUT: Duration = Duration::from_secs(2);
 /// The largest answer that is read, in bytes.
 const MOST: u64 = 4096;
 
-fn answer(command: &mut Command, timeout: Duration) -> Option<TmuxClient> {
+/// The output of `command`; `None` if it fails or runs longer than `timeout`.
+fn output(command: &mut Command, timeout: Duration) -> Option<String> {
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = quiet.spawn().ok()?;
     let began = Instant::now();
@@ -125,13 +164,12 @@ fn answer(command: &mut Command, timeout: Duration) -> Option<TmuxClient> {
     }
     let mut text = Vec::new();
     child.stdout.take()?.take(MOST).read_to_end(&mut text).ok()?;
-    TmuxClient::parse(&String::from_utf8_lossy(&text))
+    Some(String::from_utf8_lossy(&text).into_owned())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::GlyphSet;
 
     #[test]
     fn the_answer_names_features_and_the_terminal() {
@@ -139,7 +177,7 @@ mod tests {
         assert!(with.has_true_color() && with.remedy().is_none());
         let without = TmuxClient::parse("256,title|kitty(0.42.1)|xterm-kitty\n").unwrap();
         assert!(!without.has_true_color());
-        assert_eq!(without.known().blocks, GlyphSet::Octant);
+        assert_eq!(without.known().blocks, GlyphSet::Quadrant);
         let remedy = "set -as terminal-features ',xterm-kitty:RGB'";
         assert_eq!(without.remedy().as_deref(), Some(remedy));
         let unknown = TmuxClient::parse("title||xterm-256color\n").unwrap();
@@ -159,9 +197,9 @@ mod tests {
     #[test]
     fn a_missing_or_hanging_tmux_gives_no_answer_in_time() {
         let soon = Duration::from_millis(50);
-        assert_eq!(answer(&mut Command::new("no-such-program"), soon), None);
+        assert_eq!(output(&mut Command::new("no-such-program"), soon), None);
         let began = Instant::now();
-        assert_eq!(answer(Command::new("sleep").arg("60"), soon), None);
+        assert_eq!(output(Command::new("sleep").arg("60"), soon), None);
         assert!(began.elapsed() < Duration::from_secs(20));
     }
 }

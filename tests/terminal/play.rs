@@ -25,4 +25,5 @@ mod showing;
 mod signals;
 mod slow;
 mod titles;
+mod tmux;
 mod watching;

@@ -35,7 +35,11 @@ impl Visit {
                 self.idle.restart(now);
                 self.interrupted();
             }
-            Event::Quit(_) | Event::FocusGained | Event::Ready | Event::Suspend => {}
+            Event::Quit(_)
+            | Event::FocusGained
+            | Event::Ready
+            | Event::Suspend
+            | Event::TmuxTold(_) => {}
         }
     }
 

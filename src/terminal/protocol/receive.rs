@@ -228,7 +228,7 @@ impl Protocol {
             }
         }
         if self.tmux.as_ref() != Some(&client) {
-            self.known = Known { is_tmux: true, ..client.known() };
+            self.known = client.known();
             self.tmux = Some(client);
             self.events.push_back(Event::Identified);
         }
