@@ -35,13 +35,6 @@ pub(super) fn draw_frame(
     surface: impl Fn(u32, u32) -> Option<Surface>,
 ) {
     match depth {
-        ColorDepth::True if glyphs == GlyphSet::Half => {
-            for (y, upper) in (area.top()..area.bottom()).zip((above..).step_by(2)) {
-                let pixels = frame.row(upper).zip(frame.row(upper + 1));
-                let pixels = pixels.map(|(top, bottom)| [top, bottom]);
-                canvas.draw_pixels(area.x, y, pixels.take(area.width.into()));
-            }
-        }
         ColorDepth::True => draw(area, canvas, glyphs, depth, |y| {
             let row = frame.row_slice(above + y);
             move |x| row[x as usize]
@@ -74,6 +67,14 @@ pub(super) fn draw<Row: Fn(u32) -> Rgb>(
     row: impl Fn(u32) -> Row,
 ) {
     match glyphs {
+        // Most cells of most pictures, which need no search.
+        GlyphSet::Half if depth == ColorDepth::True => {
+            for (y, upper) in (area.top()..area.bottom()).zip((0..).step_by(2)) {
+                let [upper, lower] = [row(upper), row(upper + 1)];
+                let pixels = (0..u32::from(area.width)).map(|x| [upper(x), lower(x)]);
+                canvas.draw_pixels(area.x, y, pixels);
+            }
+        }
         GlyphSet::Octant => draw_cells::<8, _>(area, canvas, depth, row),
         GlyphSet::Sextant => draw_cells::<6, _>(area, canvas, depth, row),
         GlyphSet::Quadrant => draw_cells::<4, _>(area, canvas, depth, row),
