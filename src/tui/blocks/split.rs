@@ -12,6 +12,12 @@
 //! less in pictures and 2 to 4 hundredths less in random cells. One colour for cells of nearly one: at 4 levels a
 //! channel these are 2 in 100. The exact search over all masks, 127 of them for octants.
 
+#![expect(
+    clippy::needless_range_loop,
+    clippy::inline_always,
+    reason = "loops by index, in one function, are what the compiler turns into vectors"
+)]
+
 use std::array;
 
 use crate::color::Rgb;
@@ -218,7 +224,7 @@ fn along<const N: usize>(points: &[[Lanes<i16>; N]; 3], axis: &[Lanes<i16>; 3]) 
     for channel in 0..3 {
         for_each(&mut distances, |distance, place, cell| {
             let point = points[channel][place][cell].wrapping_mul(4);
-            let product = i32::from(point) * i32::from(axis[channel][cell]) >> 16;
+            let product = (i32::from(point) * i32::from(axis[channel][cell])) >> 16;
             *distance = distance.wrapping_add(product as i16);
         });
     }
