@@ -233,6 +233,10 @@ impl Session {
 
     /// The finest block glyphs that the terminal is known to draw.
     pub fn glyph_support(&self) -> GlyphSet {
+        // A recording must play on any terminal.
+        if self.guard.recording().is_on() {
+            return GlyphSet::Half;
+        }
         self.protocol.glyph_support()
     }
 
