@@ -55,7 +55,7 @@ impl Frame {
     }
 
     /// The rows from the top, to change their pixels.
-    #[cfg(feature = "terminal")]
+    #[cfg(feature = "tui")]
     pub(crate) fn rows_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [Rgb]> {
         let width = self.width() as usize;
         self.pixels.chunks_exact_mut(width)

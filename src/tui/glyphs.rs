@@ -2,7 +2,6 @@
 
 use ratatui::style::Color;
 
-use super::blocks;
 use crate::canvas::true_color;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
@@ -53,7 +52,7 @@ impl GlyphSet {
                 let across = cell * columns + column;
                 (2 * across + 1) * rows < (2 * row + 1) * CELLS * columns
             });
-            blocks::lit(self, dots).character()
+            super::blocks::lit(self, dots).character()
         };
         (0..CELLS).map(cell).collect()
     }
