@@ -9,7 +9,7 @@
 //! - An error is a squared distance in Oklab, with chroma weighted by [`CHROMA_WEIGHT`].
 //! - The contrast of the two colours of a shade is an error of its own, since the dots can be seen.
 //! - The eye blurs the parts of a cell: most of its error is that of its mean.
-//! - A cell keeps the two colours of the cell to its left unless that adds [`Limits::sharing`] to its
+//! - A cell keeps the two colours of the cell to its left unless that adds [`SHARING`] to its
 //!   error: colours that are not sent again save bytes, and surfaces look calmer.
 //! - Choices are made in integers from tables, the same on every machine.
 //!
@@ -75,8 +75,6 @@ struct Limits {
     chroma: f64,
     /// The error of a shade's contrast, in 4096ths of the squared distance of its two colours.
     contrast: u32,
-    /// The error that a cell may add to keep the colours of the cell to its left.
-    sharing: u32,
 }
 
 impl Limits {
@@ -87,23 +85,15 @@ impl Limits {
     }
 }
 
-static LIMITS_OF_256: Limits = Limits {
-    indices: CUBE..=u8::MAX,
-    lightness: 0.5,
-    chroma: 0.2,
-    contrast: 10,
-    sharing: squared(0.015),
-};
-static LIMITS_OF_16: Limits = Limits {
-    indices: 0..=CUBE - 1,
-    lightness: 1.0,
-    chroma: 0.35,
-    contrast: 7,
-    sharing: squared(0.015),
-};
+static LIMITS_OF_256: Limits =
+    Limits { indices: CUBE..=u8::MAX, lightness: 0.5, chroma: 0.2, contrast: 10 };
+static LIMITS_OF_16: Limits =
+    Limits { indices: 0..=CUBE - 1, lightness: 1.0, chroma: 0.35, contrast: 7 };
 
 /// The weight of the red–green and the yellow–blue component.
 const CHROMA_WEIGHT: f64 = 1.5;
+/// The error that a cell may add to keep the colours of the cell to its left.
+const SHARING: u32 = squared(0.015);
 /// The weight of the errors of a cell's parts, beside that of the whole, in 256ths.
 const DETAIL_WEIGHT: u32 = 90;
 
@@ -138,7 +128,7 @@ struct Mixtures {
     shades: Shades,
     /// By level: the place of the colour, and the index of the palette colour nearest to it.
     nearest: Table,
-    /// By level: the shade nearest to the colour, and its error.
+    /// By level: the quarters and the colours of the shade nearest to the colour.
     mixed: Table,
     /// By text colour, background colour and quarters: the place of a shade.
     places: Table,
@@ -225,7 +215,7 @@ impl Mixtures {
         let shade = (self.error_of_shade(&wanted, quarters, pair), Look::Shade(quarters, pair));
         let best = if shade.0 < parts.0 { shade } else { parts };
 
-        let mut shared = (best.0 + self.limits.sharing, best.1);
+        let mut shared = (best.0 + SHARING, best.1);
         let mut offer = |error, look| {
             if error < shared.0 {
                 shared = (error, look);

@@ -172,14 +172,8 @@ fn distances<const N: usize>(points: &[[Lanes<i16>; N]; 3]) -> [Lanes<i16>; N] {
             | points[1][place][cell] & chosen[1][cell]
             | points[2][place][cell] & chosen[2][cell];
     });
-    for _ in 0..ROUNDS {
-        distances = along(points, &axis(points, &distances));
-    }
-    distances
+    along(points, &axis(points, &distances))
 }
-
-/// The number of directions after the first.
-const ROUNDS: usize = 1;
 
 /// The sum of the points whose distance is positive. The largest component is about 32767.
 #[inline(always)]
