@@ -197,7 +197,7 @@ impl Renderer {
 }
 
 /// The arguments of a drawing, for any caster.
-struct Picture<'a> {
+pub(crate) struct Picture<'a> {
     world: &'a World,
     camera: &'a Camera,
     filter: Filter,

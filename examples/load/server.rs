@@ -13,8 +13,8 @@ use crate::process::Usage;
 
 /// A server that runs until this is dropped.
 pub(crate) struct ServerProcess {
-    pub(super) child: Child,
-    pub(super) folder: PathBuf,
+    pub(crate) child: Child,
+    pub(crate) folder: PathBuf,
     pub(crate) address: SocketAddr,
     /// Where its metrics are; `None` if it has none.
     pub(crate) metrics: Option<SocketAddr>,

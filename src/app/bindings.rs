@@ -5,7 +5,7 @@ mod presets;
 use crate::game::Intent;
 use crate::sort;
 use crate::terminal::{Key, KeyEvent};
-pub(super) use presets::PRESETS;
+pub(crate) use presets::PRESETS;
 
 /// An action that a key can be bound to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -105,12 +105,12 @@ impl Action {
     ];
 
     /// The action with that name.
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(.., action)| action)
     }
 
     /// Whether the actions exclude each other.
-    pub(super) fn opposes(self, other: Self) -> bool {
+    pub(crate) fn opposes(self, other: Self) -> bool {
         matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
     }
 }
@@ -134,7 +134,7 @@ impl Bindings {
 
     /// Replaces the keys of the actions in `rebound` by `bound`. Keys in `bound` are removed from
     /// other actions.
-    pub(super) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
+    pub(crate) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
         let is_bound = |key| bound.iter().any(|&(bound, _)| bound == key);
         self.keys.retain(|&(key, action)| !rebound.contains(&action) && !is_bound(key));
         self.keys.extend(bound);

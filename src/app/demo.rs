@@ -12,7 +12,7 @@ const LEVEL: &str = "citadel";
 const SCRIPT: &str = include_str!("../../maps/showcase.script");
 
 /// A level that a script plays, again and again.
-pub(super) struct Demo {
+pub(crate) struct Demo {
     level: &'static builtin::Level,
     cursor: ScriptCursor,
 }
@@ -20,7 +20,7 @@ pub(super) struct Demo {
 impl Demo {
     /// The demo and its level at the start. Only this level is read, as the first picture of the
     /// program needs no other.
-    pub(super) fn begin() -> Option<(Self, Played)> {
+    pub(crate) fn begin() -> Option<(Self, Played)> {
         let level = builtin::LEVELS.iter().find(|level| level.name == LEVEL)?;
         let script = Script::parse(SCRIPT, "showcase").ok()?;
         let demo = Self { level, cursor: ScriptCursor::new(&script) };
@@ -29,12 +29,12 @@ impl Demo {
     }
 
     /// The intents of the next step; `None` at the end of the script.
-    pub(super) fn next(&mut self) -> Option<Intents> {
+    pub(crate) fn next(&mut self) -> Option<Intents> {
         self.cursor.next()
     }
 
     /// Returns to the start of the script, and returns the level at its start.
-    pub(super) fn rewind(&mut self) -> Option<Played> {
+    pub(crate) fn rewind(&mut self) -> Option<Played> {
         self.cursor.rewind();
         self.again()
     }

@@ -11,14 +11,14 @@ use crate::game::{Game, PlayerId};
 
 impl App {
     /// Draws the screen.
-    pub(super) fn draw(&mut self, canvas: &mut impl Canvas) {
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas) {
         self.render(canvas.bounds().as_size(), &mut |_, _| true);
         self.paint(canvas);
     }
 
     /// Renders the picture for a window of this size; may stop once `go_on` returns `false`, which it
     /// may decide by the screen and the keys. Returns whether the picture is complete.
-    pub(super) fn render(
+    pub(crate) fn render(
         &mut self,
         window: Size,
         go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
@@ -36,7 +36,7 @@ impl App {
     }
 
     /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
-    pub(super) fn paint(&mut self, canvas: &mut impl Canvas) {
+    pub(crate) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
         if panels::is_too_small(area) {
             return panels::too_small(canvas);

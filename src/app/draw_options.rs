@@ -47,7 +47,7 @@ impl DrawOptions {
     }
 
     /// The picture of `scene` from `camera` at the time `seconds`.
-    pub(super) fn picture<'a, S: Renderable>(
+    pub(crate) fn picture<'a, S: Renderable>(
         &self,
         scene: &'a S,
         camera: &'a S::Camera,
@@ -65,7 +65,7 @@ impl DrawOptions {
 
     /// Renders `picture` for an area of this size into `view`; may stop once `go_on` returns `false`.
     /// Returns whether the picture is complete.
-    pub(super) fn render<S: Renderable>(
+    pub(crate) fn render<S: Renderable>(
         &self,
         picture: &FirstPerson<'_, S>,
         size: Size,

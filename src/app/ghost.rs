@@ -15,7 +15,7 @@ const OPACITY: u8 = 96;
 
 /// The game of the best run, step by step beside that of the player.
 #[derive(Debug)]
-pub(super) struct Ghost {
+pub(crate) struct Ghost {
     game: Game,
     cursor: ScriptCursor,
     /// The intents of the next step; `None` at the end of the script.
@@ -24,7 +24,7 @@ pub(super) struct Ghost {
 
 impl App {
     /// Switches ghosts on or off, and says so.
-    pub(super) fn toggle_ghost(&mut self) {
+    pub(crate) fn toggle_ghost(&mut self) {
         self.prefer(|it| it.ghost ^= true);
         let is_on = self.store.preferences().ghost;
         let (text, short) = match (is_on, &self.ghost) {
@@ -41,13 +41,13 @@ impl App {
 
 impl Ghost {
     /// The best run at its start, in `game` at its start.
-    pub(super) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
+    pub(crate) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
         let next = cursor.next();
         Self { game, cursor, next }
     }
 
     /// Advances by one step.
-    pub(super) fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         if let Some(intents) = self.next {
             self.game.step(intents);
             self.next = self.cursor.next();
@@ -55,7 +55,7 @@ impl Ghost {
     }
 
     /// The number of steps in which the ghost stays as it is, at most `most`.
-    pub(super) fn quiet_steps(&self, most: u64) -> u64 {
+    pub(crate) fn quiet_steps(&self, most: u64) -> u64 {
         match self.next {
             Some(intents) => self.game.quiet_steps(intents).min(1).min(most),
             None => most,
@@ -63,12 +63,12 @@ impl Ghost {
     }
 
     /// A number that changes when the ghost has moved.
-    pub(super) fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 {
         self.game.tally().steps
     }
 
     /// The figure of the ghost; `None` after it has left the level.
-    pub(super) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
+    pub(crate) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
         let camera = self.camera()?;
         Some(Figure {
             sprite,
@@ -81,7 +81,7 @@ impl Ghost {
     }
 
     /// The ghost on the map; `None` after it has left the level.
-    pub(super) fn on_map(&self) -> Option<MapMark> {
+    pub(crate) fn on_map(&self) -> Option<MapMark> {
         let camera = self.camera()?;
         Some(MapMark { position: camera.position(), heading: camera.heading })
     }

@@ -13,7 +13,7 @@ const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 
 /// A goal, and how much longer it is shown.
 #[derive(Clone, Debug)]
-pub(super) struct Goal {
+pub(crate) struct Goal {
     text: String,
     short: String,
     steps_left: u64,
@@ -21,7 +21,7 @@ pub(super) struct Goal {
 
 impl Goal {
     /// The goal of `game`, from its map if that has one.
-    pub(super) fn of(game: &Played, display: MapDisplay) -> Self {
+    pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
         let (text, short) = match game.goal() {
             Some(own) => (own, own),
             None if game.has_exit() && display == MapDisplay::Off => {
@@ -34,27 +34,27 @@ impl Goal {
     }
 
     /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
-    pub(super) fn new(text: &str, short: &str) -> Self {
+    pub(crate) fn new(text: &str, short: &str) -> Self {
         Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
     }
 
     /// A sentence without its full stop.
-    pub(super) fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
     /// A shorter form for narrow windows.
-    pub(super) fn short(&self) -> &str {
+    pub(crate) fn short(&self) -> &str {
         &self.short
     }
 
     /// Whether the goal is still shown.
-    pub(super) fn is_shown(&self) -> bool {
+    pub(crate) fn is_shown(&self) -> bool {
         self.steps_left > 0
     }
 
     /// Counts `steps` steps in which the player wanted something.
-    pub(super) fn moved(&mut self, steps: u64) {
+    pub(crate) fn moved(&mut self, steps: u64) {
         self.steps_left = self.steps_left.saturating_sub(steps);
     }
 }

@@ -30,7 +30,7 @@ const GAP: usize = 3;
 
 impl App {
     /// Scrolls the help if `key` does that. Returns whether it does.
-    pub(super) fn scroll_help(&mut self, key: Key) -> bool {
+    pub(crate) fn scroll_help(&mut self, key: Key) -> bool {
         let before = self.help.first;
         let scrolls = self.help.scroll(key);
         if self.help.first != before {

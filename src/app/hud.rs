@@ -17,15 +17,15 @@ use super::wrap::wrapped;
 use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::render::Frame;
-pub(super) use compass::draw as draw_compass;
-pub(super) use edge::{draw as draw_edge, tint};
-pub(super) use sounds::draw as draw_sounds;
+pub(crate) use compass::draw as draw_compass;
+pub(crate) use edge::{draw as draw_edge, tint};
+pub(crate) use sounds::draw as draw_sounds;
 
 /// The widest text of a note, in columns.
 const NOTE_COLUMNS: usize = 56;
 
 /// Draws the text of a note at the bottom of the picture.
-pub(super) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
+pub(crate) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
     let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
     let columns = most_columns.min(NOTE_COLUMNS);
     let lines: Vec<String> = note.lines().flat_map(|line| wrapped(line, columns)).collect();
@@ -45,7 +45,7 @@ pub(super) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
 }
 
 /// Marks the middle of a picture that is painted in half blocks.
-pub(super) fn mark_middle(frame: &mut Frame) {
+pub(crate) fn mark_middle(frame: &mut Frame) {
     let (x, y) = (frame.width() as usize / 2, frame.height() as usize / 2);
     let Some(pixel) = frame.rows_mut().nth(y).and_then(|row| row.get_mut(x)) else { return };
     *pixel = if pixel.luma() < 128 { Rgb::WHITE } else { Rgb::BLACK };

@@ -19,7 +19,7 @@ type HasArrived<'a> = dyn FnMut(&dyn Fn(&Event) -> bool) -> bool + 'a;
 
 /// The result of rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rendered {
+pub(crate) enum Rendered {
     Complete,
     /// Parts of the picture are older. It is painted all the same, since the panel over it is new.
     Partial,
@@ -30,7 +30,7 @@ pub(super) enum Rendered {
 impl App {
     /// Renders the picture for a window of this size, unless an event comes first. `has_arrived` returns
     /// whether such an event has arrived.
-    pub(super) fn render_unless(
+    pub(crate) fn render_unless(
         &mut self,
         window: Size,
         has_arrived: &mut HasArrived<'_>,

@@ -26,7 +26,7 @@ const WIDEST_VIEW: f64 = 120.0;
 
 impl App {
     /// Handles a press, a repetition or a release at time `now`.
-    pub(super) fn key(&mut self, event: KeyEvent, now: Duration) {
+    pub(crate) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
         let event = self.settings.bindings.resolve(event);
         let key_context = self.key_context();
@@ -37,25 +37,25 @@ impl App {
     }
 
     /// Handles the loss of the focus: keys may be released in another window.
-    pub(super) fn focus_lost(&mut self, now: Duration) {
+    pub(crate) fn focus_lost(&mut self, now: Duration) {
         self.advance(now);
         self.release_keys();
         self.pointer.forget();
     }
 
     /// Releases all keys.
-    pub(super) fn release_keys(&mut self) {
+    pub(crate) fn release_keys(&mut self) {
         self.controls.held.release_all();
     }
 
     /// Answers the question on the screen by a pending key that did not repeat.
-    pub(super) fn settle(&mut self, now: Duration) {
+    pub(crate) fn settle(&mut self, now: Duration) {
         if let Some(key) = self.pending.settle(now) {
             self.answer(key);
         }
     }
 
-    pub(super) fn key_context(&self) -> KeyContext {
+    pub(crate) fn key_context(&self) -> KeyContext {
         KeyContext {
             plays: self.screen == Screen::Playing,
             is_airborne: self.game.is_airborne(),
@@ -178,7 +178,7 @@ impl App {
         }
     }
 
-    pub(super) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+    pub(crate) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
         let mut preferences = self.store.preferences();
         change(&mut preferences);
         self.set_preferences(preferences);
@@ -212,7 +212,7 @@ impl App {
     }
 
     /// Leaves the program.
-    pub(super) fn leave(&mut self) {
+    pub(crate) fn leave(&mut self) {
         _ = self.leave_game();
         self.has_left = true;
     }
@@ -240,7 +240,7 @@ impl App {
     }
 
     /// The player's intents by the held keys.
-    pub(super) fn intents(&self) -> Intents {
+    pub(crate) fn intents(&self) -> Intents {
         self.controls.intents(&self.settings.bindings, self.key_context())
     }
 

@@ -14,16 +14,16 @@ use crate::world::Difficulty;
 
 /// The levels of a game, in order. Each but the first is created when it is reached.
 pub struct Levels {
-    pub(super) first: Stage,
-    pub(super) rest: Box<dyn Iterator<Item = Stage>>,
-    pub(super) changes: Option<Changes>,
-    pub(super) number: LevelNumber,
-    pub(super) course: Course,
+    pub(crate) first: Stage,
+    pub(crate) rest: Box<dyn Iterator<Item = Stage>>,
+    pub(crate) changes: Option<Changes>,
+    pub(crate) number: LevelNumber,
+    pub(crate) course: Course,
 }
 
 /// What levels belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) enum Course {
+pub(crate) enum Course {
     /// Levels that are tried again until they are won.
     #[default]
     Levels,
@@ -34,7 +34,7 @@ pub(super) enum Course {
 }
 
 /// A level before it begins. It can begin any number of times.
-pub(super) struct Stage {
+pub(crate) struct Stage {
     content: Content,
 }
 
@@ -48,7 +48,7 @@ enum Content {
 
 /// The number of a level, counted from 1, and the number of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LevelNumber {
+pub(crate) struct LevelNumber {
     number: usize,
     /// `None` if the number is unlimited or unknown.
     of: Option<usize>,
@@ -80,7 +80,7 @@ impl Levels {
     }
 
     /// The floors of the descent with that seed, without an end.
-    pub(super) fn descent(seed: u64, course: Course) -> Self {
+    pub(crate) fn descent(seed: u64, course: Course) -> Self {
         let stage = move |number| Stage { content: Content::Floor { seed, number } };
         Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
     }
@@ -101,7 +101,7 @@ impl Levels {
     }
 
     /// No level.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self::staged(Stage::nothing(), iter::empty())
     }
 
@@ -118,17 +118,17 @@ impl Levels {
 
 impl Stage {
     /// A level in which there is nothing.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self { content: Content::Level(Level::Space(Scene::default())) }
     }
 
     /// A built-in level.
-    pub(super) fn builtin(level: &'static builtin::Level) -> Self {
+    pub(crate) fn builtin(level: &'static builtin::Level) -> Self {
         Self { content: Content::Builtin(level) }
     }
 
     /// The name under which results of the level are kept, if they are.
-    pub(super) fn name(&self) -> Option<&str> {
+    pub(crate) fn name(&self) -> Option<&str> {
         match &self.content {
             Content::Builtin(level) => Some(level.name),
             Content::Own(own) => Some(&own.key),
@@ -137,7 +137,7 @@ impl Stage {
     }
 
     /// The path of the level's map file, if it is known.
-    pub(super) fn file(&self) -> Option<&str> {
+    pub(crate) fn file(&self) -> Option<&str> {
         match &self.content {
             Content::Own(own) => own.file.as_deref(),
             _ => None,
@@ -145,7 +145,7 @@ impl Stage {
     }
 
     /// The level at its start; `None` if a built-in level has faults, which tests exclude.
-    pub(super) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
+    pub(crate) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
         let rules = Rules { difficulty, seed: 0 };
         Some(match &self.content {
             Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
@@ -161,7 +161,7 @@ impl Stage {
     }
 
     /// Replaces the level by a changed one.
-    pub(super) fn change(&mut self, level: Level) {
+    pub(crate) fn change(&mut self, level: Level) {
         self.content = Content::Level(level);
     }
 }
@@ -169,17 +169,17 @@ impl Stage {
 impl LevelNumber {
     /// The number of the next level.
     #[must_use]
-    pub(super) fn next(self) -> Self {
+    pub(crate) fn next(self) -> Self {
         Self { number: self.number + 1, ..self }
     }
 
     /// Whether there are several levels, as far as known.
-    pub(super) fn is_one_of_several(self) -> bool {
+    pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
     }
 
     /// Writes the number as `2/5`.
-    pub(super) fn write_short(self, to: &mut impl fmt::Write) -> fmt::Result {
+    pub(crate) fn write_short(self, to: &mut impl fmt::Write) -> fmt::Result {
         match self.of {
             Some(count) => write!(to, "{}/{count}", self.number),
             None => write!(to, "{}", self.number),

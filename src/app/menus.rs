@@ -13,7 +13,7 @@ use crate::world::Difficulty;
 
 /// What an entry of a menu does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Choice {
+pub(crate) enum Choice {
     /// Opens a screen.
     Open(Screen),
     /// Begins the campaign.
@@ -58,7 +58,7 @@ pub(super) enum Choice {
 
 impl App {
     /// The menu of `screen`; an empty one if it has none.
-    pub(super) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
+    pub(crate) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
         match screen {
             Screen::Title => self.title_menu(),
             Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
@@ -81,7 +81,7 @@ impl App {
     }
 
     /// Does what the selected entry says.
-    pub(super) fn choose(&mut self) {
+    pub(crate) fn choose(&mut self) {
         let Some(choice) = self.menu.choice() else { return };
         match choice {
             Choice::Open(screen) => self.open(screen),
@@ -142,7 +142,7 @@ impl App {
         }
     }
 
-    pub(super) fn title_menu(&self) -> Menu<Choice> {
+    pub(crate) fn title_menu(&self) -> Menu<Choice> {
         let menu = self
             .with_continue(Menu::new(""))
             .entry("New game", Choice::Open(Screen::NewGame))
@@ -177,7 +177,7 @@ impl App {
     }
 
     /// Looks for the player's own maps now.
-    pub(super) fn find_own_maps(&mut self) {
+    pub(crate) fn find_own_maps(&mut self) {
         let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
         self.own_maps = find.map_or_else(Vec::new, |find| find());
     }
@@ -214,7 +214,7 @@ impl App {
     }
 
     /// Adds the entries that end the game.
-    pub(super) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let menu = match &self.offers {
             Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
             None => menu,
@@ -242,7 +242,7 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
 }
 
 /// `text` with a capital letter at its start.
-pub(super) fn capitalized(text: &str) -> String {
+pub(crate) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     // Writing to a string never fails.

@@ -135,7 +135,7 @@ impl Pointer {
     }
 
     /// Whether there was motion or a click since the last step.
-    pub(super) fn has_input(&self) -> bool {
+    pub(crate) fn has_input(&self) -> bool {
         self.moved != [0, 0] || !self.clicked.is_empty()
     }
 
@@ -155,13 +155,13 @@ impl Pointer {
 
 impl App {
     /// Handles an event of the mouse at time `now`.
-    pub(super) fn mouse(&mut self, event: MouseEvent, now: Duration) {
+    pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
         self.advance(now);
         self.pointer.handle(event, self.screen == Screen::Playing);
     }
 
     /// The player's intents for the next step, by keys and mouse.
-    pub(super) fn wanted(&self) -> Intents {
+    pub(crate) fn wanted(&self) -> Intents {
         let keys = self.intents();
         keys.iter()
             .chain(self.pointer.clicked().iter())

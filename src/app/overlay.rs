@@ -92,7 +92,7 @@ impl<'a> Overlay<'a> {
 
 impl DrawOptions {
     /// Marks the middle by a character, where pixels do not show it.
-    pub(super) fn draw_middle(&self, canvas: &mut impl Canvas, area: Rect) {
+    pub(crate) fn draw_middle(&self, canvas: &mut impl Canvas, area: Rect) {
         let is_plain = self.depth == ColorDepth::Mono;
         if self.marks_middle && (is_plain || !self.glyphs.has_blocks()) {
             let (x, y) = (area.x + area.width / 2, area.y + area.height / 2);

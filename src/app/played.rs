@@ -18,14 +18,14 @@ use crate::world::{FieldOfView, Heading};
 
 /// A level that is being played.
 #[derive(Debug)]
-pub(super) enum Played {
+pub(crate) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
 }
 
 /// A game that advances in steps. It cannot be formatted for debugging: the program would contain that code for
 /// all of a game.
-pub(super) trait Simulation {
+pub(crate) trait Simulation {
     /// The level's title, or a substitute if the map gives none.
     fn title(&self) -> &str;
 
@@ -51,7 +51,7 @@ pub(super) trait Simulation {
 
 /// The player's position and direction of view, in a grid or among bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Viewpoint {
+pub(crate) struct Viewpoint {
     position: DVec3,
     heading: Heading,
     /// The direction upwards: the slope of a pitch, or an elevation in radians.
@@ -61,30 +61,30 @@ pub(super) struct Viewpoint {
 
 /// The state of both views between frames.
 #[derive(Default)]
-pub(super) struct Views {
-    pub(super) grid: View,
+pub(crate) struct Views {
+    pub(crate) grid: View,
     space: View<space::Scene>,
 }
 
 impl Views {
-    pub(super) fn new(grid: View) -> Self {
+    pub(crate) fn new(grid: View) -> Self {
         Self { grid, ..Self::default() }
     }
 
     /// The game time of the next change in the last picture that the player does not cause; `None`
     /// for never.
-    pub(super) fn next_change(&self) -> Option<f64> {
+    pub(crate) fn next_change(&self) -> Option<f64> {
         self.grid.next_change()
     }
 }
 
 impl Played {
-    pub(super) fn new(level: Level) -> Self {
+    pub(crate) fn new(level: Level) -> Self {
         Self::with_rules(level, Rules::default())
     }
 
     /// `level` at its start, with these rules.
-    pub(super) fn with_rules(level: Level, rules: Rules) -> Self {
+    pub(crate) fn with_rules(level: Level, rules: Rules) -> Self {
         match level {
             Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
             Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
@@ -92,12 +92,12 @@ impl Played {
     }
 
     /// A flight through nothing.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self::new(Level::Space(space::Scene::default()))
     }
 
     /// Begins `level` at the player's position in this game, if possible.
-    pub(super) fn begun_again_in(&self, level: Level) -> Self {
+    pub(crate) fn begun_again_in(&self, level: Level) -> Self {
         match (self, level) {
             (Self::Grid(game), Level::Grid(world)) => {
                 Self::Grid(Box::new(game.begun_again_in(*world)))
@@ -110,7 +110,7 @@ impl Played {
     }
 
     /// The game, if it is in a grid.
-    pub(super) fn grid(&self) -> Option<&Game> {
+    pub(crate) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,
@@ -118,49 +118,49 @@ impl Played {
     }
 
     /// The goal that the map gives.
-    pub(super) fn goal(&self) -> Option<&str> {
+    pub(crate) fn goal(&self) -> Option<&str> {
         self.grid()?.world().goal()
     }
 
     /// Whether the level has an exit.
-    pub(super) fn has_exit(&self) -> bool {
+    pub(crate) fn has_exit(&self) -> bool {
         self.grid().is_some_and(Game::has_exit)
     }
 
     /// The player's cell in a generated level.
-    pub(super) fn site(&self) -> Option<Site> {
+    pub(crate) fn site(&self) -> Option<Site> {
         self.grid()?.site()
     }
 
     /// The names of the keys that the player has.
-    pub(super) fn keys(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &str> {
         self.grid().into_iter().flat_map(Game::keys)
     }
 
     /// The message for the player.
-    pub(super) fn message(&self) -> Option<&str> {
+    pub(crate) fn message(&self) -> Option<&str> {
         self.grid()?.message()
     }
 
     /// Whether the player is dead.
-    pub(super) fn is_dead(&self) -> bool {
+    pub(crate) fn is_dead(&self) -> bool {
         self.grid().is_some_and(|game| matches!(game.outcome(), Outcome::Dead { .. }))
     }
 
     /// The game, if it is in a grid.
-    pub(super) fn grid_mut(&mut self) -> Option<&mut Game> {
+    pub(crate) fn grid_mut(&mut self) -> Option<&mut Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,
         }
     }
 
-    pub(super) fn is_airborne(&self) -> bool {
+    pub(crate) fn is_airborne(&self) -> bool {
         self.grid().is_some_and(Game::is_airborne)
     }
 
     /// Whether the player flies, so that ducking moves down.
-    pub(super) fn flies(&self) -> bool {
+    pub(crate) fn flies(&self) -> bool {
         self.grid().is_none()
     }
 }

@@ -20,7 +20,7 @@ pub struct Recording {
 }
 
 /// Writes a script while the game is played.
-pub(super) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
+pub(crate) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
 
 impl fmt::Debug for Recording {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -33,7 +33,7 @@ impl fmt::Debug for Recording {
 
 impl App {
     /// Records that the player had `intents` for `steps` steps.
-    pub(super) fn record(&mut self, intents: Intents, steps: u64) {
+    pub(crate) fn record(&mut self, intents: Intents, steps: u64) {
         self.log.record(intents, steps);
         if let Some(script) = &mut self.script {
             // The game continues if recording fails. The owner of the file asks for the error

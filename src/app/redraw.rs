@@ -13,7 +13,7 @@ use crate::world::Figure;
 
 impl App {
     /// Whether the screen is out of date.
-    pub(super) fn is_stale(&self) -> bool {
+    pub(crate) fn is_stale(&self) -> bool {
         let Some(Shown { viewpoint, revision, figures }) = &self.shown else { return true };
         (*viewpoint, *revision) != self.surroundings()
             || !self.figures_in_view().eq(figures)
@@ -39,13 +39,13 @@ impl App {
     }
 
     /// The number of steps until that change; `None` for never.
-    pub(super) fn steps_to_animation(&self) -> Option<u64> {
+    pub(crate) fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
         Some(steps.round().max(0.0) as u64)
     }
 
     /// Records that the screen is up to date.
-    pub(super) fn drawn(&mut self) {
+    pub(crate) fn drawn(&mut self) {
         let (viewpoint, revision) = self.surroundings();
         let figures = self.figures_in_view().copied().collect();
         self.shown = Some(Shown { viewpoint, revision, figures });
@@ -54,7 +54,7 @@ impl App {
     }
 
     /// The time at which the game changes without an event; `None` for never.
-    pub(super) fn next_change(&self) -> Option<Duration> {
+    pub(crate) fn next_change(&self) -> Option<Duration> {
         if self.demo.is_some() {
             return Some(self.clock.step_after(0));
         }
@@ -71,7 +71,7 @@ impl App {
     }
 
     /// Whether the player wants nothing, and the next step changes only what others do.
-    pub(super) fn waits_for_others(&self) -> bool {
+    pub(crate) fn waits_for_others(&self) -> bool {
         let wanted = self.wanted();
         self.screen == Screen::Playing
             && self.demo.is_none()

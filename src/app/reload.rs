@@ -19,24 +19,24 @@ use crate::map::Level;
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Returns the level or its faults, if it has changed.
-pub(super) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
+pub(crate) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
 
 /// The source of changes, and the faults of the last one.
-pub(super) struct Reload {
+pub(crate) struct Reload {
     changes: Changes,
     next_check: Duration,
     fault: Option<String>,
 }
 
 impl Reload {
-    pub(super) fn from(changes: Changes) -> Self {
+    pub(crate) fn from(changes: Changes) -> Self {
         Self { changes, next_check: INTERVAL, fault: None }
     }
 }
 
 impl App {
     /// Checks for a change when it is time, and continues in the changed level.
-    pub(super) fn reload(&mut self, now: Duration) {
+    pub(crate) fn reload(&mut self, now: Duration) {
         let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
             return;
         };
@@ -62,12 +62,12 @@ impl App {
     }
 
     /// The time of the next check; `None` for never.
-    pub(super) fn next_reload(&self) -> Option<Duration> {
+    pub(crate) fn next_reload(&self) -> Option<Duration> {
         self.reload.as_ref().map(|reload| reload.next_check)
     }
 
     /// Draws the faults of the level, if any, over the bottom of the picture.
-    pub(super) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
+    pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
         let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
         let Some(fault) = fault else { return };
         let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));

@@ -11,16 +11,16 @@ use crate::store::{Improved, Run};
 
 /// The result of a level that was won.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LevelResult {
-    pub(super) tally: Tally,
-    pub(super) par: Option<u32>,
-    pub(super) rank: Rank,
-    pub(super) improved: Improved,
+pub(crate) struct LevelResult {
+    pub(crate) tally: Tally,
+    pub(crate) par: Option<u32>,
+    pub(crate) rank: Rank,
+    pub(crate) improved: Improved,
 }
 
 impl App {
     /// Records the level that has just been won, and returns its result.
-    pub(super) fn record_result(&mut self) -> Option<LevelResult> {
+    pub(crate) fn record_result(&mut self) -> Option<LevelResult> {
         if self.is_descent() {
             self.record_floor();
         }
@@ -42,7 +42,7 @@ impl App {
 
     /// The script of the run so far, with a header that names the level. A descent is one run from its
     /// first floor on.
-    pub(super) fn run_script(&self, game: &Game) -> String {
+    pub(crate) fn run_script(&self, game: &Game) -> String {
         let level = if self.is_descent() {
             Some(LevelName::of_floor(1))
         } else {
@@ -54,7 +54,7 @@ impl App {
     }
 
     /// One line about the game that is played: the level, the time, and what happened.
-    pub(super) fn summary(&self) -> Option<String> {
+    pub(crate) fn summary(&self) -> Option<String> {
         if self.demo.is_some() || self.log.is_empty() {
             return self.left.clone();
         }
@@ -77,7 +77,7 @@ impl App {
 
     /// Keeps what was done in the game that is left, and saves it to go on with later. Returns a sentence if
     /// it is not saved, which is also in the line about the game.
-    pub(super) fn leave_game(&mut self) -> Option<String> {
+    pub(crate) fn leave_game(&mut self) -> Option<String> {
         self.left = self.summary();
         let saved = self.save_game();
         self.log = RunLog::default();
@@ -87,14 +87,14 @@ impl App {
     }
 
     /// The best run of the level as a script, to walk along.
-    pub(super) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
+    pub(crate) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
         let text = self.store.script(stage.name()?, self.difficulty)?;
         Script::parse(&text, "the best run").ok().map(|script| ScriptCursor::new(&script))
     }
 
     /// The index of the first built-in level that was not won at the preferred difficulty, if any
     /// was won.
-    pub(super) fn first_not_won(&self) -> Option<usize> {
+    pub(crate) fn first_not_won(&self) -> Option<usize> {
         let difficulty = self.store.preferences().difficulty;
         let won: Vec<&str> = self.store.won(difficulty).collect();
         let index = builtin::LEVELS.iter().position(|level| !won.contains(&level.name))?;
@@ -103,13 +103,13 @@ impl App {
 }
 
 /// The name of a level for the player: without the hash of a map's text.
-pub(super) fn shown_name(key: &str) -> &str {
+pub(crate) fn shown_name(key: &str) -> &str {
     match key.rsplit_once('-').filter(|_| builtin_named(key).is_none()) {
         Some((name, _)) => name,
         None => key,
     }
 }
 
-pub(super) fn builtin_named(name: &str) -> Option<usize> {
+pub(crate) fn builtin_named(name: &str) -> Option<usize> {
     builtin::LEVELS.iter().position(|level| level.name == name)
 }

@@ -4,13 +4,13 @@ use crate::game::{Intents, Stretch};
 
 /// The stretches of a run so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct RunLog {
+pub(crate) struct RunLog {
     stretches: Vec<Stretch>,
 }
 
 impl RunLog {
     /// Records that the player wants `intents` for `steps` more steps.
-    pub(super) fn record(&mut self, intents: Intents, mut steps: u64) {
+    pub(crate) fn record(&mut self, intents: Intents, mut steps: u64) {
         while steps > 0 {
             let last = self.stretches.last_mut().filter(|last| last.intents == intents);
             let room = last.map_or(0, |last| {
@@ -28,21 +28,21 @@ impl RunLog {
     }
 
     /// Whether nothing has been recorded.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.stretches.is_empty()
     }
 
     /// The number of steps.
-    pub(super) fn steps(&self) -> u64 {
+    pub(crate) fn steps(&self) -> u64 {
         self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
     }
 
-    pub(super) fn stretches(&self) -> &[Stretch] {
+    pub(crate) fn stretches(&self) -> &[Stretch] {
         &self.stretches
     }
 
     /// The script of the run, without a header.
-    pub(super) fn script(&self) -> String {
+    pub(crate) fn script(&self) -> String {
         self.stretches.iter().flat_map(|stretch| [stretch.to_string(), "\n".to_owned()]).collect()
     }
 }

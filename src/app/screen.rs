@@ -11,7 +11,7 @@ use crate::store::SaveId;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Screen {
+pub(crate) enum Screen {
     Title,
     /// The choice of a difficulty for a new game.
     NewGame,
@@ -48,34 +48,34 @@ pub(super) enum Screen {
 impl Screen {
     /// Whether the screen shows a result: nothing that it offers is chosen by a key that was meant
     /// for the game.
-    pub(super) fn is_result(self) -> bool {
+    pub(crate) fn is_result(self) -> bool {
         matches!(self, Self::LevelDone | Self::Dead | Self::End)
     }
 
     /// Whether the screen is a question before the first step of a level.
-    pub(super) fn is_before_start(self) -> bool {
+    pub(crate) fn is_before_start(self) -> bool {
         matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
     }
 
     /// Whether the screen has a menu.
-    pub(super) fn has_menu(self) -> bool {
+    pub(crate) fn has_menu(self) -> bool {
         !matches!(self, Self::Playing | Self::Help | Self::Leaving)
     }
 }
 
 /// A screen with its menu.
-pub(super) type Shelved = (Screen, Menu<Choice>);
+pub(crate) type Shelved = (Screen, Menu<Choice>);
 
 impl App {
     /// Shows `screen`, from which there is no way back.
-    pub(super) fn show(&mut self, screen: Screen) {
+    pub(crate) fn show(&mut self, screen: Screen) {
         self.behind.clear();
         let menu = self.menu_of(screen);
         self.enter((screen, menu));
     }
 
     /// Opens `screen` over the one that is shown.
-    pub(super) fn open(&mut self, screen: Screen) {
+    pub(crate) fn open(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
         let before = (self.screen, self.menu.clone());
         self.behind.push(before);
@@ -83,7 +83,7 @@ impl App {
     }
 
     /// Returns to the screen from which this one was opened, or to the game.
-    pub(super) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         let (screen, menu) = self.behind.pop().unwrap_or_else(|| (Screen::Playing, Menu::new("")));
         self.enter((screen, menu));
         if screen == Screen::Title {
@@ -93,7 +93,7 @@ impl App {
     }
 
     /// Makes the menu anew, after something that it shows has changed.
-    pub(super) fn renew_menu(&mut self) {
+    pub(crate) fn renew_menu(&mut self) {
         let selected = self.menu.selected();
         self.menu = self.menu_of(self.screen).selecting(selected);
         self.shown = None;

@@ -4,7 +4,7 @@ use crate::game::{Intents, Script, Stretch};
 
 /// A script and the number of its steps that are over.
 #[derive(Clone, Debug)]
-pub(super) struct ScriptCursor {
+pub(crate) struct ScriptCursor {
     stretches: Vec<Stretch>,
     /// The stretch of the next step, and how many of its steps are over.
     index: usize,
@@ -13,13 +13,13 @@ pub(super) struct ScriptCursor {
 
 impl ScriptCursor {
     /// The start of `script`.
-    pub(super) fn new(script: &Script) -> Self {
+    pub(crate) fn new(script: &Script) -> Self {
         let stretches = script.sections().iter().flat_map(|section| &section.stretches);
         Self { stretches: stretches.copied().collect(), index: 0, passed: 0 }
     }
 
     /// The intents of the next step, which is then over; `None` at the end.
-    pub(super) fn next(&mut self) -> Option<Intents> {
+    pub(crate) fn next(&mut self) -> Option<Intents> {
         let stretch = self.stretches.get(self.index)?;
         self.passed += 1;
         if self.passed >= stretch.steps {
@@ -29,7 +29,7 @@ impl ScriptCursor {
     }
 
     /// Returns to the start.
-    pub(super) fn rewind(&mut self) {
+    pub(crate) fn rewind(&mut self) {
         (self.index, self.passed) = (0, 0);
     }
 }

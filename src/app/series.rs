@@ -15,7 +15,7 @@ use crate::store::Reached;
 
 impl App {
     /// Begins the first of `levels`; asks first if a game in it is saved.
-    pub(super) fn begin(&mut self, levels: Levels) {
+    pub(crate) fn begin(&mut self, levels: Levels) {
         // A recorded script is about what the program began with.
         self.script = None;
         self.set_up(levels);
@@ -23,7 +23,7 @@ impl App {
     }
 
     /// Begins the first of `levels`.
-    pub(super) fn set_up(&mut self, levels: Levels) {
+    pub(crate) fn set_up(&mut self, levels: Levels) {
         let Levels { first, rest, number, changes, course } = levels;
         let Some(game) = first.begin(self.difficulty) else { return };
         self.later_levels = rest;
@@ -39,7 +39,7 @@ impl App {
     }
 
     /// Begins the next level. After the last one comes the end.
-    pub(super) fn next_level(&mut self) {
+    pub(crate) fn next_level(&mut self) {
         let Some(stage) = self.later_levels.next() else { return self.show(Screen::End) };
         let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
@@ -53,13 +53,13 @@ impl App {
 
     /// Begins the level again. A script that is recorded ends here: in a script, a level begins
     /// once.
-    pub(super) fn restart_level(&mut self) {
+    pub(crate) fn restart_level(&mut self) {
         self.script = None;
         self.begin_again();
     }
 
     /// Returns to the start of the level.
-    pub(super) fn begin_again(&mut self) {
+    pub(crate) fn begin_again(&mut self) {
         let Some(game) = self.stage.begin(self.difficulty) else { return };
         self.log = RunLog::default();
         let stage = mem::replace(&mut self.stage, Stage::nothing());
@@ -67,7 +67,7 @@ impl App {
     }
 
     /// Goes on from the last checkpoint after a death.
-    pub(super) fn retry(&mut self) {
+    pub(crate) fn retry(&mut self) {
         let retry: Intents = [Intent::Retry].into_iter().collect();
         self.game.step(retry);
         self.record(retry, 1);
@@ -77,7 +77,7 @@ impl App {
     }
 
     /// Leaves the game for the title.
-    pub(super) fn return_to_title(&mut self) {
+    pub(crate) fn return_to_title(&mut self) {
         let not_saved = self.leave_game();
         self.show_title();
         if let Some(sentence) = not_saved {
@@ -86,7 +86,7 @@ impl App {
     }
 
     /// Shows the title, over a level that plays itself.
-    pub(super) fn show_title(&mut self) {
+    pub(crate) fn show_title(&mut self) {
         self.script = None;
         self.reload = None;
         self.ghost = None;

@@ -70,7 +70,7 @@ pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
 ];
 
 impl App {
-    pub(super) fn settings_menu(&self) -> Menu<Choice> {
+    pub(crate) fn settings_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("settings").line("Enter or left and right change a setting.");
         let menu = if self.detection.ascii_locale.is_some() { menu } else { with_card(menu) };
         let menu = if self.settings.given == Given::default() {
@@ -84,7 +84,7 @@ impl App {
     }
 
     /// Changes `setting` to its next value, or to the one before if `forward` is false.
-    pub(super) fn change_setting(&mut self, setting: Setting, forward: bool) {
+    pub(crate) fn change_setting(&mut self, setting: Setting, forward: bool) {
         let before = self.store.preferences();
         let mut preferences = before;
         match setting {
@@ -129,7 +129,7 @@ impl App {
     }
 
     /// Keeps `preferences`, and follows them.
-    pub(super) fn set_preferences(&mut self, preferences: Preferences) {
+    pub(crate) fn set_preferences(&mut self, preferences: Preferences) {
         self.store.set_preferences(preferences);
         self.shown = None;
     }

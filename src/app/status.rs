@@ -33,19 +33,19 @@ pub(crate) struct Toggles {
 }
 
 /// The values that the line shows.
-pub(super) struct StatusValues<'a> {
-    pub(super) game: &'a Played,
-    pub(super) goal: &'a Goal,
-    pub(super) notice: Option<&'a Goal>,
-    pub(super) level: LevelNumber,
+pub(crate) struct StatusValues<'a> {
+    pub(crate) game: &'a Played,
+    pub(crate) goal: &'a Goal,
+    pub(crate) notice: Option<&'a Goal>,
+    pub(crate) level: LevelNumber,
     /// The share of the level that has been seen, from 0 to 1, if that is counted.
-    pub(super) share_seen: Option<f64>,
-    pub(super) toggles: Toggles,
+    pub(crate) share_seen: Option<f64>,
+    pub(crate) toggles: Toggles,
     /// Whether the mouse turns the player.
-    pub(super) mouse: bool,
-    pub(super) stats: Option<&'a Stats>,
-    pub(super) bindings: &'a Bindings,
-    pub(super) health_signs: HealthSigns,
+    pub(crate) mouse: bool,
+    pub(crate) stats: Option<&'a Stats>,
+    pub(crate) bindings: &'a Bindings,
+    pub(crate) health_signs: HealthSigns,
 }
 
 /// The texts of the line: place and state of the player at the left; progress and help at the
@@ -133,7 +133,7 @@ const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
     /// Updates the texts.
-    pub(super) fn update(&mut self, values: &StatusValues) {
+    pub(crate) fn update(&mut self, values: &StatusValues) {
         self.rewrite(|line| line.write(values));
     }
 

@@ -18,7 +18,7 @@ const MOST_TIME: Duration = Duration::from_millis(25);
 
 impl App {
     /// Advances the game to `now`, or as far as it gets in a moment. The rest of the time is lost.
-    pub(super) fn advance(&mut self, now: Duration) {
+    pub(crate) fn advance(&mut self, now: Duration) {
         self.now = now;
         let begun = self.machine_time.map(|time| time());
         let is_late = |time: Option<fn() -> Duration>| {
@@ -89,7 +89,7 @@ impl App {
     }
 
     /// The number of steps with these intents in which nothing changes but clocks.
-    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
+    pub(crate) fn quiet_steps(&self, intents: Intents) -> u64 {
         let quiet = self.game.quiet_steps(intents);
         self.ghost.as_ref().map_or(quiet, |ghost| ghost.quiet_steps(quiet))
     }

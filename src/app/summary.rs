@@ -9,7 +9,7 @@ use crate::game::{Game, Outcome, Share, Tally};
 
 impl App {
     /// What the player has done in the level, its rank, and how to go on.
-    pub(super) fn level_done_menu(&self) -> Menu<Choice> {
+    pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
         let menu =
             self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
         let is_fastest = self.result.is_some_and(|result| result.improved.time);
@@ -26,7 +26,7 @@ impl App {
     }
 
     /// What happened to the player, and how to go on. The first choice goes on at once.
-    pub(super) fn death_menu(&self) -> Menu<Choice> {
+    pub(crate) fn death_menu(&self) -> Menu<Choice> {
         let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
@@ -45,14 +45,14 @@ impl App {
         self.with_leaving(menu)
     }
 
-    pub(super) fn end_menu(&self) -> Menu<Choice> {
+    pub(crate) fn end_menu(&self) -> Menu<Choice> {
         let seconds = self.earlier + self.game.elapsed();
         let menu = Menu::new("the end").line("all levels").line(format!("in {}", time(seconds)));
         self.with_leaving(menu)
     }
 
     /// The level's title and, if there are several levels, its number.
-    pub(super) fn level_lines(&self) -> Vec<String> {
+    pub(crate) fn level_lines(&self) -> Vec<String> {
         let mut lines = vec![self.game.title().to_owned()];
         if self.level.is_one_of_several() {
             lines.push(self.level.to_string());

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 /// The time since the main loop began.
 #[derive(Debug)]
-pub(super) struct Time {
+pub(crate) struct Time {
     start: Instant,
     /// The time, if the terminal gives it.
     #[cfg(debug_assertions)]
@@ -24,7 +24,7 @@ pub(super) struct Time {
 
 impl Time {
     /// Begins at zero.
-    pub(super) fn begin() -> Self {
+    pub(crate) fn begin() -> Self {
         Self {
             start: Instant::now(),
             #[cfg(debug_assertions)]
@@ -34,7 +34,7 @@ impl Time {
         }
     }
 
-    pub(super) fn now(&self) -> Duration {
+    pub(crate) fn now(&self) -> Duration {
         #[cfg(debug_assertions)]
         if let Some(told) = &self.told {
             return told.get();
@@ -44,7 +44,7 @@ impl Time {
 
     /// The machine's clock, by which steps that take long are noticed; `None` if the terminal gives
     /// the time.
-    pub(super) fn of_machine(&self) -> Option<fn() -> Duration> {
+    pub(crate) fn of_machine(&self) -> Option<fn() -> Duration> {
         #[cfg(debug_assertions)]
         if self.told.is_some() {
             return None;
@@ -57,7 +57,7 @@ impl Time {
 
     /// How long it is until `time`; `None` if time stands still until the terminal reports
     /// something.
-    pub(super) fn until(&self, time: Duration) -> Option<Duration> {
+    pub(crate) fn until(&self, time: Duration) -> Option<Duration> {
         #[cfg(debug_assertions)]
         if self.told.is_some() {
             return None;
@@ -67,7 +67,7 @@ impl Time {
 
     /// Handles a report that the window has the focus.
     #[cfg(debug_assertions)]
-    pub(super) fn focus_reported(&self) {
+    pub(crate) fn focus_reported(&self) {
         if let Some(told) = &self.told {
             told.set(told.get() + super::clock::step());
         }

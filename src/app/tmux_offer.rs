@@ -14,7 +14,7 @@ use crate::terminal::{ColorSource, TmuxClient};
 
 /// The state of the player's order to tell tmux.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum TmuxOrder {
+pub(crate) enum TmuxOrder {
     #[default]
     None,
     /// The loop has not taken it yet.
@@ -26,7 +26,7 @@ pub(super) enum TmuxOrder {
 
 impl App {
     /// The command that is offered; `None` if nothing is offered.
-    pub(super) fn tmux_remedy(&self) -> Option<String> {
+    pub(crate) fn tmux_remedy(&self) -> Option<String> {
         let decides = self.detection.source == Some(ColorSource::Tmux);
         let is_offered =
             decides && self.settings.depth.is_none() && self.depth == ColorDepth::Indexed256;
@@ -34,14 +34,14 @@ impl App {
     }
 
     /// Adds the offer to the title.
-    pub(super) fn with_tmux_offer(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_tmux_offer(&self, menu: Menu<Choice>) -> Menu<Choice> {
         match self.tmux_remedy() {
             Some(_) => menu.entry("24-bit colours in tmux", Choice::Open(Screen::Tmux)),
             None => menu,
         }
     }
 
-    pub(super) fn tmux_menu(&self) -> Menu<Choice> {
+    pub(crate) fn tmux_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("tmux sends 256 colours");
         let Some(remedy) = self.tmux_remedy() else { return menu.entry("Back", Choice::Back) };
         let menu = match self.tmux_order {
@@ -61,13 +61,13 @@ impl App {
         menu.entry("Back", Choice::Back)
     }
 
-    pub(super) fn order_tmux(&mut self) {
+    pub(crate) fn order_tmux(&mut self) {
         self.tmux_order = TmuxOrder::Given;
         self.renew_menu();
     }
 
     /// Whether tmux must be told now. The loop does it once for each order.
-    pub(super) fn take_tmux_order(&mut self) -> bool {
+    pub(crate) fn take_tmux_order(&mut self) -> bool {
         let is_given = self.tmux_order == TmuxOrder::Given;
         if is_given {
             self.tmux_order = TmuxOrder::Running;
@@ -76,7 +76,7 @@ impl App {
     }
 
     /// Shows whether telling tmux has worked.
-    pub(super) fn tmux_told(&mut self, has_worked: bool) {
+    pub(crate) fn tmux_told(&mut self, has_worked: bool) {
         self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
         if self.screen == Screen::Tmux {
             self.renew_menu();
@@ -84,7 +84,7 @@ impl App {
     }
 
     /// Follows a change of what was `offered` before. The selected entry of the title stays selected.
-    pub(super) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
+    pub(crate) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
         let now = self.tmux_remedy();
         if now.as_deref() == offered {
             return;

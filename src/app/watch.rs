@@ -13,7 +13,7 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// A watch that begins with the state of `game`.
-    pub(super) fn begin(game: Option<&Game>) -> Self {
+    pub(crate) fn begin(game: Option<&Game>) -> Self {
         let mut watch = Self::default();
         if let Some(game) = game {
             watch.look(game);
@@ -34,7 +34,7 @@ impl Watch {
     }
 
     /// Looks at the state after a step.
-    pub(super) fn look(&mut self, game: &Game) {
+    pub(crate) fn look(&mut self, game: &Game) {
         self.look_at(game, PlayerId::FIRST);
     }
 

@@ -13,7 +13,7 @@ use crate::world::{Cell, Grid, Opening};
 
 /// The hit of `ray`, which passes through `cell`, on the leaf of the door there. `None` if it
 /// misses the leaf.
-pub(super) fn meet(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit> {
+pub(crate) fn meet(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit> {
     let leaf = Leaf::new(grid, cell, opening);
     if !leaf.is_ahead(ray) {
         return None;

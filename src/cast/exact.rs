@@ -118,7 +118,7 @@ impl ExactOrder {
     /// is in doubt, or infinite and correct.
     #[cfg(feature = "tui")]
     #[inline]
-    pub(super) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
+    pub(crate) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let rounded = RoundedOrder::of_direction(ray.origin(), ray.direction(), ray.direction());
         let furthest = size + ray.origin().abs();
@@ -128,7 +128,7 @@ impl ExactOrder {
     /// The distances to the lines at `x` and `y`, in a common unit.
     #[cfg(feature = "tui")]
     #[inline]
-    pub(super) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
         self.rounded.distances(x, y)
     }
 }
@@ -177,7 +177,7 @@ impl CommonOrder {
 /// The ray is passed in parts, because a reference would force the walk into memory.
 #[cold]
 #[inline(never)]
-pub(super) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
+pub(crate) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
     let cross = cross(origin, direction, DVec2::new(x, y)).sign();
     // For a ray to the north-east or to the south-west, left and right are swapped.
     let x_behind_y = if (direction.x > 0.0) == (direction.y > 0.0) { cross } else { -cross };

@@ -18,7 +18,7 @@ pub enum Side {
 impl Side {
     /// The other kind.
     #[inline]
-    pub(super) fn other(self) -> Self {
+    pub(crate) fn other(self) -> Self {
         match self {
             Self::X => Self::Y,
             Self::Y => Self::X,
@@ -167,7 +167,7 @@ pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
 /// The distance along `ray` to the line of kind `side` through `corner`, and the distance from the
 /// corner to that point, to the south or to the east. The line must not be behind the ray's start.
 #[inline]
-pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
+pub(crate) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
     let offset = corner - ray.origin();
     let t = match side {
         Side::X => (offset.x / ray.direction().x).abs(),
@@ -179,7 +179,7 @@ pub(super) fn meeting(ray: &Ray, side: Side, corner: DVec2) -> (f64, f64) {
 /// The distance from `corner` to the point where `ray` meets its line of kind `side` at `t`, to the south or
 /// to the east.
 #[inline]
-pub(super) fn along_line(ray: &Ray, t: f64, side: Side, corner: DVec2) -> f64 {
+pub(crate) fn along_line(ray: &Ray, t: f64, side: Side, corner: DVec2) -> f64 {
     let (origin, direction) = (ray.origin(), ray.direction());
     let offset = corner - origin;
     let (start, slope) = match side {
@@ -229,7 +229,7 @@ pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f6
 
 /// Whether a viewer who looks along `direction` sees the north or west end of a face on the left.
 #[inline]
-pub(super) fn is_from_left(direction: DVec2, side: Side) -> bool {
+pub(crate) fn is_from_left(direction: DVec2, side: Side) -> bool {
     match side {
         Side::X => direction.x > 0.0,
         Side::Y => direction.y < 0.0,
@@ -237,7 +237,7 @@ pub(super) fn is_from_left(direction: DVec2, side: Side) -> bool {
 }
 
 #[inline]
-pub(super) fn from_left(along: f64, is_from_left: bool) -> f64 {
+pub(crate) fn from_left(along: f64, is_from_left: bool) -> f64 {
     // Adding zero turns −0 into +0.
     let along = along.clamp(0.0, 1.0) + 0.0;
     if is_from_left { along } else { 1.0 - along }

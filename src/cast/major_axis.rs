@@ -115,7 +115,7 @@ impl<'grid> MajorAxisTraversal<'grid> {
     }
 
     /// The cell that the ray is in.
-    pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
+    pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
         self.path.cell_in(self.grid, self.at.line, self.at.band)
     }
 

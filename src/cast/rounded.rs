@@ -15,7 +15,7 @@ use super::{Order, Ray, Side};
 pub struct RoundedOrder {
     origin: DVec2,
     /// For each axis, the size of the direction along the other axis, with the sign of this axis.
-    pub(super) weight: DVec2,
+    pub(crate) weight: DVec2,
 }
 
 impl RoundedOrder {
@@ -28,7 +28,7 @@ impl RoundedOrder {
 
     /// The order for rays from `origin` along `direction`, which is also `scaled`.
     #[inline]
-    pub(super) fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
+    pub(crate) fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
         let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
         let weight = DVec2::new(weight(direction.x, scaled.y), weight(direction.y, scaled.x));
         Self { origin, weight }
@@ -36,7 +36,7 @@ impl RoundedOrder {
 
     /// The distances to the lines at `x` and `y`, in a common unit.
     #[inline]
-    pub(super) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
         ((x - self.origin.x) * self.weight.x, (y - self.origin.y) * self.weight.y)
     }
 }

@@ -29,7 +29,7 @@ impl Passage {
     /// The intersection of `ray`, which passes through `cell`, with the shape of this `outline`
     /// there.
     #[inline]
-    pub(super) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
+    pub(crate) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
         match outline {
             Outline::Pillar(radius) => {
                 let Some(chord) = Chord::new(ray, cell, radius) else { return Self::NONE };
@@ -42,7 +42,7 @@ impl Passage {
 
 /// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
 /// it misses.
-pub(super) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+pub(crate) fn meet(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
     Passage::new(ray, cell, outline).hit
 }
 

@@ -8,7 +8,7 @@ use crate::world::{Cell, TileId, TileKind, World};
 
 /// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`; the
 /// transparent faces that it enters are passed to `passed`. A tile that `ends` the ray is a hit.
-pub(super) fn cast(
+pub(crate) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
     world: &World,

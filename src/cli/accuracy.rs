@@ -19,7 +19,7 @@ use progress::Progress;
 use run::Run;
 
 /// Writes the report that `options` request.
-pub(super) fn run(options: &Accuracy) -> Result<(), Error> {
+pub(crate) fn run(options: &Accuracy) -> Result<(), Error> {
     if options.format == ReportFormat::Png && io::stdout().is_terminal() {
         return Err(snapshot::no_png_here("accuracy"));
     }

@@ -20,7 +20,7 @@ use crate::server::{
 use table::{table, time};
 
 /// Does the action, and writes what came of it.
-pub(super) fn run(options: Admin) -> Result<(), Error> {
+pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;

@@ -33,7 +33,7 @@ struct Report {
 const WINDOWS: [Size; 3] = [Size::new(80, 24), Size::new(120, 40), Size::new(200, 60)];
 
 /// Writes the report that `options` request.
-pub(super) fn run(options: &Bench) -> Result<(), Error> {
+pub(crate) fn run(options: &Bench) -> Result<(), Error> {
     // A file that cannot be written is reported before the measurement.
     let plot = options.plot.as_deref().map(OutputFile::create).transpose()?;
     let report = Report::measure(Duration::from_secs(options.seconds.into()))?;

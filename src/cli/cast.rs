@@ -15,7 +15,7 @@ use crate::world::World;
 ///
 /// # Errors
 /// A mistake if a line was no ray, after all lines are answered.
-pub(super) fn run(options: &Cast) -> Result<(), Error> {
+pub(crate) fn run(options: &Cast) -> Result<(), Error> {
     let world = level::load_grid(options.map.as_deref())?;
     let caster = options.method.caster();
     let mut input = BufReader::new(io::stdin().lock());

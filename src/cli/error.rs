@@ -34,28 +34,28 @@ enum Cause {
 
 impl Error {
     /// An invalid request, described by `sentence`.
-    pub(super) fn mistake(sentence: impl Into<String>) -> Self {
+    pub(crate) fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
     }
 
     /// Faults of several files: `text` has a line with the place of each.
     #[cfg(feature = "serve")]
-    pub(super) fn report_of(text: String) -> Self {
+    pub(crate) fn report_of(text: String) -> Self {
         Self { cause: Cause::Report(text) }
     }
 
     /// A mistake that has already been reported.
-    pub(super) fn reported() -> Self {
+    pub(crate) fn reported() -> Self {
         Self { cause: Cause::Reported }
     }
 
     /// What was asked for is not so, as the output says.
-    pub(super) fn failed() -> Self {
+    pub(crate) fn failed() -> Self {
         Self { cause: Cause::Failed }
     }
 
     /// The error of writing to standard output.
-    pub(super) fn of_output(error: &io::Error) -> Self {
+    pub(crate) fn of_output(error: &io::Error) -> Self {
         let cause = match error.kind() {
             io::ErrorKind::BrokenPipe => Cause::ClosedPipe,
             _ => Cause::Machine(format!("standard output can't be written: {error}")),
@@ -64,17 +64,17 @@ impl Error {
     }
 
     /// A failure of the system, described by `sentence`.
-    pub(super) fn machine(sentence: impl Into<String>) -> Self {
+    pub(crate) fn machine(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Machine(sentence.into()) }
     }
 
     /// Prints the message of a command that continues.
-    pub(super) fn warn(&self) {
+    pub(crate) fn warn(&self) {
         self.print();
     }
 
     /// Prints the message, and returns the exit status.
-    pub(super) fn report(&self) -> ExitCode {
+    pub(crate) fn report(&self) -> ExitCode {
         match &self.cause {
             Cause::ClosedPipe => ExitCode::SUCCESS,
             Cause::Reported => ExitCode::from(2),

@@ -12,13 +12,13 @@ use crate::store::host::PostgresStore;
 use crate::store::host::{HostStore, SqliteStore, StoreFailure};
 
 /// The store that `option` names, or else the environment.
-pub(super) fn named(option: Option<Database>) -> Option<Database> {
+pub(crate) fn named(option: Option<Database>) -> Option<Database> {
     let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
     option.or_else(|| word().map(Database::of))
 }
 
 /// Opens a store, which is made if there is none.
-pub(super) fn open(database: &Database) -> Result<Box<dyn HostStore>, StoreFailure> {
+pub(crate) fn open(database: &Database) -> Result<Box<dyn HostStore>, StoreFailure> {
     match database {
         Database::Folder(folder) => Ok(Box::new(SqliteStore::open(folder)?)),
         Database::Address(address) => Ok(open_address(address)?),
@@ -26,7 +26,7 @@ pub(super) fn open(database: &Database) -> Result<Box<dyn HostStore>, StoreFailu
 }
 
 /// As [`open`], but goes on with what can be read of a damaged file. Returns a sentence about it then.
-pub(super) fn open_or_salvage(
+pub(crate) fn open_or_salvage(
     database: &Database,
 ) -> Result<(Box<dyn HostStore>, Option<String>), StoreFailure> {
     match database {
@@ -39,7 +39,7 @@ pub(super) fn open_or_salvage(
 }
 
 /// Opens a store that exists, to read from it.
-pub(super) fn open_to_read(database: &Database) -> Result<Box<dyn HostStore>, Error> {
+pub(crate) fn open_to_read(database: &Database) -> Result<Box<dyn HostStore>, Error> {
     let store: Option<Box<dyn HostStore>> = match database {
         Database::Folder(folder) => {
             SqliteStore::open_to_read(folder).map_err(failed)?.map(|store| Box::new(store) as _)
@@ -59,7 +59,7 @@ pub(super) fn open_to_read(database: &Database) -> Result<Box<dyn HostStore>, Er
 
 /// The error of a store that exists.
 #[expect(clippy::needless_pass_by_value, reason = "`map_err` passes a value")]
-pub(super) fn failed(failure: StoreFailure) -> Error {
+pub(crate) fn failed(failure: StoreFailure) -> Error {
     Error::machine(failure.to_string())
 }
 

@@ -24,7 +24,7 @@ struct Entry {
 }
 
 /// Writes the list that `options` request.
-pub(super) fn run(options: &Levels) -> Result<(), Error> {
+pub(crate) fn run(options: &Levels) -> Result<(), Error> {
     let (store, damage) = match data_folder() {
         Some(folder) => Store::open(&folder),
         None => (Store::in_memory(), None),

@@ -19,7 +19,7 @@ use crate::tui::GlyphSet;
 use crate::world::Difficulty;
 
 /// Plays until the player quits.
-pub(super) fn run(options: Play) -> Result<(), Error> {
+pub(crate) fn run(options: Play) -> Result<(), Error> {
     let opening = opening(&options)?;
     let level = match options.generated {
         None => level::name(options.map.as_deref()),

@@ -8,21 +8,21 @@
 mod png;
 mod svg;
 
-pub(super) use self::png::write as write_png;
-pub(super) use self::svg::write as write_svg;
+pub(crate) use self::png::write as write_png;
+pub(crate) use self::svg::write as write_svg;
 use crate::color::Rgb;
 
 /// A page and its marks. Positions are relative to the top left corner.
-pub(super) struct Page {
-    pub(super) width: f64,
-    pub(super) height: f64,
-    pub(super) marks: Vec<Mark>,
+pub(crate) struct Page {
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    pub(crate) marks: Vec<Mark>,
     /// What is drawn, in text, for programs and for readers who do not see. It may be empty.
-    pub(super) description: String,
+    pub(crate) description: String,
 }
 
 /// A mark on a page.
-pub(super) enum Mark {
+pub(crate) enum Mark {
     /// A straight line.
     Line { from: (f64, f64), to: (f64, f64), color: PlotColor },
     /// A point with a white edge, so that a smaller one before it is seen.
@@ -33,7 +33,7 @@ pub(super) enum Mark {
 
 /// The colour of a line or a dot. All but the first have similar lightness and high chroma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PlotColor {
+pub(crate) enum PlotColor {
     /// Almost white: for grid lines.
     Pale,
     Orange,
@@ -61,14 +61,14 @@ impl PlotColor {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Align {
+pub(crate) enum Align {
     Start,
     Middle,
     End,
 }
 
 /// A logarithmic axis.
-pub(super) struct Axis {
+pub(crate) struct Axis {
     /// The decimal logarithms of the ends.
     first: f64,
     last: f64,
@@ -76,7 +76,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// The axis from the least to the greatest of `values`, which must be positive.
-    pub(super) fn between(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn between(values: impl Iterator<Item = f64>) -> Self {
         // A time below the clock's resolution is 0.
         let powers = values.map(|value| value.max(f64::MIN_POSITIVE).log10());
         let (first, last) = powers
@@ -87,19 +87,19 @@ impl Axis {
     }
 
     /// The axis between the powers of ten around `values`, which must be positive.
-    pub(super) fn around(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn around(values: impl Iterator<Item = f64>) -> Self {
         let Self { first, last } = Self::between(values);
         let first = first.floor();
         Self { first, last: last.ceil().max(first + 1.0) }
     }
 
     /// The position of `value` along the axis, from 0 to 1.
-    pub(super) fn share(&self, value: f64) -> f64 {
+    pub(crate) fn share(&self, value: f64) -> f64 {
         ((value.log10() - self.first) / (self.last - self.first)).clamp(0.0, 1.0)
     }
 
     /// About `most` powers of ten to label.
-    pub(super) fn powers(&self, most: usize) -> impl Iterator<Item = i32> {
+    pub(crate) fn powers(&self, most: usize) -> impl Iterator<Item = i32> {
         let (first, last) = (self.first.ceil() as i32, self.last.floor() as i32);
         let step = ((last - first) as usize).div_ceil(most).max(1);
         (first..=last).step_by(step)

@@ -21,7 +21,7 @@ use crate::game::Script;
 use crate::terminal::CellWriter;
 
 /// Writes the recording that `options` request.
-pub(super) fn run(options: &Replay) -> Result<(), Error> {
+pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     #[cfg(feature = "serve")]
     if let Some(reports) = super::room_recording::replayed(&options.script, options.map.as_deref())?
     {

@@ -14,7 +14,7 @@ use crate::server::{HostMaps, MOST_RECORDED_BYTES, is_room_recording, replay_roo
 ///
 /// # Errors
 /// If the recording is damaged, or too long.
-pub(super) fn replayed(path: &Path, maps: Option<&OsStr>) -> Result<Option<String>, Error> {
+pub(crate) fn replayed(path: &Path, maps: Option<&OsStr>) -> Result<Option<String>, Error> {
     // What cannot be read is reported where scripts are read.
     let length = fs::metadata(path).map_or(0, |file| if file.is_file() { file.len() } else { 0 });
     if length == 0 || length > MOST_RECORDED_BYTES {

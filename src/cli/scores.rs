@@ -22,7 +22,7 @@ enum Boards {
 }
 
 /// Writes the boards that `options` request.
-pub(super) fn run(options: &Scores) -> Result<(), Error> {
+pub(crate) fn run(options: &Scores) -> Result<(), Error> {
     let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
     let database = host_store::named(options.store.clone()).or_else(folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")

@@ -28,7 +28,7 @@ use configuration::Configuration;
 use signals::{Hangups, Signals};
 
 /// Serves until a signal ends it.
-pub(super) fn run(mut options: Serve) -> Result<(), Error> {
+pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(&options)?;
     let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")

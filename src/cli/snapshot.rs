@@ -43,7 +43,7 @@ trait Writer {
 }
 
 /// Writes the frame that `options` request.
-pub(super) fn run(options: Snapshot) -> Result<(), Error> {
+pub(crate) fn run(options: Snapshot) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
     if is_png && options.watches {
         return Err(Error::mistake(
@@ -66,7 +66,7 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
 }
 
 /// The error of `command`, which writes a PNG, if the output is a terminal.
-pub(super) fn no_png_here(command: &str) -> Error {
+pub(crate) fn no_png_here(command: &str) -> Error {
     Error::mistake(format!(
         "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
          \"cellcaster {command} --format png > picture.png\""

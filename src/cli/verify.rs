@@ -13,7 +13,7 @@ use crate::world::World;
 ///
 /// # Errors
 /// With exit status 1 if it does not reach an exit.
-pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
+pub(crate) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
     let (name, world) = level(options, script.header())?;
     let rules = script.header().rules();
     let floor = script.header().level.as_ref().and_then(LevelName::floor);
@@ -26,7 +26,7 @@ pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
 }
 
 /// A number of steps as minutes and seconds with one digit.
-pub(super) fn clock(steps: u64) -> String {
+pub(crate) fn clock(steps: u64) -> String {
     let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

@@ -17,7 +17,7 @@ use crate::lab::wire::{self, Plan, Report};
 use crate::terminal::Fidelity;
 
 /// Writes the report that `options` request.
-pub(super) fn run(options: &Wire) -> Result<(), Error> {
+pub(crate) fn run(options: &Wire) -> Result<(), Error> {
     if let Some(depth) = options.palette {
         return palettes::run(depth, options).map_err(|error| Error::of_output(&error));
     }

@@ -31,12 +31,12 @@ impl From<Rgb> for Oklab {
 }
 
 /// The responses of the long, medium and short wave cones to linear sRGB.
-pub(super) fn cones(light: [f64; 3]) -> [f64; 3] {
+pub(crate) fn cones(light: [f64; 3]) -> [f64; 3] {
     product(&FROM_LINEAR, light)
 }
 
 /// The matrix from the cube roots of cone responses to Oklab.
-pub(super) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
+pub(crate) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
     [0.210_454_26, 0.793_617_8, -0.004_072_05],
     [1.977_998_5, -2.428_592_2, 0.450_593_7],
     [0.025_904_04, 0.782_771_77, -0.808_675_77],

@@ -39,7 +39,7 @@ pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
 }
 
 /// The light of each value of a channel, from 0 to 1.
-pub(super) static LINEAR: [f64; 256] = {
+pub(crate) static LINEAR: [f64; 256] = {
     let mut table = [0.0; 256];
     let mut value = 0;
     while value < table.len() {
@@ -50,7 +50,7 @@ pub(super) static LINEAR: [f64; 256] = {
 };
 
 /// The light of each value of a channel in 65535ths, rounded to the nearest.
-pub(super) static LINEAR_16: [u16; 256] = {
+pub(crate) static LINEAR_16: [u16; 256] = {
     let mut table = [0; 256];
     let mut value = 0;
     while value < table.len() {

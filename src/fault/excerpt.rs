@@ -17,7 +17,7 @@ const MOST_FAULTS: usize = 100;
 const LONGEST_LINE: usize = 1 << 16;
 
 /// Writes the report on `faults`, which are sorted by place.
-pub(super) fn report(
+pub(crate) fn report(
     f: &mut fmt::Formatter<'_>,
     name: &str,
     text: &str,

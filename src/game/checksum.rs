@@ -54,7 +54,7 @@ impl Game {
 }
 
 /// What rules depend on of a player.
-pub(super) fn words_of_player(player: &Player) -> impl Iterator<Item = u64> {
+pub(crate) fn words_of_player(player: &Player) -> impl Iterator<Item = u64> {
     let supplies = Supply::ALL.map(|supply| u64::from(player.supplies.count(supply)));
     let keys = player.keys.iter().fold(0_u64, |bits, key| bits.rotate_left(9) ^ u64::from(key.0));
     let numbers = [
@@ -73,7 +73,7 @@ pub(super) fn words_of_player(player: &Player) -> impl Iterator<Item = u64> {
 }
 
 /// A position as the bits of its coordinates.
-pub(super) fn words_of(position: DVec2) -> [u64; 2] {
+pub(crate) fn words_of(position: DVec2) -> [u64; 2] {
     position.to_array().map(f64::to_bits)
 }
 
@@ -105,7 +105,7 @@ fn word_of_thing(thing: &Thing) -> u64 {
     rng::hash(word_of(thing.cell), kind.into_iter().chain([frame]))
 }
 
-pub(super) fn word_of(cell: Cell) -> u64 {
+pub(crate) fn word_of(cell: Cell) -> u64 {
     u64::from(cell.row) << 32 | u64::from(cell.column)
 }
 

@@ -15,7 +15,7 @@ use glam::DVec2;
 
 use crate::game::stored::stored;
 use crate::world::{Cell, Outline};
-pub(super) use place::{Place, Stature};
+pub(crate) use place::{Place, Stature};
 use sweep::{Path, first_contact};
 
 /// The number of walls that a body may touch in one step. A corner has two; a body that touches
@@ -25,22 +25,22 @@ const MOST_CONTACTS: usize = 4;
 /// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half a
 /// cell, so that only the eight cells around its own are in reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Radius(f64);
+pub(crate) struct Radius(f64);
 
 impl Radius {
     /// A radius in cells; `None` outside the range.
-    pub(super) const fn new(cells: f64) -> Option<Self> {
+    pub(crate) const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
     }
 
     /// The radius in cells.
-    pub(super) const fn cells(self) -> f64 {
+    pub(crate) const fn cells(self) -> f64 {
         self.0
     }
 }
 
 /// What may block a circle.
-pub(super) trait Obstacles {
+pub(crate) trait Obstacles {
     /// Whether a cell is solid. Cells outside the map are: nobody leaves the map.
     fn blocks(&self, column: i64, row: i64) -> bool;
 
@@ -65,16 +65,16 @@ pub(super) trait Obstacles {
 
 /// The position of a body, in cells, and its velocity, in cells per second.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Body {
-    pub(super) position: DVec2,
-    pub(super) velocity: DVec2,
+pub(crate) struct Body {
+    pub(crate) position: DVec2,
+    pub(crate) velocity: DVec2,
 }
 
 stored! { struct Body { position, velocity } }
 
 /// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
 /// of its velocity that points into what it touches.
-pub(super) fn slide<O: Obstacles>(
+pub(crate) fn slide<O: Obstacles>(
     obstacles: &mut O,
     body: Body,
     displacement: DVec2,
@@ -106,7 +106,7 @@ pub(super) fn slide<O: Obstacles>(
 
 /// Moves a circle by `displacement` up to the first contact. Returns its position, and whether there
 /// was a contact.
-pub(super) fn fly<O: Obstacles>(
+pub(crate) fn fly<O: Obstacles>(
     obstacles: &O,
     position: DVec2,
     displacement: DVec2,
@@ -126,7 +126,7 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
-pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
+pub(crate) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let least = 2.0 * radius.0;
     let is_apart = |other: &DVec2| other.distance_squared(center) >= least * least;
     obstacles.circles().iter().all(is_apart)
@@ -153,7 +153,7 @@ fn overlapped(center: DVec2, radius: Radius) -> impl Iterator<Item = (i64, i64)>
 }
 
 /// Whether a circle around `center` overlaps `cell`, solid or not. Touching is not overlapping.
-pub(super) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
+pub(crate) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
     !is_clear_of(center, i64::from(cell.column), i64::from(cell.row), radius)
 }
 

@@ -22,7 +22,7 @@ const ASIDE: DVec2 = DVec2::new(0.866_025_403_784_439, 0.5);
 
 impl Game {
     /// Moves the player away from the guards whom they touch.
-    pub(super) fn give_way(&mut self) {
+    pub(crate) fn give_way(&mut self) {
         let motion = self.player.motion;
         let bodies = self.guards.touching(motion.position(), TOUCH, motion.feet(), motion.head());
         let push: DVec2 = bodies.map(|body| push_from(body, motion.position())).sum();

@@ -25,7 +25,7 @@ const REACH: f64 = 0.75;
 
 /// The doors that are not closed, in the order in which they were opened.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Doors {
+pub(crate) struct Doors {
     moving: Vec<MovingDoor>,
 }
 
@@ -55,7 +55,7 @@ stored! { enum Phase { 0: Opening(steps), 1: Open(steps), 2: Closing(steps) } }
 
 impl Doors {
     /// Opens the door in `cell`, unless it is opening already.
-    pub(super) fn open(&mut self, cell: Cell) {
+    pub(crate) fn open(&mut self, cell: Cell) {
         match self.moving.iter_mut().find(|door| door.cell == cell) {
             None => self.moving.push(MovingDoor::new(cell)),
             Some(MovingDoor { phase, .. }) => {
@@ -67,7 +67,7 @@ impl Doors {
     }
 
     /// Opens the door in `cell` for as long as a switch is on, or lets it close.
-    pub(super) fn hold(&mut self, cell: Cell, is_on: bool) {
+    pub(crate) fn hold(&mut self, cell: Cell, is_on: bool) {
         if is_on {
             self.open(cell);
         }
@@ -80,19 +80,19 @@ impl Doors {
     }
 
     /// Whether [`Doors::open`] would change anything.
-    pub(super) fn would_open(&self, cell: Cell) -> bool {
+    pub(crate) fn would_open(&self, cell: Cell) -> bool {
         let door = self.moving.iter().find(|door| door.cell == cell);
         door.is_none_or(|door| matches!(door.phase, Phase::Closing(_)))
     }
 
     /// The number of doors that are not closed.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.moving.len()
     }
 
     /// Advances the doors of `world` by one step; `is_occupied` says which cells a player touches.
     /// Returns whether any door has moved.
-    pub(super) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
+    pub(crate) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
         let mut has_moved = false;
         self.moving.retain_mut(|door| {
             let before = door.phase.opening();
@@ -109,7 +109,7 @@ impl Doors {
 
     /// Opens the doors of `world` as far as they were open, after the window has moved by `shift`
     /// and shows them closed. Doors outside it are closed.
-    pub(super) fn shift(&mut self, world: &mut World, shift: Shift) {
+    pub(crate) fn shift(&mut self, world: &mut World, shift: Shift) {
         self.moving.retain_mut(|door| match shift.cell(door.cell) {
             Some(cell) => {
                 door.cell = cell;
@@ -121,7 +121,7 @@ impl Doors {
     }
 
     /// The number of steps in which no door moves; `None` if none ever will.
-    pub(super) fn quiet_steps(&self) -> Option<u64> {
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
         let waiting = self.moving.iter().filter(|door| !door.is_kept_open());
         let quiet = waiting.map(|door| match door.phase {
             Phase::Open(steps) => u64::from(steps),
@@ -134,7 +134,7 @@ impl Doors {
     ///
     /// # Errors
     /// If that are no doors of `world`.
-    pub(super) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
+    pub(crate) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
             let is_possible = match door.phase {
@@ -148,7 +148,7 @@ impl Doors {
     }
 
     /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
-    pub(super) fn wait(&mut self, steps: u64) {
+    pub(crate) fn wait(&mut self, steps: u64) {
         for door in self.moving.iter_mut().filter(|door| !door.is_kept_open()) {
             if let Phase::Open(left) = &mut door.phase {
                 *left = left.saturating_sub(u32::try_from(steps).unwrap_or(u32::MAX));
@@ -201,7 +201,7 @@ fn eased(part: f64) -> f64 {
 
 /// The door in front of a player at `position` who looks or walks along `direction`, a unit vector;
 /// `None` if none is within reach.
-pub(super) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
+pub(crate) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
     let ray = Ray::new(position, direction).ok()?;
     let cell = Walk::new(world.grid(), &ray).first_solid()?;
     let TileKind::Door(door) = world.tile(cell.tile).kind else { return None };

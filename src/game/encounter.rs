@@ -6,7 +6,7 @@ use super::multiplayer::playing_mut;
 use super::tools::Missile;
 
 impl Game {
-    pub(super) fn move_guards(&mut self) {
+    pub(crate) fn move_guards(&mut self) {
         if self.guards.is_empty() {
             return;
         }

@@ -16,11 +16,11 @@ use crate::world::Cell;
 use buckets::Buckets;
 
 /// The cost of a step to the north, east, south or west, in half cells.
-pub(super) const STRAIGHT: u16 = 2;
+pub(crate) const STRAIGHT: u16 = 2;
 /// The cost of a step to a diagonal neighbour, in half cells.
-pub(super) const DIAGONAL: u16 = 3;
+pub(crate) const DIAGONAL: u16 = 3;
 /// The largest cost of one step.
-pub(super) const MOST_COST: u16 = 15;
+pub(crate) const MOST_COST: u16 = 15;
 
 /// One bucket for each distance that may still be open.
 const BUCKETS: usize = MOST_COST as usize + 1;
@@ -29,11 +29,11 @@ const REACH: u32 = 160;
 
 /// The columns and rows from a cell to its neighbours, clockwise from the north: straight ones at
 /// even places.
-pub(super) const NEIGHBORS: [(i32, i32); 8] =
+pub(crate) const NEIGHBORS: [(i32, i32); 8] =
     [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
 
 /// The costs of steps in a search.
-pub(super) trait Costs {
+pub(crate) trait Costs {
     /// What all steps found from one cell have in common.
     type Origin;
 
@@ -52,7 +52,7 @@ pub(super) trait Costs {
 /// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
 /// the searches before.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Flood {
+pub(crate) struct Flood {
     /// The north-west cell, and the columns and rows.
     first: (u32, u32),
     size: (u32, u32),
@@ -66,7 +66,7 @@ pub(super) struct Flood {
 
 impl Flood {
     /// Begins a search from `start`, in a map with that many columns and rows.
-    pub(super) fn begin(&mut self, start: Cell, (columns, rows): (u32, u32)) {
+    pub(crate) fn begin(&mut self, start: Cell, (columns, rows): (u32, u32)) {
         let along = |place: u32, count: u32| {
             let first = place.saturating_sub(REACH);
             (first, (place + REACH + 1).min(count).saturating_sub(first))
@@ -87,22 +87,22 @@ impl Flood {
     }
 
     /// Whether all cells that can be reached have been.
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.buckets.is_empty()
     }
 
     /// All cells nearer than this have been found.
-    pub(super) fn radius(&self) -> u16 {
+    pub(crate) fn radius(&self) -> u16 {
         if self.is_over() { u16::MAX } else { self.distance }
     }
 
     /// The distance of `cell` from the start, in half cells; `None` if it has not been found yet.
-    pub(super) fn distance(&self, cell: Cell) -> Option<u16> {
+    pub(crate) fn distance(&self, cell: Cell) -> Option<u16> {
         self.known(cell).filter(|&distance| distance < self.radius())
     }
 
     /// Continues the search by the next cell. Returns whether there was one.
-    pub(super) fn advance(&mut self, costs: &impl Costs) -> bool {
+    pub(crate) fn advance(&mut self, costs: &impl Costs) -> bool {
         while !self.buckets.is_empty() {
             let Some(cell) = self.buckets.pop(usize::from(self.distance) % BUCKETS) else {
                 self.distance += 1;
@@ -164,7 +164,7 @@ impl Flood {
 }
 
 /// The neighbour of `cell` at that place of [`NEIGHBORS`]; `None` where a coordinate is negative.
-pub(super) fn neighbor(cell: Cell, side: usize) -> Option<Cell> {
+pub(crate) fn neighbor(cell: Cell, side: usize) -> Option<Cell> {
     let (columns, rows) = NEIGHBORS[side];
     let column = cell.column.checked_add_signed(columns)?;
     Some(Cell { column, row: cell.row.checked_add_signed(rows)? })

@@ -19,7 +19,7 @@ use super::noise::reach;
 use super::player::Motion;
 use super::sound::SoundKind;
 use crate::world::{Difficulty, Heading, TileEffect};
-pub(super) use spikes::Spikes;
+pub(crate) use spikes::Spikes;
 
 /// The highest fall that does not hurt, in cells.
 const SAFE_FALL: f64 = 2.2;
@@ -32,7 +32,7 @@ const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
     /// What the floor does to the player in this step, which began at `before`.
-    pub(super) fn meet_hazards(&mut self, before: &Motion) {
+    pub(crate) fn meet_hazards(&mut self, before: &Motion) {
         self.fall();
         if self.is_mission {
             self.wade(before);
@@ -82,7 +82,7 @@ impl Game {
     }
 
     /// The number of steps in water in which it does not hurt; `None` outside water.
-    pub(super) fn quiet_steps_in_water(&self) -> Option<u64> {
+    pub(crate) fn quiet_steps_in_water(&self) -> Option<u64> {
         let steps = self.player.in_water;
         let next = COLD * 2.max(steps / COLD + 1);
         (self.is_mission && self.is_in_water()).then(|| u64::from(next - steps - 1))
@@ -104,7 +104,7 @@ impl Game {
     }
 
     /// The guard `by` hits the player from `from`.
-    pub(super) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
+    pub(crate) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
         let kind = self.guards.views().nth(by).map(|guard| guard.kind);
         if let Some(kind) = kind {
             self.hurt_from(by, from, points, Cause::Guard(kind));
@@ -112,7 +112,7 @@ impl Game {
     }
 
     /// A bolt hits the player that the guard `by` has shot at `from`.
-    pub(super) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
+    pub(crate) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
         self.hurt_from(by, from, points, Cause::Bolt);
     }
 

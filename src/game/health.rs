@@ -40,19 +40,19 @@ stored! { enum FlashKind { 0: Hurt { bearing }, 1: Gain } }
 
 /// What takes health.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Harm {
-    pub(super) points: u8,
+pub(crate) struct Harm {
+    pub(crate) points: u8,
     /// The direction from the player to what hurts them.
-    pub(super) bearing: Option<Heading>,
+    pub(crate) bearing: Option<Heading>,
     /// Whether it leaves the last point, because the player could not see it.
-    pub(super) spares: bool,
+    pub(crate) spares: bool,
     /// What a message says if it kills.
-    pub(super) cause: Cause,
+    pub(crate) cause: Cause,
 }
 
 /// What can kill a player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Cause {
+pub(crate) enum Cause {
     Guard(GuardKind),
     Bolt,
     Spikes,
@@ -76,23 +76,23 @@ impl Health {
     }
 
     /// The health after `harm`.
-    pub(super) fn after(self, harm: &Harm) -> Self {
+    pub(crate) fn after(self, harm: &Harm) -> Self {
         let least = u8::from(harm.spares).min(self.points);
         Self { points: self.points.saturating_sub(harm.points).max(least), ..self }
     }
 
     /// The health with that many points more, up to those of an unhurt player.
-    pub(super) fn healed(self, points: u8) -> Self {
+    pub(crate) fn healed(self, points: u8) -> Self {
         Self { points: self.points.saturating_add(points).min(self.most), ..self }
     }
 
     /// The health of a player who goes on after death: at least half.
-    pub(super) fn revived(self) -> Self {
+    pub(crate) fn revived(self) -> Self {
         Self { points: self.points.max(self.most / 2), ..self }
     }
 
     /// Whether points are missing.
-    pub(super) fn is_hurt(self) -> bool {
+    pub(crate) fn is_hurt(self) -> bool {
         self.points < self.most
     }
 }
@@ -127,32 +127,32 @@ impl Flash {
     }
 
     /// The number of steps in which it does not fade.
-    pub(super) fn quiet_steps(self) -> u64 {
+    pub(crate) fn quiet_steps(self) -> u64 {
         u64::from(self.left.saturating_sub(Self::FADE))
     }
 
     /// A flash for `harm`.
-    pub(super) fn hurt(harm: &Harm) -> Self {
+    pub(crate) fn hurt(harm: &Harm) -> Self {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
     }
 
     /// A flash for a blow after which `grace` steps of grace are left.
-    pub(super) fn warning(harm: &Harm, grace: u16) -> Self {
+    pub(crate) fn warning(harm: &Harm, grace: u16) -> Self {
         Self { left: grace.max(HURT_STEPS), ..Self::hurt(harm) }
     }
 
     /// A flash for a blow of another player, which takes no health.
-    pub(super) fn struck(bearing: Option<Heading>) -> Self {
+    pub(crate) fn struck(bearing: Option<Heading>) -> Self {
         Self { kind: FlashKind::Hurt { bearing }, left: HURT_STEPS }
     }
 
     /// A flash for a find.
-    pub(super) fn gain() -> Self {
+    pub(crate) fn gain() -> Self {
         Self { kind: FlashKind::Gain, left: GAIN_STEPS }
     }
 
     /// The flash after `steps`; `None` if it has ended.
-    pub(super) fn after(self, steps: u16) -> Option<Self> {
+    pub(crate) fn after(self, steps: u16) -> Option<Self> {
         let left = self.left.saturating_sub(steps);
         (left > 0).then_some(Self { left, ..self })
     }
@@ -160,7 +160,7 @@ impl Flash {
 
 impl Cause {
     /// The cause as a part of a sentence: "killed by …".
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Guard(GuardKind::Warden) => "a warden",
             Self::Guard(GuardKind::Listener) => "a listener",

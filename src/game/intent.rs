@@ -141,7 +141,7 @@ impl Intent {
     }
 
     /// The intent with that name.
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|intent| intent.name() == name)
     }
 }
@@ -197,17 +197,17 @@ impl Intents {
     }
 
     /// The intents of the set that [act once](Intent::acts_once), without angles.
-    pub(super) fn once(self) -> Self {
+    pub(crate) fn once(self) -> Self {
         Self { bits: self.bits & ONCE, look: Look::NONE }
     }
 
     /// The intents of the set that are not in `others`, without angles.
-    pub(super) fn without(self, others: Self) -> Self {
+    pub(crate) fn without(self, others: Self) -> Self {
         Self { bits: self.bits & !others.bits, look: Look::NONE }
     }
 
     /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
-    pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
+    pub(crate) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
     }
 }

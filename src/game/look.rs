@@ -20,8 +20,8 @@ pub struct Look {
 stored! { struct Look { turn, tilt } }
 
 /// The names of both in files.
-pub(super) const TURN: &str = "turn";
-pub(super) const TILT: &str = "tilt";
+pub(crate) const TURN: &str = "turn";
+pub(crate) const TILT: &str = "tilt";
 
 impl Look {
     /// No turn and no tilt.
@@ -31,17 +31,17 @@ impl Look {
     pub const PER_DEGREE: i16 = 100;
 
     /// Clockwise, in radians.
-    pub(super) fn turn_radians(self) -> f64 {
+    pub(crate) fn turn_radians(self) -> f64 {
         radians(self.turn)
     }
 
     /// Upwards, in radians.
-    pub(super) fn tilt_radians(self) -> f64 {
+    pub(crate) fn tilt_radians(self) -> f64 {
         radians(self.tilt)
     }
 
     /// The words of a script for it: none, one or two.
-    pub(super) fn words(self) -> impl Iterator<Item = String> {
+    pub(crate) fn words(self) -> impl Iterator<Item = String> {
         let amounts = [(TURN, self.turn), (TILT, self.tilt)];
         let amounts = amounts.into_iter().filter(|&(_, amount)| amount != 0);
         amounts.map(|(name, amount)| format!("{name}:{}", Degrees(amount)))
@@ -63,7 +63,7 @@ impl fmt::Display for Degrees {
 
 /// The hundredths of a degree that `text` gives in degrees; `None` if it is not a number, is not a
 /// whole number of hundredths, is 0 or is too large.
-pub(super) fn hundredths(text: &str) -> Option<i16> {
+pub(crate) fn hundredths(text: &str) -> Option<i16> {
     let degrees: f64 = text.parse().ok()?;
     let hundredths = (degrees * f64::from(Look::PER_DEGREE)).round();
     let is_whole = hundredths / f64::from(Look::PER_DEGREE) == degrees;

@@ -29,7 +29,7 @@ use moving_cell::{MovingCell, Step};
 
 /// The state of all mechanisms of a level.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Mechanisms {
+pub(crate) struct Mechanisms {
     /// For each switch.
     switches: Vec<Switch>,
     /// All plates, row by row.
@@ -76,7 +76,7 @@ stored! { part of Plate { is_down } level { cell, switch } }
 
 impl Mechanisms {
     /// The mechanisms of `world`, at rest.
-    pub(super) fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let tiles = world.grid().rows().zip(0..).flat_map(|(line, row)| {
             let columns = line.iter().zip(0..);
             columns.map(move |(&tile, column)| (Cell { column, row }, tile))
@@ -137,19 +137,19 @@ impl Mechanisms {
     }
 
     /// Whether there is anything to open beside doors.
-    pub(super) fn has_handles(&self) -> bool {
+    pub(crate) fn has_handles(&self) -> bool {
         self.has_handles
     }
 
     /// Turns the levers of `switch`, and returns whether they are on now.
-    pub(super) fn turn(&mut self, switch: SwitchId) -> bool {
+    pub(crate) fn turn(&mut self, switch: SwitchId) -> bool {
         let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
         state.is_turned = !state.is_turned;
         state.is_turned
     }
 
     /// The secret walls, and those of them that have been found.
-    pub(super) fn secrets(&self) -> Share {
+    pub(crate) fn secrets(&self) -> Share {
         self.secrets
     }
 
@@ -188,7 +188,7 @@ impl Mechanisms {
 
     /// The position of each plate, the position of each moving cell, and the state of each switch,
     /// as numbers.
-    pub(super) fn words(&self) -> impl Iterator<Item = u64> {
+    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
         let switches =
             self.switches.iter().map(|it| u64::from(it.is_turned) << 1 | u64::from(it.is_on));
         let plates = self.plates.iter().map(|plate| u64::from(plate.is_down));
@@ -207,7 +207,7 @@ impl Mechanisms {
 
 impl Game {
     /// Moves what is driven by switches, hands and weights.
-    pub(super) fn move_mechanisms(&mut self) {
+    pub(crate) fn move_mechanisms(&mut self) {
         let bodies = self.cells_of_all().count();
         *self.work += (bodies + self.mechanisms.down.len()) as u64;
         self.press_plates();
@@ -216,7 +216,7 @@ impl Game {
     }
 
     /// Whether a step would change any mechanism but a door.
-    pub(super) fn mechanisms_move(&self) -> bool {
+    pub(crate) fn mechanisms_move(&self) -> bool {
         self.changing_plates().next().is_some()
             || self.mechanisms.switches().any(|switch| {
                 self.mechanisms.is_on(switch)
@@ -261,7 +261,7 @@ impl Game {
     }
 
     /// Whether somebody would be in a wall in `cell`.
-    pub(super) fn is_in_the_way(&self, cell: Cell) -> bool {
+    pub(crate) fn is_in_the_way(&self, cell: Cell) -> bool {
         self.playing().any(|(_, it)| it.motion.touches(cell)) || self.guards.touches(cell)
     }
 

@@ -25,7 +25,7 @@ mod strike;
 mod view;
 
 use super::Intents;
-pub(super) use members::{Members, playing, playing_mut};
+pub(crate) use members::{Members, playing, playing_mut};
 pub use view::{OtherPlayer, PlayerView};
 
 /// The most players in a game.

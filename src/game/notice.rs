@@ -7,7 +7,7 @@ const DURATION: u64 = 180;
 
 /// A message that is shown for some more steps.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Notice {
+pub(crate) struct Notice {
     text: String,
     steps_left: u64,
 }
@@ -16,22 +16,22 @@ stored! { struct Notice { text, steps_left } }
 
 impl Notice {
     /// Shows `text` from now on.
-    pub(super) fn new(text: String) -> Self {
+    pub(crate) fn new(text: String) -> Self {
         Self { text, steps_left: DURATION }
     }
 
     /// The current message.
-    pub(super) fn text(&self) -> Option<&str> {
+    pub(crate) fn text(&self) -> Option<&str> {
         (self.steps_left > 0).then_some(&self.text)
     }
 
     /// The number of steps until the message ends; `None` if there is none.
-    pub(super) fn quiet_steps(&self) -> Option<u64> {
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
         self.steps_left.checked_sub(1)
     }
 
     /// Advances by `steps` steps, and returns whether the message ended.
-    pub(super) fn wait(&mut self, steps: u64) -> bool {
+    pub(crate) fn wait(&mut self, steps: u64) -> bool {
         let was_said = self.steps_left > 0;
         self.steps_left = self.steps_left.saturating_sub(steps);
         if self.steps_left == 0 {

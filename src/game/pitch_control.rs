@@ -20,8 +20,8 @@ const RETURN: f64 = 10.0;
 const STILL: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct PitchControl {
-    pub(super) pitch: Pitch,
+pub(crate) struct PitchControl {
+    pub(crate) pitch: Pitch,
     /// Slope per second, upwards.
     speed: f64,
     returns: bool,
@@ -32,7 +32,7 @@ stored! { struct PitchControl { pitch, speed, returns } }
 impl PitchControl {
     /// The pitch after one step.
     #[must_use]
-    pub(super) fn after_a_step(self, intents: Intents) -> Self {
+    pub(crate) fn after_a_step(self, intents: Intents) -> Self {
         let upwards = intents.balance(Intent::LookUp, Intent::LookDown);
         let tilt = intents.look().tilt_radians();
         let returns =

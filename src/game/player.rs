@@ -14,40 +14,40 @@ use super::tools::Supplies;
 use super::warnings::Warnings;
 use crate::world::{KeyId, World};
 pub(crate) use motion::FRICTION;
-pub(super) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
 /// More than a player ever counts: it grows for years before it overflows.
 const MOST_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Player {
-    pub(super) motion: Motion,
-    pub(super) health: Health,
-    pub(super) supplies: Supplies,
-    pub(super) keys: BTreeSet<KeyId>,
+pub(crate) struct Player {
+    pub(crate) motion: Motion,
+    pub(crate) health: Health,
+    pub(crate) supplies: Supplies,
+    pub(crate) keys: BTreeSet<KeyId>,
     /// The worth of the treasure found.
-    pub(super) treasure: u32,
-    pub(super) has_light: bool,
+    pub(crate) treasure: u32,
+    pub(crate) has_light: bool,
     /// The steps until the player can strike again.
-    pub(super) strike_wait: u16,
+    pub(crate) strike_wait: u16,
     /// The intents of the last step that act once for each press.
-    pub(super) pressed: Intents,
+    pub(crate) pressed: Intents,
     /// The height from which the player falls: the highest since they last stood.
-    pub(super) fell_from: f64,
+    pub(crate) fell_from: f64,
     /// How far the player has walked since the last audible step, in cells.
-    pub(super) stride: f64,
+    pub(crate) stride: f64,
     /// The number of steps in cold water, without a break.
-    pub(super) in_water: u32,
+    pub(crate) in_water: u32,
     /// The last thrust of spikes that hurt the player, by the step in which it began.
-    pub(super) last_thrust: Option<u64>,
-    pub(super) warnings: Warnings,
-    pub(super) hearing: Hearing,
-    pub(super) flash: Option<Flash>,
-    pub(super) notice: Notice,
+    pub(crate) last_thrust: Option<u64>,
+    pub(crate) warnings: Warnings,
+    pub(crate) hearing: Hearing,
+    pub(crate) flash: Option<Flash>,
+    pub(crate) notice: Notice,
     /// What has killed the player, if something has.
-    pub(super) killed_by: Option<Cause>,
-    pub(super) counts: Counts,
+    pub(crate) killed_by: Option<Cause>,
+    pub(crate) counts: Counts,
 }
 
 stored! {
@@ -59,7 +59,7 @@ stored! {
 
 impl Player {
     /// A player at the start of `world`, with these supplies.
-    pub(super) fn new(world: &World, supplies: Supplies) -> Self {
+    pub(crate) fn new(world: &World, supplies: Supplies) -> Self {
         let motion = Motion::new(world);
         Self {
             fell_from: motion.feet(),
@@ -84,7 +84,7 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(super) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
         let Counts { alarms, deaths, stunned } = self.counts;
@@ -97,18 +97,18 @@ impl Player {
 
     /// The same player at another place.
     #[must_use]
-    pub(super) fn at(self, motion: Motion) -> Self {
+    pub(crate) fn at(self, motion: Motion) -> Self {
         Self { motion, fell_from: motion.feet(), ..self }
     }
 
     /// Those of `presses` that begin in this step.
-    pub(super) fn fresh(&self, presses: Intents) -> Intents {
+    pub(crate) fn fresh(&self, presses: Intents) -> Intents {
         presses.without(self.pressed)
     }
 
     /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever
     /// will.
-    pub(super) fn quiet_steps(&self) -> Option<u64> {
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
         let flash = self.flash.map(Flash::quiet_steps);
         let quiet = [self.notice.quiet_steps(), self.hearing.quiet_steps(), flash];
         quiet.into_iter().flatten().min()
@@ -116,7 +116,7 @@ impl Player {
 
     /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a
     /// message ended, or a flash faded.
-    pub(super) fn wait(&mut self, steps: u64) -> bool {
+    pub(crate) fn wait(&mut self, steps: u64) -> bool {
         let short = u16::try_from(steps).unwrap_or(u16::MAX);
         self.strike_wait = self.strike_wait.saturating_sub(short);
         let shown = |flash: Option<Flash>| flash.map_or(0, |flash| flash.left.min(Flash::FADE));

@@ -190,7 +190,7 @@ mod tests {
     use crate::game::{Intent, Look};
     use crate::world::Difficulty;
 
-    pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
+    pub(crate) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
         let stretch = (1..=Stretch::MOST_STEPS, intents)
             .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });

@@ -95,10 +95,10 @@ impl fmt::Display for Rank {
 
 /// What a game counts, whatever is restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) struct Counts {
-    pub(super) alarms: u32,
-    pub(super) deaths: u32,
-    pub(super) stunned: u32,
+pub(crate) struct Counts {
+    pub(crate) alarms: u32,
+    pub(crate) deaths: u32,
+    pub(crate) stunned: u32,
 }
 
 stored! { struct Counts { alarms, deaths, stunned } }

@@ -13,8 +13,8 @@ use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
 use super::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Camera, GuardKind, Supply};
-pub(super) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
-pub(super) use smoke::{Puff, Smoke};
+pub(crate) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
+pub(crate) use smoke::{Puff, Smoke};
 
 /// How far a blow reaches, in cells, and the cosine of the angle to both sides: 60°.
 const ARM: f64 = 1.0;
@@ -34,29 +34,29 @@ const WARDEN_SHOT: u16 = 300;
 
 /// The tools that a player carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) struct Supplies([u8; Supply::ALL.len()]);
+pub(crate) struct Supplies([u8; Supply::ALL.len()]);
 
 impl Supplies {
     /// The most of each that a player carries.
-    pub(super) const MOST: u8 = 9;
+    pub(crate) const MOST: u8 = 9;
 
     /// Those of a player at the start.
-    pub(super) const AT_START: Self = Self([3, 0, 0]);
+    pub(crate) const AT_START: Self = Self([3, 0, 0]);
 
     /// The number of `supply`.
-    pub(super) fn count(self, supply: Supply) -> u8 {
+    pub(crate) fn count(self, supply: Supply) -> u8 {
         self.0[supply as usize]
     }
 
     /// Adds `more` of `supply`, as many as the player can carry.
-    pub(super) fn add(&mut self, supply: Supply, more: u8) {
+    pub(crate) fn add(&mut self, supply: Supply, more: u8) {
         let count = &mut self.0[supply as usize];
         *count = count.saturating_add(more).min(Self::MOST);
     }
 
     /// The larger number of each.
     #[must_use]
-    pub(super) fn or_more(mut self, other: Self) -> Self {
+    pub(crate) fn or_more(mut self, other: Self) -> Self {
         self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
         self
     }
@@ -85,7 +85,7 @@ impl Stored for Supplies {
 
 impl Game {
     /// Uses the tools that the player begins to want.
-    pub(super) fn use_tools(&mut self, fresh: Intents) {
+    pub(crate) fn use_tools(&mut self, fresh: Intents) {
         if fresh.contains(Intent::Lamp) {
             self.turn_lamp();
         }
@@ -179,7 +179,7 @@ impl Game {
     }
 
     /// Moves what flies, and lets it do what it does where it ends.
-    pub(super) fn move_missiles(&mut self) {
+    pub(crate) fn move_missiles(&mut self) {
         if self.missiles.is_empty() {
             return;
         }

@@ -7,7 +7,7 @@ use super::multiplayer::playing;
 impl Game {
     /// Moves the player, with what they meet on their way. Returns the intents, of which a jump in
     /// front of a door is to open it.
-    pub(super) fn move_one(&mut self, intents: Intents) -> Intents {
+    pub(crate) fn move_one(&mut self, intents: Intents) -> Intents {
         let intents = self.at_a_door(intents);
         let before = self.player.motion;
         self.move_player(intents);
@@ -20,13 +20,13 @@ impl Game {
     }
 
     /// Moves mechanisms, missiles and guards.
-    pub(super) fn move_others(&mut self) {
+    pub(crate) fn move_others(&mut self) {
         self.move_mechanisms();
         self.move_missiles();
         self.move_guards();
     }
 
-    pub(super) fn step_after_death(&mut self, intents: Intents) {
+    pub(crate) fn step_after_death(&mut self, intents: Intents) {
         let presses = self.presses(intents);
         let retries = self.player.fresh(presses).contains(Intent::Retry);
         self.player.pressed = presses;
@@ -35,7 +35,7 @@ impl Game {
         }
     }
 
-    pub(super) fn move_player(&mut self, intents: Intents) {
+    pub(crate) fn move_player(&mut self, intents: Intents) {
         let before = self.player.motion;
         self.find_those_in_the_way();
         let others = self.members.as_deref().map_or(&[][..], |members| members.in_the_way());
@@ -48,7 +48,7 @@ impl Game {
 
     /// The intents that are recorded from step to step, because each press acts once. A lever turns
     /// once for each press, too.
-    pub(super) fn presses(&self, intents: Intents) -> Intents {
+    pub(crate) fn presses(&self, intents: Intents) -> Intents {
         let mut presses = intents.once();
         if self.mechanisms.has_handles() && intents.contains(Intent::Open) {
             presses.insert(Intent::Open);
@@ -57,7 +57,7 @@ impl Game {
     }
 
     /// Opens the door ahead, and does what the player begins to want.
-    pub(super) fn act(&mut self, intents: Intents) {
+    pub(crate) fn act(&mut self, intents: Intents) {
         self.open_doors(intents);
         let presses = self.presses(intents);
         let fresh = self.player.fresh(presses);
@@ -73,13 +73,13 @@ impl Game {
         }
     }
 
-    pub(super) fn thin_smoke(&mut self) {
+    pub(crate) fn thin_smoke(&mut self) {
         if !self.smoke.is_empty() {
             self.smoke.step();
         }
     }
 
-    pub(super) fn move_doors(&mut self) {
+    pub(crate) fn move_doors(&mut self) {
         *self.work += (self.doors.count() * (1 + self.guards.count())) as u64;
         let Self { player, members, guards, doors, world, .. } = self;
         let is_touched =
@@ -90,7 +90,7 @@ impl Game {
     }
 
     /// Lets the player hear the sounds of this step.
-    pub(super) fn hear(&mut self) {
+    pub(crate) fn hear(&mut self) {
         if self.is_mission {
             let (listener, position) = (self.turn(), self.player.motion.position());
             let heard = self.player.hearing.step(&self.world, listener, position, &self.sounds);
@@ -99,7 +99,7 @@ impl Game {
     }
 
     /// Moves the window after the player.
-    pub(super) fn move_window(&mut self) {
+    pub(crate) fn move_window(&mut self) {
         let Some(window) = &mut self.window else { return };
         if let Some(shift) = window.follow(&mut self.world, self.player.motion.cell()) {
             self.player.motion = self.player.motion.shifted(shift);

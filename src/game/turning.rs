@@ -15,7 +15,7 @@ const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
-pub(super) const FRICTION: f64 = 20.0;
+pub(crate) const FRICTION: f64 = 20.0;
 /// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
@@ -32,7 +32,7 @@ const MOST_WAITING: u32 = 72;
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Turning {
+pub(crate) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
     /// The steps left of turns by 5 degrees, clockwise.
@@ -48,7 +48,7 @@ stored! { struct Turning { speed, fine, about, wanted } }
 impl Turning {
     /// The state after one step, and the angle of that step in radians, clockwise.
     #[must_use]
-    pub(super) fn after_a_step(self, intents: Intents) -> (Self, f64) {
+    pub(crate) fn after_a_step(self, intents: Intents) -> (Self, f64) {
         let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let DampedMotion { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
@@ -58,7 +58,7 @@ impl Turning {
     }
 
     /// Refuses more exact turns than may wait.
-    pub(super) fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
         check(is_possible, "a turn")

@@ -12,13 +12,13 @@
 use super::stored::{Unrestorable, check, stored};
 
 /// The steps after a warning in which the guard does not kill: 3 seconds.
-pub(super) const GRACE: u16 = 180;
+pub(crate) const GRACE: u16 = 180;
 /// The steps after a blow in which the guard is remembered: 10 seconds.
 const FORGOTTEN: u64 = 600;
 
 /// The guards of whom a player has been warned.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub(super) struct Warnings {
+pub(crate) struct Warnings {
     list: Vec<Warning>,
 }
 
@@ -39,7 +39,7 @@ stored! { struct Warning { guard, since, last } }
 impl Warnings {
     /// Records a blow of `guard` in the step `now` that would kill from outside the view. Returns the
     /// steps of grace that are left; `None` if it kills.
-    pub(super) fn spare(&mut self, guard: usize, now: u64) -> Option<u16> {
+    pub(crate) fn spare(&mut self, guard: usize, now: u64) -> Option<u16> {
         self.list.retain(|warning| now.saturating_sub(warning.last) < FORGOTTEN);
         let known = self.list.iter_mut().find(|warning| warning.guard == guard);
         let Some(warning) = known else {
@@ -53,17 +53,17 @@ impl Warnings {
     }
 
     /// Refuses warnings after the step `now`.
-    pub(super) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }
 
     /// Forgets all guards.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.list.clear();
     }
 
     /// A number that depends on all warnings; 0 without any.
-    pub(super) fn word(&self) -> u64 {
+    pub(crate) fn word(&self) -> u64 {
         self.list.iter().fold(0, |word, &Warning { guard, since, last }| {
             crate::rng::hash(word, [guard as u64, since, last])
         })

@@ -15,8 +15,8 @@ use crate::rng::SplitMix64;
 
 /// The cave of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Cave {
-    pub(super) seed: u64,
+pub(crate) struct Cave {
+    pub(crate) seed: u64,
 }
 
 const STONE: u8 = b'#';

@@ -185,7 +185,7 @@ impl Chunk {
     }
 
     /// Fills what is not in `area` with wall.
-    pub(super) fn clip(&mut self, area: &ChunkArea, character: u8) {
+    pub(crate) fn clip(&mut self, area: &ChunkArea, character: u8) {
         for (column, row) in every_cell().filter(|&(column, row)| !area.contains(column, row)) {
             self.set(column, row, character);
         }
@@ -193,7 +193,7 @@ impl Chunk {
 
     /// The cells that can be reached from `start` inside the chunk through characters for which
     /// `is_open` is true, in the order of their distance.
-    pub(super) fn reachable(
+    pub(crate) fn reachable(
         &self,
         start: (usize, usize),
         is_open: impl Fn(u8) -> bool,
@@ -216,7 +216,7 @@ impl Chunk {
 }
 
 /// All cells of a chunk, row by row.
-pub(super) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
     (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
 }
 

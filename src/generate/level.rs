@@ -83,12 +83,12 @@ impl Level {
         chunk
     }
 
-    pub(super) fn tileset(&self) -> &Tileset {
+    pub(crate) fn tileset(&self) -> &Tileset {
         &self.tileset
     }
 
     /// The characters of a level with an end, row by row, without its exit.
-    pub(super) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
+    pub(crate) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
         let (columns, rows) = (columns.get() as usize, rows.get() as usize);
         let mut cells = vec![vec![ROCK; columns]; rows];
         for first_row in (0..rows).step_by(CHUNK_SIDE) {

@@ -16,8 +16,8 @@ use crate::rng::SplitMix64;
 
 /// The maze of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Maze {
-    pub(super) seed: u64,
+pub(crate) struct Maze {
+    pub(crate) seed: u64,
 }
 
 /// The contents of a district.

@@ -19,8 +19,8 @@ use decor::Decor;
 
 /// The office of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Office {
-    pub(super) seed: u64,
+pub(crate) struct Office {
+    pub(crate) seed: u64,
 }
 
 const WALL: u8 = b'#';

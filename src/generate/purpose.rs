@@ -7,7 +7,7 @@ use crate::rng::{self, SplitMix64};
 
 /// What is being decided. Each has numbers of its own, so that no decision tells about another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(crate) enum Purpose {
     /// The layout of a chunk.
     Plan = 1,
     /// Where one passes to the chunk in the north.
@@ -35,12 +35,12 @@ pub(super) enum Purpose {
 }
 
 /// A number that looks random, determined by a seed, a purpose and a place.
-pub(super) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
+pub(crate) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
     rng::hash(seed, [purpose as u64, column as u64, row as u64])
 }
 
 /// The generator that a seed, a purpose and a place determine.
-pub(super) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
+pub(crate) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
     SplitMix64::new(hash(seed, purpose, column, row))
 }
 

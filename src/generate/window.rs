@@ -175,7 +175,7 @@ fn chunks_off(place: u32) -> i64 {
 }
 
 /// The direction, of the four along the grid, with the farthest view from `cell`.
-pub(super) fn best_heading(grid: &Grid, cell: Cell) -> Heading {
+pub(crate) fn best_heading(grid: &Grid, cell: Cell) -> Heading {
     let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
     let is_open =
         |column, row| grid.tile(column, row).is_some_and(|tile| !grid.is_solid_tile(tile));

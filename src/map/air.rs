@@ -13,14 +13,14 @@ const FOG_KEYS: &[&str] = &["color", "distance"];
 const FOG_EXAMPLE: &str = r##"fog = { color = "#101018", distance = 12.0 }"##;
 
 /// The sky as the map writes it.
-pub(super) enum SkyText<'a> {
+pub(crate) enum SkyText<'a> {
     Gradient(SkyGradient),
     Panorama(Surface<'a>),
 }
 
 impl<'a> SkyText<'a> {
     /// Reads the sky in `entry`; reports a fault where there is none.
-    pub(super) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
         let table = entry.table(SKY_EXAMPLE)?;
         let faults_before = entry.faults.len();
         let mut skies = Vec::new();
@@ -49,7 +49,7 @@ impl<'a> SkyText<'a> {
     }
 
     /// The sky itself. Reports a fault where its texture is missing.
-    pub(super) fn sky(&self, reader: &mut Reader<'_>) -> Option<Sky> {
+    pub(crate) fn sky(&self, reader: &mut Reader<'_>) -> Option<Sky> {
         match self {
             &Self::Gradient(gradient) => Some(Sky::Gradient(gradient)),
             Self::Panorama(surface) => match reader.paint(surface)? {
@@ -69,7 +69,7 @@ fn gradient<'a>(entry: &Entry<'a, '_>) -> Option<SkyText<'a>> {
     Some(SkyText::Gradient(SkyGradient { zenith: zenith?, horizon: horizon? }))
 }
 
-pub(super) fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {
+pub(crate) fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {
     let text = entry.string(example)?;
     text.parse()
         .map_err(|error| {
@@ -82,7 +82,7 @@ pub(super) fn color(entry: &Entry<'_, '_>, example: &str) -> Option<Rgb> {
 }
 
 /// Reads the fog in `entry`; reports a fault where there is none.
-pub(super) fn fog(entry: &Entry<'_, '_>) -> Option<Fog> {
+pub(crate) fn fog(entry: &Entry<'_, '_>) -> Option<Fog> {
     let table = entry.table(FOG_EXAMPLE)?;
     let faults_before = entry.faults.len();
     let (mut fog_color, mut distance) = (None, None);

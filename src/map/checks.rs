@@ -9,27 +9,27 @@ use crate::fault::Fault;
 use crate::world::{Cell, Grid, GuardPost, MovingTile, Thing, ThingKind, Tile, TileId, TileKind};
 
 /// The tiles of a drawing, and which of them move.
-pub(super) struct Cells<'l> {
-    pub(super) grid: &'l Grid,
-    pub(super) tiles: &'l [Tile],
-    pub(super) moving: &'l [MovingTile],
+pub(crate) struct Cells<'l> {
+    pub(crate) grid: &'l Grid,
+    pub(crate) tiles: &'l [Tile],
+    pub(crate) moving: &'l [MovingTile],
 }
 
 impl Cells<'_> {
     /// The tile at a column and a row; `None` outside the map.
-    pub(super) fn tile(&self, column: i64, row: i64) -> Option<(TileId, Tile)> {
+    pub(crate) fn tile(&self, column: i64, row: i64) -> Option<(TileId, Tile)> {
         let id = self.grid.tile(column, row)?;
         Some((id, self.tiles[usize::from(id.0)]))
     }
 
     /// Whether `id` is drawn for a tile that moves.
-    pub(super) fn moves(&self, id: TileId) -> bool {
+    pub(crate) fn moves(&self, id: TileId) -> bool {
         self.moving.iter().any(|moving| moving.states[0] == id)
     }
 }
 
 /// The faults of guards for whom the ceiling is too low.
-pub(super) fn cramped_guards(
+pub(crate) fn cramped_guards(
     drawing: &Drawing<'_>,
     cells: &Cells<'_>,
     posts: &[GuardPost],
@@ -50,7 +50,7 @@ pub(super) fn cramped_guards(
 }
 
 /// The faults of secret walls with nothing behind them, one for each character.
-pub(super) fn blind_secrets(
+pub(crate) fn blind_secrets(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
     cells: &Cells<'_>,
@@ -89,7 +89,7 @@ fn ways_into(cells: &Cells<'_>, cell: Cell) -> usize {
 }
 
 /// The fault that a map asks for more treasure than lies in it; `place` is where it asks.
-pub(super) fn missing_treasure(
+pub(crate) fn missing_treasure(
     needed: u32,
     place: &Range<usize>,
     things: &[Thing],

@@ -13,7 +13,7 @@ const KEYS: &[&str] = &["texture", "checker", "stripes", "scale"];
 const EXAMPLE: &str = r#"{ texture = "tile" }"#;
 
 /// A floor or a ceiling as the map writes it.
-pub(super) struct CoveringText<'a> {
+pub(crate) struct CoveringText<'a> {
     pattern: PatternText<'a>,
     scale: Scale,
 }
@@ -26,18 +26,18 @@ enum PatternText<'a> {
 
 impl<'a> CoveringText<'a> {
     /// One colour, for maps that do not name any.
-    pub(super) fn plain(color: Rgb) -> Self {
+    pub(crate) fn plain(color: Rgb) -> Self {
         Self { pattern: PatternText::Plain(Surface::plain(color)), scale: Scale::ONE }
     }
 
     /// One built-in texture.
-    pub(super) fn built_in(name: &'static str) -> Self {
+    pub(crate) fn built_in(name: &'static str) -> Self {
         Self { pattern: PatternText::Plain(Surface::built_in(name)), scale: Scale::ONE }
     }
 
     /// Reads the covering in `entry`; reports a fault where there is none. `example` is a whole
     /// entry.
-    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
             DeValue::String(_) => {
                 let surface = Surface::read(entry, example)?;
@@ -84,7 +84,7 @@ impl<'a> CoveringText<'a> {
     }
 
     /// The covering itself. Reports a fault where a texture is missing.
-    pub(super) fn covering(&self, reader: &mut Reader<'_>) -> Option<Covering> {
+    pub(crate) fn covering(&self, reader: &mut Reader<'_>) -> Option<Covering> {
         let mut both = |[first, second]: &[Surface<'_>; 2]| {
             let paints = [reader.paint(first), reader.paint(second)];
             Some([paints[0]?, paints[1]?])
@@ -129,19 +129,19 @@ fn read_scale(entry: &Entry<'_, '_>) -> Option<Scale> {
 }
 
 /// A ceiling as the map writes it.
-pub(super) enum CeilingText<'a> {
+pub(crate) enum CeilingText<'a> {
     Sky,
     Covered(CoveringText<'a>),
 }
 
 impl<'a> CeilingText<'a> {
     /// One colour, for maps that do not name any.
-    pub(super) fn plain(color: Rgb) -> Self {
+    pub(crate) fn plain(color: Rgb) -> Self {
         Self::Covered(CoveringText::plain(color))
     }
 
     /// Reads the ceiling in `entry` as [`CoveringText::read`] does; `"sky"` is no ceiling.
-    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         match entry.value {
             DeValue::String(text) if text == "sky" => Some(Self::Sky),
             _ => CoveringText::read(entry, example).map(Self::Covered),
@@ -149,7 +149,7 @@ impl<'a> CeilingText<'a> {
     }
 
     /// The ceiling itself, as [`CoveringText::covering`].
-    pub(super) fn ceiling(&self, reader: &mut Reader<'_>) -> Option<Ceiling> {
+    pub(crate) fn ceiling(&self, reader: &mut Reader<'_>) -> Option<Ceiling> {
         match self {
             Self::Sky => Some(Ceiling::Sky),
             Self::Covered(covering) => covering.covering(reader).map(Ceiling::Covered),

@@ -16,7 +16,7 @@ use crate::fault::document::{Entry, FaultList, entries};
 use crate::world::{Fog, Heights, Light};
 
 /// The keys of a map.
-pub(super) const KEYS: &[&str] = &[
+pub(crate) const KEYS: &[&str] = &[
     "title",
     "goal",
     "par",
@@ -40,33 +40,33 @@ const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
 const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
 /// All that a map defines besides its grid.
-pub(super) struct Definitions<'a, 't> {
-    pub(super) title: String,
-    pub(super) goal: Option<String>,
+pub(crate) struct Definitions<'a, 't> {
+    pub(crate) title: String,
+    pub(crate) goal: Option<String>,
     /// The time in which a good player finishes, in seconds.
-    pub(super) par: Option<u32>,
+    pub(crate) par: Option<u32>,
     /// The treasure without which exits do not let anybody out, with its place in the map.
-    pub(super) treasure_needed: Option<(u32, Range<usize>)>,
-    pub(super) ceiling: CeilingText<'a>,
+    pub(crate) treasure_needed: Option<(u32, Range<usize>)>,
+    pub(crate) ceiling: CeilingText<'a>,
     /// The height of the ceiling and of walls.
-    pub(super) ceiling_height: f64,
-    pub(super) floor: CoveringText<'a>,
+    pub(crate) ceiling_height: f64,
+    pub(crate) floor: CoveringText<'a>,
     /// The sides of raised floors, for tiles without their own.
-    pub(super) riser: Option<Surface<'a>>,
+    pub(crate) riser: Option<Surface<'a>>,
     /// The sides of what is above lowered ceilings, for tiles without their own.
-    pub(super) lintel: Option<Surface<'a>>,
-    pub(super) sky: Option<SkyText<'a>>,
-    pub(super) fog: Option<Fog>,
+    pub(crate) lintel: Option<Surface<'a>>,
+    pub(crate) sky: Option<SkyText<'a>>,
+    pub(crate) fog: Option<Fog>,
     /// The light of tiles without their own.
-    pub(super) light: Option<Light>,
-    pub(super) grid: Option<Entry<'a, 't>>,
-    pub(super) legend: Legend<'a>,
+    pub(crate) light: Option<Light>,
+    pub(crate) grid: Option<Entry<'a, 't>>,
+    pub(crate) legend: Legend<'a>,
 }
 
 impl<'a, 't> Definitions<'a, 't> {
     /// Reads the definitions in `document`. Faults are reported, and their definitions
     /// replaced by defaults.
-    pub(super) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
+    pub(crate) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
         let mut definitions = Self {
             title: String::new(),
             goal: None,
@@ -145,7 +145,7 @@ fn goal(entry: &Entry<'_, '_>) -> Option<String> {
     None
 }
 
-pub(super) fn title(entry: &Entry<'_, '_>) -> Option<String> {
+pub(crate) fn title(entry: &Entry<'_, '_>) -> Option<String> {
     let title = entry.string(r#"title = "Cellar""#)?;
     if title.contains(char::is_control) {
         let message = "the title has a line break or another control character";

@@ -22,22 +22,22 @@ use crate::world::{Cell, Grid, KeyId, Start, Tile, TileId, TileKind};
 use reach::{Opener, Openers, Reach};
 
 /// A door as the legend defines it.
-pub(super) struct DoorSymbol<'a> {
-    pub(super) leaf: Surface<'a>,
-    pub(super) key: Option<KeySymbol<'a>>,
-    pub(super) switch: Option<SwitchSymbol<'a>>,
+pub(crate) struct DoorSymbol<'a> {
+    pub(crate) leaf: Surface<'a>,
+    pub(crate) key: Option<KeySymbol<'a>>,
+    pub(crate) switch: Option<SwitchSymbol<'a>>,
 }
 
 /// The name of a key, and its place in the map.
 #[derive(Clone)]
-pub(super) struct KeySymbol<'a> {
-    pub(super) name: &'a str,
+pub(crate) struct KeySymbol<'a> {
+    pub(crate) name: &'a str,
     place: Range<usize>,
 }
 
 impl<'a> DoorSymbol<'a> {
     /// Reads the door in `entry` of `table`, with the key or the switch that the table names.
-    pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let leaf = Surface::read(entry, r#"{ door = "oak" }"#);
         let key = entry.entries(table).find(|entry| entry.key == "key");
         let key = match key {
@@ -71,7 +71,7 @@ impl<'a> DoorSymbol<'a> {
 
 impl<'a> KeySymbol<'a> {
     /// Reads the name in `entry`.
-    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         let name = entry.string(example)?;
         let place = entry.value_place.clone();
         if name.is_empty() || name.contains(char::is_control) {
@@ -84,31 +84,31 @@ impl<'a> KeySymbol<'a> {
 }
 
 /// The names of the keys that doors in the grid need. A [`KeyId`] is an index into them.
-pub(super) struct Keys {
+pub(crate) struct Keys {
     names: Vec<String>,
 }
 
 impl Keys {
     /// Collects the keys of the doors in the grid. There are at most as many as kinds of tile.
-    pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
+    pub(crate) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
         let doors = locked_doors(drawing, legend);
         let names: BTreeSet<&str> = sort::gathered(doors.map(|(_, key)| key.name));
         Self { names: names.into_iter().map(str::to_owned).collect() }
     }
 
     /// The key of that name, if a door needs it.
-    pub(super) fn id(&self, name: &str) -> Option<KeyId> {
+    pub(crate) fn id(&self, name: &str) -> Option<KeyId> {
         let index = self.names.iter().position(|known| known == name)?;
         u8::try_from(index).ok().map(KeyId)
     }
 
-    pub(super) fn into_names(self) -> Vec<String> {
+    pub(crate) fn into_names(self) -> Vec<String> {
         self.names
     }
 }
 
 /// All faults of doors and keys in a drawing whose cells are those of `grid`.
-pub(super) fn faults(
+pub(crate) fn faults(
     drawing: &Drawing<'_>,
     legend: &Legend<'_>,
     cells: &Cells<'_>,

@@ -14,12 +14,12 @@ const EXAMPLE: &str = "grid = ''' on a line, the rows below it, and ''' again";
 
 /// The grid as it is drawn. Its sides are within the limits; rows may differ in length, and
 /// characters may be undefined.
-pub(super) struct Drawing<'a> {
+pub(crate) struct Drawing<'a> {
     text: DrawnText<'a>,
-    pub(super) width: NonZeroU32,
-    pub(super) height: NonZeroU32,
+    pub(crate) width: NonZeroU32,
+    pub(crate) height: NonZeroU32,
     /// The place of the key `grid`.
-    pub(super) key_place: Range<usize>,
+    pub(crate) key_place: Range<usize>,
     sightings: PerCharacter<Sightings>,
     /// The first byte of each row in the grid's text.
     row_starts: Vec<usize>,
@@ -27,8 +27,8 @@ pub(super) struct Drawing<'a> {
 
 /// The occurrences of a character in the grid.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Sightings {
-    pub(super) count: usize,
+pub(crate) struct Sightings {
+    pub(crate) count: usize,
     /// The first two, as bytes from the start of the grid's text.
     places: [usize; 2],
 }
@@ -36,7 +36,7 @@ pub(super) struct Sightings {
 impl<'a> Drawing<'a> {
     /// Reads the drawing in `entry` of the map `text`; reports its faults. `None` where it has
     /// no usable width and height.
-    pub(super) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
         let value = entry.string(EXAMPLE)?;
         let text = DrawnText::new(value, entry.value_place.clone(), text);
         let (widths, sightings) = text.survey();
@@ -64,22 +64,22 @@ impl<'a> Drawing<'a> {
     }
 
     /// The characters of the grid with their occurrences, in the order of the characters.
-    pub(super) fn characters(&self) -> impl Iterator<Item = (char, Sightings)> {
+    pub(crate) fn characters(&self) -> impl Iterator<Item = (char, Sightings)> {
         self.sightings.iter().filter(|(_, sightings)| sightings.count > 0)
     }
 
     /// The occurrences of a character.
-    pub(super) fn sightings(&self, character: char) -> Sightings {
+    pub(crate) fn sightings(&self, character: char) -> Sightings {
         self.sightings.get(character)
     }
 
     /// The place in the map of a `character` at byte `at` of the grid's text.
-    pub(super) fn place(&self, character: char, at: usize) -> Range<usize> {
+    pub(crate) fn place(&self, character: char, at: usize) -> Range<usize> {
         self.text.place(at..at + character.len_utf8())
     }
 
     /// The place in the map of a cell.
-    pub(super) fn place_of(&self, cell: Cell) -> Range<usize> {
+    pub(crate) fn place_of(&self, cell: Cell) -> Range<usize> {
         let drawn = self.row_starts.get(cell.row as usize).and_then(|&start| {
             let row = &self.text.value[start..];
             let (at, character) = row.char_indices().nth(cell.column as usize)?;
@@ -89,12 +89,12 @@ impl<'a> Drawing<'a> {
     }
 
     /// The rows from the north.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &'a str> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &'a str> {
         self.text.rows().map(|(_, row)| row)
     }
 
     /// The cells with their characters, row by row from the north.
-    pub(super) fn cells(&self) -> impl Iterator<Item = (Cell, char)> {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (Cell, char)> {
         self.rows().zip(0..).flat_map(move |(line, row)| {
             line.chars().zip(0..).map(move |(drawn, column)| (Cell { column, row }, drawn))
         })
@@ -102,7 +102,7 @@ impl<'a> Drawing<'a> {
 
     /// For each character that `is_asked`, the first of its cells that `is_such`, and the number of
     /// others; none for a character without any. All characters take one pass over the cells.
-    pub(super) fn first_of_each(
+    pub(crate) fn first_of_each(
         &self,
         is_asked: impl Fn(char) -> bool,
         is_such: impl Fn(Cell) -> bool,
@@ -128,7 +128,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// The cells with `character`, row by row from the north.
-    pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
+    pub(crate) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
         self.cells().filter(move |&(_, drawn)| drawn == character).map(|(cell, _)| cell)
     }
 }
@@ -153,7 +153,7 @@ impl Sightings {
     }
 
     /// The first places, at most two.
-    pub(super) fn first_places(&self) -> &[usize] {
+    pub(crate) fn first_places(&self) -> &[usize] {
         &self.places[..self.count.min(2)]
     }
 }

@@ -21,7 +21,7 @@ const LONGEST_PATROL: usize = 64;
 const EXAMPLE: &str = r#"{ guard = "warden", heading = 90 }"#;
 
 /// A guard as the legend defines it.
-pub(super) struct GuardSymbol<'a> {
+pub(crate) struct GuardSymbol<'a> {
     kind: GuardKind,
     heading: Heading,
     duty: DutyText<'a>,
@@ -39,7 +39,7 @@ enum DutyText<'a> {
 
 impl<'a> GuardSymbol<'a> {
     /// Reads the guard in `entry` of `table`; reports a fault where there is none.
-    pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let faults_before = entry.faults.len();
         let kind = kind(entry);
         let mut duties = Vec::new();
@@ -91,7 +91,7 @@ impl<'a> GuardSymbol<'a> {
 }
 
 /// The guards in the drawing, row by row from the north, and within a row from the west.
-pub(super) fn posts(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<GuardPost> {
+pub(crate) fn posts(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<GuardPost> {
     let guards: Vec<(char, &GuardSymbol<'_>)> = guards(drawing, legend).collect();
     let mut guard_of = PerCharacter::<Option<usize>>::new();
     for (index, (character, _)) in guards.iter().enumerate() {
@@ -121,7 +121,7 @@ fn waypoints(drawing: &Drawing<'_>, legend: &Legend<'_>) -> PerCharacter<Option<
 }
 
 /// The faults of patrols without their waypoints, and of waypoints without a patrol.
-pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
+pub(crate) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     if !legend.is_clear() {
         return Vec::new();
     }

@@ -11,35 +11,35 @@ use crate::fault::document::Entry;
 use crate::world::{Ceiling, Covering, Heights, Paint};
 
 /// The least headroom where the player starts, and the least height of the map's ceiling.
-pub(super) const LEAST_HEADROOM: f64 = 0.75;
+pub(crate) const LEAST_HEADROOM: f64 = 0.75;
 
 /// The heights that a tile has of its own.
 #[derive(Default)]
-pub(super) struct HeightsText<'a> {
+pub(crate) struct HeightsText<'a> {
     floor: Option<Height>,
     ceiling: Option<Height>,
     roof: Option<Height>,
-    pub(super) riser: Option<Surface<'a>>,
-    pub(super) lintel: Option<Surface<'a>>,
+    pub(crate) riser: Option<Surface<'a>>,
+    pub(crate) lintel: Option<Surface<'a>>,
 }
 
 /// The surfaces of risers and lintels that the map names for tiles without their own.
 #[derive(Clone, Copy)]
-pub(super) struct Faces {
-    pub(super) riser: Option<Paint>,
-    pub(super) lintel: Option<Paint>,
+pub(crate) struct Faces {
+    pub(crate) riser: Option<Paint>,
+    pub(crate) lintel: Option<Paint>,
 }
 
 /// A height, and its place in the map.
 #[derive(Clone)]
-pub(super) struct Height {
-    pub(super) cells: f64,
-    pub(super) place: Range<usize>,
+pub(crate) struct Height {
+    pub(crate) cells: f64,
+    pub(crate) place: Range<usize>,
 }
 
 impl<'a> HeightsText<'a> {
     /// Reads `entry` if it is one of the heights, risers and lintels; returns whether it is.
-    pub(super) fn take(&mut self, entry: &Entry<'a, '_>) -> bool {
+    pub(crate) fn take(&mut self, entry: &Entry<'a, '_>) -> bool {
         match entry.key {
             "floor_height" => self.floor = Height::read(entry),
             "ceiling_height" => self.ceiling = Height::read(entry),
@@ -51,7 +51,7 @@ impl<'a> HeightsText<'a> {
         true
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         let Self { floor, ceiling, roof, riser, lintel } = self;
         [floor, ceiling, roof].iter().all(|height| height.is_none())
             && riser.is_none()
@@ -60,7 +60,7 @@ impl<'a> HeightsText<'a> {
 
     /// The heights of a tile below `overhead`, in a map whose ceiling is at `map_ceiling`. Adds to
     /// `faults` where they contradict each other.
-    pub(super) fn heights(
+    pub(crate) fn heights(
         &self,
         overhead: Ceiling,
         map_ceiling: f64,
@@ -111,12 +111,12 @@ impl<'a> HeightsText<'a> {
 
 impl Faces {
     /// The riser below `floor`: the map's, or the surface of the floor.
-    pub(super) fn riser(self, floor: Covering) -> Paint {
+    pub(crate) fn riser(self, floor: Covering) -> Paint {
         self.riser.unwrap_or(floor.pattern.first_paint())
     }
 
     /// The lintel above `ceiling`: the map's, or the surface of the ceiling.
-    pub(super) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
+    pub(crate) fn lintel(self, floor: Covering, ceiling: Ceiling) -> Paint {
         let below = match ceiling {
             Ceiling::Covered(covering) => covering,
             Ceiling::Sky => floor,
@@ -127,7 +127,7 @@ impl Faces {
 
 impl Height {
     /// Reads the height in `entry`; reports a fault where there is none.
-    pub(super) fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'_, '_>) -> Option<Self> {
         let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
         if cells.is_none() {
             let most = Heights::MOST;
@@ -143,7 +143,7 @@ impl Height {
 }
 
 /// Reads the height of the map's ceiling, which is also the height of walls.
-pub(super) fn map_ceiling(entry: &Entry<'_, '_>) -> Option<f64> {
+pub(crate) fn map_ceiling(entry: &Entry<'_, '_>) -> Option<f64> {
     let height = Height::read(entry)?;
     if height.cells >= LEAST_HEADROOM {
         return Some(height.cells);
@@ -158,7 +158,7 @@ pub(super) fn map_ceiling(entry: &Entry<'_, '_>) -> Option<f64> {
 }
 
 /// Reads the height of a wall in `table`, if it has one.
-pub(super) fn of_wall(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<f64> {
+pub(crate) fn of_wall(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<f64> {
     let entry = entry.entries(table).find(|entry| entry.key == "height")?;
     let height = Height::read(&entry)?;
     if height.cells > 0.0 {

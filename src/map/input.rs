@@ -7,7 +7,7 @@ use std::path::Path;
 use super::MAX_BYTES;
 use crate::fault::Faults;
 
-pub(super) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
+pub(crate) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
     let mut bytes = Vec::new();
     let read = input.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);
     read.map_err(|error| unreadable(name, &error))?;
@@ -21,7 +21,7 @@ pub(super) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> 
 ///
 /// Only a regular file is opened: opening a pipe would wait for its other end, and a device may
 /// have no end.
-pub(super) fn open(path: &Path, name: &str) -> Result<File, Faults> {
+pub(crate) fn open(path: &Path, name: &str) -> Result<File, Faults> {
     let metadata = fs::metadata(path).map_err(|error| unreadable(name, &error))?;
     if metadata.is_dir() {
         let message = format!("{name} is a folder, not a map");
@@ -35,13 +35,13 @@ pub(super) fn open(path: &Path, name: &str) -> Result<File, Faults> {
 }
 
 /// Reads at most `limit` bytes of a file.
-pub(super) fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
+pub(crate) fn read_up_to(path: &Path, limit: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(limit as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-pub(super) fn too_large(name: &str) -> Faults {
+pub(crate) fn too_large(name: &str) -> Faults {
     let limit = MAX_BYTES >> 20;
     let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
     Faults::of_whole_file(name, &message, "")

@@ -17,11 +17,11 @@ const HEALING: RangeInclusive<u8> = 1..=6;
 const SUPPLIES: RangeInclusive<u8> = 1..=9;
 
 /// The keys that make an item.
-pub(super) const KEYS: &[&str] =
+pub(crate) const KEYS: &[&str] =
     &["treasure", "healing", "pebbles", "darts", "flasks", "note", "checkpoint", "lever", "spikes"];
 
 /// An item as the legend defines it.
-pub(super) enum ItemSymbol<'a> {
+pub(crate) enum ItemSymbol<'a> {
     Treasure(u16),
     Healing(u8),
     Supply(Supply, u8),
@@ -33,7 +33,7 @@ pub(super) enum ItemSymbol<'a> {
 
 impl<'a> ItemSymbol<'a> {
     /// Reads the item in `entry` of `table`; reports a fault where there is none.
-    pub(super) fn read(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
         match entry.key {
             "treasure" => whole(entry, TREASURE).map(Self::Treasure),
             "healing" => whole(entry, HEALING).map(Self::Healing),
@@ -48,7 +48,7 @@ impl<'a> ItemSymbol<'a> {
     }
 
     /// The name of its built-in sprite.
-    pub(super) fn sprite_name(&self) -> &'static str {
+    pub(crate) fn sprite_name(&self) -> &'static str {
         match self {
             Self::Treasure(..25) => "coins",
             Self::Treasure(25..100) => "cup",
@@ -64,7 +64,7 @@ impl<'a> ItemSymbol<'a> {
 }
 
 /// Reads a whole number in `range`; reports a fault where there is none.
-pub(super) fn whole<T>(entry: &Entry<'_, '_>, range: RangeInclusive<T>) -> Option<T>
+pub(crate) fn whole<T>(entry: &Entry<'_, '_>, range: RangeInclusive<T>) -> Option<T>
 where
     T: Copy + TryFrom<u32> + PartialOrd + std::fmt::Display,
     u32: From<T>,

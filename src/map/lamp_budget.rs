@@ -8,13 +8,13 @@ use crate::world::Lamp;
 
 /// The largest number of cells that lamps light, a cell counted for each lamp that reaches it: ten
 /// thousand lamps of the longest reach.
-pub(super) const MOST_CELLS: u64 = 1 << 25;
+pub(crate) const MOST_CELLS: u64 = 1 << 25;
 /// The cells that a kind of lamp lights are computed once, which takes as long as to light this many
 /// lamps.
 const COST_OF_KIND: u64 = 32;
 
 /// The cells that the lamps of a map may still light.
-pub(super) struct LampBudget {
+pub(crate) struct LampBudget {
     /// `None` after lamps exceeded it.
     left: Option<u64>,
 }
@@ -29,7 +29,7 @@ impl Default for LampBudget {
 impl LampBudget {
     /// Takes the cells that `count` lamps of a kind light. Returns whether they exceed the budget,
     /// once only.
-    pub(super) fn is_exceeded_by(&mut self, lamp: Lamp, count: usize) -> bool {
+    pub(crate) fn is_exceeded_by(&mut self, lamp: Lamp, count: usize) -> bool {
         let Some(left) = self.left else { return false };
         let cells = lamp.reach.cell_count() * (count as u64 + COST_OF_KIND);
         self.left = left.checked_sub(cells);

@@ -18,23 +18,23 @@ use crate::fault::Fault;
 use crate::world::{Grid, Mission, Sprite, Start, Thing, Tile, TileId};
 
 /// The contents of a drawing.
-pub(super) struct Layout {
-    pub(super) grid: Grid,
+pub(crate) struct Layout {
+    pub(crate) grid: Grid,
     /// The kinds of tile, as in [`TileList`].
-    pub(super) tiles: Vec<Tile>,
-    pub(super) start: Start,
-    pub(super) sprites: Vec<Sprite>,
-    pub(super) things: Vec<Thing>,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
+    pub(crate) things: Vec<Thing>,
     /// The names of the keys.
-    pub(super) keys: Vec<String>,
+    pub(crate) keys: Vec<String>,
     /// What the level asks of the player, without what the whole map defines.
-    pub(super) mission: Mission,
+    pub(crate) mission: Mission,
 }
 
 impl Layout {
     /// The contents of `drawing`, in a map whose open floor is `ground`. Reports faults,
     /// and returns `None` if the map has any.
-    pub(super) fn of(
+    pub(crate) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         ground: Tile,

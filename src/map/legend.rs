@@ -24,38 +24,38 @@ use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
 use crate::world::{Cell, Glass, Heading};
 use property::property;
-pub(super) use property::{heading, light};
-pub(super) use section::Section;
-pub(super) use surroundings::Surroundings;
+pub(crate) use property::{heading, light};
+pub(crate) use section::Section;
+pub(crate) use surroundings::Surroundings;
 use surroundings::Taken;
 
 /// The meanings of the characters that the grid may use.
-pub(super) struct Legend<'a> {
-    pub(super) symbols: BTreeMap<char, Symbol<'a>>,
+pub(crate) struct Legend<'a> {
+    pub(crate) symbols: BTreeMap<char, Symbol<'a>>,
     /// Whether `symbols` has all definitions: not those without a valid character.
-    pub(super) is_complete: bool,
+    pub(crate) is_complete: bool,
 }
 
 /// What a character means.
-pub(super) struct Symbol<'a> {
+pub(crate) struct Symbol<'a> {
     /// The place of its definition.
-    pub(super) place: Range<usize>,
-    pub(super) meaning: Meaning<'a>,
-    pub(super) surroundings: Surroundings<'a>,
+    pub(crate) place: Range<usize>,
+    pub(crate) meaning: Meaning<'a>,
+    pub(crate) surroundings: Surroundings<'a>,
     /// The tile that a thing stands on, if it names one.
-    pub(super) support: Option<Support>,
+    pub(crate) support: Option<Support>,
 }
 
 /// The tile that a thing stands on.
-pub(super) struct Support {
+pub(crate) struct Support {
     /// The character of the tile.
-    pub(super) tile: char,
+    pub(crate) tile: char,
     /// The place of the name in the map.
-    pub(super) place: Range<usize>,
+    pub(crate) place: Range<usize>,
 }
 
 /// What a character means in the grid.
-pub(super) enum Meaning<'a> {
+pub(crate) enum Meaning<'a> {
     Open,
     /// With its own height, if it has one.
     Wall(Surface<'a>, Option<f64>),
@@ -82,7 +82,7 @@ pub(super) enum Meaning<'a> {
 
 impl<'a> Legend<'a> {
     /// The characters with the same meaning in every map.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let open = |character| {
             let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
             (character, Symbol { place: 0..0, meaning, surroundings, support: None })
@@ -91,13 +91,13 @@ impl<'a> Legend<'a> {
     }
 
     /// Whether no definition has a fault.
-    pub(super) fn is_clear(&self) -> bool {
+    pub(crate) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
         self.is_complete && !self.symbols.values().any(is_unclear)
     }
 
     /// The characters that occur in `drawing`, with their definitions.
-    pub(super) fn used_in<'l>(
+    pub(crate) fn used_in<'l>(
         &'l self,
         drawing: &'l Drawing<'_>,
     ) -> impl Iterator<Item = (char, &'l Symbol<'a>)> {
@@ -108,7 +108,7 @@ impl<'a> Legend<'a> {
 
     /// The cells of `drawing` whose characters are more than floor or a wall, with their definitions, row by
     /// row from the north.
-    pub(super) fn of_cells<'l>(
+    pub(crate) fn of_cells<'l>(
         &'l self,
         drawing: &'l Drawing<'_>,
     ) -> impl Iterator<Item = (Cell, &'l Symbol<'a>)> {
@@ -124,7 +124,7 @@ impl<'a> Legend<'a> {
     }
 
     /// Reads the definitions in the table of `entry`; reports its faults.
-    pub(super) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
+    pub(crate) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
         let Some(table) = entry.table(section.name()) else {
             self.is_complete = false;
             return;

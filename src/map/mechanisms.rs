@@ -24,17 +24,17 @@ const WATER: Rgb = Rgb::new(0x1c, 0x48, 0x68);
 const MOST_STATES: f64 = 256.0;
 
 /// A wall that moves, as the legend defines it.
-pub(super) struct MovingWallSymbol<'a> {
-    pub(super) surface: Surface<'a>,
+pub(crate) struct MovingWallSymbol<'a> {
+    pub(crate) surface: Surface<'a>,
     /// Its height, if it has one of its own.
-    pub(super) height: Option<f64>,
+    pub(crate) height: Option<f64>,
     /// The switch that moves it; `None` for a secret wall.
-    pub(super) switch: Option<SwitchSymbol<'a>>,
+    pub(crate) switch: Option<SwitchSymbol<'a>>,
 }
 
 impl<'a> MovingWallSymbol<'a> {
     /// Reads the secret wall in `entry`.
-    pub(super) fn read_secret(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read_secret(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
         let surface = Surface::read(entry, r#"{ secret = "brick" }"#);
         let height = heights::of_wall(entry, table);
         Some(Self { surface: surface?, height, switch: None })
@@ -43,19 +43,19 @@ impl<'a> MovingWallSymbol<'a> {
 
 /// The mechanism of a floor.
 #[derive(Default)]
-pub(super) struct FloorMechanism<'a> {
+pub(crate) struct FloorMechanism<'a> {
     water: Option<Range<usize>>,
-    pub(super) plate: Option<SwitchSymbol<'a>>,
-    pub(super) moves_to: Option<Height>,
-    pub(super) crumbles: Option<Height>,
-    pub(super) switch: Option<SwitchSymbol<'a>>,
+    pub(crate) plate: Option<SwitchSymbol<'a>>,
+    pub(crate) moves_to: Option<Height>,
+    pub(crate) crumbles: Option<Height>,
+    pub(crate) switch: Option<SwitchSymbol<'a>>,
     /// The place of its first key.
     place: Option<Range<usize>>,
 }
 
 impl<'a> FloorMechanism<'a> {
     /// Reads `entry` of `table` if it is part of a floor's mechanism; returns whether it is.
-    pub(super) fn take(&mut self, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> bool {
+    pub(crate) fn take(&mut self, entry: &Entry<'a, '_>, table: &DeTable<'_>) -> bool {
         const LIFT: &str = r#"{ floor_height = -2, moves_to = 0, switch = "lift" }"#;
         match entry.key {
             "water" => self.water = is_true(entry).then(|| entry.key_place.clone()),
@@ -71,23 +71,23 @@ impl<'a> FloorMechanism<'a> {
         true
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.place.is_none()
     }
 
     /// The floor of a tile with it, where the map does not name one: what may harm or help shows.
-    pub(super) fn usual_floor(&self) -> Option<CoveringText<'static>> {
+    pub(crate) fn usual_floor(&self) -> Option<CoveringText<'static>> {
         let plate = self.plate.as_ref().map(|_| CoveringText::built_in("metal"));
         plate.or_else(|| self.water.as_ref().map(|_| CoveringText::plain(WATER)))
     }
 
     /// Whether it is water.
-    pub(super) fn is_water(&self) -> bool {
+    pub(crate) fn is_water(&self) -> bool {
         self.water.is_some()
     }
 
     /// The fault of a mechanism that contradicts itself, if it does.
-    pub(super) fn contradiction(&self) -> Option<Fault> {
+    pub(crate) fn contradiction(&self) -> Option<Fault> {
         let fault = |place: &Range<usize>, message: &str| Fault::new(place.clone(), message);
         match (&self.water, &self.plate, &self.moves_to, &self.crumbles) {
             (Some(water), Some(_), ..) => Some(
@@ -110,7 +110,7 @@ impl<'a> FloorMechanism<'a> {
     }
 
     /// The fault of a tile with this mechanism that is not floor.
-    pub(super) fn not_on_a_floor(&self) -> Option<Fault> {
+    pub(crate) fn not_on_a_floor(&self) -> Option<Fault> {
         let place = self.place.clone()?;
         let message = "only a floor can be water, a plate, or move to another height";
         Some(
@@ -123,7 +123,7 @@ impl<'a> FloorMechanism<'a> {
 
 /// The states of the floor `tile` after the first, up or down to the height `end`. The faults of
 /// `end` are reported by [`end_fault`].
-pub(super) fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
+pub(crate) fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
     let start = tile.heights.floor();
     let over = tile.heights.ceiling() - start;
     heights_between(start, end).filter_map(move |floor| {
@@ -138,7 +138,7 @@ pub(super) fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
 }
 
 /// The fault of a floor that cannot move to the height `end`, if it cannot.
-pub(super) fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
+pub(crate) fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<Fault> {
     let fault = |message: String| Fault::new(end.place.clone(), message);
     let (floor, ceiling) = (tile.heights.floor(), tile.heights.ceiling());
     if is_crumbling && end.cells >= floor {
@@ -165,14 +165,14 @@ pub(super) fn end_fault(tile: Tile, end: &Height, is_crumbling: bool) -> Option<
 }
 
 /// The states of `wall` after the first that are lower walls. After them it is open.
-pub(super) fn wall_states(wall: Tile) -> impl Iterator<Item = Tile> {
+pub(crate) fn wall_states(wall: Tile) -> impl Iterator<Item = Tile> {
     let (ceiling, roof) = (wall.heights.ceiling(), wall.heights.roof());
     let lower = heights_between(wall.heights.floor(), 0.0).filter(|&top| top > 0.0);
     lower.filter_map(move |top| Some(Tile { heights: Heights::new(top, ceiling, roof)?, ..wall }))
 }
 
 /// The floor that a moving wall leaves, in a map whose open floor is `ground`.
-pub(super) fn floor_of_wall(wall: Tile, ground: Tile) -> Tile {
+pub(crate) fn floor_of_wall(wall: Tile, ground: Tile) -> Tile {
     let light = wall.light.or(ground.light);
     Tile { character: wall.character, kind: TileKind::Open, light, ..ground }
 }
@@ -187,7 +187,7 @@ fn heights_between(start: f64, end: f64) -> impl Iterator<Item = f64> {
 }
 
 /// Reads a key that is there or not.
-pub(super) fn is_true(entry: &Entry<'_, '_>) -> bool {
+pub(crate) fn is_true(entry: &Entry<'_, '_>) -> bool {
     let is_true = matches!(entry.value, DeValue::Boolean(true));
     if !is_true {
         let key = entry.key;

@@ -5,24 +5,24 @@ use std::collections::BTreeMap;
 const ASCII_COUNT: usize = 128;
 
 /// A value for each character, the default at first.
-pub(super) struct PerCharacter<T> {
+pub(crate) struct PerCharacter<T> {
     ascii: [T; ASCII_COUNT],
     others: BTreeMap<char, T>,
 }
 
 impl<T: Copy + Default> PerCharacter<T> {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { ascii: [T::default(); ASCII_COUNT], others: BTreeMap::new() }
     }
 
-    pub(super) fn get(&self, character: char) -> T {
+    pub(crate) fn get(&self, character: char) -> T {
         match self.ascii.get(character as usize) {
             Some(value) => *value,
             None => self.others.get(&character).copied().unwrap_or_default(),
         }
     }
 
-    pub(super) fn get_mut(&mut self, character: char) -> &mut T {
+    pub(crate) fn get_mut(&mut self, character: char) -> &mut T {
         match self.ascii.get_mut(character as usize) {
             Some(value) => value,
             None => self.others.entry(character).or_default(),
@@ -30,7 +30,7 @@ impl<T: Copy + Default> PerCharacter<T> {
     }
 
     /// The characters and their values, in the order of the characters.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (char, T)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (char, T)> {
         let ascii = (0..).map(|code: u8| char::from(code)).zip(self.ascii);
         ascii.chain(self.others.iter().map(|(&character, &value)| (character, value)))
     }

@@ -26,7 +26,7 @@ const MOST_BYTES: usize = 64 << 20;
 /// The texels that a map may still decode, and the bytes of files that it may still read.
 ///
 /// A picture that is decoded takes its texels from the budget before memory is allocated for them.
-pub(super) struct Budget {
+pub(crate) struct Budget {
     texels: u32,
     bytes: usize,
 }
@@ -49,7 +49,7 @@ impl Budget {
 
 /// Why there is no picture.
 #[derive(Debug)]
-pub(super) enum PictureError {
+pub(crate) enum PictureError {
     Unreadable(TextureFileError),
     Broken(DecodingError),
     /// The palette ends within a colour.
@@ -86,7 +86,7 @@ impl fmt::Display for PictureError {
 
 impl PictureError {
     /// What to do about it. `use_of_file` says what the picture is for.
-    pub(super) fn help(&self, use_of_file: &'static str) -> &'static str {
+    pub(crate) fn help(&self, use_of_file: &'static str) -> &'static str {
         match self {
             Self::Unreadable(_) => use_of_file,
             Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG",
@@ -109,7 +109,7 @@ impl From<TextureFileError> for PictureError {
 }
 
 /// A decoded picture, which has no mip levels.
-pub(super) struct Picture {
+pub(crate) struct Picture {
     width: NonZeroU32,
     height: NonZeroU32,
     color_type: ColorType,
@@ -119,21 +119,21 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn width(&self) -> u32 {
+    pub(crate) fn width(&self) -> u32 {
         self.width.get()
     }
 
-    pub(super) fn height(&self) -> u32 {
+    pub(crate) fn height(&self) -> u32 {
         self.height.get()
     }
 
     /// All of it as a texture.
-    pub(super) fn texture(&self) -> Texture {
+    pub(crate) fn texture(&self) -> Texture {
         self.part(0, 0, self.width, self.height)
     }
 
     /// The part from `(left, top)` on as a texture. It is inside the picture.
-    pub(super) fn part(
+    pub(crate) fn part(
         &self,
         left: u32,
         top: u32,
@@ -150,7 +150,7 @@ impl Picture {
 
 /// Decodes a PNG file of any colour type and depth; the first picture of an animation. The size is
 /// checked, and taken from `budget`, before memory is allocated.
-pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
+pub(crate) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
     budget.take(0, bytes.len())?;
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
     decoder.set_ignore_text_chunk(true);

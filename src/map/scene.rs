@@ -28,12 +28,12 @@ const START_KEYS: &[&str] = &["at", "heading", "pitch"];
 const START_EXAMPLE: &str = "start = { at = [0, 0, 0.5], heading = 0 }";
 
 /// Whether `document` has bodies, and so is not a map with a grid.
-pub(super) fn has_bodies(document: &DeTable) -> bool {
+pub(crate) fn has_bodies(document: &DeTable) -> bool {
     document.keys().any(|key| Kind::of_key(key.get_ref()).is_some())
 }
 
 /// Reads the scene in `document`; reports its faults. `None` where there is no scene.
-pub(super) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
+pub(crate) fn read(document: &DeTable, faults: &FaultList) -> Option<Scene> {
     let mut scene = Scene::default();
     let mut bodies = Bodies::default();
     let mut start = None;

@@ -16,16 +16,16 @@ const MIRROR_OPACITY: f64 = 0.1;
 const SILVER: Rgb = Rgb::new(0xb8, 0xc8, 0xd0);
 
 /// A wall with holes as the legend defines it.
-pub(super) struct MaskSymbol<'a>(Surface<'a>);
+pub(crate) struct MaskSymbol<'a>(Surface<'a>);
 
 impl<'a> MaskSymbol<'a> {
-    pub(super) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>) -> Option<Self> {
         Surface::read(entry, r#"{ mask = "grate" }"#).map(Self)
     }
 
     /// The texture with holes. A texture without holes is a fault, since the author would not know
     /// why it cannot be seen through.
-    pub(super) fn texture(&self, reader: &mut Reader<'_>) -> Option<TextureId> {
+    pub(crate) fn texture(&self, reader: &mut Reader<'_>) -> Option<TextureId> {
         let Self(surface) = self;
         let paint = reader.paint(surface)?;
         match paint {
@@ -40,13 +40,13 @@ impl<'a> MaskSymbol<'a> {
 }
 
 /// Reads the glass in `entry` of `table`, with the opacity in the table.
-pub(super) fn glass(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
+pub(crate) fn glass(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
     let color = color(entry, GLASS_EXAMPLE);
     tinted(entry, table, color, GLASS_OPACITY)
 }
 
 /// Reads the tint of the mirror in `entry` of `table`, with the opacity in the table.
-pub(super) fn mirror(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
+pub(crate) fn mirror(entry: &Entry<'_, '_>, table: &DeTable<'_>) -> Option<Glass> {
     let color = match entry.value {
         DeValue::Boolean(true) => Some(SILVER),
         _ => color(entry, MIRROR_EXAMPLE),

@@ -29,7 +29,7 @@ const CORNERS: [(&str, Line); 4] = [
 ];
 
 /// A shape as the legend defines it.
-pub(super) struct ShapeSymbol<'a> {
+pub(crate) struct ShapeSymbol<'a> {
     outline: Outline,
     surface: Surface<'a>,
     height: Option<ShapeHeight>,
@@ -37,7 +37,7 @@ pub(super) struct ShapeSymbol<'a> {
 
 impl<'a> ShapeSymbol<'a> {
     /// Reads the shape in `entry` of `table`.
-    pub(super) fn read(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, table: &DeTable<'_>) -> Option<Self> {
         let (addition, example) = match entry.key {
             "pillar" => ("radius", r#"{ pillar = "marble", radius = 0.3 }"#),
             "diagonal" => ("from", r#"{ diagonal = "brick", from = "north-west" }"#),
@@ -71,7 +71,7 @@ impl<'a> ShapeSymbol<'a> {
     }
 
     /// The shape with its texture.
-    pub(super) fn shape(&self, reader: &mut Reader<'_>) -> Option<Shape> {
+    pub(crate) fn shape(&self, reader: &mut Reader<'_>) -> Option<Shape> {
         let paint = reader.paint(&self.surface)?;
         Some(Shape { outline: self.outline, paint, height: self.height })
     }

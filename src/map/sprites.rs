@@ -15,7 +15,7 @@ use crate::world::sprite::builtin;
 use crate::world::{Anchor, Facings, FrameTime, Heading, Lamp, Light, Reach, Sprite, SpriteHeight};
 
 /// The keys that belong to a sprite.
-pub(super) const ADDITIONS: [(&str, &str); 10] = [
+pub(crate) const ADDITIONS: [(&str, &str); 10] = [
     ("anchor", "sprite"),
     ("blocks", "sprite"),
     ("douse", "sprite"),
@@ -32,13 +32,13 @@ pub(super) const ADDITIONS: [(&str, &str); 10] = [
 const MOST_FRAMES: f64 = 64.0;
 
 /// A sprite as the legend defines it.
-pub(super) struct SpriteSymbol<'a> {
+pub(crate) struct SpriteSymbol<'a> {
     name: &'a str,
     place: Range<usize>,
     anchor: Option<Anchor>,
     blocks: Option<bool>,
     /// Whether the player can put it out.
-    pub(super) is_doused: bool,
+    pub(crate) is_doused: bool,
     height: Option<SpriteHeight>,
     heading: Option<Heading>,
     light: Option<Light>,
@@ -50,7 +50,7 @@ pub(super) struct SpriteSymbol<'a> {
 
 impl<'a> SpriteSymbol<'a> {
     /// Reads the sprite in `entry` of `table`.
-    pub(super) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let faults_before = entry.faults.len();
         let name = entry.string(r#"{ sprite = "plant" }"#)?;
         let place = entry.value_place.clone();
@@ -117,7 +117,7 @@ impl<'a> SpriteSymbol<'a> {
 
     /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided, once for
     /// all sprites that divide the sheet alike.
-    pub(super) fn sprite(&self, reader: &mut Reader<'_>) -> Option<Sprite> {
+    pub(crate) fn sprite(&self, reader: &mut Reader<'_>) -> Option<Sprite> {
         let mut sprite = match builtin::named(self.name) {
             Some(sprite) => {
                 reader.faults.extend(self.cut_of_built_in());

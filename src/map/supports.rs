@@ -10,7 +10,7 @@ use crate::sort;
 use crate::world::{Cell, Grid, Sprite, Start, Thing, Tile};
 
 /// The faults of things whose support is not open floor.
-pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
+pub(crate) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     let wrong = of(drawing, legend).filter_map(|(_, support)| {
         let tile = legend.symbols.get(&support.tile).map(|symbol| &symbol.meaning);
         let is_fine = matches!(tile, Some(Meaning::Open | Meaning::Floor | Meaning::Unclear))
@@ -23,7 +23,7 @@ pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
 }
 
 /// The things in the drawing that name a support.
-pub(super) fn of<'l>(
+pub(crate) fn of<'l>(
     drawing: &'l Drawing<'_>,
     legend: &'l Legend<'_>,
 ) -> impl Iterator<Item = (char, &'l Support)> {
@@ -34,7 +34,7 @@ pub(super) fn of<'l>(
 }
 
 /// The cells of things that block, but leave room above them to jump over.
-pub(super) fn low_things(
+pub(crate) fn low_things(
     grid: &Grid,
     tiles: &[Tile],
     sprites: &[Sprite],
@@ -58,7 +58,7 @@ pub(super) fn low_things(
 }
 
 /// The fault that the player has no room to stand at the start.
-pub(super) fn low_start(
+pub(crate) fn low_start(
     drawing: &Drawing<'_>,
     grid: &Grid,
     tiles: &[Tile],

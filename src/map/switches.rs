@@ -24,14 +24,14 @@ const MOST_DRIVEN: usize = 512;
 
 /// The name of a switch, and its place in the map.
 #[derive(Clone)]
-pub(super) struct SwitchSymbol<'a> {
-    pub(super) name: &'a str,
-    pub(super) place: Range<usize>,
+pub(crate) struct SwitchSymbol<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) place: Range<usize>,
 }
 
 impl<'a> SwitchSymbol<'a> {
     /// Reads the name in `entry`; reports a fault where there is none. `example` is a whole entry.
-    pub(super) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         let name = entry.string(example)?;
         let place = entry.value_place.clone();
         if name.is_empty() || name.contains(char::is_control) {
@@ -44,7 +44,7 @@ impl<'a> SwitchSymbol<'a> {
 
     /// Reads the switch that `table`, the table of `owner`, names. `None` if it names none, or with
     /// a fault.
-    pub(super) fn of(owner: &Entry<'a, '_>, table: &'a DeTable<'_>, example: &str) -> Option<Self> {
+    pub(crate) fn of(owner: &Entry<'a, '_>, table: &'a DeTable<'_>, example: &str) -> Option<Self> {
         let entry = owner.entries(table).find(|entry| entry.key == "switch")?;
         Self::read(&entry, example)
     }
@@ -52,30 +52,30 @@ impl<'a> SwitchSymbol<'a> {
 
 /// The names of the switches that drive something in the grid. A [`SwitchId`] is an index into
 /// them.
-pub(super) struct Switches {
+pub(crate) struct Switches {
     names: Vec<String>,
 }
 
 impl Switches {
     /// Collects the switches of the tiles in the grid.
-    pub(super) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
+    pub(crate) fn of(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Self {
         let names: BTreeSet<&str> = sort::gathered(driven(drawing, legend).map(|it| it.name));
         Self { names: names.into_iter().map(str::to_owned).collect() }
     }
 
     /// The switch of that name, if it drives anything.
-    pub(super) fn id(&self, name: &str) -> Option<SwitchId> {
+    pub(crate) fn id(&self, name: &str) -> Option<SwitchId> {
         let index = self.names.binary_search_by(|known| known.as_str().cmp(name)).ok()?;
         u8::try_from(index).ok().map(SwitchId)
     }
 
-    pub(super) fn into_names(self) -> Vec<String> {
+    pub(crate) fn into_names(self) -> Vec<String> {
         self.names
     }
 }
 
 /// The faults of switches that nothing sets, and of levers and plates that drive nothing.
-pub(super) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
+pub(crate) fn faults(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Vec<Fault> {
     if !legend.is_clear() {
         return Vec::new();
     }
@@ -156,7 +156,7 @@ fn driven<'l, 'a>(
 }
 
 /// The switch that moves a tile, if one does.
-pub(super) fn driver_of<'l, 'a>(symbol: &'l Symbol<'a>) -> Option<&'l SwitchSymbol<'a>> {
+pub(crate) fn driver_of<'l, 'a>(symbol: &'l Symbol<'a>) -> Option<&'l SwitchSymbol<'a>> {
     match &symbol.meaning {
         Meaning::Door(door) => door.switch.as_ref(),
         Meaning::MovingWall(wall) => wall.switch.as_ref(),
@@ -174,7 +174,7 @@ fn setting<'l, 'a>(
 }
 
 /// The switch that a lever or a plate sets, if the symbol is one.
-pub(super) fn set_by<'l, 'a>(symbol: &'l Symbol<'a>) -> Option<&'l SwitchSymbol<'a>> {
+pub(crate) fn set_by<'l, 'a>(symbol: &'l Symbol<'a>) -> Option<&'l SwitchSymbol<'a>> {
     match &symbol.meaning {
         Meaning::Item(ItemSymbol::Lever(switch)) => Some(switch),
         Meaning::Floor => symbol.surroundings.mechanism.plate.as_ref(),

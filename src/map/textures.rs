@@ -12,12 +12,12 @@ use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
 use crate::world::{Paint, Texture, TextureId};
 pub use files::{Folder, NoFiles, TextureFileError, TextureFiles};
-pub(super) use files::{is_png, stays_inside};
+pub(crate) use files::{is_png, stays_inside};
 use surface::Source;
-pub(super) use surface::Surface;
+pub(crate) use surface::Surface;
 
 /// The textures that a map uses, each once.
-pub(super) struct Textures<'f> {
+pub(crate) struct Textures<'f> {
     files: &'f dyn TextureFiles,
     /// `None` after a picture exceeded it.
     budget: Option<picture::Budget>,
@@ -27,14 +27,14 @@ pub(super) struct Textures<'f> {
 }
 
 impl<'f> Textures<'f> {
-    pub(super) fn new(files: &'f dyn TextureFiles) -> Self {
+    pub(crate) fn new(files: &'f dyn TextureFiles) -> Self {
         let budget = Some(picture::Budget::default());
         Self { files, budget, list: Vec::new(), known: BTreeMap::new() }
     }
 
     /// The paint for `surface`. Reports a fault where its texture is missing, once for each
     /// texture.
-    pub(super) fn paint(&mut self, surface: &Surface<'_>) -> Result<Paint, Option<Fault>> {
+    pub(crate) fn paint(&mut self, surface: &Surface<'_>) -> Result<Paint, Option<Fault>> {
         match surface.source {
             Source::Color(color) => Ok(Paint::Color(color)),
             Source::BuiltIn(name) | Source::File(name) => {
@@ -70,7 +70,7 @@ impl<'f> Textures<'f> {
 
     /// Decodes the picture in the file `name`. The error is `None` after a picture has exceeded the
     /// budget, which is reported once.
-    pub(super) fn picture(&mut self, name: &str) -> Result<Picture, Option<PictureError>> {
+    pub(crate) fn picture(&mut self, name: &str) -> Result<Picture, Option<PictureError>> {
         let budget = self.budget.as_mut().ok_or(None)?;
         let bytes = self.files.read(name).map_err(PictureError::from)?;
         let picture = picture::decode(&bytes, budget);
@@ -81,11 +81,11 @@ impl<'f> Textures<'f> {
     }
 
     /// A texture that [`Textures::paint`] returned.
-    pub(super) fn get(&self, id: TextureId) -> &Texture {
+    pub(crate) fn get(&self, id: TextureId) -> &Texture {
         &self.list[usize::from(id.0)]
     }
 
-    pub(super) fn into_list(self) -> Vec<Texture> {
+    pub(crate) fn into_list(self) -> Vec<Texture> {
         self.list
     }
 }

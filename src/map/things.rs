@@ -21,18 +21,18 @@ const MOST_SPIKES: usize = 512;
 
 /// The things in a drawing except the start, with what they refer to.
 #[derive(Default)]
-pub(super) struct ThingList {
-    pub(super) things: Vec<Thing>,
-    pub(super) sprites: Vec<Sprite>,
+pub(crate) struct ThingList {
+    pub(crate) things: Vec<Thing>,
+    pub(crate) sprites: Vec<Sprite>,
     /// The texts of notes.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// The built-in sprites that several characters may share.
     built_in: Vec<(&'static str, SpriteId)>,
 }
 
 impl ThingList {
     /// The things in the drawing. Reports the faults of their sprites.
-    pub(super) fn of(
+    pub(crate) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         keys: &Keys,

@@ -21,28 +21,28 @@ use crate::world::{Door, Driver, Heights, MovingTile, Paint, Tile, TileEffect, T
 const MAX_TILES: usize = 255;
 
 /// The kinds of tile that a grid refers to.
-pub(super) struct TileList {
+pub(crate) struct TileList {
     /// The map's own floor, then other open floor and doorways, then solid tiles, each in the order
     /// of their characters.
-    pub(super) tiles: Vec<Tile>,
-    pub(super) first_solid: TileId,
-    pub(super) moving: Vec<MovingTile>,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) first_solid: TileId,
+    pub(crate) moving: Vec<MovingTile>,
     /// The tile of each character; for other characters, the map's own floor.
     drawn: PerCharacter<u8>,
 }
 
 /// The definitions that tiles without their own surfaces use, and the names of keys and switches.
-pub(super) struct Common<'l> {
+pub(crate) struct Common<'l> {
     /// The map's own floor.
-    pub(super) ground: Tile,
-    pub(super) faces: Faces,
-    pub(super) keys: &'l Keys,
-    pub(super) switches: &'l Switches,
+    pub(crate) ground: Tile,
+    pub(crate) faces: Faces,
+    pub(crate) keys: &'l Keys,
+    pub(crate) switches: &'l Switches,
 }
 
 impl TileList {
     /// The tiles of `drawing`. Reports their faults.
-    pub(super) fn of(
+    pub(crate) fn of(
         drawing: &Drawing<'_>,
         legend: &Legend<'_>,
         common: &Common<'_>,
@@ -63,7 +63,7 @@ impl TileList {
     }
 
     /// The tile that `character` draws.
-    pub(super) fn drawn(&self, character: char) -> TileId {
+    pub(crate) fn drawn(&self, character: char) -> TileId {
         TileId(self.drawn.get(character))
     }
 }

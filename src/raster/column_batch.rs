@@ -31,7 +31,7 @@ pub(crate) struct BatchMemory {
 }
 
 /// Columns of texels in a lighting `L`, queued until they are drawn.
-pub(super) struct ColumnBatch<'m, 't, 'a, L> {
+pub(crate) struct ColumnBatch<'m, 't, 'a, L> {
     memory: &'m mut BatchMemory,
     target: &'m mut Target<'t>,
     /// The texels and the lighting of the latest shaded range.
@@ -43,7 +43,7 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L> {
 }
 
 impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
-    pub(super) fn new(
+    pub(crate) fn new(
         memory: &'m mut BatchMemory,
         target: &'m mut Target<'t>,
         are_direct: bool,
@@ -57,18 +57,18 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     }
 
     /// The target, for pixels that no queued column has.
-    pub(super) fn target_mut(&mut self) -> &mut Target<'t> {
+    pub(crate) fn target_mut(&mut self) -> &mut Target<'t> {
         self.target
     }
 
     /// Counts a column of `pixels` pixels in `paint`.
     #[inline]
-    pub(super) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
+    pub(crate) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
         self.target.count_painted(pass, pixels, paint);
     }
 
     /// Queues `rows` of column `x` for a fill with one colour.
-    pub(super) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
+    pub(crate) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
         self.make_room_for(x, 1);
         let shaded = &mut self.memory.shaded;
         let address = shaded.make(&[color], |color| lighting.apply(color)).start();
@@ -78,7 +78,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     /// Draws `rows` of column `x` with the column of `level` at `u`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
-    pub(super) fn draw_wall(
+    pub(crate) fn draw_wall(
         &mut self,
         (x, rows): (u32, Range<u32>),
         (level, u): (&'a MipLevel, f64),
@@ -97,13 +97,13 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
 
     /// Whether columns of `level` are drawn without a batch.
     #[inline]
-    pub(super) fn is_direct(&self, level: &MipLevel) -> bool {
+    pub(crate) fn is_direct(&self, level: &MipLevel) -> bool {
         self.are_direct && direct_columns::have(level.height() as usize)
     }
 
     /// Draws `rows` of column `x` with the column of `level` at `u`, which a face may repeat or show in part.
     #[inline]
-    pub(super) fn draw_face(
+    pub(crate) fn draw_face(
         &mut self,
         (x, rows): (u32, Range<u32>),
         (level, u): (&'a MipLevel, f64),
@@ -122,7 +122,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     /// Queues `rows` of column `x` for drawing with `texels`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
-    pub(super) fn queue_texels(
+    pub(crate) fn queue_texels(
         &mut self,
         x: u32,
         rows: Range<u32>,
@@ -208,7 +208,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     }
 
     /// Draws the queued columns.
-    pub(super) fn draw(&mut self) {
+    pub(crate) fn draw(&mut self) {
         self.memory.draw(self.target.band_mut());
         self.clear();
     }

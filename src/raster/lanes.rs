@@ -7,22 +7,22 @@ use super::shaded_texels::{ShadedTexels, TexelAddress};
 use crate::color::Rgb;
 
 /// The number of columns whose loop variables fit in registers.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// A queued column of pixels.
 #[derive(Clone, Debug)]
-pub(super) struct QueuedColumn {
-    pub(super) x: u32,
-    pub(super) rows: Range<u32>,
+pub(crate) struct QueuedColumn {
+    pub(crate) x: u32,
+    pub(crate) rows: Range<u32>,
     /// The address of the texel of the first row, and the step from each row to the next.
-    pub(super) address: TexelAddress,
-    pub(super) step: u64,
+    pub(crate) address: TexelAddress,
+    pub(crate) step: u64,
 }
 
 impl QueuedColumn {
     /// Draws the part of the column in `rows`.
     #[inline]
-    pub(super) fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    pub(crate) fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let mut address = self.address_in(rows.start);
         for pixel in band.column_mut(self.x, rows) {
             *pixel = shaded.at(address);
@@ -38,9 +38,9 @@ impl QueuedColumn {
 
 /// Neighbouring columns, in the rows that all of them have.
 #[derive(Clone, Debug)]
-pub(super) struct Lanes {
+pub(crate) struct Lanes {
     x: u32,
-    pub(super) rows: Range<u32>,
+    pub(crate) rows: Range<u32>,
     /// The address of each column's texel in the next row to be drawn.
     addresses: [TexelAddress; LANES],
     /// The step of each column from one row to the next.
@@ -50,7 +50,7 @@ pub(super) struct Lanes {
 impl Lanes {
     /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
     #[inline]
-    pub(super) fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
+    pub(crate) fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
         let [QueuedColumn { x, .. }, .., last] = columns;
         let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
         // No two columns have the same `x`.
@@ -65,7 +65,7 @@ impl Lanes {
 
     /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
     #[inline]
-    pub(super) fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    pub(crate) fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { x, mut addresses, steps, .. } = *self;
         band.for_each_in_block(x, common(rows, self.rows.clone()), |pixels: &mut [Rgb; LANES]| {
             for lane in 0..LANES {

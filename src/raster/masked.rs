@@ -7,7 +7,7 @@ use crate::visibility::{Extent, Facing, Lighting, Pass, Scene, SeeThroughColumn,
 use crate::world::TextureId;
 
 /// Draws `column`, which has `texture`, over the pixels behind it.
-pub(super) fn draw(
+pub(crate) fn draw(
     scene: Scene<'_>,
     column: &SeeThroughColumn,
     texture: TextureId,

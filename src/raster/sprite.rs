@@ -6,7 +6,7 @@ use crate::visibility::{
 };
 
 /// Draws `column` of a billboard of `list` over the pixels behind it.
-pub(super) fn draw(
+pub(crate) fn draw(
     scene: Scene<'_>,
     list: &DrawList,
     column: &BillboardColumn,

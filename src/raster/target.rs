@@ -29,23 +29,23 @@ impl<'a> Target<'a> {
     }
 
     /// Whether it counts.
-    pub(super) fn counts(&self) -> bool {
+    pub(crate) fn counts(&self) -> bool {
         self.stats.are_kept()
     }
 
     /// The indices of its rows in the frame.
-    pub(super) fn rows(&self) -> Range<u32> {
+    pub(crate) fn rows(&self) -> Range<u32> {
         self.band.rows()
     }
 
     /// The part of `rows` in the band.
     #[inline]
-    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+    pub(crate) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
         self.band.clip(rows)
     }
 
     /// All pixels of `rows`, to be written for `pass`.
-    pub(super) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
+    pub(crate) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
         let pixels = self.band.rows_mut(rows);
         self.stats.change(|stats| stats.of_mut(pass).pixels += pixels.len() as u64);
         pixels
@@ -53,7 +53,7 @@ impl<'a> Target<'a> {
 
     /// The pixels of `columns` in `row`, to be written for `pass`.
     #[inline]
-    pub(super) fn span_mut(&mut self, pass: Pass, row: u32, columns: Range<usize>) -> &mut [Rgb] {
+    pub(crate) fn span_mut(&mut self, pass: Pass, row: u32, columns: Range<usize>) -> &mut [Rgb] {
         self.stats.change(|stats| {
             stats.spans += 1;
             stats.of_mut(pass).pixels += columns.len() as u64;
@@ -65,7 +65,7 @@ impl<'a> Target<'a> {
     /// each.
     #[expect(clippy::inline_always, reason = "a call would cost a fiftieth of a small picture")]
     #[inline(always)]
-    pub(super) fn two_spans_mut(
+    pub(crate) fn two_spans_mut(
         &mut self,
         passes: [Pass; 2],
         rows: [u32; 2],
@@ -84,7 +84,7 @@ impl<'a> Target<'a> {
 
     /// The pixels of `rows` in column `x`, from the top.
     #[inline]
-    pub(super) fn column_mut(
+    pub(crate) fn column_mut(
         &mut self,
         x: u32,
         rows: Range<u32>,
@@ -94,19 +94,19 @@ impl<'a> Target<'a> {
 
     /// The band, for callers that count its pixels themselves.
     #[inline]
-    pub(super) fn band_mut(&mut self) -> &mut Band<'a> {
+    pub(crate) fn band_mut(&mut self) -> &mut Band<'a> {
         &mut self.band
     }
 
     /// Counts `count` pixels that are written for `pass`.
     #[inline]
-    pub(super) fn count_pixels(&mut self, pass: Pass, count: usize) {
+    pub(crate) fn count_pixels(&mut self, pass: Pass, count: usize) {
         self.stats.change(|stats| stats.of_mut(pass).pixels += count as u64);
     }
 
     /// Counts `count` pixels in `paint` that are written for `pass`.
     #[inline]
-    pub(super) fn count_painted(&mut self, pass: Pass, count: usize, paint: Paint) {
+    pub(crate) fn count_painted(&mut self, pass: Pass, count: usize, paint: Paint) {
         self.stats.change(|stats| {
             let stats = stats.of_mut(pass);
             stats.pixels += count as u64;
@@ -118,13 +118,13 @@ impl<'a> Target<'a> {
 
     /// Counts `count` texels that are read for `pass`.
     #[inline]
-    pub(super) fn count_texels(&mut self, pass: Pass, count: usize) {
+    pub(crate) fn count_texels(&mut self, pass: Pass, count: usize) {
         self.stats.change(|stats| stats.of_mut(pass).texels += count as u64);
     }
 
     /// Records `surface` for the pixels of column `x` from `row` on, if their item in `shown` is
     /// true.
-    pub(super) fn mark(
+    pub(crate) fn mark(
         &mut self,
         x: u32,
         row: u32,

@@ -16,7 +16,7 @@ const COLUMNS_AT_ONCE: usize = 32;
 
 /// Neighbouring columns of one tint that are not drawn yet.
 #[derive(Default)]
-pub(super) struct Tints {
+pub(crate) struct Tints {
     color: Rgb,
     opacity: u8,
     columns: Range<u32>,
@@ -27,7 +27,7 @@ pub(super) struct Tints {
 impl Tints {
     /// Adds `column`, which is made of `glass`. Draws the others first, if it cannot be drawn with
     /// them.
-    pub(super) fn add(
+    pub(crate) fn add(
         &mut self,
         scene: Scene<'_>,
         column: &SeeThroughColumn,
@@ -54,14 +54,14 @@ impl Tints {
     /// Draws the collected columns, if `column` is one of them, before another layer is painted
     /// over it.
     #[inline]
-    pub(super) fn draw_before(&mut self, column: u32, target: &mut Target<'_>) {
+    pub(crate) fn draw_before(&mut self, column: u32, target: &mut Target<'_>) {
         if self.columns.contains(&column) {
             self.draw(target);
         }
     }
 
     /// Draws the collected columns.
-    pub(super) fn draw(&mut self, target: &mut Target<'_>) {
+    pub(crate) fn draw(&mut self, target: &mut Target<'_>) {
         let &mut Self { color, opacity, ref rows, .. } = self;
         let columns = std::mem::take(&mut self.columns);
         let rows_of = |x: u32| &rows[x as usize % COLUMNS_AT_ONCE];

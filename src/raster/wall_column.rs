@@ -20,7 +20,7 @@ use crate::visibility::{
 use crate::world::{Light, Paint};
 
 /// Draws all wall columns of `list`.
-pub(super) fn draw<M: Sampling>(
+pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,
@@ -49,7 +49,7 @@ pub(super) fn draw<M: Sampling>(
 
 /// The side that `wall` is, in a scene without shapes.
 #[inline]
-pub(super) fn side_of(wall: &WallColumn) -> Side {
+pub(crate) fn side_of(wall: &WallColumn) -> Side {
     match wall.facing {
         Facing::Side(side) => side,
         // Only shapes have such a normal.
@@ -58,7 +58,7 @@ pub(super) fn side_of(wall: &WallColumn) -> Side {
 }
 
 /// The lighting of a face.
-pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
+pub(crate) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
     let fog = scene.world.fog();
     match facing {
         Facing::Side(side) => Faded::of_wall(side, light, fog, t),

@@ -10,20 +10,20 @@ use crate::world::texture::{MipLevel, Texture};
 
 /// A texture at one level of detail.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WallLevel<'a, M: Sampling> {
+pub(crate) struct WallLevel<'a, M: Sampling> {
     id: TextureId,
     texture: &'a Texture,
     lod: M::Lod,
-    pub(super) level: &'a MipLevel,
+    pub(crate) level: &'a MipLevel,
     /// The texels of a wall that one texture of the level covers.
-    pub(super) texels: WallTexels,
+    pub(crate) texels: WallTexels,
 }
 
 impl<'a, M: Sampling> WallLevel<'a, M> {
     /// The level of the texture `id` for a face at distance `t`, which the ray approaches by `slope` cells
     /// per unit of `t`. `latest` is that of the column before.
     #[inline]
-    pub(super) fn on_face(
+    pub(crate) fn on_face(
         scene: Scene<'a>,
         id: TextureId,
         (t, slope): (f64, f64),
@@ -40,7 +40,7 @@ impl<'a, M: Sampling> WallLevel<'a, M> {
 
     /// The level `lod` of the texture `id`.
     #[inline(never)]
-    pub(super) fn new(scene: Scene<'a>, id: TextureId, lod: M::Lod) -> Self {
+    pub(crate) fn new(scene: Scene<'a>, id: TextureId, lod: M::Lod) -> Self {
         let texture = scene.world.texture(id);
         let level = M::level_on_face(texture, lod);
         let texels = scene.projection.wall_texels(level.height() as usize);

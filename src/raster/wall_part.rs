@@ -22,7 +22,7 @@ use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// Draws all parts of walls of `list`.
-pub(super) fn draw<M: Sampling>(
+pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,

@@ -13,7 +13,7 @@ use crate::visibility::{Column, Facing, Pass, Scene, SideLit, WallRun};
 use crate::world::{Paint, TextureId};
 
 /// Draws the part of `run` in the rows of `batch`.
-pub(super) fn draw<'a, M: Sampling>(
+pub(crate) fn draw<'a, M: Sampling>(
     scene: Scene<'a>,
     run: &WallRun<'_>,
     batch: &mut ColumnBatch<'_, '_, 'a, SideLit>,

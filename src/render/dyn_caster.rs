@@ -29,7 +29,7 @@ impl DynCaster {
         Self { caster: Some(Arc::new(caster)) }
     }
 
-    pub(super) fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads) {
+    pub(crate) fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads) {
         match self.caster {
             None => picture.draw(&Exact),
             Some(_) => picture.draw(self),

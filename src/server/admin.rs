@@ -16,7 +16,7 @@ mod client;
 mod merging;
 mod operator;
 #[cfg(unix)]
-pub(super) mod socket;
+pub(crate) mod socket;
 
 use serde::{Deserialize, Serialize};
 
@@ -155,7 +155,7 @@ pub struct RoomRow {
 #[cfg(feature = "cluster")]
 impl AdminRequest {
     /// Whether all hosts of a cluster answer it. All of them have the same list of rooms.
-    pub(super) fn is_for_all_hosts(&self) -> bool {
+    pub(crate) fn is_for_all_hosts(&self) -> bool {
         match self {
             Self::Who | Self::Hosts | Self::Say { .. } | Self::Remove { .. } => true,
             Self::Rooms | Self::Drain => false,

@@ -116,7 +116,7 @@ impl Refusal {
     }
 
     /// A sentence for the refused visitor, which names the limit.
-    pub(super) fn sentence(self, limits: &Limits) -> String {
+    pub(crate) fn sentence(self, limits: &Limits) -> String {
         let Limits { connections, per_address, per_key, startups, .. } = *limits;
         match self {
             Self::Full => {
@@ -158,7 +158,7 @@ fn counted(connections: u32) -> String {
 }
 
 /// What counts as one address: an address of IPv4, or a /64 of IPv6.
-pub(super) fn counted_address(address: IpAddr) -> AddressPrefix {
+pub(crate) fn counted_address(address: IpAddr) -> AddressPrefix {
     let [.., narrowest] = WIDTHS;
     AddressPrefix::around(address, narrowest)
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// A token bucket, which is full at first.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bucket {
+pub(crate) struct Bucket {
     per_second: f64,
     most: f64,
     tokens: f64,
@@ -13,12 +13,12 @@ pub(super) struct Bucket {
 
 impl Bucket {
     /// `most` tokens may be taken at once, and `per_second` in the long run.
-    pub(super) fn new(per_second: f64, most: f64, now: Duration) -> Self {
+    pub(crate) fn new(per_second: f64, most: f64, now: Duration) -> Self {
         Self { per_second, most, tokens: most, filled: now }
     }
 
     /// The tokens at `now`.
-    pub(super) fn fill(&mut self, now: Duration) -> f64 {
+    pub(crate) fn fill(&mut self, now: Duration) -> f64 {
         let added = now.saturating_sub(self.filled).as_secs_f64() * self.per_second;
         self.tokens = (self.tokens + added).min(self.most);
         self.filled = now;
@@ -26,17 +26,17 @@ impl Bucket {
     }
 
     /// The time until there are so many tokens, if nobody takes any; zero if there are.
-    pub(super) fn time_until(&self, tokens: f64) -> Duration {
+    pub(crate) fn time_until(&self, tokens: f64) -> Duration {
         Duration::from_secs_f64((tokens - self.tokens).max(0.0) / self.per_second)
     }
 
     /// Takes tokens, of which some may be missing.
-    pub(super) fn take(&mut self, tokens: f64) {
+    pub(crate) fn take(&mut self, tokens: f64) {
         self.tokens -= tokens;
     }
 
     /// Takes a token, unless none is left.
-    pub(super) fn takes_one(&mut self, now: Duration) -> bool {
+    pub(crate) fn takes_one(&mut self, now: Duration) -> bool {
         let takes = self.fill(now) >= 1.0;
         if takes {
             self.take(1.0);

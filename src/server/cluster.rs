@@ -23,7 +23,7 @@
 mod bus;
 mod directory;
 #[cfg(fuzzing)]
-pub(super) mod fuzzing;
+pub(crate) mod fuzzing;
 mod lease_worker;
 mod log_message;
 mod nats;
@@ -45,14 +45,14 @@ use tokio::sync::watch;
 use tokio::time::Instant;
 
 use self::bus::{Bus, Key};
-pub(super) use self::directory::{Entrant, SharedRooms};
+pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::lease_worker::LeaseWorker;
 use self::nats::NatsBus;
-pub(super) use self::operators::OtherHosts;
+pub(crate) use self::operators::OtherHosts;
 use self::record::Record;
 use self::room_state::RoomState;
 use self::visits::Visits;
-pub(super) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
+pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
 use super::load::Load;
 use super::locked;
 use super::room::Catalog;
@@ -96,7 +96,7 @@ impl Cluster {
     }
 
     /// The rooms of the cluster, which lobbies see in `rooms`.
-    pub(super) fn rooms(
+    pub(crate) fn rooms(
         self,
         rooms: &Rooms,
         standing: Vec<RoomWish>,
@@ -134,7 +134,7 @@ fn shown_name(name: &str) -> &str {
 }
 
 /// What the replicas of a host share.
-struct HostContext {
+pub(crate) struct HostContext {
     /// When the host was started.
     begun: Instant,
     bus: Box<dyn Bus>,

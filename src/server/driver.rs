@@ -41,7 +41,7 @@ use self::follow::follow;
 pub use self::parts::HostParts;
 use self::results::Recorder;
 #[cfg(test)]
-pub(super) use self::simulated::{Setup, Simulated, Visiting};
+pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
 #[cfg(feature = "cluster")]

@@ -51,11 +51,11 @@ impl HostKey {
 
     /// The key of a seed that everybody knows.
     #[cfg(fuzzing)]
-    pub(super) fn of_seed(seed: [u8; 32]) -> Self {
+    pub(crate) fn of_seed(seed: [u8; 32]) -> Self {
         Self { key: PrivateKey::from(Ed25519Keypair::from_seed(&seed)) }
     }
 
-    pub(super) fn private_key(&self) -> PrivateKey {
+    pub(crate) fn private_key(&self) -> PrivateKey {
         self.key.clone()
     }
 }

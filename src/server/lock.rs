@@ -3,6 +3,6 @@
 use std::sync::{Mutex, PoisonError};
 
 /// Acts on what a lock guards. A panic elsewhere does not close the lock.
-pub(super) fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
+pub(crate) fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
     act(&mut mutex.lock().unwrap_or_else(PoisonError::into_inner))
 }

@@ -24,7 +24,7 @@ use tracing_subscriber::reload::Handle;
 use tracing_subscriber::{Layer, Registry, fmt, reload};
 
 pub use filter::{LogFilter, UnknownLogFilter};
-pub(super) use throttle::{ConnectionEvent, Throttle};
+pub(crate) use throttle::{ConnectionEvent, Throttle};
 
 /// The form of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -75,4 +75,4 @@ fn subscriber(
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

@@ -9,7 +9,7 @@
 
 mod client;
 #[path = "../../tests/support/emulator.rs"]
-pub(in crate::server) mod emulator;
+pub(crate) mod emulator;
 #[path = "../../tests/support/looks.rs"]
 mod looks;
 mod replay;
@@ -22,9 +22,9 @@ use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::{Instant, sleep};
 
-pub(in crate::server) use self::client::{Client, Conditions, guest};
-pub(in crate::server) use self::emulator::Speaks;
-pub(in crate::server) use self::tapes::Tapes;
+pub(crate) use self::client::{Client, Conditions, guest};
+pub(crate) use self::emulator::Speaks;
+pub(crate) use self::tapes::Tapes;
 use super::config::StandingRoom;
 use super::driver::{Setup, Simulated};
 use super::line::Line;
@@ -39,7 +39,7 @@ use crate::map;
 use crate::store::host::MemoryStore;
 use crate::world::{Difficulty, FieldOfView};
 
-pub(in crate::server) const HALL: &str = r##"
+pub(crate) const HALL: &str = r##"
 title = "The Hall"
 grid = '''
 ###############
@@ -57,38 +57,38 @@ grid = '''
 "##;
 
 /// The standing room.
-pub(in crate::server) const ROOM: RoomId = RoomId(1);
-pub(in crate::server) const ENTER: &str = "\r";
-pub(in crate::server) const ESCAPE: &str = "\x1b";
+pub(crate) const ROOM: RoomId = RoomId(1);
+pub(crate) const ENTER: &str = "\r";
+pub(crate) const ESCAPE: &str = "\x1b";
 
 /// A host, and the clients that have come so far.
-pub(in crate::server) struct Rig {
+pub(crate) struct Rig {
     runtime: Runtime,
     host: Simulated,
-    pub(in crate::server) live: LiveConfig,
-    pub(in crate::server) visitors: Visitors,
-    pub(in crate::server) clients: Vec<Client>,
-    pub(in crate::server) tapes: Tapes,
+    pub(crate) live: LiveConfig,
+    pub(crate) visitors: Visitors,
+    pub(crate) clients: Vec<Client>,
+    pub(crate) tapes: Tapes,
 }
 
 /// What may differ from rig to rig.
-pub(in crate::server) struct Wish {
-    pub(in crate::server) catalog: Catalog,
+pub(crate) struct Wish {
+    pub(crate) catalog: Catalog,
     /// The level and the mode of the standing room.
-    pub(in crate::server) level: &'static str,
-    pub(in crate::server) mode: Mode,
+    pub(crate) level: &'static str,
+    pub(crate) mode: Mode,
     /// How long the store takes for a call.
-    pub(in crate::server) store_time: Duration,
-    pub(in crate::server) worker: Worker,
-    pub(in crate::server) seed: u64,
+    pub(crate) store_time: Duration,
+    pub(crate) worker: Worker,
+    pub(crate) seed: u64,
 }
 
-pub(in crate::server) fn line(text: &str) -> Line {
+pub(crate) fn line(text: &str) -> Line {
     Line::of(text, NAME_COLUMNS).unwrap()
 }
 
 /// Two levels with the same map.
-pub(in crate::server) fn catalog(map: &str) -> Catalog {
+pub(crate) fn catalog(map: &str) -> Catalog {
     let mut catalog = Catalog::default();
     for name in ["museum", "hall"] {
         catalog.add(name, map::parse(map, name, &map::NoFiles).unwrap());
@@ -98,7 +98,7 @@ pub(in crate::server) fn catalog(map: &str) -> Catalog {
 
 impl Wish {
     /// Two levels with the hall, and a standing room in it.
-    pub(in crate::server) fn new(mode: Mode) -> Self {
+    pub(crate) fn new(mode: Mode) -> Self {
         let (store_time, worker) = (Duration::ZERO, Worker::default());
         Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7 }
     }
@@ -106,11 +106,11 @@ impl Wish {
 
 impl Rig {
     /// A host with a standing room of that mode.
-    pub(in crate::server) fn new(mode: Mode) -> Self {
+    pub(crate) fn new(mode: Mode) -> Self {
         Self::with(Wish::new(mode))
     }
 
-    pub(in crate::server) fn with(wish: Wish) -> Self {
+    pub(crate) fn with(wish: Wish) -> Self {
         let runtime =
             Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
         let (level, difficulty) = (wish.level.to_owned(), Difficulty::Normal);
@@ -134,16 +134,11 @@ impl Rig {
     }
 
     /// Adds a visitor whose terminal has no colours, and returns their index.
-    pub(in crate::server) fn visitor(
-        &mut self,
-        name: &str,
-        size: (u16, u16),
-        speaks: Speaks,
-    ) -> usize {
+    pub(crate) fn visitor(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
         self.visitor_with(name, size, speaks, ColorDepth::Mono)
     }
 
-    pub(in crate::server) fn visitor_with(
+    pub(crate) fn visitor_with(
         &mut self,
         name: &str,
         size: (u16, u16),
@@ -156,7 +151,7 @@ impl Rig {
     }
 
     /// A guest connects; no time passes.
-    pub(in crate::server) fn arrive(
+    pub(crate) fn arrive(
         &mut self,
         name: &str,
         size: (u16, u16),
@@ -167,12 +162,7 @@ impl Rig {
     }
 
     /// That visitor connects; no time passes.
-    pub(in crate::server) fn connect(
-        &mut self,
-        visitor: Visitor,
-        speaks: Speaks,
-        depth: ColorDepth,
-    ) -> usize {
+    pub(crate) fn connect(&mut self, visitor: Visitor, speaks: Speaks, depth: ColorDepth) -> usize {
         let Self { runtime, host, .. } = self;
         let client = runtime.block_on(async { Client::come(host, visitor, speaks, depth) });
         self.clients.push(client);
@@ -180,12 +170,7 @@ impl Rig {
     }
 
     /// A visitor who is in the room.
-    pub(in crate::server) fn member(
-        &mut self,
-        name: &str,
-        size: (u16, u16),
-        speaks: Speaks,
-    ) -> usize {
+    pub(crate) fn member(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
         let index = self.visitor(name, size, speaks);
         for _ in 0..3 {
             self.press(index, ENTER);
@@ -195,29 +180,29 @@ impl Rig {
     }
 
     /// Types bytes, and lets half a second pass.
-    pub(in crate::server) fn press(&mut self, index: usize, bytes: &str) {
+    pub(crate) fn press(&mut self, index: usize, bytes: &str) {
         self.send(index, bytes);
         self.pump(500);
     }
 
-    pub(in crate::server) fn send(&self, index: usize, bytes: impl AsRef<[u8]>) {
+    pub(crate) fn send(&self, index: usize, bytes: impl AsRef<[u8]>) {
         let _guard = self.runtime.enter();
         self.clients[index].send(bytes.as_ref());
     }
 
     /// Lets that many milliseconds pass.
-    pub(in crate::server) fn pump(&mut self, milliseconds: u64) {
+    pub(crate) fn pump(&mut self, milliseconds: u64) {
         self.runtime.block_on(async { sleep(Duration::from_millis(milliseconds)).await });
     }
 
     /// The simulated time.
-    pub(in crate::server) fn now(&self) -> Instant {
+    pub(crate) fn now(&self) -> Instant {
         let _guard = self.runtime.enter();
         Instant::now()
     }
 
     /// What the visitor's screen shows.
-    pub(in crate::server) fn text(&self, index: usize) -> String {
+    pub(crate) fn text(&self, index: usize) -> String {
         self.clients[index].look(|emulator| {
             let screen = emulator.screen();
             let (_, columns) = screen.size();
@@ -227,7 +212,7 @@ impl Rig {
     }
 
     /// Looks into a session that has not ended, with the newest snapshot of its room.
-    pub(in crate::server) fn session<T: Send + 'static>(
+    pub(crate) fn session<T: Send + 'static>(
         &self,
         index: usize,
         look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
@@ -237,28 +222,28 @@ impl Rig {
     }
 
     /// The number of the visitor as a member.
-    pub(in crate::server) fn member_id(&self, index: usize) -> Option<MemberId> {
+    pub(crate) fn member_id(&self, index: usize) -> Option<MemberId> {
         self.session(index, |session, _| session.member())
     }
 
-    pub(in crate::server) fn is_over(&self, index: usize) -> bool {
+    pub(crate) fn is_over(&self, index: usize) -> bool {
         self.clients[index].visiting.is_over()
     }
 
-    pub(in crate::server) fn metrics(&self) -> &Metrics {
+    pub(crate) fn metrics(&self) -> &Metrics {
         self.host.metrics()
     }
 
-    pub(in crate::server) fn rooms(&self) -> &Rooms {
+    pub(crate) fn rooms(&self) -> &Rooms {
         self.host.rooms()
     }
 
     /// The newest snapshot of the standing room.
-    pub(in crate::server) fn view(&self) -> Arc<RoomView> {
+    pub(crate) fn view(&self) -> Arc<RoomView> {
         self.rooms().view(ROOM).expect("the room is there")
     }
 
-    pub(in crate::server) fn position(&self, index: usize) -> glam::DVec2 {
+    pub(crate) fn position(&self, index: usize) -> glam::DVec2 {
         self.session(index, |session, room| {
             let room = room.expect("a room");
             let member = room.member(session.member().unwrap()).unwrap();
@@ -268,7 +253,7 @@ impl Rig {
     }
 
     /// The tasks of the host and its clients.
-    pub(in crate::server) fn tasks(&self) -> usize {
+    pub(crate) fn tasks(&self) -> usize {
         self.runtime.metrics().num_alive_tasks()
     }
 }

@@ -4,7 +4,7 @@ mod client;
 mod connection;
 mod explanation;
 #[cfg(fuzzing)]
-pub(super) mod fuzzing;
+pub(crate) mod fuzzing;
 mod handler;
 mod hello;
 mod inbound;
@@ -38,7 +38,7 @@ pub use inbound::{Arrival, Inbound};
 pub use key_data::KeyData;
 pub use outbox::Outbox;
 #[cfg(test)]
-pub(super) use pipe::{FarEnd, Parts, pipe};
+pub(crate) use pipe::{FarEnd, Parts, pipe};
 pub use visitor::Visitor;
 
 /// What serves visitors: the sessions above the transport.
@@ -69,9 +69,9 @@ pub struct Departure {
 
 impl Departure {
     /// That of a visitor who is refused: they have to change something, or to come later.
-    pub(super) const REFUSED: Self = Self { status: 2, refusal: None };
+    pub(crate) const REFUSED: Self = Self { status: 2, refusal: None };
     /// That of a visitor whom the host cannot serve.
-    pub(super) const FAILED: Self = Self { status: 1, refusal: None };
+    pub(crate) const FAILED: Self = Self { status: 1, refusal: None };
 }
 
 /// Counts of connections, for metrics and tests.
@@ -134,7 +134,7 @@ impl Counters {
         self.refusals[reason as usize].load(Ordering::Relaxed)
     }
 
-    pub(super) fn refuse(&self, reason: Refusal) {
+    pub(crate) fn refuse(&self, reason: Refusal) {
         self.refusals[reason as usize].fetch_add(1, Ordering::Relaxed);
     }
 }

@@ -160,7 +160,7 @@ impl Shape {
     }
 
     /// The low and the high corner of the box around the shape; `None` for a plane.
-    pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
+    pub(crate) fn bounds(&self) -> Option<[DVec3; 2]> {
         match self {
             Self::Sphere(Sphere { center, radius }) => Some([center - radius, center + radius]),
             Self::Plane(_) => None,

@@ -117,19 +117,19 @@ pub struct Axes {
 /// The mapping from the world to the pixels of one frame. A cube looks like a cube for any shape of
 /// a pixel, as with the grid's renderer.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Projection {
-    pub(super) origin: DVec3,
-    pub(super) axes: Axes,
-    pub(super) width: u32,
-    pub(super) height: u32,
+pub(crate) struct Projection {
+    pub(crate) origin: DVec3,
+    pub(crate) axes: Axes,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
     /// The number of columns from the middle to a point 1 to the side at distance 1.
-    pub(super) columns_a_cell: f64,
+    pub(crate) columns_a_cell: f64,
     /// The number of rows from the middle to a point 1 above at distance 1.
-    pub(super) rows_a_cell: f64,
+    pub(crate) rows_a_cell: f64,
 }
 
 impl Projection {
-    pub(super) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+    pub(crate) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
         Self {
@@ -145,20 +145,20 @@ impl Projection {
     /// The direction through the middle of a column, at the middle of the picture's height. The sum
     /// of it and [`Projection::upwards`] is the direction of a ray, whose `t` is the distance to
     /// the camera plane.
-    pub(super) fn across(&self, column: u32) -> DVec3 {
+    pub(crate) fn across(&self, column: u32) -> DVec3 {
         // These are halves of integers, so that a column and its mirror image have opposite slopes.
         let slope = (f64::from(column) + 0.5 - f64::from(self.width) / 2.0) / self.columns_a_cell;
         self.axes.forward + self.axes.right * slope
     }
 
     /// The vector from the direction at the middle of the picture's height to the middle of a row.
-    pub(super) fn upwards(&self, row: u32) -> DVec3 {
+    pub(crate) fn upwards(&self, row: u32) -> DVec3 {
         let slope = (f64::from(self.height) / 2.0 - f64::from(row) - 0.5) / self.rows_a_cell;
         self.axes.up * slope
     }
 
     /// The changes of direction from a pixel to the next column and to the next row upwards.
-    pub(super) fn steps(&self) -> [DVec3; 2] {
+    pub(crate) fn steps(&self) -> [DVec3; 2] {
         [self.axes.right / self.columns_a_cell, self.axes.up / self.rows_a_cell]
     }
 }

@@ -29,7 +29,7 @@ const MOST: f64 = (1_u64 << 50) as f64;
 /// changes of a direction to the next column and to the next row. `are_alike` says that all normals are
 /// equal, and that their products with the directions are.
 #[inline(never)]
-pub(super) fn find_footprints(
+pub(crate) fn find_footprints(
     directions: &Vectors,
     t: &Lanes,
     normals: &Vectors,
@@ -59,7 +59,7 @@ pub(super) fn find_footprints(
 
 /// Sets `means` to the mean of a checkerboard of +1 and −1 over a box with these `widths` around each of
 /// `points`. Both are in cubes; the cube at the origin is +1.
-pub(super) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
+pub(crate) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
     means.fill(1.0);
     points.axes().into_iter().zip(widths.axes()).for_each(|(places, widths)| {
         multiply_by_means_along(places, widths, means);
@@ -67,7 +67,7 @@ pub(super) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) 
 }
 
 /// Whether the cube at `point` is one of +1. The coordinates are in cubes.
-pub(super) fn is_first(point: DVec3) -> bool {
+pub(crate) fn is_first(point: DVec3) -> bool {
     point.to_array().into_iter().map(|place| mean_along(place, 0.0)).product::<f64>() > 0.0
 }
 

@@ -10,14 +10,14 @@ use glam::DVec3;
 
 /// The number of lanes. With 8, what is done once for all lanes costs more; with 32, the unused lanes at
 /// the edges of bodies do.
-pub(super) const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// A number for each lane.
-pub(super) type Lanes = [f64; LANES];
+pub(crate) type Lanes = [f64; LANES];
 
 /// A vector for each lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vectors {
+pub(crate) struct Vectors {
     x: Lanes,
     y: Lanes,
     z: Lanes,
@@ -32,7 +32,7 @@ impl Default for Vectors {
 impl Vectors {
     /// Sets each lane to what `of` returns for it.
     #[inline(always)]
-    pub(super) fn fill(&mut self, of: impl Fn(usize) -> DVec3) {
+    pub(crate) fn fill(&mut self, of: impl Fn(usize) -> DVec3) {
         for lane in 0..LANES {
             let DVec3 { x, y, z } = of(lane);
             (self.x[lane], self.y[lane], self.z[lane]) = (x, y, z);
@@ -40,7 +40,7 @@ impl Vectors {
     }
 
     /// Divides each lane by `divisor`.
-    pub(super) fn divide(&mut self, divisor: f64) {
+    pub(crate) fn divide(&mut self, divisor: f64) {
         for components in [&mut self.x, &mut self.y, &mut self.z] {
             for component in components {
                 *component /= divisor;
@@ -49,17 +49,17 @@ impl Vectors {
     }
 
     #[inline(always)]
-    pub(super) fn get(&self, lane: usize) -> DVec3 {
+    pub(crate) fn get(&self, lane: usize) -> DVec3 {
         DVec3::new(self.x[lane], self.y[lane], self.z[lane])
     }
 
     /// The components along each axis.
-    pub(super) fn axes(&self) -> [&Lanes; 3] {
+    pub(crate) fn axes(&self) -> [&Lanes; 3] {
         [&self.x, &self.y, &self.z]
     }
 
     /// The low and the high corner of the box around all lanes that are numbers.
-    pub(super) fn bounds(&self) -> [DVec3; 2] {
+    pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let [x, y, z] = self.axes().map(|lanes| [least(lanes), greatest(lanes)]);
         [DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1])]
     }
@@ -67,13 +67,13 @@ impl Vectors {
 
 /// The least of the lanes that are numbers.
 #[inline(always)]
-pub(super) fn least(lanes: &Lanes) -> f64 {
+pub(crate) fn least(lanes: &Lanes) -> f64 {
     reduced(lanes, |one, other| if one < other { one } else { other })
 }
 
 /// The greatest of the lanes that are numbers.
 #[inline(always)]
-pub(super) fn greatest(lanes: &Lanes) -> f64 {
+pub(crate) fn greatest(lanes: &Lanes) -> f64 {
     reduced(lanes, |one, other| if one > other { one } else { other })
 }
 
@@ -90,7 +90,7 @@ fn reduced(lanes: &Lanes, combined: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// Whether all lanes of both are finite; their products may be too large for that.
 #[inline(always)]
-pub(super) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
+pub(crate) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
     let [mut even, mut odd] = [0.0; 2];
     for (pair, other) in lanes.chunks_exact(2).zip(others.chunks_exact(2)) {
         // This is zero, or a NaN.
@@ -102,7 +102,7 @@ pub(super) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
 
 /// The largest integer not above `number`.
 #[inline(always)]
-pub(super) fn floor(number: f64) -> f64 {
+pub(crate) fn floor(number: f64) -> f64 {
     // From here on, doubles are integers. The sum is rounded to one.
     const INTEGERS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
     let shift = INTEGERS.copysign(number);
@@ -113,7 +113,7 @@ pub(super) fn floor(number: f64) -> f64 {
 
 /// The same for numbers of at most 2⁵⁰, positive or negative.
 #[inline(always)]
-pub(super) fn floor_of_small(number: f64) -> f64 {
+pub(crate) fn floor_of_small(number: f64) -> f64 {
     const INTEGERS: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
     let near = (number + INTEGERS) - INTEGERS;
     near - if near > number { 1.0 } else { 0.0 }
@@ -121,7 +121,7 @@ pub(super) fn floor_of_small(number: f64) -> f64 {
 
 /// The integer nearest to `number`, which is from 0 to 2³¹; the upper one for ties. 0 for a NaN.
 #[inline(always)]
-pub(super) fn rounded(number: f64) -> u32 {
+pub(crate) fn rounded(number: f64) -> u32 {
     const INTEGERS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
     let sum = number + INTEGERS;
     // The addition rounds ties to even.

@@ -62,13 +62,13 @@ impl Default for Sun {
 }
 
 /// The colour of a sky in this direction. It changes linearly with the slope.
-pub(super) fn sky_color(sky: SkyGradient, direction: DVec3) -> Rgb {
+pub(crate) fn sky_color(sky: SkyGradient, direction: DVec3) -> Rgb {
     sky.zenith.over(sky.horizon, sky_share(direction) as u8)
 }
 
 /// The share of the zenith's colour in this direction, in 255ths.
 #[inline(always)]
-pub(super) fn sky_share(direction: DVec3) -> u32 {
+pub(crate) fn sky_share(direction: DVec3) -> u32 {
     const STEEPEST: f64 = 0.5;
     let DVec3 { x, y, z } = direction;
     let away = (x * x + y * y).sqrt();

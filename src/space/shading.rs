@@ -18,7 +18,7 @@ use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
 
 /// The values that all pixels of a frame share.
-pub(super) struct Shader<'a> {
+pub(crate) struct Shader<'a> {
     scene: &'a Scene,
     origin: DVec3,
     /// The changes of direction to the next column and to the next row.
@@ -29,9 +29,9 @@ pub(super) struct Shader<'a> {
 
 /// Memory for shading, which is reused.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shading {
+pub(crate) struct Shading {
     /// The rays of the pixels.
-    pub(super) stretch: Stretch,
+    pub(crate) stretch: Stretch,
     points: Vectors,
     normals: Vectors,
     brightness: Lanes,
@@ -53,13 +53,13 @@ struct Light {
 }
 
 impl<'a> Shader<'a> {
-    pub(super) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
+    pub(crate) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
         Self { scene, origin: projection.origin, steps: projection.steps(), is_level }
     }
 
     /// Colours `pixels`, which show the sky.
     #[inline(never)]
-    pub(super) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
+    pub(crate) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
         let sky = self.scene.sky;
         let mut shares = [0; LANES];
         for (lane, share) in shares.iter_mut().enumerate() {
@@ -76,7 +76,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Colours `pixels`, which show `body`.
-    pub(super) fn shade(
+    pub(crate) fn shade(
         &self,
         body: usize,
         shape: &RelativeShape,

@@ -29,7 +29,7 @@ const MOST_IN_LEAF: usize = 8;
 
 /// The bodies of a scene that cast shadows.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shadows {
+pub(crate) struct Shadows {
     /// The bodies and the sun for which the tree was made.
     bodies: Vec<Body>,
     sun: Option<Sun>,
@@ -83,7 +83,7 @@ struct LightBox {
 
 impl Shadows {
     /// Prepares the tree for `bodies` under `sun`, unless it is that of the last frame.
-    pub(super) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
+    pub(crate) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
         if self.sun == Some(*sun) && self.bodies == bodies {
             return;
         }
@@ -103,7 +103,7 @@ impl Shadows {
     /// Sets the `brightness` of each of `points` to `ambient` if a body is between it and the sun. All of
     /// them are on the surface of `body`, and in the box between two corners, up to rounding. Returns the
     /// number of bodies whose boxes are tested, and that of those against which the points are tested.
-    pub(super) fn darken(
+    pub(crate) fn darken(
         &self,
         points: &Vectors,
         bounds: [DVec3; 2],

@@ -76,12 +76,12 @@ impl PartialOrd for Reached {
 
 impl Best {
     /// The results of one run.
-    pub(super) fn of(run: &Run) -> Self {
+    pub(crate) fn of(run: &Run) -> Self {
         Self { tally: run.tally, rank: run.rank }
     }
 
     /// The best of both. Of equally fast runs it is the first.
-    pub(super) fn and(self, other: Self) -> Self {
+    pub(crate) fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
     }

@@ -9,7 +9,7 @@ use crate::world::Difficulty;
 
 /// A change.
 #[derive(Clone, Debug)]
-pub(super) enum Change {
+pub(crate) enum Change {
     /// A run reached the exit.
     Won { level: String, difficulty: Difficulty, run: Run },
     /// A game was saved.
@@ -26,7 +26,7 @@ pub(super) enum Change {
 
 impl Change {
     /// The name and the text of the script that belongs to the change.
-    pub(super) fn written(&self) -> Option<(String, &str)> {
+    pub(crate) fn written(&self) -> Option<(String, &str)> {
         match self {
             Self::Won { level, difficulty, run } => {
                 Some((names::of_run(level, *difficulty, run.tally.steps), &run.script))
@@ -41,14 +41,14 @@ impl Change {
     }
 
     /// The text of the script `name`, if it belongs to the change.
-    pub(super) fn script(&self, name: &str) -> Option<&str> {
+    pub(crate) fn script(&self, name: &str) -> Option<&str> {
         self.written().filter(|(own, _)| own == name).map(|(_, text)| text)
     }
 }
 
 impl Progress {
     /// Applies a change. The better result wins, whichever came first.
-    pub(super) fn apply(&mut self, change: &Change) {
+    pub(crate) fn apply(&mut self, change: &Change) {
         match change {
             Change::Won { level, difficulty, run } => {
                 self.add_best((level.clone(), *difficulty), Best::of(run));
@@ -64,7 +64,7 @@ impl Progress {
     }
 
     /// Adds from `known` what a damaged file has lost.
-    pub(super) fn complete(&mut self, known: &Self) {
+    pub(crate) fn complete(&mut self, known: &Self) {
         known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
         known.dailies.iter().for_each(|(date, daily)| self.add_daily(*date, *daily));
         self.descent = self.descent.max(known.descent);

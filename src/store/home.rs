@@ -14,7 +14,7 @@ use crate::sort;
 
 /// A folder of a store.
 #[derive(Debug)]
-pub(super) struct Home {
+pub(crate) struct Home {
     folder: PathBuf,
     disk: Box<dyn Disk>,
     /// The attempts to get the lock; one after another process did not return it.
@@ -23,13 +23,13 @@ pub(super) struct Home {
 
 /// The result of a change.
 #[derive(Debug)]
-pub(super) struct Written {
+pub(crate) struct Written {
     /// The state of the file before.
-    pub(super) before: Progress,
+    pub(crate) before: Progress,
     /// The state of the file now.
-    pub(super) progress: Progress,
+    pub(crate) progress: Progress,
     /// A sentence about a damaged file.
-    pub(super) sentence: Option<String>,
+    pub(crate) sentence: Option<String>,
 }
 
 /// The content of the progress file, and what is wrong with it.
@@ -46,20 +46,20 @@ const RUNS: &str = "runs";
 /// In bytes.
 const LARGEST_PROGRESS: u64 = 4 << 20;
 /// In bytes: that is more than a day of play.
-pub(super) const LARGEST_SCRIPT: u64 = 4 << 20;
+pub(crate) const LARGEST_SCRIPT: u64 = 4 << 20;
 /// The number of damaged files that are kept, the newest ones.
 const MOST_DAMAGED: usize = 3;
 /// They take two seconds.
 const ATTEMPTS: u32 = 1000;
 
 impl Home {
-    pub(super) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
+    pub(crate) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
         Self { folder, disk, attempts: ATTEMPTS }
     }
 
     /// The progress in the file, and a sentence if it is damaged or can't be used. A damaged file is
     /// put aside.
-    pub(super) fn open(&mut self) -> (Progress, Option<String>) {
+    pub(crate) fn open(&mut self) -> (Progress, Option<String>) {
         match self.find() {
             Ok(Found::Sound(progress)) => (progress, None),
             Ok(Found::Damaged(progress, _)) => self.repair(progress),
@@ -76,7 +76,7 @@ impl Home {
     }
 
     /// The progress in the file, unless it is missing or damaged.
-    pub(super) fn read_again(&self) -> Option<Progress> {
+    pub(crate) fn read_again(&self) -> Option<Progress> {
         match self.find() {
             Ok(Found::Sound(progress)) => Some(progress),
             _ => None,
@@ -84,7 +84,7 @@ impl Home {
     }
 
     /// The text of a script.
-    pub(super) fn script(&self, name: &str) -> Option<String> {
+    pub(crate) fn script(&self, name: &str) -> Option<String> {
         let content = self.disk.read(&self.folder.join(RUNS).join(name), LARGEST_SCRIPT).ok()?;
         String::from_utf8(content).ok()
     }
@@ -94,7 +94,7 @@ impl Home {
     ///
     /// # Errors
     /// A sentence why nothing was written.
-    pub(super) fn write(
+    pub(crate) fn write(
         &mut self,
         changes: &[Change],
         known: &Progress,

@@ -33,22 +33,22 @@ pub(crate) fn name_in_map_key(key: &str) -> Option<&str> {
 }
 
 /// The file of the script of a run.
-pub(super) fn of_run(level: &str, difficulty: Difficulty, steps: u64) -> String {
+pub(crate) fn of_run(level: &str, difficulty: Difficulty, steps: u64) -> String {
     format!("{}.{}.{steps}.script", escaped(level), difficulty.name())
 }
 
 /// The file of the script of a saved game.
-pub(super) fn of_saved(script: &str) -> String {
+pub(crate) fn of_saved(script: &str) -> String {
     format!("{SAVED}.{:016x}.script", hash(script))
 }
 
 /// The file of the script of a daily run, once it has reached an exit.
-pub(super) fn of_daily(date: u32, reached: Reached) -> Option<String> {
+pub(crate) fn of_daily(date: u32, reached: Reached) -> Option<String> {
     Some(format!("daily.{date}.{}.script", figures(reached)?))
 }
 
 /// The file of the script of a descent, once it has reached an exit.
-pub(super) fn of_descent(reached: Reached) -> Option<String> {
+pub(crate) fn of_descent(reached: Reached) -> Option<String> {
     Some(format!("descent.{}.script", figures(reached)?))
 }
 
@@ -80,7 +80,7 @@ fn escaped(key: &str) -> String {
     name
 }
 
-pub(super) fn hash(text: &str) -> u64 {
+pub(crate) fn hash(text: &str) -> u64 {
     let words = text.as_bytes().chunks(8).map(|chunk| {
         let mut word = [0; 8];
         word[..chunk.len()].copy_from_slice(chunk);

@@ -13,14 +13,14 @@ use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub(super) struct Progress {
+pub(crate) struct Progress {
     /// By the key of the level.
-    pub(super) bests: BTreeMap<(String, Difficulty), Best>,
+    pub(crate) bests: BTreeMap<(String, Difficulty), Best>,
     /// The saved games, the newest last. No two have the same [`SaveId`].
-    pub(super) saves: Vec<SavedEntry>,
-    pub(super) preferences: Preferences,
-    pub(super) dailies: BTreeMap<u32, Daily>,
-    pub(super) descent: Option<Reached>,
+    pub(crate) saves: Vec<SavedEntry>,
+    pub(crate) preferences: Preferences,
+    pub(crate) dailies: BTreeMap<u32, Daily>,
+    pub(crate) descent: Option<Reached>,
 }
 
 /// A saved game without its script.
@@ -82,10 +82,10 @@ pub enum Descent {
 
 /// The saved game as the file has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct SavedEntry {
-    pub(super) save: Save,
+pub(crate) struct SavedEntry {
+    pub(crate) save: Save,
     /// The name of the script's file.
-    pub(super) script: String,
+    pub(crate) script: String,
 }
 
 /// What the player has chosen in the game.
@@ -136,26 +136,26 @@ pub struct Daily {
 }
 
 impl Progress {
-    pub(super) fn best(&self, level: &str, difficulty: Difficulty) -> Option<&Best> {
+    pub(crate) fn best(&self, level: &str, difficulty: Difficulty) -> Option<&Best> {
         self.bests.get(&(level.to_owned(), difficulty))
     }
 
-    pub(super) fn saved(&self, id: SaveId) -> Option<&SavedEntry> {
+    pub(crate) fn saved(&self, id: SaveId) -> Option<&SavedEntry> {
         self.saves.iter().find(|entry| entry.save.id() == id)
     }
 
     /// Adds a saved game as the newest one, in place of the one with the same identity.
-    pub(super) fn add_save(&mut self, entry: SavedEntry) {
+    pub(crate) fn add_save(&mut self, entry: SavedEntry) {
         self.remove_save(entry.save.id());
         self.saves.push(entry);
     }
 
-    pub(super) fn remove_save(&mut self, id: SaveId) {
+    pub(crate) fn remove_save(&mut self, id: SaveId) {
         self.saves.retain(|entry| entry.save.id() != id);
     }
 
     /// What a run would improve.
-    pub(super) fn improved_by(&self, level: &str, difficulty: Difficulty, run: &Run) -> Improved {
+    pub(crate) fn improved_by(&self, level: &str, difficulty: Difficulty, run: &Run) -> Improved {
         match self.best(level, difficulty) {
             None => Improved { time: true, rank: true },
             Some(best) => {
@@ -164,13 +164,13 @@ impl Progress {
         }
     }
 
-    pub(super) fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
+    pub(crate) fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
         let of_it = move |&&(_, at): &&(String, Difficulty)| at == difficulty;
         self.bests.keys().filter(of_it).map(|(level, _)| level.as_str())
     }
 
     /// The names of all scripts that it refers to.
-    pub(super) fn scripts(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn scripts(&self) -> impl Iterator<Item = String> {
         let runs = self
             .bests
             .iter()
@@ -205,17 +205,17 @@ impl Descent {
     const NAMES: [(Self, &str); 3] =
         [(Self::Endless, "endless"), (Self::Daily, "daily"), (Self::Practice, "practice")];
 
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         Self::NAMES[self as usize].1
     }
 
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(_, known)| *known == name).map(|&(kind, _)| kind)
     }
 }
 
 impl SavedEntry {
-    pub(super) fn of(game: &SavedGame) -> Self {
+    pub(crate) fn of(game: &SavedGame) -> Self {
         Self { save: game.save.clone(), script: names::of_saved(&game.script) }
     }
 }

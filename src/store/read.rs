@@ -22,7 +22,7 @@ use crate::world::Difficulty;
 
 /// What a text contains.
 #[derive(Debug, PartialEq)]
-pub(super) enum Content {
+pub(crate) enum Content {
     Sound(Progress),
     /// What can be read of it.
     Damaged(Progress),
@@ -31,7 +31,7 @@ pub(super) enum Content {
 }
 
 /// Reads the content of the file.
-pub(super) fn read(content: &[u8]) -> Content {
+pub(crate) fn read(content: &[u8]) -> Content {
     let text = String::from_utf8_lossy(content);
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let is_cut = whole < text.len() || matches!(text, Cow::Owned(_));

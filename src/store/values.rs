@@ -5,17 +5,17 @@ use crate::tui::{Correction, GlyphSet};
 
 /// The version of the format. Version 2 added the saved descent, the checksum of saved games, and the
 /// preferences about the terminal. Version 3 has any number of saved games.
-pub(super) const VERSION: u64 = 3;
+pub(crate) const VERSION: u64 = 3;
 /// The oldest version that is read.
-pub(super) const OLDEST: u64 = 1;
+pub(crate) const OLDEST: u64 = 1;
 
 /// The sections of saved games, which have numbers: the newest has the largest one.
-pub(super) const SAVES: &str = "saves";
+pub(crate) const SAVES: &str = "saves";
 /// The one saved level and the one saved descent of older versions.
-pub(super) const SAVED: &str = "saved";
-pub(super) const SAVED_DESCENT: &str = "saved-descent";
+pub(crate) const SAVED: &str = "saved";
+pub(crate) const SAVED_DESCENT: &str = "saved-descent";
 
-pub(super) const GLYPHS: [(GlyphSet, &str); 6] = [
+pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Half, "half"),
     (GlyphSet::Quadrant, "quadrant"),
     (GlyphSet::Sextant, "sextant"),
@@ -23,25 +23,25 @@ pub(super) const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Ascii, "ascii"),
     (GlyphSet::Ramp, "ramp"),
 ];
-pub(super) const COLORS: [(ColorDepth, &str); 4] = [
+pub(crate) const COLORS: [(ColorDepth, &str); 4] = [
     (ColorDepth::True, "true"),
     (ColorDepth::Indexed256, "256"),
     (ColorDepth::Indexed16, "16"),
     (ColorDepth::Mono, "mono"),
 ];
 
-pub(super) const CORRECTIONS: [(Correction, &str); 3] = [
+pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
     (Correction::None, "none"),
     (Correction::Contrast, "contrast"),
     (Correction::RedGreen, "red-green"),
 ];
 
 /// The name of `value`, which has one.
-pub(super) fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
+pub(crate) fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name)
 }
 
 /// The value called `name`.
-pub(super) fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Option<T> {
+pub(crate) fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Option<T> {
     names.iter().find(|(_, known)| *known == name).map(|&(value, _)| value)
 }

@@ -14,7 +14,7 @@ const TELETYPES: [&str; 12] = [
 
 /// The value of `TERM` in `environment`, which looks up variables by name, if it is that of a
 /// terminal that cannot move its cursor.
-pub(super) fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
+pub(crate) fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
     let term = environment("TERM")?;
     TELETYPES.into_iter().find(|&known| known == term)
 }

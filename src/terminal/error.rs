@@ -30,28 +30,28 @@ enum Kind {
 impl Error {
     /// `stream` (such as "standard input") is not a terminal.
     #[cfg(unix)]
-    pub(super) fn not_a_terminal(stream: &'static str) -> Self {
+    pub(crate) fn not_a_terminal(stream: &'static str) -> Self {
         Self(Kind::NotATerminal { stream })
     }
 
     /// The game cannot run on this platform yet.
     #[cfg(not(unix))]
-    pub(super) fn unsupported_platform() -> Self {
+    pub(crate) fn unsupported_platform() -> Self {
         Self(Kind::UnsupportedPlatform)
     }
 
     /// The terminal cannot move its cursor, according to this value of `TERM`.
-    pub(super) fn teletype(term: &'static str) -> Self {
+    pub(crate) fn teletype(term: &'static str) -> Self {
         Self(Kind::Teletype { term })
     }
 
     /// This process has a session already.
-    pub(super) fn already_taken() -> Self {
+    pub(crate) fn already_taken() -> Self {
         Self(Kind::AlreadyTaken)
     }
 
     /// A panic in another thread has ended the session.
-    pub(super) fn given_back() -> Self {
+    pub(crate) fn given_back() -> Self {
         Self(Kind::GivenBack)
     }
 
@@ -66,7 +66,7 @@ impl Error {
     }
 
     /// Wraps an error that occurred while `doing` something (such as "reading keys").
-    pub(super) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+    pub(crate) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |source| Self(Kind::Io { doing, source })
     }
 }

@@ -33,14 +33,14 @@ mod min_round_trip;
 use std::time::Duration;
 
 use self::demand::{Demand, MIN_FIDELITY};
-pub(super) use self::in_flight::Request;
+pub(crate) use self::in_flight::Request;
 use self::in_flight::{InFlight, Sent};
 use self::link::Link;
 use super::Fidelity;
 
 /// The state of flow control.
 #[derive(Debug, Default)]
-pub(super) struct Flow {
+pub(crate) struct Flow {
     answers: Answers,
     in_flight: InFlight,
     /// The number of frames sent so far.
@@ -93,12 +93,12 @@ const FENCE_PERIOD: Duration = Duration::from_secs(5);
 
 impl Flow {
     /// Flow control of an unknown link; the link is a network if `is_remote`.
-    pub(super) fn new(is_remote: bool) -> Self {
+    pub(crate) fn new(is_remote: bool) -> Self {
         Self { is_remote, ..Self::default() }
     }
 
     /// The request to send after the next frame.
-    pub(super) fn request(&self, now: Duration) -> Request {
+    pub(crate) fn request(&self, now: Duration) -> Request {
         match self.answers {
             Answers::Never => Request::Nothing,
             Answers::Given if self.timeouts > 0 => Request::Fence,
@@ -109,7 +109,7 @@ impl Flow {
 
     /// Records that a frame of this number of bytes was sent, with `request` after it. A frame of 0
     /// bytes is a request alone.
-    pub(super) fn sent(&mut self, now: Duration, bytes: usize, request: Request) {
+    pub(crate) fn sent(&mut self, now: Duration, bytes: usize, request: Request) {
         if self.is_timed_out(now) {
             self.timeouts = self.timeouts.saturating_add(1);
             if self.answers == Answers::Unknown || self.timeouts >= MAX_TIMEOUTS {
@@ -127,7 +127,7 @@ impl Flow {
     }
 
     /// Records that the terminal has answered a status request.
-    pub(super) fn answered(&mut self, now: Duration) {
+    pub(crate) fn answered(&mut self, now: Duration) {
         if self.answers == Answers::Never {
             self.in_flight.clear();
         }
@@ -146,7 +146,7 @@ impl Flow {
 
     /// Records that the terminal has answered a fence, and thus all earlier requests that it will
     /// answer.
-    pub(super) fn fence_answered(&mut self, now: Duration) {
+    pub(crate) fn fence_answered(&mut self, now: Duration) {
         let Some(before) = self.in_flight.before_fence() else { return };
         if self.answers == Answers::Unknown && before > 0 {
             self.answers = Answers::Never;
@@ -170,12 +170,12 @@ impl Flow {
     }
 
     /// Records that a key has arrived.
-    pub(super) fn received_input(&mut self) {
+    pub(crate) fn received_input(&mut self) {
         self.has_input = true;
     }
 
     /// Records that the system has accepted all sent bytes.
-    pub(super) fn written(&mut self, now: Duration) {
+    pub(crate) fn written(&mut self, now: Duration) {
         if self.answers == Answers::Never {
             for Sent { at, bytes, .. } in self.in_flight.drain() {
                 self.link.written(now, at, bytes);
@@ -184,14 +184,14 @@ impl Flow {
     }
 
     /// Forgets all requests so far: the terminal may never answer them.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.forgotten = self.in_flight.len();
         self.in_flight.clear();
         self.timeouts = 0;
     }
 
     /// Whether a frame that is sent now would not wait behind others.
-    pub(super) fn may_send(&self, now: Duration) -> bool {
+    pub(crate) fn may_send(&self, now: Duration) -> bool {
         match self.answers {
             Answers::Never => self.in_flight.is_empty(),
             Answers::Unknown => self.in_flight.frames() < FIRST_FRAMES || self.is_timed_out(now),
@@ -201,39 +201,39 @@ impl Flow {
     }
 
     /// Whether to send a fence alone, to learn whether the terminal is still connected.
-    pub(super) fn probe_is_due(&self, now: Duration) -> bool {
+    pub(crate) fn probe_is_due(&self, now: Duration) -> bool {
         self.answers == Answers::Given && self.timeouts == 0 && self.is_timed_out(now)
     }
 
     /// The time at which to call [`Flow::may_send`] again even without an event; `None` for never.
-    pub(super) fn opens_at(&self) -> Option<Duration> {
+    pub(crate) fn opens_at(&self) -> Option<Duration> {
         let is_silent = self.timeouts > 0 && !self.has_input;
         let due = self.active_at + self.timeout();
         (self.awaits_answers() && !is_silent).then_some(due)
     }
 
     /// Whether answers may arrive.
-    pub(super) fn awaits_answers(&self) -> bool {
+    pub(crate) fn awaits_answers(&self) -> bool {
         self.answers != Answers::Never && !self.in_flight.is_empty()
     }
 
     /// The number of frames sent so far.
-    pub(super) fn frames_sent(&self) -> u64 {
+    pub(crate) fn frames_sent(&self) -> u64 {
         self.frames_sent
     }
 
     /// The number of frames that are not in flight any more.
-    pub(super) fn frames_answered(&self) -> u64 {
+    pub(crate) fn frames_answered(&self) -> u64 {
         self.frames_sent - self.in_flight.frames() as u64
     }
 
     /// The round-trip time of the latest answer; `None` if there was no answer.
-    pub(super) fn round_trip(&self) -> Option<Duration> {
+    pub(crate) fn round_trip(&self) -> Option<Duration> {
         self.link.last_round_trip()
     }
 
     /// The fidelity of the next frame, at which the link carries it in time.
-    pub(super) fn fidelity(&self) -> Fidelity {
+    pub(crate) fn fidelity(&self) -> Fidelity {
         if self.timeouts > 0 && self.answers == Answers::Given {
             return MIN_FIDELITY;
         }
@@ -245,7 +245,7 @@ impl Flow {
 
     /// Records that a frame of motion was sent. The first frame does not count as motion, since it
     /// paints the whole screen.
-    pub(super) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
+    pub(crate) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         if self.link.is_known() {
             self.demand.sent_motion(bytes, fidelity);
         }

@@ -27,7 +27,7 @@ const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
 /// The changes to the terminal's state, and the way to undo them.
 #[derive(Debug)]
-pub(super) struct Guard {
+pub(crate) struct Guard {
     device: Device,
     begun_at: Instant,
     state: Mutex<State>,
@@ -48,7 +48,7 @@ impl Guard {
     ///
     /// # Errors
     /// If the process has a guard already.
-    pub(super) fn install(
+    pub(crate) fn install(
         device: Device,
         recorder: Option<Box<dyn Recorder>>,
     ) -> Result<Arc<Self>, Error> {
@@ -66,27 +66,27 @@ impl Guard {
     }
 
     /// Gives the terminal back at the end of the session.
-    pub(super) fn uninstall(&self) {
+    pub(crate) fn uninstall(&self) {
         self.give_back();
         panic_hook::release(self);
     }
 
-    pub(super) fn device(&self) -> &Device {
+    pub(crate) fn device(&self) -> &Device {
         &self.device
     }
 
     /// The recorder of the sent bytes.
-    pub(super) fn recording(&self) -> MutexGuard<'_, Recording> {
+    pub(crate) fn recording(&self) -> MutexGuard<'_, Recording> {
         self.recording.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The time since the session began.
-    pub(super) fn now(&self) -> Duration {
+    pub(crate) fn now(&self) -> Duration {
         self.begun_at.elapsed()
     }
 
     /// Takes the terminal, and sets raw mode.
-    pub(super) fn take(&self) -> io::Result<()> {
+    pub(crate) fn take(&self) -> io::Result<()> {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
@@ -95,18 +95,18 @@ impl Guard {
     }
 
     /// Sets what must be undone.
-    pub(super) fn set_changes(&self, changes: Changes) {
+    pub(crate) fn set_changes(&self, changes: Changes) {
         self.lock().changes = changes;
     }
 
     /// Whether the terminal is taken, so that the program may write to it.
-    pub(super) fn is_taken(&self) -> bool {
+    pub(crate) fn is_taken(&self) -> bool {
         self.lock().taken
     }
 
     /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The
     /// rest is [written later](Self::write_queued). After them, `changes` must be undone.
-    pub(super) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
+    pub(crate) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
         let mut state = self.lock_taken()?;
         state.changes = changes;
         self.recording().sent(bytes);
@@ -114,40 +114,40 @@ impl Guard {
     }
 
     /// Writes the queued bytes, as far as the terminal accepts them at once.
-    pub(super) fn write_queued(&self) -> io::Result<()> {
+    pub(crate) fn write_queued(&self) -> io::Result<()> {
         let _taken = self.lock_taken()?;
         self.output_queue().write_to(&self.device)
     }
 
     /// Reads as [`Device::read`] does.
-    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+    pub(crate) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         let _taken = self.lock_taken()?;
         self.device.read(buffer)
     }
 
     /// Whether the terminal has accepted all bytes.
-    pub(super) fn has_written_all(&self) -> bool {
+    pub(crate) fn has_written_all(&self) -> bool {
         self.output_queue().is_empty()
     }
 
     /// Makes all functions stop waiting for a terminal that is not ready for a frame.
-    pub(super) fn shut_down(&self) {
+    pub(crate) fn shut_down(&self) {
         self.shutting_down.store(true, Ordering::SeqCst);
     }
 
     /// Whether [`Guard::shut_down`] was called.
-    pub(super) fn is_shutting_down(&self) -> bool {
+    pub(crate) fn is_shutting_down(&self) -> bool {
         self.shutting_down.load(Ordering::SeqCst)
     }
 
     /// Gives the terminal back, unless that was done before. Takes six seconds at most.
-    pub(super) fn give_back(&self) {
+    pub(crate) fn give_back(&self) {
         self.give_back_and(|| ());
     }
 
     /// Gives the terminal back, unless that was done before, and then calls `end`. Threads that want to
     /// write or read wait until both are done, so that none ends the program in another way.
-    pub(super) fn give_back_and(&self, end: impl FnOnce()) {
+    pub(crate) fn give_back_and(&self, end: impl FnOnce()) {
         let mut state = self.lock();
         if state.taken {
             state.taken = false;
@@ -158,7 +158,7 @@ impl Guard {
     }
 
     /// Waits until the terminal is given back; returns whether that happened within `timeout`.
-    pub(super) fn wait_until_given_back(&self, timeout: Duration) -> bool {
+    pub(crate) fn wait_until_given_back(&self, timeout: Duration) -> bool {
         let state = self.lock();
         let waited = self.given_back.wait_timeout_while(state, timeout, |state| state.taken);
         !waited.unwrap_or_else(PoisonError::into_inner).0.taken

@@ -12,7 +12,7 @@ mod unit;
 
 use std::time::Duration;
 
-pub(super) use answer::Answer;
+pub(crate) use answer::Answer;
 use unit::{Cutter, Kind, Rest};
 
 use super::key::KeyEvent;
@@ -20,7 +20,7 @@ use super::mouse::MouseReport;
 
 /// An input from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Input {
+pub(crate) enum Input {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse was moved, or one of its buttons pressed or released.
@@ -33,13 +33,13 @@ pub(super) enum Input {
 
 /// A decoder of a stream of bytes.
 #[derive(Debug, Default)]
-pub(super) struct Decoder {
+pub(crate) struct Decoder {
     cutter: Cutter,
 }
 
 impl Decoder {
     /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
-    pub(super) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
+    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
         for byte in bytes {
             self.cutter
                 .push(*byte, &mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
@@ -47,7 +47,7 @@ impl Decoder {
     }
 
     /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
-    pub(super) fn patience(&self) -> Option<Duration> {
+    pub(crate) fn patience(&self) -> Option<Duration> {
         /// Longer than the gaps within a sequence, shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
         /// This is certainly a sequence, but the link may be slow.
@@ -60,7 +60,7 @@ impl Decoder {
     }
 
     /// Ends the wait: an escape without more bytes is the Escape key.
-    pub(super) fn give_up(&mut self, mut take: impl FnMut(Input)) {
+    pub(crate) fn give_up(&mut self, mut take: impl FnMut(Input)) {
         self.cutter.give_up(&mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
     }
 }

@@ -9,7 +9,7 @@ mod layout;
 use std::fmt;
 use std::str::FromStr;
 
-pub(super) use layout::base_key;
+pub(crate) use layout::base_key;
 
 /// An event of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -145,7 +145,7 @@ const NAMES: [(&str, Key); 18] = [
 
 impl Key {
     /// The key that types `character`, in upper or lower case.
-    pub(super) fn typing(character: char) -> Self {
+    pub(crate) fn typing(character: char) -> Self {
         let mut lower = character.to_lowercase();
         match (lower.next(), lower.next()) {
             (Some(single), None) => Self::Char(single),

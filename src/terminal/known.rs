@@ -13,17 +13,17 @@ use crate::tui::GlyphSet;
 
 /// What is known of a terminal from its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Known {
-    pub(super) colors: Colors,
+pub(crate) struct Known {
+    pub(crate) colors: Colors,
     /// The finest blocks that it is known to draw well.
-    pub(super) blocks: GlyphSet,
-    pub(super) shades: ShadeInk,
-    pub(super) is_tmux: bool,
+    pub(crate) blocks: GlyphSet,
+    pub(crate) shades: ShadeInk,
+    pub(crate) is_tmux: bool,
 }
 
 /// What a name and version say about 24-bit colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Colors {
+pub(crate) enum Colors {
     #[default]
     Unknown,
     /// The terminal shows them.
@@ -80,7 +80,7 @@ const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: Shad
 }
 
 /// What the name and version in `report` say, such as `kitty(0.42.1)` or `WezTerm 20240203-110809`.
-pub(super) fn known(report: &str) -> Known {
+pub(crate) fn known(report: &str) -> Known {
     let end = report.find(|letter: char| letter == '(' || letter.is_ascii_digit());
     let (name, version) = report.split_at(end.unwrap_or(report.len()));
     let name = name.trim().to_ascii_lowercase();

@@ -48,15 +48,15 @@ pub enum MouseButton {
 
 /// A report of the mouse, as the terminal sends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct MouseReport {
-    pub(super) kind: MouseEventKind,
+pub(crate) struct MouseReport {
+    pub(crate) kind: MouseEventKind,
     /// The column and the row of the cell or the pixel, from 1.
-    pub(super) place: [u32; 2],
+    pub(crate) place: [u32; 2],
 }
 
 /// The unit of the pointer's position in reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MouseUnits {
+pub(crate) enum MouseUnits {
     Cells,
     Pixels,
 }
@@ -64,7 +64,7 @@ pub(super) enum MouseUnits {
 impl MouseReport {
     /// The event in a window of `size`; `None` if the position is in pixels and the size in pixels
     /// is unknown.
-    pub(super) fn event(self, units: MouseUnits, size: WindowSize) -> Option<MouseEvent> {
+    pub(crate) fn event(self, units: MouseUnits, size: WindowSize) -> Option<MouseEvent> {
         const UNITS: u64 = MouseEvent::UNITS_PER_CELL as u64;
         let from_zero = self.place.map(|one| u64::from(one.saturating_sub(1)));
         let [x, y] = match units {

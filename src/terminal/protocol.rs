@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use crossterm::terminal::LeaveAlternateScreen;
 
-pub(super) use self::changes::Changes;
+pub(crate) use self::changes::Changes;
 use self::extensions::Extensions;
 use super::flow::{Flow, Request};
 use super::input::Decoder;
@@ -171,7 +171,7 @@ impl Protocol {
     }
 
     /// Takes the screen again after others had it; the next frame is drawn whole.
-    pub(super) fn begin_again(&mut self, size: WindowSize) {
+    pub(crate) fn begin_again(&mut self, size: WindowSize) {
         self.take_screen();
         self.repaint(size);
     }
@@ -186,7 +186,7 @@ impl Protocol {
     }
 
     /// Forgets what the terminal has not answered, and half a key: others have the terminal now.
-    pub(super) fn interrupt(&mut self) {
+    pub(crate) fn interrupt(&mut self) {
         self.output.clear();
         self.writer.output_mut().clear();
         self.drawn = None;
@@ -228,7 +228,7 @@ impl Protocol {
     }
 
     /// What must be undone at the end, and which answers may still arrive.
-    pub(super) fn changes(&self) -> Changes {
+    pub(crate) fn changes(&self) -> Changes {
         self.changes
     }
 

@@ -15,25 +15,25 @@ pub trait Recorder: Send {
 
 /// A recorder, if there is one.
 #[derive(Default)]
-pub(super) struct Recording(Option<Box<dyn Recorder>>);
+pub(crate) struct Recording(Option<Box<dyn Recorder>>);
 
 impl Recording {
-    pub(super) fn by(recorder: Option<Box<dyn Recorder>>) -> Self {
+    pub(crate) fn by(recorder: Option<Box<dyn Recorder>>) -> Self {
         Self(recorder)
     }
 
     /// Whether there is a recorder.
-    pub(super) fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         self.0.is_some()
     }
 
-    pub(super) fn resized(&mut self, size: Size) {
+    pub(crate) fn resized(&mut self, size: Size) {
         if let Some(recorder) = &mut self.0 {
             recorder.resized(size);
         }
     }
 
-    pub(super) fn sent(&mut self, bytes: &[u8]) {
+    pub(crate) fn sent(&mut self, bytes: &[u8]) {
         if let Some(recorder) = &mut self.0 {
             recorder.sent(bytes);
         }

@@ -23,7 +23,7 @@ impl WindowSize {
 
     /// The assumed size of a terminal that reports none.
     #[cfg(unix)]
-    pub(super) const UNKNOWN: Self =
+    pub(crate) const UNKNOWN: Self =
         Self { columns: 80, rows: 24, cell_aspect: None, pixels: None };
 
     /// A window of this many cells, whose size in pixels is unknown.

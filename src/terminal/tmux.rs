@@ -57,7 +57,7 @@ impl TmuxClient {
     }
 
     /// What is known of the client's terminal, within what tmux passes on.
-    pub(super) fn known(&self) -> Known {
+    pub(crate) fn known(&self) -> Known {
         // tmux drops characters that its C library does not know, and the rest of the line moves: with
         // glibc 2.36 all octants (measured with 3.3a), with older ones also sextants.
         let blocks = match self.known.blocks {
@@ -87,11 +87,11 @@ impl TmuxClient {
 
 /// A command of tmux that may still run, and the part of its answer that matters.
 #[derive(Debug)]
-pub(super) struct Request<T>(Receiver<Option<T>>);
+pub(crate) struct Request<T>(Receiver<Option<T>>);
 
 /// The state of a request.
 #[derive(Debug)]
-pub(super) enum Reply<T> {
+pub(crate) enum Reply<T> {
     Pending,
     Answer(T),
     /// The command has failed, or its answer is unknown.
@@ -100,7 +100,7 @@ pub(super) enum Reply<T> {
 
 impl Request<TmuxClient> {
     /// Asks the tmux that the environment names for its client.
-    pub(super) fn client() -> Self {
+    pub(crate) fn client() -> Self {
         Self::begin(|| {
             let text = output(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT)?;
             TmuxClient::parse(&text)
@@ -110,7 +110,7 @@ impl Request<TmuxClient> {
 
 impl Request<()> {
     /// Runs the remedy for `client`; `None` if there is none.
-    pub(super) fn remedy(client: &TmuxClient) -> Option<Self> {
+    pub(crate) fn remedy(client: &TmuxClient) -> Option<Self> {
         let feature = client.missing_feature()?;
         Some(Self::begin(move || {
             let mut command = Command::new("tmux");
@@ -130,7 +130,7 @@ impl<T: Send + 'static> Request<T> {
         Self(receiver)
     }
 
-    pub(super) fn reply(&self) -> Reply<T> {
+    pub(crate) fn reply(&self) -> Reply<T> {
         match self.0.try_recv() {
             Ok(Some(answer)) => Reply::Answer(answer),
             Err(TryRecvError::Empty) => Reply::Pending,

@@ -17,7 +17,7 @@ use crate::color::palette::ColorDepth;
 use crate::render::Surface;
 
 /// Draws one pixel in each cell of `area`. `pixel(x, y)` counts from its top left corner.
-pub(super) fn draw(
+pub(crate) fn draw(
     area: Rect,
     canvas: &mut impl Canvas,
     depth: ColorDepth,
@@ -37,7 +37,7 @@ const BLACK_OF_256: u8 = 16;
 
 /// Does the same as [`draw`] for a picture whose characters show the brightness. Colours are drawn
 /// at full brightness, because a dark wall would otherwise be darkened twice.
-pub(super) fn draw_picture(
+pub(crate) fn draw_picture(
     area: Rect,
     canvas: &mut impl Canvas,
     depth: ColorDepth,
@@ -87,7 +87,7 @@ fn named_color(color: Rgb) -> u8 {
 }
 
 /// The character for a pixel of `surface` with that colour.
-pub(super) fn character(surface: Surface, color: Rgb) -> char {
+pub(crate) fn character(surface: Surface, color: Rgb) -> char {
     let shades = shades(surface);
     let brightness = match surface {
         // A y side is drawn at half brightness. Its characters are chosen by the full brightness.

@@ -25,7 +25,7 @@ use crate::render::{Frame, Surface};
 
 /// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
 /// `surface` is needed without colours only.
-pub(super) fn draw_frame(
+pub(crate) fn draw_frame(
     area: Rect,
     canvas: &mut impl Canvas,
     glyphs: GlyphSet,
@@ -59,7 +59,7 @@ pub(super) fn draw_frame(
 
 /// Draws the pixels of each cell of `area` as `glyphs`, in the nearest colours of `depth`. `row(y)` is a
 /// row of pixels, as a function of the column.
-pub(super) fn draw<Row: Fn(u32) -> Rgb>(
+pub(crate) fn draw<Row: Fn(u32) -> Rgb>(
     area: Rect,
     canvas: &mut impl Canvas,
     glyphs: GlyphSet,
@@ -101,7 +101,7 @@ fn draw_cells<const PIXELS: usize, Row: Fn(u32) -> Rgb>(
 }
 
 /// The mosaic of `glyphs` with these dots, row by row.
-pub(super) fn lit(glyphs: GlyphSet, dots: impl Iterator<Item = bool>) -> Mosaic {
+pub(crate) fn lit(glyphs: GlyphSet, dots: impl Iterator<Item = bool>) -> Mosaic {
     let mask = mask(dots);
     match glyphs {
         GlyphSet::Octant => mosaic::<8>(mask),

@@ -20,7 +20,7 @@ pub enum Correction {
 
 impl Correction {
     /// Changes the pixels of `frame`, in cells of `pixels_per_cell`. `luma` is memory that is used again.
-    pub(super) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
+    pub(crate) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
         if self == Self::None {
             return;
         }
@@ -43,7 +43,7 @@ impl Correction {
 /// How much brighter the pixel at `[x, y]` is than those around it, in steps of luma. A cell is
 /// `pixels_per_cell` wide and high; the eight pixels that are compared are three columns of cells away,
 /// or one and a half rows.
-pub(super) fn local_contrast(
+pub(crate) fn local_contrast(
     size: [u32; 2],
     luma: impl Fn(u32, u32) -> u8,
     place: [u32; 2],
@@ -61,7 +61,7 @@ pub(super) fn local_contrast(
 }
 
 /// `color` made lighter or darker by `by` steps of luma, to between a third and twice of its own.
-pub(super) fn raised(color: Rgb, by: i32) -> Rgb {
+pub(crate) fn raised(color: Rgb, by: i32) -> Rgb {
     let luma = i32::from(color.luma());
     let wanted = (luma + by).clamp(luma / 3, 2 * luma + 1);
     let scaled = |channel: u8| (i32::from(channel) * wanted / luma.max(1)).min(255) as u8;

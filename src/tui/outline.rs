@@ -7,7 +7,7 @@ use crate::render::{FrameSize, Surface};
 
 /// A side of the edge between a thing and what is behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Edge {
+pub(crate) enum Edge {
     /// The outermost pixels of the thing.
     Inner,
     /// The pixels next to the thing.
@@ -16,7 +16,7 @@ pub(super) enum Edge {
 
 /// The side of an edge of a thing on which a pixel is, if it is next to one. The edge of the frame
 /// is not an edge of a thing.
-pub(super) fn outline(
+pub(crate) fn outline(
     frame: FrameSize,
     surface: impl Fn(u32, u32) -> Option<Surface>,
     x: u32,

@@ -6,7 +6,7 @@ use crate::color::Rgb;
 const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
 
 /// The character for a pixel with that colour.
-pub(super) fn character(color: Rgb) -> char {
+pub(crate) fn character(color: Rgb) -> char {
     let darkness = usize::from(u8::MAX - color.luma());
     char::from(RAMP[darkness * RAMP.len() / 256])
 }

@@ -7,7 +7,7 @@ use std::{iter, mem};
 
 /// The items of each column, in memory that is reused from frame to frame.
 #[derive(Clone, Debug)]
-pub(super) struct Chains<T> {
+pub(crate) struct Chains<T> {
     /// Each item, with the index of the one before it in its column.
     links: Vec<(T, u32)>,
     /// The index of the latest item of each column.
@@ -25,14 +25,14 @@ impl<T> Default for Chains<T> {
 
 impl<T> Chains<T> {
     /// Removes all items, and begins with `width` columns.
-    pub(super) fn begin(&mut self, width: usize) {
+    pub(crate) fn begin(&mut self, width: usize) {
         self.links.clear();
         self.latest.clear();
         self.latest.resize(width, NONE);
     }
 
     /// Reserves memory for `width` columns with this number of items each.
-    pub(super) fn reserve(&mut self, width: usize, of_a_column: usize) {
+    pub(crate) fn reserve(&mut self, width: usize, of_a_column: usize) {
         self.begin(0);
         self.links.reserve(width * of_a_column);
         self.latest.reserve(width);
@@ -40,7 +40,7 @@ impl<T> Chains<T> {
 
     /// Adds `item` to `column`.
     #[inline]
-    pub(super) fn push(&mut self, column: u32, item: T) {
+    pub(crate) fn push(&mut self, column: u32, item: T) {
         let latest = &mut self.latest[column as usize];
         let before = mem::replace(latest, self.links.len() as u32);
         self.links.push((item, before));
@@ -48,7 +48,7 @@ impl<T> Chains<T> {
 
     /// The items of `column`, from the last added to the first.
     #[inline]
-    pub(super) fn latest_first(&self, column: usize) -> impl Iterator<Item = &T> {
+    pub(crate) fn latest_first(&self, column: usize) -> impl Iterator<Item = &T> {
         let mut index = self.latest[column];
         iter::from_fn(move || {
             let (item, before) = self.links.get(index as usize)?;
@@ -58,13 +58,13 @@ impl<T> Chains<T> {
     }
 
     /// The number of columns.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.latest.len()
     }
 
     /// All items, in the order in which they were added.
     #[cfg(test)]
-    pub(super) fn items(&self) -> impl Iterator<Item = &T> {
+    pub(crate) fn items(&self) -> impl Iterator<Item = &T> {
         self.links.iter().map(|(item, _)| item)
     }
 }

@@ -25,14 +25,14 @@ pub(crate) struct DrawList {
     /// The hit of the ray of each column of pixels.
     pub(crate) columns: Vec<Column>,
     /// Whether the flat way filled any column.
-    pub(super) is_flat: bool,
+    pub(crate) is_flat: bool,
     /// The columns as the flat way sees them, if the portal way filled some; else empty.
-    pub(super) flat_columns: Vec<Column>,
+    pub(crate) flat_columns: Vec<Column>,
     /// The columns around which planes are drawn, if walls are blended over what is behind them: with the rows
     /// that walls cover as a whole; else empty.
-    pub(super) opaque_columns: Vec<Column>,
+    pub(crate) opaque_columns: Vec<Column>,
     /// The walls of these columns, from left to right.
-    pub(super) parts: Vec<WallPart>,
+    pub(crate) parts: Vec<WallPart>,
     /// The rows of floor, ceiling and sky that the portal way found.
     pub(crate) runs: ColumnRuns,
     /// The wall columns that the portal way found, those of a column of pixels together.
@@ -91,9 +91,9 @@ pub(crate) struct DrawnPlane {
 /// Memory for making spans, one for each thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpanMemory {
-    pub(super) plane_rows: Vec<PlaneRow>,
+    pub(crate) plane_rows: Vec<PlaneRow>,
     /// The first column of the current span of each row.
-    pub(super) starts: Vec<usize>,
+    pub(crate) starts: Vec<usize>,
 }
 
 /// An item, as wide as a pixel, that is painted in front of the items before it.
@@ -132,7 +132,7 @@ impl<'m> SpanPair<'m> {
 
 impl DrawList {
     /// Removes the contents of the last frame.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.columns.clear();
         self.is_flat = false;
         self.flat_columns.clear();
@@ -147,7 +147,7 @@ impl DrawList {
 
     /// Reserves memory for the portal way in all but extreme maps, so that a turn of the camera
     /// towards more faces allocates nothing.
-    pub(super) fn make_room_for_portals(&mut self, width: usize) {
+    pub(crate) fn make_room_for_portals(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.columns.reserve(width);
         self.flat_columns.reserve(width);
@@ -157,13 +157,13 @@ impl DrawList {
     }
 
     /// Reserves memory for this number of layers in total.
-    pub(super) fn make_room_for_layers(&mut self, count: usize) {
+    pub(crate) fn make_room_for_layers(&mut self, count: usize) {
         self.see_through.reserve(count.saturating_sub(self.see_through.len()));
         self.layers.reserve(count.saturating_sub(self.layers.len()));
     }
 
     /// Adds a masked or translucent column as the next layer.
-    pub(super) fn push_see_through(&mut self, column: SeeThroughColumn) {
+    pub(crate) fn push_see_through(&mut self, column: SeeThroughColumn) {
         if !column.rows.is_empty() {
             self.layers.push(Layer::SeeThrough(self.see_through.len()));
             self.see_through.push(column);
@@ -240,7 +240,7 @@ impl DrawList {
     }
 
     /// The columns as the flat way sees them.
-    pub(super) fn flat_columns(&self) -> &[Column] {
+    pub(crate) fn flat_columns(&self) -> &[Column] {
         if self.flat_columns.is_empty() { &self.columns } else { &self.flat_columns }
     }
 

@@ -16,7 +16,7 @@ pub(crate) enum Facing {
 
 impl Facing {
     /// The facing of a shape that is hit at `point`.
-    pub(super) fn of_shape(outline: Outline, point: DVec2, hit: &Hit) -> Self {
+    pub(crate) fn of_shape(outline: Outline, point: DVec2, hit: &Hit) -> Self {
         Self::Normal(match outline {
             Outline::Line(line) => line.stretch().perp().normalize(),
             Outline::Pillar(_) => (point - hit.cell.center()).normalize_or_zero(),
@@ -35,7 +35,7 @@ impl Facing {
 }
 
 /// The column and the row of the cell from which a ray along `direction` sees the side of `hit`.
-pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
+pub(crate) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
     let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
     let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));
     match hit.side {
@@ -45,7 +45,7 @@ pub(super) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
 }
 
 /// That cell on the map and its tile; `None` off the map.
-pub(super) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
+pub(crate) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
     let [column, row] = cell_before(direction, hit);
     let tile = grid.tile(column, row)?;
     Some((Cell { column: column as u32, row: row as u32 }, tile))

@@ -10,7 +10,7 @@ const BLOCK: usize = 32;
 
 /// Adds the layers `by_column`, those of each column together from far to near, to `layers` in the
 /// order of painting.
-pub(super) fn put_in_order(
+pub(crate) fn put_in_order(
     by_column: &[Layer],
     see_through: &[SeeThroughColumn],
     layers: &mut Vec<Layer>,

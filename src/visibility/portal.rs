@@ -33,8 +33,8 @@ use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, 
 use crate::world::World;
 use billboards::Finder;
 use layers::LayerMemory;
-pub(super) use spans::for_each_span;
-pub(super) use start::PortalStart;
+pub(crate) use spans::for_each_span;
+pub(crate) use start::PortalStart;
 use surroundings::Surroundings;
 use tile_gaps::TileGaps;
 use walk::{BundleWalk, WalkMemory};
@@ -44,7 +44,7 @@ const MOST_THINGS: usize = 4096;
 
 /// The memory of the portal way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PortalMemory {
+pub(crate) struct PortalMemory {
     gaps: TileGaps,
     /// The starts of all columns.
     starts: Vec<Option<PortalStart>>,
@@ -55,7 +55,7 @@ pub(super) struct PortalMemory {
 
 /// Fills all of `list` by exact rays. Returns the time at which a thing in view next changes its
 /// appearance; `None` for never.
-pub(super) fn fill(
+pub(crate) fn fill(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
@@ -69,7 +69,7 @@ pub(super) fn fill(
 
 /// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns the time
 /// at which a thing in view next changes its appearance; `None` for never.
-pub(super) fn fill_columns(
+pub(crate) fn fill_columns(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
@@ -103,7 +103,7 @@ pub(super) fn fill_columns(
 impl PortalMemory {
     /// Reserves memory here and in `list` for all but extreme maps, so that a turn of the camera
     /// towards more faces allocates nothing.
-    pub(super) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
+    pub(crate) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
         self.gaps.make_room(world);
         self.starts.clear();
         self.starts.reserve(width);
@@ -118,7 +118,7 @@ impl PortalMemory {
 }
 
 /// Passes every one of `walls` to `sink`. Those of a bundle are in succession.
-pub(super) fn for_each_wall_column(
+pub(crate) fn for_each_wall_column(
     walls: &[WallColumn],
     rows: &Range<u32>,
     sink: &mut impl WallSink,

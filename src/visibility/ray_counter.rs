@@ -8,7 +8,7 @@ use crate::world::{Grid, World};
 
 /// Casts as another caster does, and counts the cells of the exact rays, whatever that caster's
 /// method.
-pub(super) struct RayCounter<'a> {
+pub(crate) struct RayCounter<'a> {
     caster: &'a dyn AnyCaster,
     grid: &'a Grid,
     rays: Cell<u64>,
@@ -17,12 +17,12 @@ pub(super) struct RayCounter<'a> {
 }
 
 impl<'a> RayCounter<'a> {
-    pub(super) fn new(caster: &'a dyn AnyCaster, grid: &'a Grid) -> Self {
+    pub(crate) fn new(caster: &'a dyn AnyCaster, grid: &'a Grid) -> Self {
         Self { caster, grid, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
     }
 
     /// Adds the counts to `stats`.
-    pub(super) fn add_to(&self, stats: &mut FrameStats) {
+    pub(crate) fn add_to(&self, stats: &mut FrameStats) {
         stats.rays += self.rays.get();
         stats.cells += self.cells.get();
         stats.looks += self.looks.get();

@@ -25,7 +25,7 @@ impl Light {
     }
 
     /// A light of this many 256ths, at most full brightness.
-    pub(super) fn saturated(in_256ths: u32) -> Self {
+    pub(crate) fn saturated(in_256ths: u32) -> Self {
         Self(in_256ths.min(u32::from(Self::FULL.0)) as u16)
     }
 

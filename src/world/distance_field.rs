@@ -75,7 +75,7 @@ impl DistanceField {
     const WORTHWHILE: f64 = 4.0;
 
     /// A field of zeros and ones. `rows` have equal lengths, and cells that `may_be_solid` are 0.
-    pub(super) fn new<Row: ExactSizeIterator<Item = bool>>(
+    pub(crate) fn new<Row: ExactSizeIterator<Item = bool>>(
         rows: impl ExactSizeIterator<Item = Row>,
     ) -> Self {
         let height = rows.len() + 2;
@@ -96,14 +96,14 @@ impl DistanceField {
     }
 
     /// The size in memory, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let of_beams =
             self.beam_tables().into_iter().flatten().map(BeamTable::bytes).sum::<usize>();
         size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_beams
     }
 
     /// The field with distances, if rays gain by them.
-    pub(super) fn measured_if_worthwhile(self) -> Self {
+    pub(crate) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
         if !measured.is_worthwhile() {
             self
@@ -115,7 +115,7 @@ impl DistanceField {
     }
 
     /// The nearest solid cell comes before the cell in reading order, or after it.
-    pub(super) fn measured(&self) -> Self {
+    pub(crate) fn measured(&self) -> Self {
         let width = self.width;
         let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MOST };
         let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
@@ -144,7 +144,7 @@ impl DistanceField {
     }
 
     /// The field with beam tables.
-    pub(super) fn with_beams(self) -> Self {
+    pub(crate) fn with_beams(self) -> Self {
         let [columns, rows] = self.size();
         let along_rows = BeamTable::new([columns, rows], self.solid());
         let swapped = self.solid().map(|[column, row]| [row, column]);

@@ -105,7 +105,7 @@ impl World {
     }
 
     /// The doorway of the door with `character`.
-    pub(super) fn doorway(&self, character: char) -> Option<TileId> {
+    pub(crate) fn doorway(&self, character: char) -> Option<TileId> {
         self.tile_id(character, |kind| matches!(kind, TileKind::Doorway(_)))
     }
 
@@ -117,7 +117,7 @@ impl World {
 
 /// The doors that are partly open.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Ajar {
+pub(crate) struct Ajar {
     /// Sorted by cell. There are few at any time.
     openings: Vec<(Cell, Opening)>,
 }

@@ -146,13 +146,13 @@ impl Grid {
     /// The same cells, where those are solid as well whose tile is not among `level`.
     ///
     /// The tiles of these cells are not known from it.
-    pub(super) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
+    pub(crate) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
         let tile = |&tile: &TileId| if is_level(tile) { tile } else { TileId(u8::MAX) };
         Self { cells: self.cells.iter().map(tile).collect(), ..self.clone() }
     }
 
     /// Sets the tile of `cell`, which must be on the map.
-    pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
+    pub(crate) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
     }

@@ -72,7 +72,7 @@ impl Lamp {
 
 /// What lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Lamplight {
+pub(crate) struct Lamplight {
     width: usize,
     /// The sums of what lamps add, in 256ths, row by row from the north; empty if no lamp adds
     /// anything.
@@ -86,13 +86,13 @@ pub(super) struct Lamplight {
 
 impl Lamplight {
     /// Whether no lamp adds anything.
-    pub(super) fn is_dark(&self) -> bool {
+    pub(crate) fn is_dark(&self) -> bool {
         self.sums.is_empty()
     }
 
     /// What lamps add in `cell`.
     #[inline]
-    pub(super) fn at(&self, cell: Cell) -> Light {
+    pub(crate) fn at(&self, cell: Cell) -> Light {
         let is_on_map = (cell.column as usize) < self.width;
         let sum = self.sums.get(self.place(cell)).filter(|_| is_on_map);
         sum.map_or(Light::NONE, |&sum| Light::saturated(sum))

@@ -151,7 +151,7 @@ impl World {
 
 /// All things of a world, by place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Things {
+pub(crate) struct Things {
     sorted: Vec<Thing>,
     /// The number of things before each row, up to the last row with any.
     before_row: Vec<usize>,
@@ -160,7 +160,7 @@ pub(super) struct Things {
 }
 
 impl Things {
-    pub(super) fn new(mut things: Vec<Thing>) -> Self {
+    pub(crate) fn new(mut things: Vec<Thing>) -> Self {
         sort::by_key(&mut things, place);
         let treasure = things.iter().map(|thing| worth(thing.kind)).sum();
         let mut new = Self { sorted: things, before_row: Vec::new(), treasure };
@@ -168,17 +168,17 @@ impl Things {
         new
     }
 
-    pub(super) fn all(&self) -> &[Thing] {
+    pub(crate) fn all(&self) -> &[Thing] {
         &self.sorted
     }
 
     /// The things in `row` between two columns, both included.
-    pub(super) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+    pub(crate) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
         &self.sorted[self.range(row, first, last)]
     }
 
     /// The things in `cell`, of which anything but the place may change.
-    pub(super) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
+    pub(crate) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
         let range = self.range(cell.row, cell.column, cell.column);
         &mut self.sorted[range]
     }

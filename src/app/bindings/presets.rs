@@ -30,10 +30,10 @@ struct Letters {
 }
 
 /// The name of a preset and its constructor.
-pub(in crate::app) type Preset = (&'static str, fn() -> Bindings);
+pub(crate) type Preset = (&'static str, fn() -> Bindings);
 
 /// The presets, the default first.
-pub(in crate::app) const PRESETS: [Preset; 3] =
+pub(crate) const PRESETS: [Preset; 3] =
     [("qwerty", Bindings::default), ("azerty", Bindings::azerty), ("hjkl", Bindings::hjkl)];
 
 impl Bindings {

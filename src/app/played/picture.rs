@@ -9,7 +9,7 @@ use crate::canvas::Canvas;
 impl Played {
     /// Renders the player's view for an area of this size; may stop once `go_on` returns `false`.
     /// Returns whether the picture is complete.
-    pub(in crate::app) fn render(
+    pub(crate) fn render(
         &self,
         options: &DrawOptions,
         size: Size,
@@ -32,7 +32,7 @@ impl Played {
     }
 
     /// Paints the rendered picture into `area`, which has the size that it was rendered for.
-    pub(in crate::app) fn paint(
+    pub(crate) fn paint(
         &self,
         options: &DrawOptions,
         canvas: &mut impl Canvas,

@@ -14,14 +14,14 @@ use crate::terminal::Key;
 
 /// The bindings of the table.
 #[derive(Default)]
-pub(super) struct Bound {
+pub(crate) struct Bound {
     /// The actions in the table.
-    pub(super) actions: Vec<Action>,
-    pub(super) keys: Vec<(Key, Action)>,
+    pub(crate) actions: Vec<Action>,
+    pub(crate) keys: Vec<(Key, Action)>,
 }
 
 /// Reads the table `[keys]`.
-pub(super) fn read(owner: &Entry<'_, '_>, table: &DeTable<'_>) -> Bound {
+pub(crate) fn read(owner: &Entry<'_, '_>, table: &DeTable<'_>) -> Bound {
     const EXAMPLE: &str = "forward = [\"z\", \"up\"]";
     let names = Action::ALL.map(|(name, ..)| name);
     let mut bound = Bound::default();

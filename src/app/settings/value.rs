@@ -5,49 +5,49 @@ use crate::color::palette::ColorDepth;
 use crate::tui::GlyphSet;
 
 /// A setting in a file.
-pub(super) struct Setting {
-    pub(super) name: &'static str,
+pub(crate) struct Setting {
+    pub(crate) name: &'static str,
     /// Its description, in lines of a comment.
-    pub(super) meaning: &'static str,
+    pub(crate) meaning: &'static str,
     /// Its default value, as written in a file.
-    pub(super) default: &'static str,
+    pub(crate) default: &'static str,
 }
 
-pub(super) const PRESET: Setting = Setting {
+pub(crate) const PRESET: Setting = Setting {
     name: "preset",
     meaning: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
     default: "qwerty",
 };
-pub(super) const COLORS: Setting = Setting {
+pub(crate) const COLORS: Setting = Setting {
     name: "colors",
     meaning: "how many colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what the\nterminal has",
     default: "auto",
 };
-pub(super) const GLYPHS: Setting = Setting {
+pub(crate) const GLYPHS: Setting = Setting {
     name: "glyphs",
     meaning: "characters for pixels: \"half\" (two a cell), \"quadrant\" (four), \"sextant\" (six),\n\
               \"octant\" (eight), \"ascii\", \"ramp\" (by brightness), or \"auto\" for what the\n\
               terminal can show",
     default: "auto",
 };
-pub(super) const FOV: Setting = Setting {
+pub(crate) const FOV: Setting = Setting {
     name: "fov",
     meaning: "the field of view in degrees, above 0 and below 180",
     default: "66",
 };
-pub(super) const FPS: Setting =
+pub(crate) const FPS: Setting =
     Setting { name: "fps", meaning: "the most frames a second, from 1 to 240", default: "30" };
-pub(super) const MOUSE: Setting = Setting {
+pub(crate) const MOUSE: Setting = Setting {
     name: "mouse",
     meaning: "whether the mouse turns the player at first: true or false",
     default: "false",
 };
-pub(super) const MINIMAP: Setting = Setting {
+pub(crate) const MINIMAP: Setting = Setting {
     name: "minimap",
     meaning: "the map in the corner: \"seen\" (what has been seen so far), \"all\" or \"off\"",
     default: "seen",
 };
-pub(super) const FIDELITY: Setting = Setting {
+pub(crate) const FIDELITY: Setting = Setting {
     name: "fidelity",
     meaning: "how exact colours are while something moves: \"exact\", \"high\", \"low\", a\n\
               tolerance from 0 to 255, or \"auto\" for what the link allows",
@@ -55,20 +55,20 @@ pub(super) const FIDELITY: Setting = Setting {
 };
 
 /// The settings in the order of a file.
-pub(super) const SETTINGS: [&Setting; 8] =
+pub(crate) const SETTINGS: [&Setting; 8] =
     [&PRESET, &COLORS, &GLYPHS, &FOV, &FPS, &MOUSE, &MINIMAP, &FIDELITY];
 
 /// The names of a setting's values.
-pub(super) type Names<T, const N: usize> = [(&'static str, T); N];
+pub(crate) type Names<T, const N: usize> = [(&'static str, T); N];
 
-pub(super) const DEPTHS: Names<Option<ColorDepth>, 5> = [
+pub(crate) const DEPTHS: Names<Option<ColorDepth>, 5> = [
     ("auto", None),
     ("true", Some(ColorDepth::True)),
     ("256", Some(ColorDepth::Indexed256)),
     ("16", Some(ColorDepth::Indexed16)),
     ("mono", Some(ColorDepth::Mono)),
 ];
-pub(super) const GLYPH_SETS: Names<Option<GlyphSet>, 7> = [
+pub(crate) const GLYPH_SETS: Names<Option<GlyphSet>, 7> = [
     ("auto", None),
     ("half", Some(GlyphSet::Half)),
     ("quadrant", Some(GlyphSet::Quadrant)),
@@ -77,5 +77,5 @@ pub(super) const GLYPH_SETS: Names<Option<GlyphSet>, 7> = [
     ("ascii", Some(GlyphSet::Ascii)),
     ("ramp", Some(GlyphSet::Ramp)),
 ];
-pub(super) const DISPLAYS: Names<MapDisplay, 3> =
+pub(crate) const DISPLAYS: Names<MapDisplay, 3> =
     [("seen", MapDisplay::Seen), ("all", MapDisplay::All), ("off", MapDisplay::Off)];

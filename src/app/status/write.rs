@@ -9,7 +9,7 @@ use crate::app::stats::Stats;
 use crate::game::PlayerId;
 
 impl StatusLine {
-    pub(super) fn write(&mut self, values: &StatusValues) -> fmt::Result {
+    pub(crate) fn write(&mut self, values: &StatusValues) -> fmt::Result {
         let StatusValues { game, level, share_seen, toggles, mouse, stats, bindings, .. } = *values;
         let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
         let mission = game.grid().filter(|game| game.is_mission()).zip(player);

@@ -38,7 +38,7 @@ grid = '''
 "##;
 
 /// A player who has just been struck, with everything on the picture that can be switched on.
-pub(super) fn struck() -> Rig {
+pub(crate) fn struck() -> Rig {
     let mut rig = playing_own(AMBUSH, Store::in_memory());
     for key in [Key::Char('.'), Key::Char(',')] {
         rig.tap(key, 30);

@@ -12,7 +12,7 @@ use crate::store::{Run, map_key};
 use crate::tui::GlyphSet;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.
-pub(super) const DANGER: &str = r##"
+pub(crate) const DANGER: &str = r##"
 title = "Danger"
 par = 30
 grid = '''
@@ -31,7 +31,7 @@ grid = '''
 "##;
 
 /// A map of that name with that text.
-pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
+pub(crate) fn own_map(name: &str, text: &'static str) -> OwnMap {
     let key = map_key(name, text);
     let read = || parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary());
     let load = {
@@ -42,13 +42,13 @@ pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
 }
 
 /// What a title with that map offers.
-pub(super) fn offering(name: &'static str, text: &'static str) -> Offers {
+pub(crate) fn offering(name: &'static str, text: &'static str) -> Offers {
     let maps = move || vec![own_map(name, text)];
     Offers { maps: Some(Box::new(maps)), ..Offers::default() }
 }
 
 /// A game in the map `text`, chosen from a title.
-pub(super) fn playing_own(text: &'static str, store: Store) -> Rig {
+pub(crate) fn playing_own(text: &'static str, store: Store) -> Rig {
     let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
     rig.choose("danger.toml");
@@ -57,12 +57,12 @@ pub(super) fn playing_own(text: &'static str, store: Store) -> Rig {
 }
 
 /// A game in the map with the spikes.
-pub(super) fn danger() -> Rig {
+pub(crate) fn danger() -> Rig {
     playing_own(DANGER, Store::in_memory())
 }
 
 /// A player who stands on the spikes until they are dead.
-pub(super) fn dead() -> Rig {
+pub(crate) fn dead() -> Rig {
     let mut rig = danger();
     rig.tap(Key::Char('g'), 30);
     while rig.position().x < 4.3 {
@@ -78,7 +78,7 @@ pub(super) fn dead() -> Rig {
     panic!("alive at {} with {:?}", rig.position(), rig.game().health());
 }
 
-pub(super) fn text(app: &mut App, columns: u16, rows: u16) -> String {
+pub(crate) fn text(app: &mut App, columns: u16, rows: u16) -> String {
     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
     app.draw(&mut buffer);
     let lines = buffer.content().chunks(columns.into());
@@ -116,7 +116,7 @@ fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
 }
 
 /// A player who has run to the exit of that map.
-pub(super) fn won() -> Rig {
+pub(crate) fn won() -> Rig {
     let mut rig = danger();
     // Before the spikes come out, by running.
     rig.tap(Key::Char('r'), 30);

@@ -13,7 +13,7 @@ fn title() -> Rig {
     titled(offers, Store::in_memory())
 }
 
-pub(super) fn titled(offers: Offers, store: Store) -> Rig {
+pub(crate) fn titled(offers: Offers, store: Store) -> Rig {
     let settings = Settings { frame_time: Duration::from_secs(1) / 30, ..Settings::default() };
     let app = App::opened(Opening::Title(offers), settings, store);
     let mut rig = Rig::of(app, Some((500, 30)));
@@ -24,7 +24,7 @@ pub(super) fn titled(offers: Offers, store: Store) -> Rig {
 impl Rig {
     /// Selects the entry with that label and chooses it.
     #[track_caller]
-    pub(super) fn choose(&mut self, label: &str) {
+    pub(crate) fn choose(&mut self, label: &str) {
         let choice = |rig: &Rig| rig.app.menu.label();
         let first = choice(self);
         while choice(self).as_deref() != Some(label) {

@@ -4,26 +4,26 @@ use crate::world::FRACTION_BITS;
 
 /// A ray and a map along one axis.
 #[derive(Clone, Copy)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     /// The column or row in which the ray starts; the one before, if it starts on a line that it crosses.
-    pub(super) start: i64,
+    pub(crate) start: i64,
     /// The position of the start, in units.
-    pub(super) position: i64,
-    pub(super) direction: f64,
+    pub(crate) position: i64,
+    pub(crate) direction: f64,
     /// The strides of cells and of blocks in the distance field.
-    pub(super) stride: i64,
-    pub(super) block_stride: i64,
+    pub(crate) stride: i64,
+    pub(crate) block_stride: i64,
 }
 
 /// The most lines for which units are fine enough.
-pub(super) const MOST_LINES: u32 = 1 << 16;
+pub(crate) const MOST_LINES: u32 = 1 << 16;
 /// The units of a cell.
-pub(super) const UNITS: i64 = 1 << FRACTION_BITS;
+pub(crate) const UNITS: i64 = 1 << FRACTION_BITS;
 
 impl Axis {
     /// `None` if the ray does not start on the map.
     #[inline]
-    pub(super) fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
+    pub(crate) fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
         /// More than the rounding of a position.
         const NEAR: u32 = 2;
         let position = units(origin);
@@ -51,7 +51,7 @@ fn start_near_line(origin: f64, direction: f64) -> i64 {
 
 /// A position in units, rounded. A position far off every map is far off in units.
 #[inline]
-pub(super) fn units(position: f64) -> i64 {
+pub(crate) fn units(position: f64) -> i64 {
     // Doubles of this size have a spacing of one unit, so that the addition rounds to units.
     const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
     (position + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64

@@ -10,7 +10,7 @@ use crate::world::{BeamTable, Beams, DistanceField, STRIP};
 impl Path {
     /// As [`Path::leap`], and across everything that a beam says is clear.
     #[inline]
-    pub(super) fn leap_along_beams(
+    pub(crate) fn leap_along_beams(
         self,
         distance_field: &DistanceField,
         [along_rows, along_columns]: &[BeamTable; 2],

@@ -6,12 +6,12 @@ use std::io::{self, Write};
 use super::run::Run;
 use crate::lab::accuracy::{Table, Timing, Value};
 
-pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     output.write_all(text(run, tables).as_bytes())
 }
 
 /// All lines. The first ones say where the report comes from.
-pub(super) fn text(run: &Run, tables: &[Table]) -> String {
+pub(crate) fn text(run: &Run, tables: &[Table]) -> String {
     let mut text =
         "table,problem,method,parameter,figure,unit,value,lower_quartile,upper_quartile\n"
             .to_owned();

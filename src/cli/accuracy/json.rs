@@ -9,7 +9,7 @@ use super::text::heading;
 use crate::lab::accuracy::{Row, Table, Timing, Value};
 use crate::sort;
 
-pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     let run: Map<String, Json> = sort::gathered(
         run.parts().into_iter().map(|(name, value)| (name.to_owned(), value.into())),
     );

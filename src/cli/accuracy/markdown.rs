@@ -6,7 +6,7 @@ use super::run::Run;
 use super::text::{headings, rows};
 use crate::lab::accuracy::Table;
 
-pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     for table in tables {
         writeln!(output, "## {}\n\n{}.\n", table.name, table.title)?;
         write_table(table, output)?;
@@ -16,7 +16,7 @@ pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io:
 }
 
 /// Writes the headings and the rows.
-pub(super) fn write_table(table: &Table, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_table(table: &Table, output: &mut impl Write) -> io::Result<()> {
     let keys = table.keys.iter().filter(|key| !key.is_empty()).count();
     let headings = headings(table);
     let alignments = (0..headings.len()).map(|index| if index < keys { "---" } else { "---:" });

@@ -15,7 +15,7 @@ use crate::cli::output_file::OutputFile;
 use crate::lab::accuracy::Table;
 
 /// Replaces `tables` in the page at `path`, and writes their plots.
-pub(super) fn update(path: &Path, run: &Run, tables: &[Table]) -> Result<(), Error> {
+pub(crate) fn update(path: &Path, run: &Run, tables: &[Table]) -> Result<(), Error> {
     let name = path.display();
     let mut page = fs::read_to_string(path)
         .map_err(|error| Error::mistake(format!("{name} can't be read: {error}")))?;

@@ -17,12 +17,12 @@ use crate::lab::accuracy::{Diagram, Table};
 use panel::Panel;
 
 /// Writes the plots as an SVG file.
-pub(super) fn write_svg(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_svg(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     plot::write_svg(&page(run, tables), output)
 }
 
 /// Writes the plots as a PNG file.
-pub(super) fn write_png(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_png(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     plot::write_png(&page(run, tables), output)
 }
 

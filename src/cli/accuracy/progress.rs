@@ -8,19 +8,19 @@ const DELAY: Duration = Duration::from_secs(1);
 const WIDTH: usize = 40;
 
 /// A progress bar.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     start: Instant,
     is_watched: bool,
     shown: Option<usize>,
 }
 
 impl Progress {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { start: Instant::now(), is_watched: io::stderr().is_terminal(), shown: None }
     }
 
     /// Shows the completed fraction, from 0 to 1, if it is time to draw.
-    pub(super) fn show(&mut self, share: f64) {
+    pub(crate) fn show(&mut self, share: f64) {
         let filled = (share * WIDTH as f64) as usize;
         if self.is_watched && self.start.elapsed() > DELAY && self.shown != Some(filled) {
             let (done, to_do) = ("#".repeat(filled), ".".repeat(WIDTH.saturating_sub(filled)));
@@ -31,7 +31,7 @@ impl Progress {
     }
 
     /// Removes the bar.
-    pub(super) fn finish(self) {
+    pub(crate) fn finish(self) {
         if self.shown.is_some() {
             let _ = write!(io::stderr(), "\r{}\r", " ".repeat(WIDTH + 2));
         }

@@ -7,18 +7,18 @@ use std::thread::available_parallelism;
 use crate::cli::today::today;
 
 /// The origin of a report.
-pub(super) struct Run {
-    pub(super) machine: String,
+pub(crate) struct Run {
+    pub(crate) machine: String,
     /// The version, and the commit if the build was told it.
-    pub(super) program: String,
-    pub(super) command: String,
+    pub(crate) program: String,
+    pub(crate) command: String,
     /// As in 2026-11-22, in UTC.
-    pub(super) date: String,
+    pub(crate) date: String,
 }
 
 impl Run {
     /// The origin of a report of this process.
-    pub(super) fn this() -> Self {
+    pub(crate) fn this() -> Self {
         let version = env!("CARGO_PKG_VERSION");
         let commit = option_env!("CELLCASTER_COMMIT").unwrap_or("unknown");
         let (date, _) = today();
@@ -32,7 +32,7 @@ impl Run {
     }
 
     /// The names and the values of all parts.
-    pub(super) fn parts(&self) -> [(&'static str, &str); 4] {
+    pub(crate) fn parts(&self) -> [(&'static str, &str); 4] {
         [
             ("machine", &self.machine),
             ("program", &self.program),
@@ -42,7 +42,7 @@ impl Run {
     }
 
     /// All of it in a sentence.
-    pub(super) fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let Self { machine, program, command, date } = self;
         format!("Measured on {date} by `{command}`, Cellcaster {program}, on {machine}.")
     }

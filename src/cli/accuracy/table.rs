@@ -6,7 +6,7 @@ use super::run::Run;
 use super::text::{headings, rows};
 use crate::lab::accuracy::Table;
 
-pub(super) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
     for table in tables {
         write_table(table, output)?;
         writeln!(output)?;

@@ -3,13 +3,13 @@
 use crate::lab::accuracy::{Column, Table, Timing, Value};
 
 /// The headings of all columns that `table` shows: of the keys, and of the figures with their units.
-pub(super) fn headings(table: &Table) -> Vec<String> {
+pub(crate) fn headings(table: &Table) -> Vec<String> {
     let keys = table.keys.iter().filter(|key| !key.is_empty()).map(|key| (*key).to_owned());
     keys.chain(table.columns.iter().map(heading)).collect()
 }
 
 /// The name of a column with its unit.
-pub(super) fn heading(column: &Column) -> String {
+pub(crate) fn heading(column: &Column) -> String {
     match column.unit {
         "" => column.name.clone(),
         unit => format!("{}, {unit}", column.name),
@@ -17,7 +17,7 @@ pub(super) fn heading(column: &Column) -> String {
 }
 
 /// The cells of each row: the keys that `table` shows, and the figures.
-pub(super) fn rows(table: &Table) -> impl Iterator<Item = Vec<String>> {
+pub(crate) fn rows(table: &Table) -> impl Iterator<Item = Vec<String>> {
     table.rows.iter().map(|row| {
         let keys = table.keys.iter().zip(&row.keys).filter(|(heading, _)| !heading.is_empty());
         let values = row.values.iter().map(|&value| figure(value));
@@ -26,7 +26,7 @@ pub(super) fn rows(table: &Table) -> impl Iterator<Item = Vec<String>> {
 }
 
 /// A figure; a dash if there is none.
-pub(super) fn figure(value: Value) -> String {
+pub(crate) fn figure(value: Value) -> String {
     match value {
         Value::None => "–".to_owned(),
         Value::Count(count) => count.to_string(),

@@ -11,7 +11,7 @@ use crate::server::{AdminFailure, AdminReply, AdminRequest, Target};
 use crate::store::host::{Ban, BanTarget, HostStore, UnixTime};
 
 /// Bans, and ends the sessions to which the ban applies.
-pub(super) fn ban(
+pub(crate) fn ban(
     host: &mut RunningHost<'_>,
     database: &Database,
     target: &Target,
@@ -43,7 +43,7 @@ pub(super) fn ban(
 }
 
 /// Ends the bans of a target.
-pub(super) fn unban(database: &Database, target: &Target) -> Result<String, Error> {
+pub(crate) fn unban(database: &Database, target: &Target) -> Result<String, Error> {
     let mut store = open(database)?;
     let mut ended = Vec::new();
     for target in targets(&mut *store, target)? {
@@ -58,7 +58,7 @@ pub(super) fn unban(database: &Database, target: &Target) -> Result<String, Erro
 }
 
 /// The bans in force.
-pub(super) fn list(database: &Database) -> Result<String, Error> {
+pub(crate) fn list(database: &Database) -> Result<String, Error> {
     let mut store = host_store::open_to_read(database)?;
     let now = now();
     let bans = store.bans(now).map_err(failed)?;

@@ -4,7 +4,7 @@ use unicode_width::UnicodeWidthStr;
 
 /// Rows below a line of titles, in columns as wide as they need. Characters that a terminal would obey
 /// are replaced.
-pub(super) fn table<const N: usize>(
+pub(crate) fn table<const N: usize>(
     titles: [&str; N],
     rows: impl Iterator<Item = [String; N]>,
 ) -> String {
@@ -32,7 +32,7 @@ pub(super) fn table<const N: usize>(
 }
 
 /// A time in its two largest units, such as `6d 23h`.
-pub(super) fn time(seconds: u64) -> String {
+pub(crate) fn time(seconds: u64) -> String {
     let (minutes, hours, days) = (seconds / 60, seconds / 3600, seconds / 86_400);
     match (days, hours, minutes) {
         (0, 0, 0) => format!("{seconds}s"),

@@ -12,28 +12,28 @@ use crate::lab::casters::Method;
 
 /// Options of `accuracy`.
 #[derive(Debug)]
-pub(in crate::cli) struct Accuracy {
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Accuracy {
+    pub(crate) map: Option<OsString>,
     /// All parts if empty.
-    pub(in crate::cli) parts: Vec<Part>,
-    pub(in crate::cli) set: Option<String>,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) set: Option<String>,
     /// All methods if empty.
-    pub(in crate::cli) methods: Vec<Method>,
+    pub(crate) methods: Vec<Method>,
     /// The number of rays in each scene.
-    pub(in crate::cli) rays: Option<usize>,
-    pub(in crate::cli) seed: Option<u64>,
-    pub(in crate::cli) rounds: Option<usize>,
+    pub(crate) rays: Option<usize>,
+    pub(crate) seed: Option<u64>,
+    pub(crate) rounds: Option<usize>,
     /// Per second.
-    pub(in crate::cli) friction: Option<f64>,
-    pub(in crate::cli) steps_per_second: Option<f64>,
-    pub(in crate::cli) format: ReportFormat,
+    pub(crate) friction: Option<f64>,
+    pub(crate) steps_per_second: Option<f64>,
+    pub(crate) format: ReportFormat,
     /// The page whose tables are replaced.
-    pub(in crate::cli) page: Option<PathBuf>,
+    pub(crate) page: Option<PathBuf>,
 }
 
 /// The format of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::cli) enum ReportFormat {
+pub(crate) enum ReportFormat {
     #[default]
     Table,
     Markdown,
@@ -43,7 +43,7 @@ pub(in crate::cli) enum ReportFormat {
     Png,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "accuracy",
     about: "Errors of everything that has a truth, against what it costs",
     details: "Casts rays by every method, draws pictures with every filter and integrates motions, \

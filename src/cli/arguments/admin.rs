@@ -13,16 +13,16 @@ use crate::store::host::{AccountKey, AddressPrefix};
 
 /// Options of `admin`.
 #[derive(Debug)]
-pub(in crate::cli) struct Admin {
+pub(crate) struct Admin {
     /// The data folder of the host; that of the program if `None`.
-    pub(in crate::cli) data: Option<PathBuf>,
-    pub(in crate::cli) store: Option<Database>,
-    pub(in crate::cli) action: AdminAction,
+    pub(crate) data: Option<PathBuf>,
+    pub(crate) store: Option<Database>,
+    pub(crate) action: AdminAction,
 }
 
 /// What to do.
 #[derive(Debug)]
-pub(in crate::cli) enum AdminAction {
+pub(crate) enum AdminAction {
     Who,
     Rooms,
     Hosts,
@@ -46,7 +46,7 @@ pub(in crate::cli) enum AdminAction {
     Drain,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "admin",
     about: "See who plays on a host, kick, ban, and say something to all",
     details: "The actions who and rooms list what a running server has; kick ends the sessions of a \

@@ -9,24 +9,24 @@ use super::{Command, Subcommand};
 
 /// Options of `bench`.
 #[derive(Debug)]
-pub(in crate::cli) struct Bench {
+pub(crate) struct Bench {
     /// The approximate duration of the measurement, in seconds.
-    pub(in crate::cli) seconds: u8,
-    pub(in crate::cli) format: BenchFormat,
+    pub(crate) seconds: u8,
+    pub(crate) format: BenchFormat,
     /// The file for plots.
-    pub(in crate::cli) plot: Option<PathBuf>,
+    pub(crate) plot: Option<PathBuf>,
 }
 
 /// The format of the report.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::cli) enum BenchFormat {
+pub(crate) enum BenchFormat {
     #[default]
     Table,
     Markdown,
     Json,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "bench",
     about: "How fast this machine draws, and a link shows it",
     details: "",

@@ -9,12 +9,12 @@ use crate::lab::casters::Method;
 
 /// Options of `cast`.
 #[derive(Debug)]
-pub(in crate::cli) struct Cast {
-    pub(in crate::cli) map: Option<OsString>,
-    pub(in crate::cli) method: Method,
+pub(crate) struct Cast {
+    pub(crate) map: Option<OsString>,
+    pub(crate) method: Method,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "cast",
     about: "Rays from standard input, hits to standard output",
     details: r##"Reads one ray a line, "X Y DX DY", and writes one JSON object a line:

@@ -8,14 +8,14 @@ use super::option::{Parser, ValueOption};
 
 /// Where the store of a host is.
 #[derive(Clone, PartialEq)]
-pub(in crate::cli) enum Database {
+pub(crate) enum Database {
     /// In a folder.
     Folder(PathBuf),
     /// At an address of PostgreSQL, which may have a password.
     Address(String),
 }
 
-pub(super) const STORE: ValueOption<Database> = ValueOption {
+pub(crate) const STORE: ValueOption<Database> = ValueOption {
     name: "store",
     value: "URL|FOLDER",
     takes: "a folder, or an address such as postgres://user@host/database",
@@ -33,7 +33,7 @@ pub(super) const STORE: ValueOption<Database> = ValueOption {
 
 impl Database {
     /// What a word of the command line or of the environment names.
-    pub(in crate::cli) fn of(word: OsString) -> Self {
+    pub(crate) fn of(word: OsString) -> Self {
         match word.to_str() {
             Some(text) if ["postgres:", "postgresql:"].iter().any(|it| text.starts_with(it)) => {
                 Self::Address(text.to_owned())

@@ -8,10 +8,10 @@ use crate::app::Bindings;
 use crate::map::builtin::LEVELS;
 
 /// The width of help in columns, in windows of any width.
-pub(super) const WIDTH: usize = 80;
+pub(crate) const WIDTH: usize = 80;
 
 /// The text before the options of the game.
-pub(super) fn about() -> String {
+pub(crate) fn about() -> String {
     let names: Vec<&str> = LEVELS.iter().map(|level| level.name).collect();
     format!("{ABOUT}{MAP}{}.", names.join(", "))
 }
@@ -33,12 +33,12 @@ const MAP: &str = "
 MAP is a map file, \"-\" for standard input, or a built-in level; --generate maze, cave or office makes \
 one in its place. An option may also stand before the command. The built-in levels are ";
 
-pub(super) const WHERE_TO_READ_ON: &str = "\
+pub(crate) const WHERE_TO_READ_ON: &str = "\
 \"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
 --help\" tells of one command.";
 
 /// The text after the options of the game: options of other commands, keys, and examples.
-pub(super) fn more() -> String {
+pub(crate) fn more() -> String {
     let mut text = String::new();
     for subcommand in SUBCOMMANDS.iter().filter(|it| it.name != play::SUBCOMMAND.name) {
         push_details(&mut text, subcommand);
@@ -53,7 +53,7 @@ pub(super) fn more() -> String {
 }
 
 /// The text after the options of a command.
-pub(super) fn examples(subcommand: &Subcommand) -> String {
+pub(crate) fn examples(subcommand: &Subcommand) -> String {
     let lines: Vec<String> =
         subcommand.examples.lines().map(|line| format!("  {line}\n")).collect();
     format!("Examples:\n{}", lines.concat())

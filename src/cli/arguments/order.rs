@@ -9,7 +9,7 @@ use super::{SUBCOMMANDS, Subcommand, named};
 
 /// The same words with the subcommand directly after the program's own name; and the subcommand, if
 /// one is named.
-pub(super) fn subcommand_first(
+pub(crate) fn subcommand_first(
     mut words: Vec<OsString>,
 ) -> (Vec<OsString>, Option<&'static Subcommand>) {
     let Some((index, subcommand)) = find(&words) else { return (words, None) };

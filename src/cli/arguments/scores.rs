@@ -10,28 +10,28 @@ use crate::world::Difficulty;
 
 /// Options of `scores`.
 #[derive(Debug)]
-pub(in crate::cli) struct Scores {
+pub(crate) struct Scores {
     /// The folder of the host's store; that of the program if `None`.
-    pub(in crate::cli) data: Option<PathBuf>,
-    pub(in crate::cli) store: Option<Database>,
+    pub(crate) data: Option<PathBuf>,
+    pub(crate) store: Option<Database>,
     /// The level; all if `None`.
-    pub(in crate::cli) level: Option<String>,
+    pub(crate) level: Option<String>,
     /// The difficulty; all if `None`.
-    pub(in crate::cli) difficulty: Option<Difficulty>,
+    pub(crate) difficulty: Option<Difficulty>,
     /// The day whose daily run is shown instead of levels.
-    pub(in crate::cli) day: Option<Day>,
-    pub(in crate::cli) format: ScoresFormat,
+    pub(crate) day: Option<Day>,
+    pub(crate) format: ScoresFormat,
 }
 
 /// The format of the boards.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::cli) enum ScoresFormat {
+pub(crate) enum ScoresFormat {
     #[default]
     Table,
     Json,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "scores",
     about: "List the leaderboards of a host",
     details: "For each level and difficulty it lists the fastest run of each account, with the highest \

@@ -14,26 +14,26 @@ use crate::server::LogFormat;
 
 /// Options of `serve`.
 #[derive(Debug)]
-pub(in crate::cli) struct Serve {
-    pub(in crate::cli) listen: Option<SocketAddr>,
-    pub(in crate::cli) data: Option<PathBuf>,
-    pub(in crate::cli) store: Option<Database>,
-    pub(in crate::cli) accept_empty: bool,
-    pub(in crate::cli) cluster: Option<ClusterAddress>,
-    pub(in crate::cli) config: Option<PathBuf>,
-    pub(in crate::cli) maps: Option<PathBuf>,
-    pub(in crate::cli) record_room: Option<PathBuf>,
-    pub(in crate::cli) log: LogFormat,
+pub(crate) struct Serve {
+    pub(crate) listen: Option<SocketAddr>,
+    pub(crate) data: Option<PathBuf>,
+    pub(crate) store: Option<Database>,
+    pub(crate) accept_empty: bool,
+    pub(crate) cluster: Option<ClusterAddress>,
+    pub(crate) config: Option<PathBuf>,
+    pub(crate) maps: Option<PathBuf>,
+    pub(crate) record_room: Option<PathBuf>,
+    pub(crate) log: LogFormat,
 }
 
 /// The address of a cluster, which may have a password.
 #[derive(Clone)]
-pub(in crate::cli) struct ClusterAddress(
+pub(crate) struct ClusterAddress(
     #[cfg_attr(not(feature = "cluster"), expect(dead_code, reason = "it is refused"))]
-    pub(in crate::cli) String,
+    pub(crate)  String,
 );
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "serve",
     about: "An SSH server in which people play together",
     details: "Prints the line that people type to play. The host key and what the server keeps are in the \

@@ -17,34 +17,34 @@ use crate::world::{FieldOfView, Heading, Pitch};
 
 /// Options of `snapshot`.
 #[derive(Debug)]
-pub(in crate::cli) struct Snapshot {
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Snapshot {
+    pub(crate) map: Option<OsString>,
     /// The generated level instead of a map.
-    pub(in crate::cli) generated: Option<Generated>,
+    pub(crate) generated: Option<Generated>,
     /// The size of the picture. If `None`, 80x24; with `--watch`, the size of the window.
-    pub(in crate::cli) size: Option<Size>,
+    pub(crate) size: Option<Size>,
     /// The position and heading; the map's start if `None`.
-    pub(in crate::cli) camera: Option<(DVec2, Heading)>,
+    pub(crate) camera: Option<(DVec2, Heading)>,
     /// The height of the eye; that of a player who stands there if `None`.
-    pub(in crate::cli) eye: Option<f64>,
+    pub(crate) eye: Option<f64>,
     /// The pitch. If `None`, level, or in a map of bodies that of the start.
-    pub(in crate::cli) pitch: Option<Pitch>,
-    pub(in crate::cli) field_of_view: FieldOfView,
-    pub(in crate::cli) cell_aspect: CellAspect,
-    pub(in crate::cli) glyphs: GlyphSet,
-    pub(in crate::cli) depth: ColorDepth,
-    pub(in crate::cli) format: Format,
-    pub(in crate::cli) method: Method,
-    pub(in crate::cli) filter: Filter,
+    pub(crate) pitch: Option<Pitch>,
+    pub(crate) field_of_view: FieldOfView,
+    pub(crate) cell_aspect: CellAspect,
+    pub(crate) glyphs: GlyphSet,
+    pub(crate) depth: ColorDepth,
+    pub(crate) format: Format,
+    pub(crate) method: Method,
+    pub(crate) filter: Filter,
     /// Whether to write the frame's counts instead of the frame.
-    pub(in crate::cli) explain: bool,
+    pub(crate) explain: bool,
     /// Whether to draw again when the map changes.
-    pub(in crate::cli) watches: bool,
+    pub(crate) watches: bool,
 }
 
 /// The format of a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::cli) enum Format {
+pub(crate) enum Format {
     #[default]
     Text,
     Ansi,
@@ -52,7 +52,7 @@ pub(in crate::cli) enum Format {
     Png,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "snapshot",
     about: "One frame to standard output",
     details: "Draws what the game would show, without a terminal, the same bytes on every machine. Of a \

@@ -12,10 +12,10 @@ use crate::world::FieldOfView;
 
 /// The largest number of frames per second, from 1 to 240.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct FramesPerSecond(NonZeroU32);
+pub(crate) struct FramesPerSecond(NonZeroU32);
 
 impl FramesPerSecond {
-    pub(in crate::cli) fn get(self) -> NonZeroU32 {
+    pub(crate) fn get(self) -> NonZeroU32 {
         self.0
     }
 }
@@ -28,13 +28,13 @@ impl Default for FramesPerSecond {
 
 /// Columns and rows of a picture, each from 1 to 4096.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct Size {
-    pub(in crate::cli) columns: u16,
-    pub(in crate::cli) rows: u16,
+pub(crate) struct Size {
+    pub(crate) columns: u16,
+    pub(crate) rows: u16,
 }
 
 impl Size {
-    pub(in crate::cli) fn cells(self) -> ratatui::layout::Size {
+    pub(crate) fn cells(self) -> ratatui::layout::Size {
         ratatui::layout::Size::new(self.columns, self.rows)
     }
 
@@ -53,7 +53,7 @@ impl Default for Size {
     }
 }
 
-pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
+pub(crate) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
     name: "fps",
     value: "N",
     takes: "a whole number from 1 to 240",
@@ -67,7 +67,7 @@ pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
     repeats: false,
 };
 
-pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
+pub(crate) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     name: "fov",
     value: "DEG",
     takes: "degrees above 0 and below 180",
@@ -78,7 +78,7 @@ pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     repeats: false,
 };
 
-pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
+pub(crate) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     name: "cell-aspect",
     value: "RATIO",
     takes: "the height of a cell over its width, from 0.1 to 10",
@@ -89,7 +89,7 @@ pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     repeats: false,
 };
 
-pub(super) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
+pub(crate) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
     name: "glyphs",
     value: "SET",
     takes: "half, quadrant, sextant, octant, ascii or ramp",
@@ -109,7 +109,7 @@ pub(super) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
     repeats: false,
 };
 
-pub(super) const FILTER: ValueOption<Filter> = ValueOption {
+pub(crate) const FILTER: ValueOption<Filter> = ValueOption {
     name: "filter",
     value: "FILTER",
     takes: "mip, nearest or area",
@@ -121,7 +121,7 @@ pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     repeats: false,
 };
 
-pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
+pub(crate) const COLORS: ValueOption<ColorDepth> = ValueOption {
     name: "colors",
     value: "DEPTH",
     takes: "true, 256, 16 or mono",
@@ -138,7 +138,7 @@ pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
     repeats: false,
 };
 
-pub(super) const SIZE: ValueOption<Size> = ValueOption {
+pub(crate) const SIZE: ValueOption<Size> = ValueOption {
     name: "size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 1x1 to 4096x4096, such as 80x24",
@@ -151,7 +151,7 @@ pub(super) const SIZE: ValueOption<Size> = ValueOption {
 
 /// As [`SIZE`], but for a window: it is drawn for each frame of a game, and several buffers of it are
 /// in memory. The limit is that of a window of 800×250 cells.
-pub(super) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
+pub(crate) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
     takes: "COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40",
     help: "The size of the window in cells, with sides up to 1000 and up to 200000 cells",
     read: Parser::Optional(|text| size(text).filter(|size| size.is_window())),
@@ -164,7 +164,7 @@ fn size(text: &str) -> Option<Size> {
     Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-pub(super) const CASTER: ValueOption<Method> = ValueOption {
+pub(crate) const CASTER: ValueOption<Method> = ValueOption {
     name: "caster",
     value: "METHOD",
     takes: "the name of a method",
@@ -177,7 +177,7 @@ pub(super) const CASTER: ValueOption<Method> = ValueOption {
     repeats: false,
 };
 
-pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
+pub(crate) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "exact, high, low or a number up to 255",
@@ -191,7 +191,7 @@ pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     repeats: false,
 };
 
-pub(super) const WATCH: Flag = Flag {
+pub(crate) const WATCH: Flag = Flag {
     name: "watch",
     help: "Load the map anew whenever its file, or a PNG that it uses, changes",
 };

@@ -14,25 +14,25 @@ use crate::tui::GlyphSet;
 
 /// Options of `wire`.
 #[derive(Debug)]
-pub(in crate::cli) struct Wire {
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Wire {
+    pub(crate) map: Option<OsString>,
     /// The script; the built-in walk if `None`.
-    pub(in crate::cli) script: Option<PathBuf>,
-    pub(in crate::cli) size: Size,
-    pub(in crate::cli) frames_per_second: FramesPerSecond,
-    pub(in crate::cli) depth: ColorDepth,
+    pub(crate) script: Option<PathBuf>,
+    pub(crate) size: Size,
+    pub(crate) frames_per_second: FramesPerSecond,
+    pub(crate) depth: ColorDepth,
     /// The glyphs; `None` compares those of pixels, instead of encoders.
-    pub(in crate::cli) glyphs: Option<GlyphSet>,
+    pub(crate) glyphs: Option<GlyphSet>,
     /// The named fidelities if empty.
-    pub(in crate::cli) fidelities: Vec<Fidelity>,
+    pub(crate) fidelities: Vec<Fidelity>,
     /// The palette whose methods are compared, instead of encoders.
-    pub(in crate::cli) palette: Option<ColorDepth>,
-    pub(in crate::cli) format: WireFormat,
+    pub(crate) palette: Option<ColorDepth>,
+    pub(crate) format: WireFormat,
 }
 
 /// The format of the report.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::cli) enum WireFormat {
+pub(crate) enum WireFormat {
     #[default]
     Table,
     Json,
@@ -41,7 +41,7 @@ pub(in crate::cli) enum WireFormat {
     Svg,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "wire",
     about: "Bytes a frame against what the viewer sees",
     details: "Plays a script off screen, and measures what its frames take on their way to a terminal.",

@@ -18,25 +18,25 @@ use crate::lab::speed::median;
 use crate::terminal::{CellWriter, peak_memory};
 
 /// The costs; `None` if this system does not report them.
-pub(super) struct Footprint {
+pub(crate) struct Footprint {
     /// The time from the start of the process to the first byte of a picture.
-    pub(super) start_up: Option<Duration>,
+    pub(crate) start_up: Option<Duration>,
     /// The size of the program, in bytes.
-    pub(super) program: Option<u64>,
+    pub(crate) program: Option<u64>,
     /// The peak memory of a game, in bytes.
-    pub(super) memory: Option<u64>,
+    pub(crate) memory: Option<u64>,
 }
 
 /// The window of the first picture.
-pub(super) const FIRST_WINDOW: Size = Size::new(80, 24);
+pub(crate) const FIRST_WINDOW: Size = Size::new(80, 24);
 /// The window in which memory is measured.
-pub(super) const GAME_WINDOW: Size = Size::new(120, 40);
+pub(crate) const GAME_WINDOW: Size = Size::new(120, 40);
 /// The number of times the program is started.
-pub(super) const STARTS: usize = 9;
+pub(crate) const STARTS: usize = 9;
 
 impl Footprint {
     /// Measures. The process must not have done anything else yet.
-    pub(super) fn measure() -> Result<Self, Error> {
+    pub(crate) fn measure() -> Result<Self, Error> {
         play()?;
         let memory = peak_memory();
         let path = env::current_exe().ok();

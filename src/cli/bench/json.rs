@@ -11,7 +11,7 @@ use crate::lab::speed::{CrowdRow, DrawingRow, MapRow, Scene};
 use crate::lab::wire::PipelineRow;
 use crate::sort;
 
-pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let value = json!({
         "drawing": report.drawing.iter().map(drawing).collect::<Vec<_>>(),
         "maps": report.growth.maps.iter().map(map).collect::<Vec<_>>(),

@@ -11,7 +11,7 @@ use crate::lab::wire::PipelineRow;
 use crate::sort;
 
 /// Writes the page as an SVG file.
-pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     plot::write_svg(&page(report), output)
 }
 

@@ -3,22 +3,22 @@
 use std::io::{self, Write};
 
 /// A table of results.
-pub(super) struct Table {
+pub(crate) struct Table {
     /// The subject in a word or two.
-    pub(super) title: &'static str,
+    pub(crate) title: &'static str,
     /// A description of the figures, with lines that fit a terminal.
-    pub(super) about: String,
+    pub(crate) about: String,
     /// The headings of the columns.
-    pub(super) columns: Vec<String>,
+    pub(crate) columns: Vec<String>,
     /// The number of leading columns that label a row. The others are figures.
-    pub(super) labels: usize,
+    pub(crate) labels: usize,
     /// The rows, each with one cell for every column.
-    pub(super) rows: Vec<Vec<String>>,
+    pub(crate) rows: Vec<Vec<String>>,
 }
 
 impl Table {
     /// Writes the table for a terminal, followed by an empty line.
-    pub(super) fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
+    pub(crate) fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
         writeln!(output, "{}: {}\n", self.title, self.about)?;
         for row in self.lines() {
             let padded = row.iter().enumerate().map(|(column, cell)| {
@@ -35,7 +35,7 @@ impl Table {
     }
 
     /// Writes the table as Markdown, followed by an empty line.
-    pub(super) fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
+    pub(crate) fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
         let mut lines = self.lines();
         let header = lines.next().unwrap_or_default();
         let rules =

@@ -8,7 +8,7 @@ use super::{LINKS, Report, frames_per_second, share_of_stock};
 use crate::lab::speed::{CROWDS, Ground, Measured, SIDES, Scene, USUAL_SIDE, Vista};
 
 /// All tables, in reading order.
-pub(super) fn of(report: &Report) -> Vec<Table> {
+pub(crate) fn of(report: &Report) -> Vec<Table> {
     vec![
         drawing(report),
         rays(report),

@@ -12,7 +12,7 @@ const BACKGROUND: Rgb = Rgb::WHITE;
 const FOREGROUND: Rgb = Rgb::new(0x20, 0x20, 0x20);
 const GLYPH_SIDE: i32 = 8;
 
-pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
     let mut bitmap = Bitmap::blank(page);
     for mark in &page.marks {
         bitmap.put(mark);

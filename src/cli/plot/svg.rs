@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{Align, Mark, Page, PlotColor};
 
-pub(in crate::cli) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(page: &Page, output: &mut impl Write) -> io::Result<()> {
     let Page { width, height, marks, description } = page;
     writeln!(
         output,

@@ -11,7 +11,7 @@ use crate::store::host::{HostNotice, PostgresStore};
 
 /// A cluster that the host is going to join.
 #[cfg(feature = "cluster")]
-pub(super) struct PendingCluster {
+pub(crate) struct PendingCluster {
     address: String,
     /// Each on a connection of its own, so that they wait for nothing else.
     leases: PostgresStore,
@@ -20,11 +20,11 @@ pub(super) struct PendingCluster {
 
 /// There is none in this program.
 #[cfg(not(feature = "cluster"))]
-pub(super) enum PendingCluster {}
+pub(crate) enum PendingCluster {}
 
 /// The cluster that `options` name. The store is that of all hosts.
 #[cfg(feature = "cluster")]
-pub(super) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
+pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
     let Some(address) = &options.cluster else { return Ok(None) };
     let Database::Address(store) = store else {
         return Err(Error::mistake(
@@ -41,7 +41,7 @@ pub(super) fn pending(options: &Serve, store: &Database) -> Result<Option<Pendin
 
 /// None, since this program cannot be in a cluster.
 #[cfg(not(feature = "cluster"))]
-pub(super) fn pending(options: &Serve, _: &Database) -> Result<Option<PendingCluster>, Error> {
+pub(crate) fn pending(options: &Serve, _: &Database) -> Result<Option<PendingCluster>, Error> {
     match &options.cluster {
         None => Ok(None),
         Some(_) => Err(Error::mistake(
@@ -53,7 +53,7 @@ pub(super) fn pending(options: &Serve, _: &Database) -> Result<Option<PendingClu
 impl PendingCluster {
     /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
     #[cfg(feature = "cluster")]
-    pub(super) async fn join(
+    pub(crate) async fn join(
         self,
         host: HostParts,
         address: SocketAddr,
@@ -71,7 +71,7 @@ impl PendingCluster {
 
     #[cfg(not(feature = "cluster"))]
     #[expect(clippy::unused_async, reason = "as that of a program that can be in a cluster")]
-    pub(super) async fn join(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
+    pub(crate) async fn join(self, _: HostParts, _: SocketAddr) -> Result<HostParts, Error> {
         match self {}
     }
 }

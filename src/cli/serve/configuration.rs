@@ -13,7 +13,7 @@ use crate::server::{Config, HostMaps, LiveConfig, Logging, MapsError, events};
 use crate::store::private;
 
 /// Where the configuration comes from.
-pub(super) struct Configuration {
+pub(crate) struct Configuration {
     /// `None` if the system has no folder for it.
     file: Option<PathBuf>,
     /// Whether the file was named, and so has to exist.
@@ -27,7 +27,7 @@ pub(super) struct Configuration {
 
 impl Configuration {
     /// Reads the file that `options` name, or else the default one, and the maps.
-    pub(super) fn begin(options: &Serve) -> Result<(Self, Config), Error> {
+    pub(crate) fn begin(options: &Serve) -> Result<(Self, Config), Error> {
         let mut configuration = Self {
             file: options.config.clone().or_else(|| configuration_file("serve.toml")),
             is_named: options.config.is_some(),
@@ -47,12 +47,12 @@ impl Configuration {
     }
 
     /// The maps, which are read once.
-    pub(super) fn maps(&self) -> &HostMaps {
+    pub(crate) fn maps(&self) -> &HostMaps {
         &self.maps
     }
 
     /// Reads the file again at each hang-up. With a fault in it, the configuration stays as it is.
-    pub(super) async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
+    pub(crate) async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
         loop {
             hangups.next().await;
             match self.read_again() {

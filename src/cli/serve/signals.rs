@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::Notify;
 
 /// The signals of this process, caught.
-pub(super) struct Signals {
+pub(crate) struct Signals {
     ends: Arc<Ends>,
     drain: Arc<Notify>,
 }
 
 /// Hang-ups, one at a time. Elsewhere than on Unix there are none.
-pub(super) struct Hangups {
+pub(crate) struct Hangups {
     #[cfg(unix)]
     signal: tokio::signal::unix::Signal,
 }
@@ -35,19 +35,19 @@ impl Ends {
 
 impl Signals {
     /// Catches signals from now on. Call it within a runtime.
-    pub(super) fn catch() -> io::Result<Self> {
+    pub(crate) fn catch() -> io::Result<Self> {
         let ends = Arc::<Ends>::default();
         listen(&ends)?;
         Ok(Self { ends, drain: Arc::default() })
     }
 
     /// What an operator notifies to end the server as a signal does.
-    pub(super) fn drain(&self) -> Arc<Notify> {
+    pub(crate) fn drain(&self) -> Arc<Notify> {
         self.drain.clone()
     }
 
     /// Ready when a signal or an operator asks the server to end.
-    pub(super) fn first(&self) -> impl Future<Output = ()> + Send + use<> {
+    pub(crate) fn first(&self) -> impl Future<Output = ()> + Send + use<> {
         let (ends, drain) = (self.ends.clone(), self.drain.clone());
         async move {
             tokio::select! {
@@ -58,7 +58,7 @@ impl Signals {
     }
 
     /// Ready when a signal asks once more.
-    pub(super) fn second(&self) -> impl Future<Output = ()> + Send + use<> {
+    pub(crate) fn second(&self) -> impl Future<Output = ()> + Send + use<> {
         let ends = self.ends.clone();
         async move { ends.second.notified().await }
     }
@@ -92,7 +92,7 @@ fn listen(ends: &Arc<Ends>) -> io::Result<()> {
 
 impl Hangups {
     /// Catches them from now on. Call it within a runtime.
-    pub(super) fn catch() -> io::Result<Self> {
+    pub(crate) fn catch() -> io::Result<Self> {
         #[cfg(unix)]
         use tokio::signal::unix::{SignalKind, signal};
         Ok(Self {
@@ -102,7 +102,7 @@ impl Hangups {
     }
 
     /// Waits for the next one.
-    pub(super) async fn next(&mut self) {
+    pub(crate) async fn next(&mut self) {
         #[cfg(unix)]
         if self.signal.recv().await.is_some() {
             return;

@@ -6,7 +6,7 @@
 use crate::world::{Camera, Cell, TileKind, World};
 
 /// A sentence about a `camera` that is off the map or inside a solid cell; `None` elsewhere.
-pub(super) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
+pub(crate) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     let (grid, position) = (world.grid(), camera.position());
     let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
         && (0.0..f64::from(grid.height())).contains(&position.y);

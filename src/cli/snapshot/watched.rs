@@ -20,7 +20,7 @@ use crate::map::Level;
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Draws the frame, and draws it again after each change, until the program is ended.
-pub(super) fn run(mut options: Snapshot) -> Result<(), Error> {
+pub(crate) fn run(mut options: Snapshot) -> Result<(), Error> {
     let (mut level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
     let output = Output::of(&options);
     output.show(&level, &mut options)?;

@@ -9,7 +9,7 @@ const HEADER: &str = "section,encoder,frames,mean_bytes,ratio,median_bytes,perce
                       largest_bytes,mean_compressed_bytes,mean_nanoseconds,psnr,mean_delta_e,\
                       largest_delta_e,compression_nanoseconds,mean_level_1_bytes,level_1_nanoseconds";
 
-pub(super) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     writeln!(output, "{HEADER}")?;
     for encoder in &report.encoders {
         for part in encoder.sections.iter().chain([&encoder.all]) {

@@ -10,7 +10,7 @@ use crate::lab::wire::{GlyphRow, report_glyphs};
 use crate::map::builtin;
 use crate::tui::GlyphSet;
 
-pub(super) fn run(options: &Wire) -> io::Result<()> {
+pub(crate) fn run(options: &Wire) -> io::Result<()> {
     let levels = builtin::LEVELS.iter().filter_map(|level| level.world().ok());
     let rows = report_glyphs(options.size.cells(), options.frames_per_second.get(), levels);
     let mut output = BufWriter::new(io::stdout().lock());

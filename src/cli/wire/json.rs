@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::finite;
 use crate::lab::wire::{Part, Plan, Report};
 
-pub(super) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io::Result<()> {
     let encoders: Vec<Value> = report
         .encoders
         .iter()

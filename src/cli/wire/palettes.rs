@@ -9,7 +9,7 @@ use crate::color::palette::ColorDepth;
 use crate::lab::wire::{PalettePlan, PaletteRow, report_palettes};
 use crate::map::builtin;
 
-pub(super) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
+pub(crate) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
     let plan = PalettePlan {
         depth,
         size: options.size.cells(),

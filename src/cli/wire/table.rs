@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::finite;
 use crate::lab::wire::{Part, Plan, Report};
 
-pub(super) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(plan: &Plan, report: &Report, output: &mut impl Write) -> io::Result<()> {
     writeln!(
         output,
         "{} frames of {}×{} cells, {} a second; bytes a frame.\n",

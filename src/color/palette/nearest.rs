@@ -18,27 +18,27 @@ const DROPPED_BITS: u32 = u8::BITS - BITS;
 const FOUND: u16 = 1 << 15;
 
 /// The colours of a palette, each with its index among the 256.
-pub(super) type Palette = Vec<(u8, Oklab)>;
+pub(crate) type Palette = Vec<(u8, Oklab)>;
 
 /// A table from the upper bits of the channels to the index of the nearest colour. An entry is
 /// computed on its first use: computing all of them would take some milliseconds, which matters to
 /// a program that draws one picture.
 ///
 /// It is zeros at first, and the palette is no part of it, so that the program's file has no bytes for it.
-pub(super) struct NearestColors {
+pub(crate) struct NearestColors {
     entries: [AtomicU16; 1 << (3 * BITS)],
 }
 
 impl NearestColors {
     /// A table without an entry.
     #[expect(clippy::large_stack_arrays, reason = "it is evaluated at compile time")]
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { entries: [const { AtomicU16::new(0) }; 1 << (3 * BITS)] }
     }
 
     /// The index of the colour that is nearest to `color` in `palette`, the same in every call.
     #[inline]
-    pub(super) fn of(&self, color: Rgb, palette: &LazyLock<Palette>) -> u8 {
+    pub(crate) fn of(&self, color: Rgb, palette: &LazyLock<Palette>) -> u8 {
         let index = color
             .channels()
             .into_iter()
@@ -64,6 +64,6 @@ impl NearestColors {
 }
 
 /// The colours with these indices among the 256, in Oklab.
-pub(super) fn palette(indices: RangeInclusive<u8>) -> Palette {
+pub(crate) fn palette(indices: RangeInclusive<u8>) -> Palette {
     indices.map(|index| (index, Oklab::from(of_256(index)))).collect()
 }

@@ -17,15 +17,15 @@ const PARALLEL: f64 = 1e-12;
 
 /// A contact of a circle with a shape.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
+pub(crate) struct Touch {
     /// The distance along the path.
-    pub(super) distance: f64,
+    pub(crate) distance: f64,
     /// The part of the shape nearest to the circle's centre then.
-    pub(super) kind: TouchKind,
+    pub(crate) kind: TouchKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum TouchKind {
+pub(crate) enum TouchKind {
     /// A round part around its centre: a pillar, or an end of a line.
     Round(DVec2),
     /// The side of a line, seen from a `position`; `normal` points there.
@@ -33,7 +33,7 @@ pub(super) enum TouchKind {
 }
 
 /// Whether a circle around `center` does not overlap an outline in `cell`; it may touch.
-pub(super) fn is_clear_of(
+pub(crate) fn is_clear_of(
     outline: Outline,
     cell: Cell,
     center: DVec2,
@@ -43,7 +43,7 @@ pub(super) fn is_clear_of(
 }
 
 /// The first contact of a circle on `path` with an outline in `cell`.
-pub(super) fn first_touch(
+pub(crate) fn first_touch(
     outline: Outline,
     cell: Cell,
     path: Path,

@@ -19,9 +19,9 @@ use crate::world::{Cell, Gap, Outline, Tile, TileKind, World};
 
 /// The height of the feet and of the body, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Stature {
-    pub(in crate::game) feet: f64,
-    pub(in crate::game) height: f64,
+pub(crate) struct Stature {
+    pub(crate) feet: f64,
+    pub(crate) height: f64,
 }
 
 impl Stature {
@@ -34,15 +34,15 @@ impl Stature {
 
 /// The world for a player of some stature.
 #[derive(Clone, Copy)]
-pub(in crate::game) struct Place<'a> {
-    pub(in crate::game) world: &'a World,
-    pub(in crate::game) stature: Stature,
+pub(crate) struct Place<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) stature: Stature,
     /// The highest step that the player can climb; 0 in the air.
-    pub(in crate::game) step: f64,
+    pub(crate) step: f64,
     /// Whether the world has shapes.
-    pub(in crate::game) has_shapes: bool,
+    pub(crate) has_shapes: bool,
     /// The positions of players in the way, who are columns without an upper end.
-    pub(in crate::game) others: &'a [DVec2],
+    pub(crate) others: &'a [DVec2],
 }
 
 impl Obstacles for Place<'_> {
@@ -121,13 +121,13 @@ impl Place<'_> {
     }
 
     /// Whether the player has room around `center`.
-    pub(in crate::game) fn is_clear(&self, center: DVec2, radius: Radius) -> bool {
+    pub(crate) fn is_clear(&self, center: DVec2, radius: Radius) -> bool {
         is_clear(self, center, radius)
     }
 
     /// The height to which floors that have risen around the feet lift a body whose circle is around `center`, by
     /// a step at most; `None` if there are no such floors, or no room.
-    pub(in crate::game) fn lifted(&self, center: DVec2, radius: Radius) -> Option<f64> {
+    pub(crate) fn lifted(&self, center: DVec2, radius: Radius) -> Option<f64> {
         let Stature { feet, .. } = self.stature;
         let tiles = overlapped(center, radius).filter_map(|(column, row)| self.tile(column, row));
         let floors = tiles.flat_map(|tile| tile.gaps()).map(|gap| gap.bottom);
@@ -139,7 +139,7 @@ impl Place<'_> {
 
     /// The lowest and the highest position of the feet of a player whose circle around `center` is
     /// clear.
-    pub(in crate::game) fn room(&self, center: DVec2, radius: Radius) -> Room {
+    pub(crate) fn room(&self, center: DVec2, radius: Radius) -> Room {
         let gaps = overlapped(center, radius)
             .filter_map(|(column, row)| self.gap_above_shapes(column, row, center, radius));
         let most = Room { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };

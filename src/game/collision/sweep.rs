@@ -18,7 +18,7 @@ const GRAZE: f64 = 1e-14;
 
 /// A straight path.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Path {
+pub(crate) struct Path {
     from: DVec2,
     /// A unit vector.
     direction: DVec2,
@@ -27,28 +27,28 @@ pub(super) struct Path {
 
 impl Path {
     /// The path from a position by a displacement; `None` if that is zero.
-    pub(super) fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
+    pub(crate) fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
         // Unlike the root of a sum of squares, this neither overflows nor underflows.
         let length = libm::hypot(displacement.x, displacement.y);
         (length > 0.0).then(|| Self { from, direction: displacement / length, length })
     }
 
-    pub(super) fn length(self) -> f64 {
+    pub(crate) fn length(self) -> f64 {
         self.length
     }
 
-    pub(super) fn direction(self) -> DVec2 {
+    pub(crate) fn direction(self) -> DVec2 {
         self.direction
     }
 
-    pub(super) fn at(self, distance: f64) -> DVec2 {
+    pub(crate) fn at(self, distance: f64) -> DVec2 {
         self.from + self.direction * distance
     }
 
     /// The position at `distance` along the path, or one shortly before it if a circle is not clear
     /// there. The path begins at a clear position, and is free of obstacles up to `distance` except
     /// for rounding.
-    pub(super) fn last_clear<O: Obstacles>(
+    pub(crate) fn last_clear<O: Obstacles>(
         self,
         obstacles: &O,
         distance: f64,
@@ -66,19 +66,19 @@ impl Path {
 
 /// The first contact between a circle on a path and something solid.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contact {
+pub(crate) struct Contact {
     /// The position of the circle's centre, which is clear.
-    pub(super) position: DVec2,
+    pub(crate) position: DVec2,
     /// The unit vector from the obstacle to the centre.
-    pub(super) normal: DVec2,
+    pub(crate) normal: DVec2,
     /// The rest of the displacement.
-    pub(super) remaining: DVec2,
+    pub(crate) remaining: DVec2,
     /// The column and the row of the obstacle; `None` for another circle.
-    pub(super) cell: Option<(i64, i64)>,
+    pub(crate) cell: Option<(i64, i64)>,
 }
 
 /// The first contact of a circle on `path`, if there is one.
-pub(super) fn first_contact<O: Obstacles>(
+pub(crate) fn first_contact<O: Obstacles>(
     obstacles: &O,
     path: Path,
     radius: Radius,
@@ -242,7 +242,7 @@ impl Side {
 }
 
 /// The distance along a path at which it enters a disc.
-pub(super) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
+pub(crate) fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
     let offset = path.from - center;
     let closest = -path.direction.dot(offset);
     let miss = path.direction.perp_dot(offset).abs();

@@ -7,14 +7,14 @@ use crate::world::{Cell, Driver, KeyId, SwitchId, ThingKind, Tile, TileEffect, W
 
 /// What the player has found that opens doors and moves tiles.
 #[derive(Clone, PartialEq, Default)]
-pub(super) struct Openers {
-    pub(super) keys: BTreeSet<KeyId>,
-    pub(super) switches: BTreeSet<SwitchId>,
+pub(crate) struct Openers {
+    pub(crate) keys: BTreeSet<KeyId>,
+    pub(crate) switches: BTreeSet<SwitchId>,
 }
 
 impl Openers {
     /// Adds the keys and plates in `cell`, and the levers in and around it.
-    pub(super) fn find_in(&mut self, world: &World, cell: Cell) {
+    pub(crate) fn find_in(&mut self, world: &World, cell: Cell) {
         for thing in world.things_in(cell) {
             if let ThingKind::Key(key) = thing.kind {
                 self.keys.insert(key);
@@ -38,7 +38,7 @@ impl Openers {
     }
 
     /// Whether what `driver` moves may be anywhere on its way.
-    pub(super) fn can_move(&self, driver: Driver) -> bool {
+    pub(crate) fn can_move(&self, driver: Driver) -> bool {
         match driver {
             Driver::Switch(switch) => self.switches.contains(&switch),
             Driver::Hand | Driver::Weight => true,
@@ -47,7 +47,7 @@ impl Openers {
 }
 
 /// The switches of plates, if there are guards who may step on them.
-pub(super) fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
+pub(crate) fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
     let plate = |tile: &Tile| match tile.effect {
         Some(TileEffect::Plate(switch)) => Some(switch),
         _ => None,

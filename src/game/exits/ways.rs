@@ -8,17 +8,17 @@ use crate::world::{Ceiling, Door, Driver, Gap, Tile, TileKind, World};
 /// A gap of a cell, and the lowest height from which the player gets into it: its bottom, or where
 /// a floor begins that carries the player up to it.
 #[derive(Clone, Copy)]
-pub(super) struct Way {
-    pub(super) gap: Gap,
-    pub(super) least: f64,
+pub(crate) struct Way {
+    pub(crate) gap: Gap,
+    pub(crate) least: f64,
 }
 
 /// The ways through a cell. A tile has two gaps, each at two ends where it moves. A shape may
 /// divide one and leave a way beside it, and a thing may divide one more.
-pub(super) type Ways = [Option<Way>; 8];
+pub(crate) type Ways = [Option<Way>; 8];
 
 /// The ways through each tile; through those that move, at all heights or at both ends.
-pub(super) fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
+pub(crate) fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
     let tiles = world.tiles().iter();
     let mut of_tiles: Vec<Ways> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
     for moving in world.moving_tiles().iter().filter(|it| openers.can_move(it.driver)) {
@@ -63,7 +63,7 @@ fn along(states: impl Iterator<Item = Tile>) -> Ways {
 }
 
 /// The gaps of a tile for a player who has found `openers`.
-pub(super) fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
+pub(crate) fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
     let gaps: Vec<Gap> = tile.gaps().collect();
     let standing = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
     match tile.kind {
@@ -87,7 +87,7 @@ pub(super) fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
 }
 
 /// The `gaps` that are high enough to duck in.
-pub(super) fn high_enough(gaps: Vec<Gap>) -> Ways {
+pub(crate) fn high_enough(gaps: Vec<Gap>) -> Ways {
     let mut left = Ways::default();
     let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
     let way = |gap: Gap| Way { gap, least: gap.bottom };
@@ -96,7 +96,7 @@ pub(super) fn high_enough(gaps: Vec<Gap>) -> Ways {
 }
 
 /// The parts of gaps below and above what fills a part of them.
-pub(super) fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
+pub(crate) fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
     let left = gaps.iter().flat_map(|&gap| {
         let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;
         let below = Gap { top: filled.bottom, ..gap };

@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 
 /// That many buckets. Those with the same cells in the same order are equal.
 #[derive(Clone, Debug)]
-pub(super) struct Buckets<const COUNT: usize> {
+pub(crate) struct Buckets<const COUNT: usize> {
     entries: Vec<Entry>,
     /// The last entry of each bucket.
     tops: [u32; COUNT],
@@ -34,19 +34,19 @@ struct Entry {
 
 impl<const COUNT: usize> Buckets<COUNT> {
     /// Takes all cells out.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.entries.clear();
         self.entries.reserve(RESERVED);
         (self.tops, self.free, self.count) = ([NONE; COUNT], NONE, 0);
     }
 
     /// Whether all buckets are empty.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.count == 0
     }
 
     /// The cells in a bucket, in the order in which they were put in.
-    pub(super) fn cells(&self, bucket: usize) -> Vec<Cell> {
+    pub(crate) fn cells(&self, bucket: usize) -> Vec<Cell> {
         let mut cells: Vec<Cell> = self.downwards(bucket).collect();
         cells.reverse();
         cells
@@ -59,7 +59,7 @@ impl<const COUNT: usize> Buckets<COUNT> {
     }
 
     /// Puts a cell into a bucket.
-    pub(super) fn push(&mut self, bucket: usize, cell: Cell) {
+    pub(crate) fn push(&mut self, bucket: usize, cell: Cell) {
         let entry = Entry { cell, below: self.tops[bucket] };
         let place = if let Some(free) = self.entries.get_mut(self.free as usize) {
             let place = self.free;
@@ -75,7 +75,7 @@ impl<const COUNT: usize> Buckets<COUNT> {
     }
 
     /// Takes a cell out of a bucket.
-    pub(super) fn pop(&mut self, bucket: usize) -> Option<Cell> {
+    pub(crate) fn pop(&mut self, bucket: usize) -> Option<Cell> {
         let top = self.tops[bucket];
         let entry = self.entries.get_mut(top as usize)?;
         self.tops[bucket] = entry.below;

@@ -6,7 +6,7 @@ use crate::world::Cell;
 
 impl Flood {
     /// Appends a search that has begun.
-    pub(in crate::game) fn write(&self, out: &mut Writer) {
+    pub(crate) fn write(&self, out: &mut Writer) {
         let Self { first: _, size: _, cells, search: _, buckets, distance } = self;
         distance.write(out);
         let (mut last, mut unknown) = (0, 0);
@@ -34,7 +34,7 @@ impl Flood {
     }
 
     /// Reads a search from `start`.
-    pub(in crate::game) fn read(start: Cell, input: &mut Reader) -> Result<Self, Unrestorable> {
+    pub(crate) fn read(start: Cell, input: &mut Reader) -> Result<Self, Unrestorable> {
         let mut flood = Self::default();
         flood.begin(start, input.size());
         flood.buckets.clear();
@@ -77,7 +77,7 @@ impl Flood {
     }
 
     /// What is known of the cell at a place of the list.
-    pub(super) fn known_at(&self, place: usize) -> Option<u16> {
+    pub(crate) fn known_at(&self, place: usize) -> Option<u16> {
         let entry = self.cells[place];
         (entry >> 16 == u32::from(self.search)).then_some(entry as u16)
     }

@@ -25,13 +25,13 @@ pub(crate) struct Target {
 
 impl Target {
     /// The cell of the middle.
-    pub(super) fn cell(&self) -> Cell {
+    pub(crate) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.position;
         Cell { column: x as u32, row: y as u32 }
     }
 
     /// The height of the middle of the body.
-    pub(super) fn middle(&self) -> f64 {
+    pub(crate) fn middle(&self) -> f64 {
         f64::midpoint(self.feet, self.head)
     }
 }

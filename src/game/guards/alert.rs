@@ -10,7 +10,7 @@ use crate::game::sound::SoundKind;
 use crate::world::Cell;
 
 /// How far a hound smells a trail, in cells.
-pub(super) const NOSE: f64 = 1.5;
+pub(crate) const NOSE: f64 = 1.5;
 /// The steps for which a guard looks towards a noise before they go there.
 const LOOKS: u16 = 45;
 /// The farthest cells that are searched, in cells from the place.
@@ -22,13 +22,13 @@ const LOST: u16 = 150;
 
 impl Guard {
     /// Says so, and looks towards a place; then goes there, if it is worth it.
-    pub(super) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
+    pub(crate) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
         let looks = if self.state == State::Asleep { LOOKS * 2 } else { LOOKS };
         self.state = State::Wondering { about, looks, goes, hurries: false, wakes: None };
         context.sound(SoundKind::Wonder, self.mover.cell(), 7);
     }
 
-    pub(super) fn wonder(&mut self, context: &mut Context) {
+    pub(crate) fn wonder(&mut self, context: &mut Context) {
         let State::Wondering { about, looks, goes, hurries, wakes } = self.state else { return };
         let way = about - self.mover.position();
         if looks > 0 {
@@ -58,12 +58,12 @@ impl Guard {
         }
     }
 
-    pub(super) fn begin_to_search(&mut self, around: Cell, left: u16) {
+    pub(crate) fn begin_to_search(&mut self, around: Cell, left: u16) {
         self.state = State::Searching { around, next: None, left };
         self.pause_a_while(50, 70);
     }
 
-    pub(super) fn search(
+    pub(crate) fn search(
         &mut self,
         context: &mut Context,
         around: Cell,
@@ -93,14 +93,14 @@ impl Guard {
     }
 
     /// Goes back to duty, and says so.
-    pub(super) fn give_up(&mut self, context: &mut Context) {
+    pub(crate) fn give_up(&mut self, context: &mut Context) {
         context.sound(SoundKind::GiveUp, self.mover.cell(), 7);
         self.state = State::Returning;
         (self.awareness, self.quarry, self.errand) = (0, None, None);
     }
 
     /// Follows the marks of a trail, one after the other.
-    pub(super) fn track(&mut self, context: &mut Context, target: usize, mark: u64, lost: u16) {
+    pub(crate) fn track(&mut self, context: &mut Context, target: usize, mark: u64, lost: u16) {
         // The trails of the last players go with them.
         let Some(trail) = context.trails.get(target) else { return self.give_up(context) };
         let mark = mark.max(trail.first());
@@ -138,7 +138,7 @@ impl Guard {
     }
 
     /// Goes to another guard who has fallen, if this one sees any.
-    pub(super) fn look_for_fallen(&mut self, context: &mut Context) {
+    pub(crate) fn look_for_fallen(&mut self, context: &mut Context) {
         let is_busy = match self.state {
             State::OnDuty | State::Returning | State::Searching { .. } => false,
             State::Wondering { wakes, hurries, .. } => wakes.is_some() || hurries,
@@ -175,6 +175,6 @@ impl Guard {
 }
 
 /// The cell at a position; `None` west or north of the map.
-pub(super) fn cell_at(DVec2 { x, y }: DVec2) -> Option<Cell> {
+pub(crate) fn cell_at(DVec2 { x, y }: DVec2) -> Option<Cell> {
     (x >= 0.0 && y >= 0.0).then_some(Cell { column: x as u32, row: y as u32 })
 }

@@ -24,7 +24,7 @@ const WIDTH: f64 = 0.5;
 const PLAYER: f64 = 0.25;
 
 impl Guard {
-    pub(super) fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
+    pub(crate) fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
         let target = self.quarry.and_then(|quarry| context.target(quarry.target).copied());
         let Some(target) = target else { return self.give_up(context) };
         let left = left.saturating_sub(context.stride);

@@ -12,18 +12,18 @@ use crate::world::GuardKind;
 
 /// What is known about all guards until one wakes, comes or goes.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Awake {
+pub(crate) struct Awake {
     /// The guards who do not sleep, from the lowest index to the highest.
-    pub(super) indices: Vec<usize>,
+    pub(crate) indices: Vec<usize>,
     /// Whether there are hounds, awake or asleep.
-    pub(super) has_hounds: bool,
+    pub(crate) has_hounds: bool,
     /// The number of guards who have a sprite.
-    pub(super) figures: usize,
+    pub(crate) figures: usize,
 }
 
 impl Guards {
     /// Finds the guards who are awake.
-    pub(super) fn find_awake(&mut self) {
+    pub(crate) fn find_awake(&mut self) {
         let guards = self.list.iter().enumerate();
         let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
         let indices = &mut self.awake.indices;
@@ -34,12 +34,12 @@ impl Guards {
     }
 
     /// The guards who are awake.
-    pub(super) fn awake(&self) -> impl Iterator<Item = &Guard> + Clone {
+    pub(crate) fn awake(&self) -> impl Iterator<Item = &Guard> + Clone {
         self.awake.indices.iter().map(|&index| &self.list[index])
     }
 
     /// Records where all guards are. Those who sleep have not moved since the last step.
-    pub(super) fn look_at_others(&mut self) {
+    pub(crate) fn look_at_others(&mut self) {
         if self.others.len() != self.list.len() {
             self.others.clear();
             self.others.extend(self.list.iter().map(Guard::as_other));
@@ -53,7 +53,7 @@ impl Guards {
 
 impl Guard {
     /// Whether the guard does nothing until somebody wakes them.
-    pub(super) fn is_asleep(&self) -> bool {
+    pub(crate) fn is_asleep(&self) -> bool {
         self.state == State::Asleep && self.stagger == 0
     }
 }

@@ -28,7 +28,7 @@ const FEW: usize = 3;
 
 impl Guard {
     /// Calls the others, and begins to chase.
-    pub(super) fn raise_alarm(&mut self, context: &mut Context) {
+    pub(crate) fn raise_alarm(&mut self, context: &mut Context) {
         let (kind, reach) = match self.kind {
             GuardKind::Lantern => (SoundKind::Bell, Sound::FARTHEST),
             GuardKind::Hound => (SoundKind::Bark, 10),
@@ -42,7 +42,7 @@ impl Guard {
         self.state = State::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
     }
 
-    pub(super) fn chase(&mut self, context: &mut Context, fright: u16) {
+    pub(crate) fn chase(&mut self, context: &mut Context, fright: u16) {
         let quarry = self.quarry.filter(|quarry| context.target(quarry.target).is_some());
         let Some(quarry) = quarry else { return self.give_up(context) };
         let way = quarry.position - self.mover.position();

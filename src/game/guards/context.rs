@@ -11,52 +11,52 @@ use crate::game::rules::Rules;
 use crate::game::sound::{Sound, SoundKind, Source};
 use crate::world::{Cell, World};
 
-pub(super) struct Context<'a> {
-    pub(super) world: &'a World,
-    pub(super) terrain: &'a Terrain,
-    pub(super) ways: &'a mut Ways,
-    pub(super) targets: &'a [Target],
-    pub(super) clouds: &'a [Cloud],
-    pub(super) trails: &'a [Trail],
+pub(crate) struct Context<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) ways: &'a mut Ways,
+    pub(crate) targets: &'a [Target],
+    pub(crate) clouds: &'a [Cloud],
+    pub(crate) trails: &'a [Trail],
     /// All guards, as they were at the end of the last step.
-    pub(super) others: &'a [Other],
-    pub(super) rules: Rules,
+    pub(crate) others: &'a [Other],
+    pub(crate) rules: Rules,
     /// The number of the step.
-    pub(super) now: u64,
+    pub(crate) now: u64,
     /// The index of the guard.
-    pub(super) index: usize,
+    pub(crate) index: usize,
     /// The number of steps that are taken at once.
-    pub(super) stride: u16,
-    pub(super) acts: &'a mut Vec<Act>,
+    pub(crate) stride: u16,
+    pub(crate) acts: &'a mut Vec<Act>,
     /// The indices of guards who are woken.
-    pub(super) woken: &'a mut Vec<usize>,
+    pub(crate) woken: &'a mut Vec<usize>,
 }
 
 /// What guards know of each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Other {
-    pub(super) position: DVec2,
-    pub(super) feet: f64,
-    pub(super) is_down: bool,
+pub(crate) struct Other {
+    pub(crate) position: DVec2,
+    pub(crate) feet: f64,
+    pub(crate) is_down: bool,
 }
 
 impl Context<'_> {
-    pub(super) fn target(&self, index: usize) -> Option<&Target> {
+    pub(crate) fn target(&self, index: usize) -> Option<&Target> {
         self.targets.get(index).filter(|target| target.is_alive)
     }
 
-    pub(super) fn ground(&self, gait: Gait) -> Ground<'_> {
+    pub(crate) fn ground(&self, gait: Gait) -> Ground<'_> {
         Ground { world: self.world, terrain: self.terrain, gait }
     }
 
     /// Makes a sound.
-    pub(super) fn sound(&mut self, kind: SoundKind, cell: Cell, reach: u8) {
+    pub(crate) fn sound(&mut self, kind: SoundKind, cell: Cell, reach: u8) {
         let by = Source::Guard(self.index);
         self.acts.push(Act::Sound(Sound { kind, cell, reach, by }));
     }
 
     /// The number of guards who are not down.
-    pub(super) fn count_up(&self) -> usize {
+    pub(crate) fn count_up(&self) -> usize {
         self.others.iter().filter(|other| !other.is_down).count()
     }
 }

@@ -12,7 +12,7 @@ const STOP: u16 = 80;
 const GLANCE: f64 = 0.9;
 
 impl Guard {
-    pub(super) fn do_duty(&mut self, context: &mut Context) {
+    pub(crate) fn do_duty(&mut self, context: &mut Context) {
         if self.pause > 0 {
             self.pause = self.pause.saturating_sub(context.stride);
             self.look_aside();
@@ -29,7 +29,7 @@ impl Guard {
         }
     }
 
-    pub(super) fn return_to_duty(&mut self, context: &mut Context) {
+    pub(crate) fn return_to_duty(&mut self, context: &mut Context) {
         let home = match &self.duty {
             Duty::Patrol(stops) => stops.get(self.stop).copied().unwrap_or(self.post),
             Duty::Stand | Duty::Sleep | Duty::Wander(_) => self.post,
@@ -88,7 +88,7 @@ impl Guard {
     }
 
     /// A cell at most `reach` from `around` where guards walk; `None` if a few tries find none.
-    pub(super) fn random_cell(
+    pub(crate) fn random_cell(
         &mut self,
         context: &Context,
         around: Cell,
@@ -106,7 +106,7 @@ impl Guard {
     }
 
     /// Stands still for a time between two numbers of steps, and looks to another side.
-    pub(super) fn pause_a_while(&mut self, least: u16, most: u16) {
+    pub(crate) fn pause_a_while(&mut self, least: u16, most: u16) {
         self.pause = self.random.whole(i32::from(least), i32::from(most)) as u16;
         self.glance = match self.random.below(3) {
             0 => -GLANCE,

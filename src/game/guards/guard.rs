@@ -15,8 +15,8 @@ use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Duty, GuardKind, GuardPost, Heading, World};
 
 /// The awareness from which a guard wonders, and from which they are alarmed.
-pub(super) const WONDERS: u16 = 300;
-pub(super) const ALARMED: u16 = 1000;
+pub(crate) const WONDERS: u16 = 300;
+pub(crate) const ALARMED: u16 = 1000;
 
 /// The length of a pace: each one is a frame and a sound, in cells.
 const PACE: f64 = 0.55;
@@ -26,42 +26,42 @@ const STAGGER: u16 = 30;
 const PUSH: f64 = 4.0;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Guard {
-    pub(super) kind: GuardKind,
-    pub(super) post: Cell,
-    pub(super) post_heading: Heading,
-    pub(super) duty: Duty,
-    pub(super) mover: Mover,
-    pub(super) state: State,
+pub(crate) struct Guard {
+    pub(crate) kind: GuardKind,
+    pub(crate) post: Cell,
+    pub(crate) post_heading: Heading,
+    pub(crate) duty: Duty,
+    pub(crate) mover: Mover,
+    pub(crate) state: State,
     /// From 0 to [`ALARMED`].
-    pub(super) awareness: u16,
-    pub(super) quarry: Option<Quarry>,
+    pub(crate) awareness: u16,
+    pub(crate) quarry: Option<Quarry>,
     /// Whether they have been alarmed before, in a game where guards remember it.
-    pub(super) is_wary: bool,
+    pub(crate) is_wary: bool,
     /// The place in the round of a patrol.
-    pub(super) stop: usize,
+    pub(crate) stop: usize,
     /// Where a guard who wanders goes.
-    pub(super) errand: Option<Cell>,
+    pub(crate) errand: Option<Cell>,
     /// The steps for which they stand still on duty, or look around.
-    pub(super) pause: u16,
+    pub(crate) pause: u16,
     /// The side to which they look, while they look around.
-    pub(super) glance: f64,
+    pub(crate) glance: f64,
     /// The steps until they may strike again, until they stand firmly, and until they may be
     /// alarmed by sight again.
-    pub(super) rest: u16,
-    pub(super) stagger: u16,
-    pub(super) blind: u16,
+    pub(crate) rest: u16,
+    pub(crate) stagger: u16,
+    pub(crate) blind: u16,
     /// The steps for which they have not reached a player whom they follow.
-    pub(super) baffled: u16,
+    pub(crate) baffled: u16,
     /// Whether a floor under them has moved.
-    pub(super) is_unsettled: bool,
-    pub(super) route: Route,
+    pub(crate) is_unsettled: bool,
+    pub(crate) route: Route,
     /// The velocity and the look that they want in this step.
-    pub(super) wanted: DVec2,
-    pub(super) look: Option<DVec2>,
+    pub(crate) wanted: DVec2,
+    pub(crate) look: Option<DVec2>,
     /// The distance walked, in paces.
     paces: f64,
-    pub(super) random: SplitMix64,
+    pub(crate) random: SplitMix64,
 }
 
 stored! {
@@ -73,7 +73,7 @@ stored! {
 }
 
 impl Guard {
-    pub(super) fn new(world: &World, post: &GuardPost, index: usize, seed: u64) -> Self {
+    pub(crate) fn new(world: &World, post: &GuardPost, index: usize, seed: u64) -> Self {
         let is_asleep = post.duty == Duty::Sleep;
         Self {
             kind: post.kind,
@@ -103,7 +103,7 @@ impl Guard {
     }
 
     /// Advances the guard by the steps of `context`.
-    pub(super) fn step(&mut self, context: &mut Context) {
+    pub(crate) fn step(&mut self, context: &mut Context) {
         let steps = context.stride;
         self.rest = self.rest.saturating_sub(steps);
         self.blind = self.blind.saturating_sub(steps);
@@ -171,20 +171,20 @@ impl Guard {
     }
 
     /// Lays the guard on the floor.
-    pub(super) fn stun(&mut self, steps: u16) {
+    pub(crate) fn stun(&mut self, steps: u16) {
         self.state = State::Down { left: steps.max(1) };
         self.mover.body.velocity = DVec2::ZERO;
         (self.awareness, self.quarry, self.stagger) = (0, None, 0);
     }
 
     /// Lets a guard who lies stand up and look around.
-    pub(super) fn get_up(&mut self) {
+    pub(crate) fn get_up(&mut self) {
         self.state = State::Searching { around: self.mover.cell(), next: None, left: 600 };
         self.pause = 60;
     }
 
     /// Pushes the guard along `direction`, a unit vector.
-    pub(super) fn push(&mut self, direction: DVec2) {
+    pub(crate) fn push(&mut self, direction: DVec2) {
         if self.state.is_down() {
             return;
         }
@@ -201,20 +201,20 @@ impl Guard {
         }
     }
 
-    pub(super) fn abilities(&self) -> &'static Abilities {
+    pub(crate) fn abilities(&self) -> &'static Abilities {
         abilities(self.kind)
     }
 
-    pub(super) fn gait(&self) -> Gait {
+    pub(crate) fn gait(&self) -> Gait {
         Gait { opens_doors: self.abilities().opens_doors, height: self.kind.height() }
     }
 
     /// The height of the top of the head.
-    pub(super) fn head(&self) -> f64 {
+    pub(crate) fn head(&self) -> f64 {
         self.mover.feet + self.kind.height()
     }
 
-    pub(super) fn view(&self) -> GuardView {
+    pub(crate) fn view(&self) -> GuardView {
         GuardView {
             kind: self.kind,
             position: self.mover.position(),
@@ -225,13 +225,13 @@ impl Guard {
         }
     }
 
-    pub(super) fn as_other(&self) -> Other {
+    pub(crate) fn as_other(&self) -> Other {
         let is_down = self.state.is_down();
         Other { position: self.mover.position(), feet: self.mover.feet, is_down }
     }
 
     /// The frame of the sprite.
-    pub(super) fn frame(&self) -> u8 {
+    pub(crate) fn frame(&self) -> u8 {
         let is_walking = self.mover.body.velocity.length_squared() > 0.04;
         match self.state {
             State::Down { .. } => 6,
@@ -246,12 +246,12 @@ impl Guard {
     }
 
     /// Whether the distance walked, in paces, is at least 0 and below `most`.
-    pub(super) fn has_paces_below(&self, most: f64) -> bool {
+    pub(crate) fn has_paces_below(&self, most: f64) -> bool {
         (0.0..most).contains(&self.paces)
     }
 
     /// Numbers that together are the state.
-    pub(super) fn words(&self) -> impl Iterator<Item = u64> + use<> {
+    pub(crate) fn words(&self) -> impl Iterator<Item = u64> + use<> {
         let Mover { body, feet, heading, .. } = self.mover;
         let reals = [body.position.x, body.position.y, body.velocity.x, body.velocity.y, feet];
         let reals = reals.into_iter().chain([heading.degrees(), self.paces]);

@@ -16,7 +16,7 @@ const MOST_BY_EAR: u16 = 700;
 
 impl Guard {
     /// How far this guard hears `sound`, in half cells; 0 if they do not care.
-    pub(super) fn earshot(&self, sound: &Sound, difficulty: Difficulty) -> u16 {
+    pub(crate) fn earshot(&self, sound: &Sound, difficulty: Difficulty) -> u16 {
         let reach = half_cells(sound.reach.min(Sound::FARTHEST));
         let is_listener = self.kind == GuardKind::Listener;
         if self.state.is_down() || !is_startling(sound) && !is_call(sound) {
@@ -34,7 +34,7 @@ impl Guard {
     }
 
     /// Hears `sound` at this distance of the `earshot`. `told` is what the guard knows who calls.
-    pub(super) fn hear(
+    pub(crate) fn hear(
         &mut self,
         context: &mut Context,
         sound: &Sound,

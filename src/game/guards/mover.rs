@@ -15,7 +15,7 @@ use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
 use crate::world::{Cell, Heading, Outline, World};
 
 /// The radius of all guards, in cells.
-pub(super) const RADIUS: Radius =
+pub(crate) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// The change of velocity in one step, in cells per second.
@@ -23,15 +23,15 @@ const ACCELERATION: f64 = 0.6;
 
 /// Where a guard is and how they move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mover {
-    pub(super) body: Body,
+pub(crate) struct Mover {
+    pub(crate) body: Body,
     /// The height of the feet, in cells.
-    pub(super) feet: f64,
+    pub(crate) feet: f64,
     /// Cells per second, upwards.
     rising: f64,
-    pub(super) heading: Heading,
+    pub(crate) heading: Heading,
     /// The unit vector of the heading.
-    pub(super) facing: DVec2,
+    pub(crate) facing: DVec2,
 }
 
 impl Stored for Mover {
@@ -50,7 +50,7 @@ impl Stored for Mover {
 }
 
 impl Mover {
-    pub(super) fn new(world: &World, cell: Cell, heading: Heading) -> Self {
+    pub(crate) fn new(world: &World, cell: Cell, heading: Heading) -> Self {
         Self {
             body: Body { position: cell.center(), velocity: DVec2::ZERO },
             feet: world.floor_at(cell),
@@ -60,29 +60,29 @@ impl Mover {
         }
     }
 
-    pub(super) fn position(&self) -> DVec2 {
+    pub(crate) fn position(&self) -> DVec2 {
         self.body.position
     }
 
     /// The cell of the middle.
-    pub(super) fn cell(&self) -> Cell {
+    pub(crate) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.body.position;
         Cell { column: x as u32, row: y as u32 }
     }
 
     /// Whether the guard neither falls nor flies.
-    pub(super) fn is_on_floor(&self) -> bool {
+    pub(crate) fn is_on_floor(&self) -> bool {
         self.rising == 0.0
     }
 
     /// Whether no floor moves a guard who neither walks nor is pushed.
-    pub(super) fn is_at_rest(&self, world: &World) -> bool {
+    pub(crate) fn is_at_rest(&self, world: &World) -> bool {
         world.moving_tiles().is_empty()
             || self.rising == 0.0 && self.feet == world.floor_at(self.cell())
     }
 
     /// Turns towards `direction`, of any length but zero, by at most `degrees`.
-    pub(super) fn turn(&mut self, direction: DVec2, degrees: f64) {
+    pub(crate) fn turn(&mut self, direction: DVec2, degrees: f64) {
         let across = self.facing.perp_dot(direction);
         let along = self.facing.dot(direction);
         if across == 0.0 && along >= 0.0 {
@@ -95,7 +95,7 @@ impl Mover {
     }
 
     /// Changes the velocity towards `wanted`, and moves for that many steps.
-    pub(super) fn walk(&mut self, ground: &Ground, wanted: DVec2, steps: u16) {
+    pub(crate) fn walk(&mut self, ground: &Ground, wanted: DVec2, steps: u16) {
         let change = wanted - self.body.velocity;
         let most = ACCELERATION * f64::from(steps);
         let length = change.length();
@@ -114,7 +114,7 @@ impl Mover {
 
     /// The guard after a floor under them has moved: on the floor if it `carries` and they stood on it, unchanged
     /// if they have room, and else lifted. `None` if they have no room then, either.
-    pub(super) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
+    pub(crate) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
         let ridden = if carries { self.ridden(ground) } else { None };
         let has_room = |mover: &Self| ground.has_room_for(mover);
         ridden.filter(has_room).or_else(|| Some(*self).filter(has_room)).or_else(|| {
@@ -152,10 +152,10 @@ impl Mover {
 }
 
 /// The world as a guard walks in it.
-pub(super) struct Ground<'a> {
-    pub(super) world: &'a World,
-    pub(super) terrain: &'a Terrain,
-    pub(super) gait: Gait,
+pub(crate) struct Ground<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) gait: Gait,
 }
 
 impl Ground<'_> {
@@ -185,7 +185,7 @@ impl Ground<'_> {
     }
 
     /// Whether the body of a guard overlaps nothing.
-    pub(super) fn has_room_for(&self, mover: &Mover) -> bool {
+    pub(crate) fn has_room_for(&self, mover: &Mover) -> bool {
         self.place(mover).is_clear(mover.body.position, RADIUS)
     }
 
@@ -214,7 +214,7 @@ impl Ground<'_> {
 
     /// Whether a guard who walks straight from `from` to `to` meets nothing, at heights that they
     /// climb.
-    pub(super) fn is_straight(&self, from: DVec2, to: DVec2) -> bool {
+    pub(crate) fn is_straight(&self, from: DVec2, to: DVec2) -> bool {
         /// The distance of the positions that are tested, in cells, and the room around them.
         const STRIDE: f64 = 0.25;
         const ROOM: f64 = 0.3;

@@ -15,7 +15,7 @@ use crate::game::sound::SoundKind;
 use crate::world::{GuardKind, World};
 
 /// A guard looks around in every fourth step.
-pub(super) const LOOK_EACH: u64 = 4;
+pub(crate) const LOOK_EACH: u64 = 4;
 /// The most that one look adds to awareness.
 const MOST_GAIN: u32 = 80;
 /// What awareness loses where nobody is seen.
@@ -31,11 +31,11 @@ const IN_DARKNESS: u32 = 24;
 /// How far the lamp of a lantern-bearer lights players, in cells.
 const LANTERN: f64 = 4.0;
 /// The steps for which a guard knows where a player has gone whom they do not see any more.
-pub(super) const GUESSES: u16 = 45;
+pub(crate) const GUESSES: u16 = 45;
 
 impl Guard {
     /// Notices players.
-    pub(super) fn perceive(&mut self, context: &mut Context) {
+    pub(crate) fn perceive(&mut self, context: &mut Context) {
         if let Some(quarry) = &mut self.quarry {
             quarry.unseen = quarry.unseen.saturating_add(context.stride);
         }
@@ -128,13 +128,13 @@ impl Guard {
     }
 
     /// Whether this guard sees the middle of a player, in whatever direction and light.
-    pub(super) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
+    pub(crate) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
         let point = Point { position: target.position, height: target.middle() };
         is_in_sight(context.world, context.clouds, self.eye(), point)
     }
 
     /// Whether this guard is awake and could see `point`, however dark it is there, once they look that way.
-    pub(super) fn may_see(&self, world: &World, point: Point) -> bool {
+    pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
         let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
         let is_awake = !self.state.is_down() && self.state != State::Asleep;
         let eye = self.eye();
@@ -143,13 +143,13 @@ impl Guard {
             && is_in_sight(world, &[], eye, point)
     }
 
-    pub(super) fn eye(&self) -> Point {
+    pub(crate) fn eye(&self) -> Point {
         let height = self.mover.feet + self.abilities().eye;
         Point { position: self.mover.position(), height }
     }
 
     /// Wonders, or is alarmed.
-    pub(super) fn react(&mut self, context: &mut Context) {
+    pub(crate) fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
             State::Asleep

@@ -31,7 +31,7 @@ const APART: f64 = 0.6;
 
 /// The way of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Route {
+pub(crate) struct Route {
     goal: Option<Cell>,
     /// The point to which they walk at present.
     point: Option<DVec2>,
@@ -48,7 +48,7 @@ stored! { struct Route { goal, point, from, fresh, still, care } }
 
 /// How a walk goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Progress {
+pub(crate) enum Progress {
     There,
     OnTheWay,
     Impossible,
@@ -56,19 +56,19 @@ pub(super) enum Progress {
 
 impl Route {
     /// Whether the guard has not stood still for longer than a guard does.
-    pub(super) fn is_possible(&self) -> bool {
+    pub(crate) fn is_possible(&self) -> bool {
         self.still <= STUCK
     }
 }
 
 impl Guard {
     /// Wants to walk to the middle of `cell`.
-    pub(super) fn go_to(&mut self, context: &mut Context, cell: Cell, speed: f64) -> Progress {
+    pub(crate) fn go_to(&mut self, context: &mut Context, cell: Cell, speed: f64) -> Progress {
         self.go(context, cell, cell.center(), speed)
     }
 
     /// Wants to walk to `place`, which is in the cell `goal`.
-    pub(super) fn go(
+    pub(crate) fn go(
         &mut self,
         context: &mut Context,
         goal: Cell,
@@ -160,7 +160,7 @@ impl Guard {
     }
 
     /// Walks to `point`, and waits for doors and others who are in the way.
-    pub(super) fn walk_to(&mut self, context: &mut Context, point: DVec2, speed: f64) {
+    pub(crate) fn walk_to(&mut self, context: &mut Context, point: DVec2, speed: f64) {
         let way = point - self.mover.position();
         let Some(direction) = way.try_normalize() else { return };
         let closed = self.closed_door_ahead(context, direction);

@@ -11,7 +11,7 @@ use crate::world::{Cell, Duty};
 impl Guard {
     /// Moves the guard with the window; `false` if they are outside it now. Places outside it
     /// become the cell of the guard.
-    pub(super) fn shift(&mut self, shift: Shift) -> bool {
+    pub(crate) fn shift(&mut self, shift: Shift) -> bool {
         let Some(here) = shift.cell(self.mover.cell()) else { return false };
         let cell = |cell: Cell| shift.cell(cell).unwrap_or(here);
         let place = |place: DVec2| shift.position(place);

@@ -8,7 +8,7 @@ use crate::world::Cell;
 
 /// What a guard is doing. Times are in steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum State {
+pub(crate) enum State {
     Asleep,
     OnDuty,
     /// Looks towards a place for some time, and then goes there if it `goes`.
@@ -61,7 +61,7 @@ stored! {
 
 /// The parts of a blow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Phase {
+pub(crate) enum Phase {
     /// The warning.
     Windup,
     /// The blow; whether it has hit.
@@ -74,19 +74,19 @@ stored! { enum Phase { 0: Windup, 1: Strike { has_hit }, 2: Recovery } }
 
 /// What a guard knows about the player whom they look for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Quarry {
+pub(crate) struct Quarry {
     /// The index of the player.
-    pub(super) target: usize,
+    pub(crate) target: usize,
     /// Where the player was last perceived.
-    pub(super) position: DVec2,
+    pub(crate) position: DVec2,
     /// The steps since then.
-    pub(super) unseen: u16,
+    pub(crate) unseen: u16,
 }
 
 stored! { struct Quarry { target, position, unseen } }
 
 impl State {
-    pub(super) fn mood(self) -> Mood {
+    pub(crate) fn mood(self) -> Mood {
         match self {
             Self::Asleep => Mood::Asleep,
             Self::OnDuty => Mood::OnDuty,
@@ -99,12 +99,12 @@ impl State {
         }
     }
 
-    pub(super) fn is_down(self) -> bool {
+    pub(crate) fn is_down(self) -> bool {
         matches!(self, Self::Down { .. })
     }
 
     /// Whether the guard follows or strikes a player.
-    pub(super) fn is_alarmed(self) -> bool {
+    pub(crate) fn is_alarmed(self) -> bool {
         matches!(self, Self::Chasing { .. } | Self::Attacking { .. })
     }
 }

@@ -11,13 +11,13 @@ use crate::game::stored::stored;
 use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
 
 /// The highest step down, in cells.
-pub(super) const DROP: f64 = 1.0;
+pub(crate) const DROP: f64 = 1.0;
 /// Going through a closed door takes as long as walking so much farther, in half cells.
 const DOOR: u16 = 6;
 
 /// What guards know about the tiles and the things of a world.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Terrain {
+pub(crate) struct Terrain {
     /// For each tile of the world.
     footings: Vec<Footing>,
     /// One bit for each cell, row by row: whether a thing blocks it or is dangerous there. Empty if
@@ -28,8 +28,8 @@ pub(super) struct Terrain {
 
 /// The floor of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Footing {
-    pub(super) floor: f64,
+pub(crate) struct Footing {
+    pub(crate) floor: f64,
     ceiling: f64,
     kind: FootingKind,
 }
@@ -46,15 +46,15 @@ enum FootingKind {
 
 /// The way in which a kind of guard walks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gait {
-    pub(super) opens_doors: bool,
-    pub(super) height: f64,
+pub(crate) struct Gait {
+    pub(crate) opens_doors: bool,
+    pub(crate) height: f64,
 }
 
 stored! { struct Gait { opens_doors, height } }
 
 impl Terrain {
-    pub(super) fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let crumbles = |id: TileId| {
             let by_weight = world.moving_tiles().iter().filter(|it| it.driver == Driver::Weight);
             by_weight.flat_map(|it| &it.states).any(|&state| state == id)
@@ -67,7 +67,7 @@ impl Terrain {
     }
 
     /// Finds the things that are in the way.
-    pub(super) fn look_at_things(&mut self, world: &World) {
+    pub(crate) fn look_at_things(&mut self, world: &World) {
         self.size = (world.grid().width(), world.grid().height());
         self.things.clear();
         let is_in_the_way =
@@ -84,24 +84,24 @@ impl Terrain {
         }
     }
 
-    pub(super) fn size(&self) -> (u32, u32) {
+    pub(crate) fn size(&self) -> (u32, u32) {
         self.size
     }
 
     /// The floor of `cell`; `None` outside the map and where nobody walks.
-    pub(super) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
+    pub(crate) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
         let footing = self.footing_of(tile(world, cell)?);
         (footing.kind != FootingKind::Blocked).then_some(footing)
     }
 
     /// Whether guards avoid `cell`, where they could stand.
-    pub(super) fn is_hazard(&self, world: &World, cell: Cell) -> bool {
+    pub(crate) fn is_hazard(&self, world: &World, cell: Cell) -> bool {
         let is_hazard = |footing: Footing| footing.kind == FootingKind::Hazard;
         self.footing(world, cell).is_some_and(is_hazard) || self.has_thing(cell)
     }
 
     /// Whether a guard walks from `from` to its neighbour `to`.
-    pub(super) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
+    pub(crate) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
         let to = self.destination(world, gait, to);
         to.is_some_and(|to| self.leads_to(world, gait, &to, from))
     }
@@ -132,12 +132,12 @@ impl Terrain {
     }
 
     /// Whether guards choose to go to `cell`.
-    pub(super) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
+    pub(crate) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
         self.way_through(world, gait, cell).is_some()
     }
 
     /// The floor of `cell`, if guards choose to go there.
-    pub(super) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
+    pub(crate) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
         let footing = self.footing(world, cell)?;
         self.is_entered(gait, &footing, cell).then_some(footing)
     }
@@ -197,7 +197,7 @@ impl Footing {
     }
 
     /// Whether nothing at all has to be considered between this floor and another one.
-    pub(super) fn is_level_with(self, other: Self) -> bool {
+    pub(crate) fn is_level_with(self, other: Self) -> bool {
         self.floor == other.floor
             && self.kind == FootingKind::Free
             && other.kind == FootingKind::Free
@@ -205,14 +205,14 @@ impl Footing {
 }
 
 /// The costs of a search from the goal of a way back to those who walk there.
-pub(super) struct Backwards<'a> {
-    pub(super) terrain: &'a Terrain,
-    pub(super) world: &'a World,
-    pub(super) gait: Gait,
+pub(crate) struct Backwards<'a> {
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) world: &'a World,
+    pub(crate) gait: Gait,
 }
 
 /// A cell that guards walk to from its neighbours.
-pub(super) struct Destination {
+pub(crate) struct Destination {
     cell: Cell,
     tile: TileId,
     footing: Footing,
@@ -258,6 +258,6 @@ fn tile(world: &World, cell: Cell) -> Option<TileId> {
 }
 
 /// The cost of the step between two neighbours, in half cells.
-pub(super) fn cost_between(one: Cell, other: Cell) -> u16 {
+pub(crate) fn cost_between(one: Cell, other: Cell) -> u16 {
     if one.column == other.column || one.row == other.row { STRAIGHT } else { DIAGONAL }
 }

@@ -15,7 +15,7 @@ use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Cell, World};
 
 /// The number of cells that all searches together find in one step.
-pub(super) const MOST_CELLS: usize = 200;
+pub(crate) const MOST_CELLS: usize = 200;
 /// The number of goals at a time.
 const MOST_FIELDS: usize = 12;
 /// The steps after which a search begins anew: that of a goal that could be reached, and that of
@@ -25,7 +25,7 @@ const OLD_IN_VAIN: u64 = 150;
 
 /// The distances from some goals.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Ways {
+pub(crate) struct Ways {
     fields: Vec<Field>,
     /// The number of the present step.
     now: u64,
@@ -77,7 +77,7 @@ impl Stored for Field {
 
 /// The answer to the question for a way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     /// The neighbouring cell to go to.
     Next(Cell),
     /// This is the goal.
@@ -90,13 +90,13 @@ pub(super) enum Way {
 
 impl Ways {
     /// Begins a step of the game.
-    pub(super) fn begin_step(&mut self) {
+    pub(crate) fn begin_step(&mut self) {
         self.now += 1;
         self.cells_left = MOST_CELLS;
     }
 
     /// Advances the clock by `steps` in which nobody asks for a way.
-    pub(super) fn wait(&mut self, steps: u64) {
+    pub(crate) fn wait(&mut self, steps: u64) {
         self.now += steps;
         if steps > 0 {
             self.cells_left = MOST_CELLS;
@@ -104,12 +104,12 @@ impl Ways {
     }
 
     /// Forgets all ways, as when the whole map has changed.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.fields.clear();
     }
 
     /// The next cell on the shortest way from `from` to `goal`.
-    pub(super) fn towards(
+    pub(crate) fn towards(
         &mut self,
         world: &World,
         terrain: &Terrain,
@@ -146,7 +146,7 @@ impl Ways {
     }
 
     /// The cell after `from` on a way that has been found already.
-    pub(super) fn after(
+    pub(crate) fn after(
         &self,
         world: &World,
         terrain: &Terrain,

@@ -12,11 +12,11 @@ use crate::world::{Cell, Rhythm, ThingKind, World};
 const WARNING: u64 = 30;
 const OUT: u64 = 24;
 /// How high they come out, in cells.
-pub(super) const HEIGHT: f64 = 0.4;
+pub(crate) const HEIGHT: f64 = 0.4;
 
 /// All spikes of a level.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(in crate::game) struct Spikes {
+pub(crate) struct Spikes {
     /// In the order of the world's things.
     each: Vec<Spike>,
 }
@@ -54,7 +54,7 @@ stored! { enum Phase { 0: In, 1: Rising, 2: Out } }
 
 impl Spikes {
     /// The spikes of `world`, which show that they are in.
-    pub(in crate::game) fn new(world: &mut World) -> Self {
+    pub(crate) fn new(world: &mut World) -> Self {
         let each: Vec<Spike> = world
             .things()
             .iter()
@@ -72,18 +72,13 @@ impl Spikes {
     }
 
     /// The number of spikes.
-    pub(in crate::game) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.each.len()
     }
 
     /// Shows the spikes as they are in the step `now`, and adds a sound for those that begin to rise.
     /// Returns whether any has changed.
-    pub(in crate::game) fn show(
-        &mut self,
-        world: &mut World,
-        now: u64,
-        sounds: &mut Vec<Sound>,
-    ) -> bool {
+    pub(crate) fn show(&mut self, world: &mut World, now: u64, sounds: &mut Vec<Sound>) -> bool {
         let mut has_changed = false;
         for spike in &mut self.each {
             let phase = spike.rhythm.phase(now);
@@ -99,13 +94,13 @@ impl Spikes {
 
     /// The step in which the spikes in `cell` came out that are out in the step `now`; `None` if
     /// there are none.
-    pub(super) fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
+    pub(crate) fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
         (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
     }
 
     /// The number of steps from `now` in which no spikes change; `None` if there are none.
-    pub(in crate::game) fn quiet_steps(&self, now: u64) -> Option<u64> {
+    pub(crate) fn quiet_steps(&self, now: u64) -> Option<u64> {
         let quiet = self.each.iter().map(|spike| {
             let is_shown = spike.phase == spike.rhythm.phase(now);
             if is_shown { spike.rhythm.steps_left(now) } else { 0 }

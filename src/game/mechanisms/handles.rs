@@ -18,7 +18,7 @@ const NEAR: f64 = 0.4;
 
 /// Something that the player can open, beside doors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::game) enum Handle {
+pub(crate) enum Handle {
     Lever(Cell, SwitchId),
     Flame(Cell),
     /// The secret wall that is the moving cell with that index.
@@ -27,7 +27,7 @@ pub(in crate::game) enum Handle {
 
 impl Game {
     /// The handle in front of the player.
-    pub(in crate::game) fn handle_ahead(&self) -> Option<Handle> {
+    pub(crate) fn handle_ahead(&self) -> Option<Handle> {
         if !self.mechanisms.has_handles() {
             return None;
         }
@@ -35,7 +35,7 @@ impl Game {
     }
 
     /// Turns a lever, puts a flame out or lights it, or opens a secret wall.
-    pub(in crate::game) fn use_handle(&mut self, handle: Handle) {
+    pub(crate) fn use_handle(&mut self, handle: Handle) {
         self.revision += 1;
         match handle {
             Handle::Lever(cell, switch) => self.turn_lever(cell, switch),

@@ -10,7 +10,7 @@ const FALLS: u16 = 20;
 
 /// A cell of a [`MovingTile`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MovingCell {
+pub(crate) struct MovingCell {
     cell: Cell,
     /// The index of its moving tile.
     tile: u16,
@@ -28,15 +28,15 @@ stored! { part of MovingCell { progress, cracks, is_driven, is_blocked } level {
 
 /// What a moving cell does in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
-    pub(super) after: MovingCell,
+pub(crate) struct Step {
+    pub(crate) after: MovingCell,
     /// The tile that it shows then, if that changes.
-    pub(super) state: Option<TileId>,
+    pub(crate) state: Option<TileId>,
 }
 
 impl MovingCell {
     /// A cell at rest of the moving tile `tile`.
-    pub(super) fn new(cell: Cell, tile: usize) -> Self {
+    pub(crate) fn new(cell: Cell, tile: usize) -> Self {
         Self {
             cell,
             tile: tile as u16,
@@ -47,46 +47,46 @@ impl MovingCell {
         }
     }
 
-    pub(super) fn cell(&self) -> Cell {
+    pub(crate) fn cell(&self) -> Cell {
         self.cell
     }
 
-    pub(super) fn tile(&self) -> usize {
+    pub(crate) fn tile(&self) -> usize {
         usize::from(self.tile)
     }
 
-    pub(super) fn driver(&self, world: &World) -> Driver {
+    pub(crate) fn driver(&self, world: &World) -> Driver {
         self.moving_tile(world).driver
     }
 
     /// Whether a hand or a weight has set it in motion.
-    pub(super) fn is_driven(&self) -> bool {
+    pub(crate) fn is_driven(&self) -> bool {
         self.is_driven
     }
 
     /// Sets it in motion for good.
-    pub(super) fn drive(&mut self) {
+    pub(crate) fn drive(&mut self) {
         self.is_driven = true;
     }
 
     /// Whether somebody was in the way of its last step, and no tile has moved since.
-    pub(super) fn is_blocked(&self) -> bool {
+    pub(crate) fn is_blocked(&self) -> bool {
         self.is_blocked
     }
 
     /// The same cell, after a step in which somebody was in the way.
     #[must_use]
-    pub(super) fn blocked(self) -> Self {
+    pub(crate) fn blocked(self) -> Self {
         Self { is_blocked: true, ..self }
     }
 
     /// Forgets that somebody was in the way.
-    pub(super) fn try_again(&mut self) {
+    pub(crate) fn try_again(&mut self) {
         self.is_blocked = false;
     }
 
     /// The tile that it shows.
-    pub(super) fn shown(&self, world: &World) -> TileId {
+    pub(crate) fn shown(&self, world: &World) -> TileId {
         let moving = self.moving_tile(world);
         let last = moving.states.len().saturating_sub(1);
         let index = usize::from(self.progress) * last / usize::from(steps(moving, world));
@@ -96,12 +96,12 @@ impl MovingCell {
     }
 
     /// Whether it shows its last state.
-    pub(super) fn is_at_the_end(&self, world: &World) -> bool {
+    pub(crate) fn is_at_the_end(&self, world: &World) -> bool {
         self.progress >= steps(self.moving_tile(world), world)
     }
 
     /// Its next step, towards the end if it `is_driven` and back otherwise; `None` if it rests.
-    pub(super) fn step(self, world: &World, is_driven: bool) -> Option<Step> {
+    pub(crate) fn step(self, world: &World, is_driven: bool) -> Option<Step> {
         let moving = self.moving_tile(world);
         let mut after = Self { is_blocked: false, ..self };
         if moving.driver == Driver::Weight && is_driven && self.cracks < CRACKS {
@@ -117,12 +117,12 @@ impl MovingCell {
     }
 
     /// Whether it has not gone beyond its last state.
-    pub(super) fn is_possible(&self, world: &World) -> bool {
+    pub(crate) fn is_possible(&self, world: &World) -> bool {
         self.cracks <= CRACKS && self.progress <= steps(self.moving_tile(world), world)
     }
 
     /// Its state as a number.
-    pub(super) fn word(&self) -> u64 {
+    pub(crate) fn word(&self) -> u64 {
         let bits = u64::from(self.cracks) << 1 | u64::from(self.is_driven);
         u64::from(self.is_blocked) << 33 | u64::from(self.progress) << 17 | bits
     }

@@ -51,7 +51,7 @@ impl Mechanisms {
     ///
     /// # Errors
     /// If one is beyond its last state.
-    pub(in crate::game) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
+    pub(crate) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
         for moving in &self.moving {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell(), moving.shown(world));

@@ -26,7 +26,7 @@ const NOBODY: Target = Target {
 
 impl Game {
     /// Finds out what guards perceive of the players of a game for several, by slot.
-    pub(in crate::game) fn find_targets(&mut self) {
+    pub(crate) fn find_targets(&mut self) {
         let Some(members) = &mut self.members else { return };
         let mut targets = std::mem::take(&mut members.targets);
         targets.clear();
@@ -40,7 +40,7 @@ impl Game {
     }
 
     /// Finds out who is in the way of the player in turn.
-    pub(in crate::game) fn find_those_in_the_way(&mut self) {
+    pub(crate) fn find_those_in_the_way(&mut self) {
         let Some(members) = &mut self.members else { return };
         if !members.rules.collides {
             return;
@@ -75,12 +75,12 @@ impl Game {
 
 impl Members {
     /// The positions of those who are in the way of the player in turn.
-    pub(in crate::game) fn in_the_way(&self) -> &[DVec2] {
+    pub(crate) fn in_the_way(&self) -> &[DVec2] {
         &self.in_the_way
     }
 
     /// Makes the figures of the players. Returns whether they have changed.
-    pub(in crate::game) fn pose(&mut self, world: &World) -> bool {
+    pub(crate) fn pose(&mut self, world: &World) -> bool {
         let mut figures = std::mem::take(&mut self.figures);
         let mut count = 0;
         let mut has_changed = false;
@@ -104,7 +104,7 @@ impl Members {
     }
 
     /// The figures of the players.
-    pub(in crate::game) fn figures(&self) -> &[Figure] {
+    pub(crate) fn figures(&self) -> &[Figure] {
         &self.figures
     }
 }

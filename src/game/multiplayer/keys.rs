@@ -5,7 +5,7 @@ use crate::world::{Thing, ThingKind};
 
 impl Game {
     /// The worth of the treasure that has been found, by all players together.
-    pub(in crate::game) fn treasure_found(&self) -> u32 {
+    pub(crate) fn treasure_found(&self) -> u32 {
         let Some(members) = self.members.as_deref() else { return self.player.treasure };
         let found = members.each().map(|(index, member)| {
             let player = if members.turn == Some(index) { &self.player } else { &member.player };
@@ -15,7 +15,7 @@ impl Game {
     }
 
     /// Puts the keys of a player back where they were found.
-    pub(super) fn put_keys_back(&mut self, index: usize) {
+    pub(crate) fn put_keys_back(&mut self, index: usize) {
         let Self { members, world, .. } = self;
         let Some(members) = members.as_deref_mut() else { return };
         let Some(member) = members.member_mut(index) else { return };

@@ -14,49 +14,49 @@ use crate::world::{Cell, Figure, SpriteId, Thing};
 
 /// The players of a game for several.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::game) struct Members {
-    pub(super) rules: MultiplayerRules,
+pub(crate) struct Members {
+    pub(crate) rules: MultiplayerRules,
     /// The last slot is taken, if there is any.
-    pub(super) slots: Vec<Option<Member>>,
+    pub(crate) slots: Vec<Option<Member>>,
     /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.
-    pub(super) turn: Option<usize>,
+    pub(crate) turn: Option<usize>,
     /// The worth of the treasure of those who have left.
-    pub(super) treasure_of_the_gone: u32,
+    pub(crate) treasure_of_the_gone: u32,
     /// Where the keys lay at the start.
-    pub(super) keys: Vec<Thing>,
+    pub(crate) keys: Vec<Thing>,
     /// By colour.
-    pub(super) sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
+    pub(crate) sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
     /// The blows of the last step: who has struck whom.
-    pub(super) blows: Vec<(usize, usize)>,
+    pub(crate) blows: Vec<(usize, usize)>,
     /// The memory for what guards perceive, for the positions of those in the way, and for figures.
-    pub(in crate::game) targets: Scratch<Vec<Target>>,
-    pub(super) in_the_way: Scratch<Vec<glam::DVec2>>,
-    pub(super) figures: Vec<Figure>,
+    pub(crate) targets: Scratch<Vec<Target>>,
+    pub(crate) in_the_way: Scratch<Vec<glam::DVec2>>,
+    pub(crate) figures: Vec<Figure>,
 }
 
 /// A player, and what concerns them among others.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Member {
-    pub(super) player: Player,
-    pub(super) color: PlayerColor,
+pub(crate) struct Member {
+    pub(crate) player: Player,
+    pub(crate) color: PlayerColor,
     /// Whether the player is alive and has not reached the exit; it changes between steps.
-    pub(super) is_playing: bool,
-    pub(super) has_won: bool,
+    pub(crate) is_playing: bool,
+    pub(crate) has_won: bool,
     /// What the player wants in this step, and the step that they saw.
-    pub(super) intents: Intents,
-    pub(super) seen: u64,
+    pub(crate) intents: Intents,
+    pub(crate) seen: u64,
     /// The step in which they joined, and the one in which they died or reached the exit.
-    pub(super) joined: u64,
-    pub(super) ended: Option<u64>,
+    pub(crate) joined: u64,
+    pub(crate) ended: Option<u64>,
     /// The last checkpoint; `None` for the start.
-    pub(super) checkpoint: Option<Cell>,
+    pub(crate) checkpoint: Option<Cell>,
     /// The steps for which they lie on the floor, and until they can be struck again.
-    pub(super) stunned: u16,
-    pub(super) spared: u16,
+    pub(crate) stunned: u16,
+    pub(crate) spared: u16,
     /// The steps for which the figure strikes, and how far it has walked, in cells.
-    pub(super) swing: u16,
-    pub(super) walked: f64,
-    pub(super) track: Track,
+    pub(crate) swing: u16,
+    pub(crate) walked: f64,
+    pub(crate) track: Track,
 }
 
 stored! {
@@ -68,38 +68,38 @@ stored! {
 
 impl Member {
     /// Whether the player lies on the floor.
-    pub(super) fn is_down(&self) -> bool {
+    pub(crate) fn is_down(&self) -> bool {
         self.stunned > 0 || self.player.killed_by.is_some()
     }
 }
 
 impl Members {
     /// The member in a slot.
-    pub(super) fn member(&self, index: usize) -> Option<&Member> {
+    pub(crate) fn member(&self, index: usize) -> Option<&Member> {
         self.slots.get(index)?.as_ref()
     }
 
-    pub(super) fn member_mut(&mut self, index: usize) -> Option<&mut Member> {
+    pub(crate) fn member_mut(&mut self, index: usize) -> Option<&mut Member> {
         self.slots.get_mut(index)?.as_mut()
     }
 
     /// The members with the indices of their slots.
-    pub(super) fn each(&self) -> impl Iterator<Item = (usize, &Member)> + Clone {
+    pub(crate) fn each(&self) -> impl Iterator<Item = (usize, &Member)> + Clone {
         let slots = self.slots.iter().enumerate();
         slots.filter_map(|(index, slot)| Some((index, slot.as_ref()?)))
     }
 
-    pub(super) fn each_mut(&mut self) -> impl Iterator<Item = (usize, &mut Member)> {
+    pub(crate) fn each_mut(&mut self) -> impl Iterator<Item = (usize, &mut Member)> {
         let slots = self.slots.iter_mut().enumerate();
         slots.filter_map(|(index, slot)| Some((index, slot.as_mut()?)))
     }
 
     /// The last checkpoint of the player whose turn it is.
-    pub(in crate::game) fn checkpoint(&self) -> Option<Cell> {
+    pub(crate) fn checkpoint(&self) -> Option<Cell> {
         self.member(self.turn?)?.checkpoint
     }
 
-    pub(in crate::game) fn set_checkpoint(&mut self, cell: Cell) {
+    pub(crate) fn set_checkpoint(&mut self, cell: Cell) {
         let turn = self.turn;
         if let Some(member) = turn.and_then(|turn| self.member_mut(turn)) {
             member.checkpoint = Some(cell);
@@ -107,12 +107,12 @@ impl Members {
     }
 
     /// Whether anybody goes on from the checkpoint in `cell`.
-    pub(in crate::game) fn has_checkpoint(&self, cell: Cell) -> bool {
+    pub(crate) fn has_checkpoint(&self, cell: Cell) -> bool {
         self.each().any(|(_, member)| member.checkpoint == Some(cell))
     }
 
     /// What rules depend on, of all players.
-    pub(in crate::game) fn words(&self) -> impl Iterator<Item = u64> {
+    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
         let members = self.each().map(|(index, member)| {
             let counts = member.player.counts;
             let numbers = [
@@ -133,7 +133,7 @@ impl Members {
     }
 
     /// The first free slot.
-    pub(super) fn free_slot(&self) -> Option<usize> {
+    pub(crate) fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
         free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
     }
@@ -141,12 +141,12 @@ impl Members {
 
 impl Game {
     /// The index of the player whose turn it is.
-    pub(in crate::game) fn turn(&self) -> usize {
+    pub(crate) fn turn(&self) -> usize {
         self.members.as_ref().and_then(|members| members.turn).unwrap_or_default()
     }
 
     /// Lets the player in a slot have their turn while `act` runs; does nothing if nobody is there.
-    pub(in crate::game) fn in_turn<T>(
+    pub(crate) fn in_turn<T>(
         &mut self,
         index: usize,
         act: impl FnOnce(&mut Self) -> T,
@@ -167,7 +167,7 @@ impl Game {
     }
 
     /// Lets each player who plays have their turn while `act` runs.
-    pub(in crate::game) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
+    pub(crate) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
         let count = self.members.as_ref().map_or(1, |members| members.slots.len());
         for index in 0..count {
             let is_playing = |it: &Members| it.member(index).is_some_and(|it| it.is_playing);
@@ -189,7 +189,7 @@ impl Game {
 
     /// The players who are alive and have not reached the exit, with their indices, as they were
     /// when the step began.
-    pub(in crate::game) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
+    pub(crate) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
         playing(&self.player, self.members.as_deref())
     }
 
@@ -202,7 +202,7 @@ impl Game {
     }
 
     /// The member whose turn it is.
-    pub(super) fn member_in_turn(&mut self) -> Option<&mut Member> {
+    pub(crate) fn member_in_turn(&mut self) -> Option<&mut Member> {
         let members = self.members.as_deref_mut()?;
         let turn = members.turn?;
         members.member_mut(turn)
@@ -210,7 +210,7 @@ impl Game {
 }
 
 /// [`Game::playing`], of the parts of a game.
-pub(in crate::game) fn playing<'a>(
+pub(crate) fn playing<'a>(
     player: &'a Player,
     members: Option<&'a Members>,
 ) -> impl Iterator<Item = (usize, &'a Player)> + Clone {
@@ -224,7 +224,7 @@ pub(in crate::game) fn playing<'a>(
 }
 
 /// The same, between turns, for what moves them.
-pub(in crate::game) fn playing_mut<'a>(
+pub(crate) fn playing_mut<'a>(
     player: &'a mut Player,
     members: Option<&'a mut Members>,
 ) -> impl Iterator<Item = (usize, &'a mut Player)> {

@@ -18,7 +18,7 @@ const TOUCH: f64 = 0.25;
 
 /// Where a player was in the last steps.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Track([Option<Stand>; STEPS]);
+pub(crate) struct Track([Option<Stand>; STEPS]);
 
 impl Stored for Track {
     fn write(&self, out: &mut Writer) {
@@ -33,10 +33,10 @@ impl Stored for Track {
 
 /// Where a player was in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stand {
-    pub(super) position: DVec2,
+pub(crate) struct Stand {
+    pub(crate) position: DVec2,
     /// The unit vector of the heading.
-    pub(super) facing: DVec2,
+    pub(crate) facing: DVec2,
     feet: f64,
     head: f64,
 }
@@ -46,7 +46,7 @@ stored! { struct Stand { position, facing, feet, head } }
 impl Track {
     /// Records where a player stands at the end of the step `now`; `None` if they do not play.
     /// Returns how far they have moved in that step, in cells.
-    pub(super) fn record(&mut self, now: u64, motion: Option<&Motion>) -> f64 {
+    pub(crate) fn record(&mut self, now: u64, motion: Option<&Motion>) -> f64 {
         let stand = motion.map(Stand::new);
         let before = now.checked_sub(1).and_then(|before| self.at(before).copied());
         self.0[now as usize % STEPS] = stand;
@@ -55,7 +55,7 @@ impl Track {
     }
 
     /// The positions as numbers.
-    pub(super) fn words(&self) -> impl Iterator<Item = u64> {
+    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
         self.0.iter().map(|stand| stand.map_or(0, |stand| hash(1, words_of(stand.position))))
     }
 
@@ -74,7 +74,7 @@ impl Stand {
 
     /// Whether an arm reaches from here to `other`: the bodies are at most `reach` apart, at one
     /// height, with nothing between.
-    pub(super) fn reaches(&self, world: &World, other: &Self, reach: f64) -> bool {
+    pub(crate) fn reaches(&self, world: &World, other: &Self, reach: f64) -> bool {
         let distance = self.position.distance(other.position);
         let overlaps = self.feet < other.head && other.feet < self.head;
         overlaps && distance <= reach && is_in_sight(world, &[], self.middle(), other.middle())
@@ -95,13 +95,13 @@ impl Game {
     }
 
     /// Where a player stood in the step `seen`.
-    pub(super) fn stood(&self, index: usize, seen: u64) -> Option<&Stand> {
+    pub(crate) fn stood(&self, index: usize, seen: u64) -> Option<&Stand> {
         let seen = self.clamp_seen(seen);
         self.members.as_ref()?.member(index)?.track.at(seen)
     }
 
     /// The step that a player saw, as far as it counts.
-    pub(in crate::game) fn clamp_seen(&self, seen: u64) -> u64 {
+    pub(crate) fn clamp_seen(&self, seen: u64) -> u64 {
         seen.clamp(self.steps.saturating_sub(MOST_LAG), self.steps)
     }
 }

@@ -19,7 +19,7 @@ const SWING: u16 = 12;
 impl Game {
     /// The nearest player whom a blow of the player in turn reaches: within `reach` and within the
     /// angle of the cosine `least_cosine` off their view, in the step that they saw.
-    pub(in crate::game) fn player_struck(&self, reach: f64, least_cosine: f64) -> Option<usize> {
+    pub(crate) fn player_struck(&self, reach: f64, least_cosine: f64) -> Option<usize> {
         let members = self.members.as_deref()?;
         let turn = members.turn?;
         let seen = members.member(turn)?.seen;
@@ -41,7 +41,7 @@ impl Game {
     }
 
     /// Does to the player `index` what a blow along `direction` does.
-    pub(in crate::game) fn strike_player(&mut self, index: usize, direction: DVec2) {
+    pub(crate) fn strike_player(&mut self, index: usize, direction: DVec2) {
         let degrees = libm::atan2(-direction.y, -direction.x).to_degrees();
         let Some(members) = self.members.as_deref_mut() else { return };
         let (strikes, turn) = (members.rules.strikes, members.turn);
@@ -56,14 +56,14 @@ impl Game {
     }
 
     /// Lets the figure of the player in turn strike.
-    pub(in crate::game) fn swing(&mut self) {
+    pub(crate) fn swing(&mut self) {
         if let Some(member) = self.member_in_turn() {
             member.swing = SWING;
         }
     }
 
     /// Whether players can strike in levels without guards, too: each other.
-    pub(in crate::game) fn has_blows(&self) -> bool {
+    pub(crate) fn has_blows(&self) -> bool {
         self.multiplayer_rules().is_some_and(|rules| rules.strikes != Strikes::Nobody)
     }
 }

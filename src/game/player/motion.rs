@@ -17,28 +17,28 @@ use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// The player's radius, in cells: a door is twice as wide as the player.
-pub(in crate::game) const RADIUS: Radius =
+pub(crate) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// Walking speed in any direction, in cells per second.
-pub(in crate::game) const WALK: f64 = 3.0;
+pub(crate) const WALK: f64 = 3.0;
 /// Running speed in any direction, in cells per second.
-pub(in crate::game) const RUN: f64 = 5.5;
+pub(crate) const RUN: f64 = 5.5;
 
 /// How fast the player reaches that speed, per second.
 pub(crate) const FRICTION: f64 = 12.0;
 
 /// The height of a step that the player climbs or descends by walking, in cells.
-pub(in crate::game) const STEP_HEIGHT: f64 = 0.35;
+pub(crate) const STEP_HEIGHT: f64 = 0.35;
 /// The height of a jump, in cells.
-pub(in crate::game) const JUMP_HEIGHT: f64 = 0.66;
+pub(crate) const JUMP_HEIGHT: f64 = 0.66;
 
 /// Below this speed the player stands still, in cells or radians per second. An exponential decay
 /// never ends, but a program should be able to sleep when nothing moves.
-pub(in crate::game) const STILL: f64 = 1e-4;
+pub(crate) const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Motion {
+pub(crate) struct Motion {
     body: Body,
     /// The height of the feet, in cells.
     feet: f64,
@@ -56,7 +56,7 @@ stored! { struct Motion { body, feet, rising, stance, pitch_control, wanted_to_j
 
 impl Motion {
     /// Standing still at the start.
-    pub(in crate::game) fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let start = world.start();
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
         Self {
@@ -73,7 +73,7 @@ impl Motion {
     }
 
     /// The same place in another world, standing still; `None` if there is no room.
-    pub(in crate::game) fn placed_in(self, world: &World) -> Option<Self> {
+    pub(crate) fn placed_in(self, world: &World) -> Option<Self> {
         let Cell { column, row } = self.cell();
         let (column, row) = (i64::from(column), i64::from(row));
         if world.grid().tile(column, row).is_none() || world.grid().is_solid(column, row) {
@@ -93,61 +93,57 @@ impl Motion {
     }
 
     /// The player's view of `world`.
-    pub(in crate::game) fn camera(
-        &self,
-        world: &World,
-        field_of_view: FieldOfView,
-    ) -> Option<Camera> {
+    pub(crate) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
         let ceiling = self.room(world).ceiling + self.stance.height();
         let eye = self.feet + self.stance.eye(ceiling - self.feet);
         let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
         Some(camera.with_pitch(self.pitch_control.pitch))
     }
 
-    pub(in crate::game) fn position(&self) -> DVec2 {
+    pub(crate) fn position(&self) -> DVec2 {
         self.body.position
     }
 
-    pub(in crate::game) fn feet(&self) -> f64 {
+    pub(crate) fn feet(&self) -> f64 {
         self.feet
     }
 
     /// The height of the top of the head, in cells.
-    pub(in crate::game) fn head(&self) -> f64 {
+    pub(crate) fn head(&self) -> f64 {
         self.feet + self.stance.height()
     }
 
-    pub(in crate::game) fn heading(&self) -> Heading {
+    pub(crate) fn heading(&self) -> Heading {
         self.heading
     }
 
     /// The same place in a window that has moved.
     #[must_use]
-    pub(in crate::game) fn shifted(self, shift: Shift) -> Self {
+    pub(crate) fn shifted(self, shift: Shift) -> Self {
         let position = shift.position(self.body.position);
         Self { body: Body { position, ..self.body }, ..self }
     }
 
     /// The cell of the player's centre.
-    pub(in crate::game) fn cell(&self) -> Cell {
+    pub(crate) fn cell(&self) -> Cell {
         let DVec2 { x, y } = self.body.position;
         Cell { column: x as u32, row: y as u32 }
     }
 
     /// Whether the player would overlap `cell` if it were solid.
-    pub(in crate::game) fn touches(&self, cell: Cell) -> bool {
+    pub(crate) fn touches(&self, cell: Cell) -> bool {
         overlaps(self.body.position, cell, RADIUS)
     }
 
     /// The direction in which the player wants to walk, as a unit vector; `None` for none.
-    pub(in crate::game) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
+    pub(crate) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
     /// The motion after one step: turned, then ducked, then moved at this part of the usual speed,
     /// with `others` in the way.
     #[must_use]
-    pub(in crate::game) fn stepped(
+    pub(crate) fn stepped(
         self,
         world: &World,
         others: &[DVec2],
@@ -202,12 +198,12 @@ impl Motion {
     }
 
     /// Whether the player stands on the floor.
-    pub(in crate::game) fn stands(&self, world: &World) -> bool {
+    pub(crate) fn stands(&self, world: &World) -> bool {
         self.rising == 0.0 && self.feet == self.room(world).floor
     }
 
     /// The position and the speeds, as bits.
-    pub(in crate::game) fn words(&self) -> [u64; 8] {
+    pub(crate) fn words(&self) -> [u64; 8] {
         let Body { position, velocity } = self.body;
         let direction = self.heading.direction();
         let numbers = [position.x, position.y, velocity.x, velocity.y, self.feet, self.rising];
@@ -216,22 +212,22 @@ impl Motion {
     }
 
     /// The height of the floor here.
-    pub(in crate::game) fn floor(&self, world: &World) -> f64 {
+    pub(crate) fn floor(&self, world: &World) -> f64 {
         self.room(world).floor
     }
 
     /// The height of the body, in cells.
-    pub(in crate::game) fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.stance.height()
     }
 
     /// Whether the body is nearer to ducking than to standing upright.
-    pub(in crate::game) fn is_ducking(&self) -> bool {
+    pub(crate) fn is_ducking(&self) -> bool {
         self.stance.is_ducking()
     }
 
     /// Whether neither walking nor falling.
-    pub(in crate::game) fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.body.velocity == DVec2::ZERO && self.rising == 0.0
     }
 
@@ -250,7 +246,7 @@ impl Motion {
     }
 
     /// Whether the body overlaps nothing solid.
-    pub(in crate::game) fn has_room(&self, world: &World) -> bool {
+    pub(crate) fn has_room(&self, world: &World) -> bool {
         self.place(world).is_clear(self.body.position, RADIUS)
     }
 

@@ -102,12 +102,12 @@ impl Header {
     }
 
     /// Whether a line that begins with `word` belongs to a header.
-    pub(super) fn has(word: &str) -> bool {
+    pub(crate) fn has(word: &str) -> bool {
         WORDS.contains(&word)
     }
 
     /// Reads a line that begins with one of the words.
-    pub(super) fn read_line(&mut self, text: &str, line: Range<usize>) -> Result<(), Fault> {
+    pub(crate) fn read_line(&mut self, text: &str, line: Range<usize>) -> Result<(), Fault> {
         let Some(first) = words(text, line.clone()).into_iter().next() else { return Ok(()) };
         let word = &text[first.clone()];
         let value_place = trimmed(text, first.end..line.end);

@@ -6,7 +6,7 @@ use super::{Header, STAND, Script, Section, Stretch};
 use crate::fault::{Fault, Faults, nearest, quoted};
 use crate::game::{Intent, Intents, STEPS_PER_SECOND, look};
 
-pub(super) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
+pub(crate) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
     let mut reader =
         Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
     let mut start = 0;
@@ -190,7 +190,7 @@ impl Reader<'_> {
 
 /// The intents that words name, as a line of a script does after its duration.
 #[cfg(feature = "serve")]
-pub(super) fn intents(words_of_line: &str) -> Option<Intents> {
+pub(crate) fn intents(words_of_line: &str) -> Option<Intents> {
     let reader = Reader {
         text: words_of_line,
         header: Header::default(),
@@ -240,7 +240,7 @@ fn unknown(word: &str, place: Range<usize>) -> Fault {
 }
 
 /// The words in a part of `text`.
-pub(super) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
+pub(crate) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
     let mut words = Vec::new();
     let mut start = part.start;
     for piece in text[part].split_inclusive(char::is_whitespace) {
@@ -254,7 +254,7 @@ pub(super) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
 }
 
 /// A part of `text` without surrounding blanks.
-pub(super) fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
+pub(crate) fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
     let whole = &text[part.clone()];
     let start = part.start + (whole.len() - whole.trim_start().len());
     start..(part.start + whole.trim_end().len()).max(start)

@@ -8,7 +8,7 @@ use crate::rng::SplitMix64;
 use crate::world::Cell;
 
 /// The cells of a floor before things and guards are placed.
-pub(super) struct Ground {
+pub(crate) struct Ground {
     /// The characters, row by row.
     cells: Vec<Vec<u8>>,
     /// What is in each cell, row by row.
@@ -34,7 +34,7 @@ struct Kind {
 }
 
 impl Ground {
-    pub(super) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
+    pub(crate) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
         let kind = |&character: &u8| Kind {
             is_walkable: tileset.is_walkable(character),
             is_door: tileset.is_walkable(character) && !tileset.is_floor(character),
@@ -54,42 +54,42 @@ impl Ground {
         ground
     }
 
-    pub(super) fn start(&self) -> Cell {
+    pub(crate) fn start(&self) -> Cell {
         self.start
     }
 
     /// The cells that can be reached from the start, the nearest first.
-    pub(super) fn reachable(&self) -> &[Cell] {
+    pub(crate) fn reachable(&self) -> &[Cell] {
         &self.reachable
     }
 
     /// The number of cells that can be reached and have nothing opaque around them.
-    pub(super) fn open_count(&self) -> usize {
+    pub(crate) fn open_count(&self) -> usize {
         self.reachable.iter().filter(|&&cell| self.is_open(cell)).count()
     }
 
     /// The steps from the start to a cell that can be reached; 0 for another one.
-    pub(super) fn distance(&self, cell: Cell) -> u32 {
+    pub(crate) fn distance(&self, cell: Cell) -> u32 {
         self.distances[self.index(cell)].unwrap_or(0)
     }
 
     /// Whether a cell is floor on which nothing stands.
-    pub(super) fn is_bare(&self, cell: Cell) -> bool {
+    pub(crate) fn is_bare(&self, cell: Cell) -> bool {
         self.kind(cell).is_bare
     }
 
     /// The number of cells beside a cell on which one can walk.
-    pub(super) fn exits_of(&self, cell: Cell) -> usize {
+    pub(crate) fn exits_of(&self, cell: Cell) -> usize {
         self.beside(cell).filter(|&cell| self.kind(cell).is_walkable).count()
     }
 
     /// The cells within a number of steps on open floor, and the steps to them, the nearest first.
-    pub(super) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
+    pub(crate) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
         self.ways_from(cell, most, |kind| kind.is_walkable && !kind.is_door)
     }
 
     /// Draws the exit into one of the cells that are farthest from the start.
-    pub(super) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
+    pub(crate) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
         let bare = self.reachable.iter().filter(|&&cell| cell != self.start && self.is_bare(cell));
         let bare: Vec<Cell> = bare.copied().collect();
         let farthest = &bare[bare.len() - bare.len().div_ceil(8)..];
@@ -103,7 +103,7 @@ impl Ground {
 
     /// Whether something that stands in one cell could be seen from another: whether a line from the
     /// middle of one to the middle or the edge of the other meets nothing opaque.
-    pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
+    pub(crate) fn sees(&self, from: Cell, to: Cell) -> bool {
         /// In hundredths of a cell from the middle.
         const BODY: [(i64, i64); 9] = [
             (0, 0),
@@ -135,13 +135,13 @@ impl Ground {
     }
 
     /// The number of columns.
-    pub(super) fn width(&self) -> NonZeroU32 {
+    pub(crate) fn width(&self) -> NonZeroU32 {
         let width = self.cells.first().map_or(0, Vec::len);
         NonZeroU32::new(width as u32).unwrap_or(NonZeroU32::MIN)
     }
 
     /// The characters, row by row.
-    pub(super) fn rows(&self) -> Vec<Vec<u8>> {
+    pub(crate) fn rows(&self) -> Vec<Vec<u8>> {
         self.cells.clone()
     }
 

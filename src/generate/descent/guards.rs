@@ -28,7 +28,7 @@ const KINDS: [GuardKind; 5] = [
 ];
 
 /// Places the guards of a floor, in reading order.
-pub(super) fn place(
+pub(crate) fn place(
     floor: u32,
     ground: &Ground,
     items: &Items,

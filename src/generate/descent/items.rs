@@ -7,7 +7,7 @@ use crate::rng::SplitMix64;
 use crate::world::{Cell, SpriteId, Supply, Thing, ThingKind, World};
 
 /// The items, in the cells where they lie.
-pub(super) struct Items {
+pub(crate) struct Items {
     things: Vec<Thing>,
     /// The exit, where nothing else may be.
     exit: Cell,
@@ -22,7 +22,7 @@ const PLACES: usize = 12;
 
 impl Items {
     /// Places the items of a floor, and adds their sprites to `world`.
-    pub(super) fn place(
+    pub(crate) fn place(
         floor: u32,
         ground: &Ground,
         exit: Cell,
@@ -44,21 +44,21 @@ impl Items {
         Ok(items)
     }
 
-    pub(super) fn things(&self) -> &[Thing] {
+    pub(crate) fn things(&self) -> &[Thing] {
         &self.things
     }
 
     /// Whether an item or the exit is in a cell.
-    pub(super) fn is_in(&self, cell: Cell) -> bool {
+    pub(crate) fn is_in(&self, cell: Cell) -> bool {
         cell == self.exit || self.things.iter().any(|thing| thing.cell == cell)
     }
 
     /// The worth of all treasure.
-    pub(super) fn treasure(&self) -> u32 {
+    pub(crate) fn treasure(&self) -> u32 {
         self.treasures().sum()
     }
 
-    pub(super) fn treasure_count(&self) -> usize {
+    pub(crate) fn treasure_count(&self) -> usize {
         self.treasures().count()
     }
 
@@ -115,7 +115,7 @@ fn list(floor: u32) -> impl Iterator<Item = (ThingKind, bool)> {
 }
 
 /// The distance of two cells along the grid.
-pub(super) fn apart(one: Cell, other: Cell) -> u32 {
+pub(crate) fn apart(one: Cell, other: Cell) -> u32 {
     one.column.abs_diff(other.column) + one.row.abs_diff(other.row)
 }
 

@@ -7,7 +7,7 @@ use crate::rng::SplitMix64;
 const OPENED: usize = 7;
 
 /// Opens walls between the passages of a maze.
-pub(super) fn open(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64) {
+pub(crate) fn open(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64) {
     for row in 1..cells.len().saturating_sub(1) {
         for column in 1..cells[row].len().saturating_sub(1) {
             let bare = |column: usize, row: usize| tileset.is_bare(cells[row][column]);

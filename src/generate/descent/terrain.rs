@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::super::{Chunk, ChunkArea, Terrain};
 
 #[derive(Debug)]
-pub(super) struct FloorTerrain {
+pub(crate) struct FloorTerrain {
     terrain: Arc<dyn Terrain>,
     floor: u32,
 }
@@ -15,7 +15,7 @@ const DIMMING: f64 = 0.05;
 const DARKEST: u32 = 10;
 
 impl FloorTerrain {
-    pub(super) fn new(terrain: Arc<dyn Terrain>, floor: u32) -> Arc<Self> {
+    pub(crate) fn new(terrain: Arc<dyn Terrain>, floor: u32) -> Arc<Self> {
         Arc::new(Self { terrain, floor })
     }
 

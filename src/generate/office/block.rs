@@ -7,7 +7,7 @@ use crate::rng::SplitMix64;
 
 /// The area between the corridors of a chunk.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+pub(crate) struct Block {
     /// Its inside, from west to east, between walls in odd columns. The last wall may be in any
     /// column.
     columns: Range<usize>,
@@ -53,14 +53,14 @@ const GARDEN: Furniture =
 
 impl Block {
     /// The block of a area whose corridors end before `first`, if there is room for it.
-    pub(super) fn of(area: &ChunkArea, first: usize) -> Option<Self> {
+    pub(crate) fn of(area: &ChunkArea, first: usize) -> Option<Self> {
         let inside = |range: &Range<usize>| first + 1..range.end;
         let block = Self { columns: inside(&area.columns), rows: inside(&area.rows) };
         (block.columns.len() >= LEAST && block.rows.len() >= LEAST).then_some(block)
     }
 
     /// Builds the block.
-    pub(super) fn build(self, chunk: &mut Chunk, random: SplitMix64) {
+    pub(crate) fn build(self, chunk: &mut Chunk, random: SplitMix64) {
         let mut building = Building { chunk, random };
         match building.random.below(8) {
             0 => building.hall(&self, HALL),

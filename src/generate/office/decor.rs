@@ -2,7 +2,7 @@
 
 /// The surfaces of an office, as values of a map file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Decor {
+pub(crate) struct Decor {
     wall: &'static str,
     carpet: &'static str,
     corridor: &'static str,
@@ -50,12 +50,12 @@ const DECORS: [Decor; 5] = [
 
 impl Decor {
     /// The decor of a seed. The next seed has another one.
-    pub(super) fn of(seed: u64) -> Self {
+    pub(crate) fn of(seed: u64) -> Self {
         DECORS[(seed % DECORS.len() as u64) as usize]
     }
 
     /// The map file `legend` with this decor: keys above its grid, and tiles below it.
-    pub(super) fn legend(self, legend: &str) -> String {
+    pub(crate) fn legend(self, legend: &str) -> String {
         let Self { wall, carpet, corridor, ceiling, fog } = self;
         format!(
             "floor = {carpet}\nceiling = {ceiling}\nfog = {{ color = \"{fog}\", distance = 16 }}\n\

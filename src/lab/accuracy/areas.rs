@@ -75,7 +75,7 @@ const RANGE: [f64; 2] = [0.1, 255.0];
 
 /// The errors of each filter and each glyph set, in pictures of `world`. Each is timed in `rounds`
 /// rounds.
-pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
+pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     let ways: Vec<Vec<Camera>> = cameras(world, seed).take(CAMERAS).map(way).collect();
     let mut rows = Vec::new();
     for window in WINDOWS {

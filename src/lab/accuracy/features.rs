@@ -35,7 +35,7 @@ struct Feature {
 }
 
 /// The errors of all features. Each is timed in `rounds` rounds.
-pub(super) fn table(world: &World, seed: u64, rounds: usize) -> Table {
+pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     let mut features = rays::features(seed);
     features.extend(solids::features(seed));
     features.extend(scenes::features(seed));

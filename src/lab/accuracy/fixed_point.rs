@@ -14,18 +14,18 @@ const BITS: u32 = 512;
 
 /// A number in fixed point.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Fixed(BigInt);
+pub(crate) struct Fixed(BigInt);
 
 impl Fixed {
     /// A finite double; what is below 2⁻⁵¹² is cut off.
-    pub(super) fn new(value: f64) -> Self {
+    pub(crate) fn new(value: f64) -> Self {
         let (integer, exponent) = integer(value);
         let shift = exponent + i64::from(BITS);
         Self(if shift >= 0 { integer << shift } else { integer >> -shift })
     }
 
     /// The nearest double or the next one to it.
-    pub(super) fn to_f64(&self) -> f64 {
+    pub(crate) fn to_f64(&self) -> f64 {
         let excess = self.0.bits().saturating_sub(64);
         let digits = (self.0.magnitude() >> excess).iter_u64_digits().next().unwrap_or(0);
         let exponent = (excess as i64 - i64::from(BITS)).clamp(-5000, 5000) as i32;
@@ -33,21 +33,21 @@ impl Fixed {
         if self.is_negative() { -magnitude } else { magnitude }
     }
 
-    pub(super) fn is_negative(&self) -> bool {
+    pub(crate) fn is_negative(&self) -> bool {
         self.0.sign() == Sign::Minus
     }
 
-    pub(super) fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.0.sign() == Sign::NoSign
     }
 
     /// The square root of a number that is not negative.
-    pub(super) fn square_root(&self) -> Self {
+    pub(crate) fn square_root(&self) -> Self {
         Self((&self.0 << BITS).sqrt())
     }
 
     /// The relative error of a finite `value`, or the absolute one where this number is 0.
-    pub(super) fn relative_error(&self, value: f64) -> f64 {
+    pub(crate) fn relative_error(&self, value: f64) -> f64 {
         let difference = &Self::new(value) - self;
         let share = if self.is_zero() { difference } else { &difference / self };
         share.to_f64().abs()
@@ -55,7 +55,7 @@ impl Fixed {
 
     /// e to the power of minus this number, which is not negative: the sum of the series at a number
     /// below 2⁻⁸, squared as often as that was halved.
-    pub(super) fn exponential_of_minus(&self) -> Self {
+    pub(crate) fn exponential_of_minus(&self) -> Self {
         const TERMS: u32 = 60;
         // e^−355 is below 2⁻⁵¹².
         if *self > Self::new(355.0) {

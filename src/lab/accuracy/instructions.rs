@@ -16,7 +16,7 @@ pub const RAYS: usize = 2000;
 const COUNTS: &str = include_str!("instructions/counts");
 
 /// The instructions for a ray of the scene with that name, if they are kept.
-pub(super) fn instructions(scene: &str, method: &Method) -> Option<f64> {
+pub(crate) fn instructions(scene: &str, method: &Method) -> Option<f64> {
     let method = method.to_string();
     COUNTS.lines().find_map(|line| {
         let mut words = line.split(' ');

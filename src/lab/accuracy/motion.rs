@@ -34,7 +34,7 @@ const RATES: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// The errors of each integrator at the player's `friction` and at other rates, with the step of a
 /// game with `steps_per_second` and with other steps. Each is timed in `rounds` rounds.
-pub(super) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Table {
+pub(crate) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Table {
     let mut steps = STEPS.to_vec();
     steps.push(1.0 / steps_per_second);
     steps.sort_unstable_by(f64::total_cmp);
@@ -75,7 +75,7 @@ pub(super) fn motions(friction: f64, steps_per_second: f64, rounds: usize) -> Ta
 }
 
 /// The order and the limit of stability of each integrator.
-pub(super) fn orders() -> Table {
+pub(crate) fn orders() -> Table {
     let rows = Integrator::ALL.map(|integrator| {
         let [velocity, place] =
             slopes(integrator).map(|slope| slope.map_or(Value::None, Value::Number));

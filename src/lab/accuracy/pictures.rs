@@ -52,7 +52,7 @@ impl<'world> Gallery<'world> {
 }
 
 /// The cameras of the pictures: the start of `world`, and then random positions.
-pub(super) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
+pub(crate) fn cameras(world: &World, seed: u64) -> impl Iterator<Item = Camera> {
     let mut random = SplitMix64::new(seed);
     let start = world.start_camera(FieldOfView::default());
     std::iter::once(start).chain(std::iter::repeat_with(move || random_camera(world, &mut random)))

@@ -45,7 +45,7 @@ pub fn is_measured(scene: &str, method: &Method) -> bool {
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// The table of `trials`, each timed in `rounds` rounds.
-pub(super) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Table {
+pub(crate) fn scenes(trials: &[Trial], methods: &[Method], rounds: usize) -> Table {
     let rows = trials.iter().flat_map(|trial| {
         let methods: Vec<&Method> =
             methods.iter().filter(|method| is_measured(trial.name(), method)).collect();
@@ -105,7 +105,7 @@ fn keys(scene: &str, method: &Method) -> [String; 3] {
 }
 
 /// The stiff and extreme sets of `trials`, with the default parameter of each method.
-pub(super) fn stiff(trials: impl Iterator<Item = Trial>) -> Table {
+pub(crate) fn stiff(trials: impl Iterator<Item = Trial>) -> Table {
     let methods: Vec<Method> = Method::NAMES.iter().filter_map(|name| name.parse().ok()).collect();
     let rows = trials.map(|trial| {
         let all: Vec<Errors> = methods.iter().map(|method| trial.errors(method)).collect();
@@ -143,7 +143,7 @@ const fn picture(width: u32, height: u32) -> FrameSize {
 const PICTURES_OF_A_SIZE: usize = 4;
 
 /// The wrong pixels in pictures of `world`.
-pub(super) fn pixels(world: &World, methods: &[Method], seed: u64) -> Table {
+pub(crate) fn pixels(world: &World, methods: &[Method], seed: u64) -> Table {
     let rows = PICTURES.iter().flat_map(|&size| {
         let gallery = Gallery::new(world, size, PICTURES_OF_A_SIZE, seed);
         let name = format!("{}x{}", size.width, size.height);

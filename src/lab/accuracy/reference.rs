@@ -108,7 +108,7 @@ impl Rational {
 }
 
 /// A finite double as an integer times a power of two, whose exponent is that of the last place.
-pub(super) fn integer(value: f64) -> (BigInt, i64) {
+pub(crate) fn integer(value: f64) -> (BigInt, i64) {
     const LEADING_ONE: u64 = 1 << 52;
     let biased_exponent = value.abs().to_bits() / LEADING_ONE;
     let fraction = value.to_bits() % LEADING_ONE;

@@ -83,7 +83,7 @@ impl Table {
 
 impl Column {
     /// A column of figures with this name and unit.
-    pub(super) fn new(name: impl Into<String>, unit: &'static str) -> Self {
+    pub(crate) fn new(name: impl Into<String>, unit: &'static str) -> Self {
         Self { name: name.into(), unit }
     }
 

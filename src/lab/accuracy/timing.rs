@@ -26,7 +26,7 @@ impl Timing {
 ///
 /// In each of `rounds` rounds, every candidate is timed once, so that a slow phase of the machine
 /// affects all of them. Without rounds, there are no times.
-pub(super) fn time_in_rounds(
+pub(crate) fn time_in_rounds(
     count: usize,
     rounds: usize,
     mut time: impl FnMut(usize) -> f64,

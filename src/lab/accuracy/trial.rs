@@ -93,7 +93,7 @@ impl Trial {
     }
 
     /// The time of `method` for one ray, in nanoseconds.
-    pub(super) fn nanoseconds(&self, method: &Method) -> f64 {
+    pub(crate) fn nanoseconds(&self, method: &Method) -> f64 {
         method.accept(TimingVisitor { set: &self.set })
     }
 }

@@ -14,9 +14,9 @@ use crate::world::{Cell, Grid};
 /// A ray that starts on the map or at its edge. The larger component of its direction is between
 /// 1/2 and 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ClippedRay {
+pub(crate) struct ClippedRay {
     /// The ray from there on.
-    pub(super) ray: Ray,
+    pub(crate) ray: Ray,
     /// The distance from the original origin, in lengths of the scaled direction.
     skipped: f64,
     /// The exponent of the power of two that divides the direction.
@@ -25,7 +25,7 @@ pub(super) struct ClippedRay {
 
 impl ClippedRay {
     /// `ray` from its first point on the map; `None` if it misses the map.
-    pub(super) fn new(grid: &Grid, ray: &Ray) -> Option<Self> {
+    pub(crate) fn new(grid: &Grid, ray: &Ray) -> Option<Self> {
         let (direction, exponent) = ray.scaled_direction();
         let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
         let origin = ray.origin();
@@ -52,13 +52,13 @@ impl ClippedRay {
 
     /// The hit at a distance that a method found, in lengths of the scaled direction from the
     /// clipped origin, and at a position `along` cells from the north or west end of the face.
-    pub(super) fn hit(&self, cell: Cell, side: Side, distance: f64, along: f64) -> Hit {
+    pub(crate) fn hit(&self, cell: Cell, side: Side, distance: f64, along: f64) -> Hit {
         let t = libm::scalbn(self.skipped + distance, -self.exponent);
         Hit { cell, side, t, u: texture_coordinate(self.ray.direction(), side, along) }
     }
 
     /// The hit at a distance that a method found. The position on the face is computed from it.
-    pub(super) fn hit_at(&self, cell: Cell, side: Side, distance: f64) -> Hit {
+    pub(crate) fn hit_at(&self, cell: Cell, side: Side, distance: f64) -> Hit {
         let point = self.ray.at(distance);
         let along = match side {
             Side::X => point.y - f64::from(cell.row),

@@ -49,7 +49,7 @@ pub const SIZES: [FrameSize; 8] = [
 ];
 
 /// A size that is known to be valid.
-pub(super) const fn size(width: u32, height: u32) -> FrameSize {
+pub(crate) const fn size(width: u32, height: u32) -> FrameSize {
     match (NonZeroU32::new(width), NonZeroU32::new(height)) {
         (Some(width), Some(height)) => FrameSize { width, height },
         _ => panic!("a picture has pixels"),
@@ -211,7 +211,7 @@ fn mean_of_medians<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
 }
 
 /// The duration of `work`, in seconds.
-pub(super) fn seconds(work: impl FnOnce()) -> f64 {
+pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     start.elapsed().as_secs_f64()

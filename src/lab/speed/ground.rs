@@ -18,7 +18,7 @@ pub enum Ground {
 }
 
 /// The number of rays cast in a map.
-pub(super) const RAYS: u32 = 256;
+pub(crate) const RAYS: u32 = 256;
 
 impl Ground {
     /// All grounds.

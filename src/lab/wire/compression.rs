@@ -4,24 +4,24 @@
 use flate2::{Compress, Compression, FlushCompress, Status};
 
 /// The reported levels: the fastest one, and that of OpenSSH.
-pub(super) const LEVELS: [u32; 2] = [1, 6];
+pub(crate) const LEVELS: [u32; 2] = [1, 6];
 /// More bytes than zlib adds to incompressible data.
 const OVERHEAD: usize = 256;
 
 /// A compressed stream.
 #[derive(Debug)]
-pub(super) struct Stream {
+pub(crate) struct Stream {
     compress: Compress,
     output: Vec<u8>,
 }
 
 impl Stream {
-    pub(super) fn new(level: u32) -> Self {
+    pub(crate) fn new(level: u32) -> Self {
         Self { compress: Compress::new(Compression::new(level), true), output: Vec::new() }
     }
 
     /// The number of bytes sent for `frame`; 0 for an empty one.
-    pub(super) fn size_of(&mut self, frame: &[u8]) -> usize {
+    pub(crate) fn size_of(&mut self, frame: &[u8]) -> usize {
         if frame.is_empty() {
             return 0;
         }

@@ -11,7 +11,7 @@ use crate::color::palette::of_256;
 
 /// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Difference {
+pub(crate) struct Difference {
     parts: u64,
     /// The sum of squared differences of the channels.
     squares: u64,
@@ -21,7 +21,7 @@ pub(super) struct Difference {
 
 impl Difference {
     /// The difference of the frame `drawn` to what `encoder` shows.
-    pub(super) fn of(encoder: &dyn Encoder, drawn: &Buffer) -> Self {
+    pub(crate) fn of(encoder: &dyn Encoder, drawn: &Buffer) -> Self {
         let mut difference = Self::default();
         let columns = usize::from(drawn.area.width).max(1);
         for (row, cells) in (0..).zip(drawn.content.chunks(columns)) {
@@ -68,7 +68,7 @@ impl Difference {
         self.largest = self.largest.max(distance);
     }
 
-    pub(super) fn add(&mut self, other: Self) {
+    pub(crate) fn add(&mut self, other: Self) {
         self.parts += other.parts;
         self.squares += other.squares;
         self.distances += other.distances;
@@ -76,16 +76,16 @@ impl Difference {
     }
 
     /// The peak signal-to-noise ratio in decibels; infinite if there is no difference.
-    pub(super) fn signal_to_noise(&self) -> f64 {
+    pub(crate) fn signal_to_noise(&self) -> f64 {
         let mean_square = self.squares as f64 / (3 * self.parts.max(1)) as f64;
         10.0 * libm::log10(255.0 * 255.0 / mean_square)
     }
 
-    pub(super) fn mean_distance(&self) -> f64 {
+    pub(crate) fn mean_distance(&self) -> f64 {
         self.distances / self.parts.max(1) as f64
     }
 
-    pub(super) fn largest_distance(&self) -> f64 {
+    pub(crate) fn largest_distance(&self) -> f64 {
         self.largest
     }
 }

@@ -14,10 +14,10 @@ use crate::color::palette::ColorDepth;
 use crate::terminal::{CellWriter, Fidelity};
 
 /// The changed cells of a frame, in the form of ratatui's backends.
-pub(super) type Changes<'a> = [(u16, u16, &'a Cell)];
+pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];
 
 /// An encoder from cells to bytes.
-pub(super) trait Encoder {
+pub(crate) trait Encoder {
     /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
     /// its backend.
     fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>);
@@ -29,11 +29,11 @@ pub(super) trait Encoder {
 
 /// A writer shared with a backend.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sink(Rc<RefCell<Vec<u8>>>);
+pub(crate) struct Sink(Rc<RefCell<Vec<u8>>>);
 
 impl Sink {
     /// The number of bytes written since the last call.
-    pub(super) fn drain(&self) -> usize {
+    pub(crate) fn drain(&self) -> usize {
         self.0.borrow_mut().drain(..).len()
     }
 }
@@ -57,13 +57,13 @@ fn send<B: Backend>(backend: &mut B, changes: &Changes) {
 }
 
 /// Ratatui's own backend for crossterm.
-pub(super) struct Stock {
+pub(crate) struct Stock {
     sink: Sink,
     backend: CrosstermBackend<Sink>,
 }
 
 impl Stock {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let sink = Sink::default();
         let backend = CrosstermBackend::new(sink.clone());
         Self { sink, backend }
@@ -83,14 +83,14 @@ impl Encoder for Stock {
 
 /// Whether the terminal repeats characters and, in true colour, has its palette defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extensions {
+pub(crate) enum Extensions {
     Off,
     On,
 }
 
 impl Extensions {
     /// The name of Cellcaster's encoder at `fidelity`.
-    pub(super) fn name(self, fidelity: Fidelity) -> String {
+    pub(crate) fn name(self, fidelity: Fidelity) -> String {
         match self {
             Self::Off => fidelity.to_string(),
             Self::On => format!("{fidelity}+"),
@@ -99,13 +99,13 @@ impl Extensions {
 }
 
 /// Cellcaster's encoder.
-pub(super) struct Writer {
+pub(crate) struct Writer {
     sink: Sink,
     backend: CellWriter<Sink>,
 }
 
 impl Writer {
-    pub(super) fn new(
+    pub(crate) fn new(
         size: Size,
         depth: ColorDepth,
         fidelity: Fidelity,

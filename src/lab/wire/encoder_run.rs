@@ -63,7 +63,7 @@ pub struct Seen {
 }
 
 /// An encoder and its sums so far.
-pub(super) struct EncoderRun {
+pub(crate) struct EncoderRun {
     name: String,
     encoder: Box<dyn Encoder>,
     streams: [Stream; 2],
@@ -77,7 +77,7 @@ pub(super) struct EncoderRun {
 }
 
 impl EncoderRun {
-    pub(super) fn new(name: String, encoder: Box<dyn Encoder>, script: &Script) -> Self {
+    pub(crate) fn new(name: String, encoder: Box<dyn Encoder>, script: &Script) -> Self {
         let mut sections: Vec<Sums> = Vec::new();
         let places = script.sections().iter().map(|section| {
             let known = sections.iter().position(|sums| sums.name == section.name);
@@ -101,7 +101,7 @@ impl EncoderRun {
 
     /// Encodes the frame `drawn`, which belongs to this section of the script; the first frame has
     /// no section.
-    pub(super) fn take(&mut self, section: Option<usize>, changes: &Changes, drawn: &Buffer) {
+    pub(crate) fn take(&mut self, section: Option<usize>, changes: &Changes, drawn: &Buffer) {
         self.bytes.clear();
         let start = Instant::now();
         self.encoder.encode(changes, &mut self.bytes);
@@ -127,7 +127,7 @@ impl EncoderRun {
     }
 
     /// The results, relative to those of the first encoder; `None` for the first encoder itself.
-    pub(super) fn finish(self, first: Option<&EncoderReport>) -> EncoderReport {
+    pub(crate) fn finish(self, first: Option<&EncoderReport>) -> EncoderReport {
         let sections = self.sections.into_iter().filter(|sums| !sums.name.is_empty());
         let sections = sections.enumerate();
         EncoderReport {

@@ -25,11 +25,11 @@ const SAMPLES: usize = 2;
 const DEVIATION: [f64; 2] = [2.0, 6.0];
 
 /// A blurred picture.
-pub(super) struct SeenPicture(Vec<Oklab>);
+pub(crate) struct SeenPicture(Vec<Oklab>);
 
 impl SeenPicture {
     /// The view of `camera` in a window of `size` cells.
-    pub(super) fn of_view(world: &World, camera: &Camera, size: Size) -> Self {
+    pub(crate) fn of_view(world: &World, camera: &Camera, size: Size) -> Self {
         let [width, height] = extent(size);
         let side =
             |points: usize| NonZeroU32::new((points * SAMPLES) as u32).unwrap_or(NonZeroU32::MIN);
@@ -52,7 +52,7 @@ impl SeenPicture {
     }
 
     /// Cells, each with a mosaic in the colours of its dots and of the rest.
-    pub(super) fn of_cells(size: Size, cell: impl Fn(u16, u16) -> (Mosaic, [Rgb; 2])) -> Self {
+    pub(crate) fn of_cells(size: Size, cell: impl Fn(u16, u16) -> (Mosaic, [Rgb; 2])) -> Self {
         Self::blurred(size, |x, y| {
             let (mosaic, [dots, rest]) = cell((x / POINTS[0]) as u16, (y / POINTS[1]) as u16);
             let has_dot = mosaic.has((x % POINTS[0] / 2) as u32, (y % POINTS[1]) as u32);
@@ -68,7 +68,7 @@ impl SeenPicture {
     }
 
     /// The mean distance from another picture of the same size, in Oklab.
-    pub(super) fn distance(&self, other: &Self) -> f64 {
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
         let pairs = self.0.iter().zip(&other.0);
         let sum: f64 = pairs.map(|(one, other)| libm::sqrt(one.distance_squared(other))).sum();
         sum / self.0.len().max(1) as f64
@@ -81,7 +81,7 @@ fn extent(size: Size) -> [usize; 2] {
 }
 
 /// A picture of linear light, row by row, blurred by a Gaussian of this deviation across and down.
-pub(super) fn blurred(points: &[[f64; 3]], width: usize, deviation: [f64; 2]) -> Vec<Oklab> {
+pub(crate) fn blurred(points: &[[f64; 3]], width: usize, deviation: [f64; 2]) -> Vec<Oklab> {
     let height = points.len() / width;
     let rows = blur(deviation[0], width, height, |x, y| points[y * width + x]);
     let columns = blur(deviation[1], height, width, |y, x| rows[y * width + x]);

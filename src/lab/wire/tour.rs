@@ -14,7 +14,7 @@ const TOUR: &str = "\
 ";
 
 /// Walks through a level. `show` takes the number and the state of each frame.
-pub(super) fn walk(
+pub(crate) fn walk(
     mut game: Game,
     frames_per_second: NonZeroU32,
     mut show: impl FnMut(usize, &Game),

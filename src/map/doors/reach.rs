@@ -15,7 +15,7 @@ use crate::world::{Cell, Grid};
 
 /// What opens a door.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Opener<'a> {
+pub(crate) enum Opener<'a> {
     /// The key of that name.
     Key(&'a str),
     /// The switch of that name.
@@ -24,43 +24,43 @@ pub(super) enum Opener<'a> {
 
 /// An opener by its number, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct OpenerId(NonZeroU32);
+pub(crate) struct OpenerId(NonZeroU32);
 
 /// The openers of a map, numbered.
 #[derive(Default)]
-pub(super) struct Openers<'a> {
+pub(crate) struct Openers<'a> {
     ids: BTreeMap<Opener<'a>, OpenerId>,
 }
 
 /// A value for each cell of a grid, the default at first.
-pub(super) struct PerCell<T> {
+pub(crate) struct PerCell<T> {
     width: usize,
     values: Vec<T>,
 }
 
 /// A map for the search.
-pub(super) struct Reach<'g> {
+pub(crate) struct Reach<'g> {
     grid: &'g Grid,
     /// Solid cells that can be passed: doors; walls that sink; shapes, which may leave room beside
     /// them; and things that the player may jump over.
-    pub(super) passable: PerCell<bool>,
+    pub(crate) passable: PerCell<bool>,
     /// What opens the door in a cell, if it is locked.
-    pub(super) locks: PerCell<Option<OpenerId>>,
+    pub(crate) locks: PerCell<Option<OpenerId>>,
     /// What the player finds in a cell.
-    pub(super) found: PerCell<Option<OpenerId>>,
+    pub(crate) found: PerCell<Option<OpenerId>>,
     /// The switches of levers, for each cell from which the player can reach them.
-    pub(super) levers: BTreeMap<Cell, Vec<OpenerId>>,
+    pub(crate) levers: BTreeMap<Cell, Vec<OpenerId>>,
 }
 
 impl<'a> Openers<'a> {
     /// The number of `opener`, which is new if it has none yet. There are fewer openers than characters.
-    pub(super) fn id(&mut self, opener: Opener<'a>) -> OpenerId {
+    pub(crate) fn id(&mut self, opener: Opener<'a>) -> OpenerId {
         let new = NonZeroU32::MIN.saturating_add(self.ids.len() as u32);
         *self.ids.entry(opener).or_insert(OpenerId(new))
     }
 
     /// The number of `opener`; `None` if it has none.
-    pub(super) fn known(&self, opener: Opener<'_>) -> Option<OpenerId> {
+    pub(crate) fn known(&self, opener: Opener<'_>) -> Option<OpenerId> {
         self.ids.get(&opener).copied()
     }
 }
@@ -72,7 +72,7 @@ impl<T: Copy + Default> PerCell<T> {
     }
 
     /// Sets the value of `cell`, and returns the one before.
-    pub(super) fn replace(&mut self, cell: Cell, value: T) -> T {
+    pub(crate) fn replace(&mut self, cell: Cell, value: T) -> T {
         let index = self.index(cell);
         mem::replace(&mut self.values[index], value)
     }
@@ -88,13 +88,13 @@ impl<T: Copy + Default> PerCell<T> {
 
 impl<'g> Reach<'g> {
     /// A map of `grid` in which nothing is found.
-    pub(super) fn new(grid: &'g Grid) -> Self {
+    pub(crate) fn new(grid: &'g Grid) -> Self {
         let (locks, found) = (PerCell::new(grid), PerCell::new(grid));
         Self { grid, passable: PerCell::new(grid), locks, found, levers: BTreeMap::new() }
     }
 
     /// What the player can reach from `start`, and what is `given`.
-    pub(super) fn openers_from(
+    pub(crate) fn openers_from(
         &self,
         start: Cell,
         given: BTreeSet<OpenerId>,

@@ -18,7 +18,7 @@ use crate::map::textures::Surface;
 use crate::world::{Heading, Light};
 
 /// Reads one property of a tile or a thing.
-pub(super) fn property<'a>(
+pub(crate) fn property<'a>(
     section: Section,
     entry: &Entry<'a, '_>,
     table: &'a DeTable<'_>,
@@ -70,7 +70,7 @@ pub(super) fn property<'a>(
     }
 }
 
-pub(in crate::map) fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
+pub(crate) fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
     let heading = entry.number().and_then(Heading::from_degrees);
     if heading.is_none() {
         entry.faults.push(
@@ -83,7 +83,7 @@ pub(in crate::map) fn heading(entry: &Entry<'_, '_>) -> Option<Heading> {
 }
 
 /// Reads a light, a number from 0 to 1.
-pub(in crate::map) fn light(entry: &Entry<'_, '_>) -> Option<Light> {
+pub(crate) fn light(entry: &Entry<'_, '_>) -> Option<Light> {
     let light = entry.number().and_then(Light::new);
     if light.is_none() {
         entry.faults.push(

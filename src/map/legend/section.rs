@@ -51,20 +51,20 @@ const OF_THINGS: &[(&str, &str)] = &[
 
 /// One of the two tables that define characters.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in crate::map) enum Section {
+pub(crate) enum Section {
     Tiles,
     Things,
 }
 
 impl Section {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Tiles => "[tiles]",
             Self::Things => "[things]",
         }
     }
 
-    pub(super) fn noun(self) -> &'static str {
+    pub(crate) fn noun(self) -> &'static str {
         match self {
             Self::Tiles => "a tile",
             Self::Things => "a thing",
@@ -117,7 +117,7 @@ impl Section {
     }
 
     /// The keys that belong to another key, with that key.
-    pub(super) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+    pub(crate) fn additions(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let (additions, more): (&[_], &[_]) = match self {
             Self::Tiles => (OF_TILES, &[]),
             Self::Things => (&sprites::ADDITIONS, OF_THINGS),
@@ -125,7 +125,7 @@ impl Section {
         additions.iter().chain(more).copied()
     }
 
-    pub(super) fn example(self) -> &'static str {
+    pub(crate) fn example(self) -> &'static str {
         match self {
             Self::Tiles => r##""#" = { wall = "brick" }"##,
             Self::Things => r#""@" = { start = 0 }"#,
@@ -140,7 +140,7 @@ impl Section {
     }
 
     /// The fault of a key that a tile or a thing does not have.
-    pub(super) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
+    pub(crate) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
         let place = || entry.key_place.clone();
         if let Some((_, plural)) = NOT_YET.iter().find(|(key, _)| *key == entry.key) {
             return Fault::new(place(), format!("{plural} are not supported yet"))

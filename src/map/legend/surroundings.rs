@@ -11,23 +11,23 @@ use crate::world::Light;
 
 /// What a tile has of its own; the rest is the map's.
 #[derive(Default)]
-pub(in crate::map) struct Surroundings<'a> {
-    pub(in crate::map) floor: Option<CoveringText<'a>>,
-    pub(in crate::map) ceiling: Option<CeilingText<'a>>,
-    pub(in crate::map) light: Option<Light>,
-    pub(in crate::map) heights: HeightsText<'a>,
-    pub(in crate::map) mechanism: FloorMechanism<'a>,
+pub(crate) struct Surroundings<'a> {
+    pub(crate) floor: Option<CoveringText<'a>>,
+    pub(crate) ceiling: Option<CeilingText<'a>>,
+    pub(crate) light: Option<Light>,
+    pub(crate) heights: HeightsText<'a>,
+    pub(crate) mechanism: FloorMechanism<'a>,
 }
 
 /// Whether an entry was one of the [`Surroundings`].
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Taken {
+pub(crate) enum Taken {
     Yes,
     No,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         !self.has_covering()
             && self.light.is_none()
             && self.heights.is_empty()
@@ -35,7 +35,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Whether a tile with that meaning can have these.
-    pub(super) fn suit(&self, meaning: &Meaning<'_>) -> bool {
+    pub(crate) fn suit(&self, meaning: &Meaning<'_>) -> bool {
         let is_fixed = self.mechanism.is_empty();
         is_fixed
             && match meaning {
@@ -53,7 +53,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Reads `entry` if it is one of a tile's surroundings.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         section: Section,
         entry: &Entry<'a, '_>,

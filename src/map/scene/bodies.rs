@@ -17,7 +17,7 @@ const MOST_PAIRS: usize = 10_000;
 
 /// The bodies of a map so far.
 #[derive(Debug, Default)]
-pub(super) struct Bodies {
+pub(crate) struct Bodies {
     list: Vec<Body>,
     pairs: usize,
 }
@@ -27,7 +27,7 @@ impl Bodies {
     ///
     /// # Errors
     /// The fault of a body that is one too many.
-    pub(super) fn add(&mut self, body: Body, place: Range<usize>) -> Result<(), Fault> {
+    pub(crate) fn add(&mut self, body: Body, place: Range<usize>) -> Result<(), Fault> {
         if self.list.len() == MOST_BODIES {
             return Err(Fault::new(place, format!("a map has {MOST_BODIES} bodies at most"))
                 .label("this is one too many")
@@ -45,7 +45,7 @@ impl Bodies {
         Ok(())
     }
 
-    pub(super) fn into_list(self) -> Vec<Body> {
+    pub(crate) fn into_list(self) -> Vec<Body> {
         self.list
     }
 }

@@ -16,7 +16,7 @@ use crate::world::Scale;
 
 /// The kinds of body.
 #[derive(Clone, Copy)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Sphere,
     Plane,
     Box,
@@ -33,7 +33,7 @@ struct Said {
 }
 
 impl Kind {
-    pub(super) fn of_key(key: &str) -> Option<Self> {
+    pub(crate) fn of_key(key: &str) -> Option<Self> {
         match key {
             "sphere" => Some(Self::Sphere),
             "plane" => Some(Self::Plane),
@@ -44,7 +44,7 @@ impl Kind {
 
     /// Reads the bodies of `entry` into `bodies`; reports its faults. Nothing is read after a body that
     /// is one too many.
-    pub(super) fn read_all(self, entry: &Entry<'_, '_>, bodies: &mut Bodies) {
+    pub(crate) fn read_all(self, entry: &Entry<'_, '_>, bodies: &mut Bodies) {
         for (table, place) in tables(entry, self.example()) {
             let Some(body) = self.read(entry, table, place.clone()) else { continue };
             if let Err(fault) = bodies.add(body, place) {

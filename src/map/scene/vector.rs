@@ -9,7 +9,7 @@ use crate::fault::{Fault, quoted};
 use crate::space::FARTHEST;
 
 /// Reads the position in `entry`, within the limits of bodies and cameras.
-pub(super) fn place(entry: &Entry<'_, '_>) -> Option<DVec3> {
+pub(crate) fn place(entry: &Entry<'_, '_>) -> Option<DVec3> {
     let place = three(entry, &format!("{} = [2, 0, 0.5]", entry.key))?;
     if place.abs().max_element() <= FARTHEST {
         return Some(place);
@@ -20,7 +20,7 @@ pub(super) fn place(entry: &Entry<'_, '_>) -> Option<DVec3> {
 }
 
 /// Reads the direction in `entry`, of any length.
-pub(super) fn direction(entry: &Entry<'_, '_>, example: &str) -> Option<DVec3> {
+pub(crate) fn direction(entry: &Entry<'_, '_>, example: &str) -> Option<DVec3> {
     let direction = three(entry, example)?;
     if direction.abs().max_element() > 0.0 {
         return Some(direction);

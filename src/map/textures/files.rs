@@ -122,11 +122,11 @@ impl From<io::Error> for TextureFileError {
 }
 
 /// Whether the name is that of a PNG file.
-pub(in crate::map) fn is_png(name: &str) -> bool {
+pub(crate) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// Whether `name` is a file below a folder, and the same one on every system.
-pub(in crate::map) fn stays_inside(name: &str) -> bool {
+pub(crate) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
 }

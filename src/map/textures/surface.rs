@@ -9,14 +9,14 @@ use crate::fault::{Fault, nearest, quoted};
 use crate::world::texture::builtin;
 
 /// A surface as the map writes it.
-pub(in crate::map) struct Surface<'a> {
-    pub(super) source: Source<'a>,
+pub(crate) struct Surface<'a> {
+    pub(crate) source: Source<'a>,
     /// Its place in the map.
-    pub(super) place: Range<usize>,
+    pub(crate) place: Range<usize>,
 }
 
 /// The source of a surface.
-pub(super) enum Source<'a> {
+pub(crate) enum Source<'a> {
     Color(Rgb),
     BuiltIn(&'a str),
     File(&'a str),
@@ -24,28 +24,28 @@ pub(super) enum Source<'a> {
 
 impl<'a> Surface<'a> {
     /// A surface of one colour, for maps that do not name any.
-    pub(in crate::map) fn plain(color: Rgb) -> Self {
+    pub(crate) fn plain(color: Rgb) -> Self {
         Self { source: Source::Color(color), place: 0..0 }
     }
 
     /// The walls that a door is set between.
-    pub(in crate::map) fn jamb() -> Self {
+    pub(crate) fn jamb() -> Self {
         Self::built_in("jamb")
     }
 
     /// The built-in texture of that name.
-    pub(in crate::map) fn built_in(name: &'static str) -> Self {
+    pub(crate) fn built_in(name: &'static str) -> Self {
         Self { source: Source::BuiltIn(name), place: 0..0 }
     }
 
     /// Reads the surface in `entry`; reports a fault where there is none. `example` is a whole entry.
-    pub(in crate::map) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         let text = entry.string(example)?;
         Self::from_source(Source::read(text, entry.value_place.clone()), entry)
     }
 
     /// Reads the panorama in `entry`, as [`Surface::read`].
-    pub(in crate::map) fn read_panorama(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
+    pub(crate) fn read_panorama(entry: &Entry<'a, '_>, example: &str) -> Option<Self> {
         let text = entry.string(example)?;
         let place = entry.value_place.clone();
         let source = if builtin::PANORAMAS.contains(&text) {
@@ -71,7 +71,7 @@ impl<'a> Surface<'a> {
 
 impl Surface<'_> {
     /// Its place in the map.
-    pub(in crate::map) fn place(&self) -> Range<usize> {
+    pub(crate) fn place(&self) -> Range<usize> {
         self.place.clone()
     }
 }

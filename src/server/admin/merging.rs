@@ -4,7 +4,7 @@ use super::{AdminReply, HostInfo, VisitorRow};
 use crate::server::cluster::{OtherHosts, SharedRooms};
 
 /// The answer of this host with those of the others.
-pub(super) fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts) -> AdminReply {
+pub(crate) fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts) -> AdminReply {
     let OtherHosts { replies, silent, seconds, mut remarks } = others;
     let own_name = cluster.own_name().to_owned();
     let reply = match own {

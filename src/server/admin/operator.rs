@@ -25,7 +25,7 @@ pub struct Operator {
     drain: Arc<Notify>,
     /// The other hosts of a cluster.
     #[cfg(feature = "cluster")]
-    pub(super) cluster: Option<SharedRooms>,
+    pub(crate) cluster: Option<SharedRooms>,
 }
 
 /// The longest line that an operator says, in columns.
@@ -53,7 +53,7 @@ impl Operator {
 
     /// Has the operator see the other hosts of a cluster, too.
     #[cfg(feature = "cluster")]
-    pub(in crate::server) fn in_cluster(self, cluster: Option<SharedRooms>) -> Self {
+    pub(crate) fn in_cluster(self, cluster: Option<SharedRooms>) -> Self {
         Self { cluster, ..self }
     }
 
@@ -81,7 +81,7 @@ impl Operator {
     }
 
     /// Does what is asked, on this host.
-    pub(super) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
+    pub(crate) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
         match request {
             AdminRequest::Who => {
                 let host = self.host();

@@ -83,7 +83,7 @@ async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()>
 }
 
 /// Answers the one request of a connection.
-pub(in crate::server) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result<()>
+pub(crate) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result<()>
 where
     S: AsyncRead + AsyncWrite + Unpin,
 {

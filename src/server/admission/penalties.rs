@@ -8,7 +8,7 @@ use crate::store::host::AddressPrefix;
 
 /// The failures of networks that are not forgotten.
 #[derive(Debug)]
-pub(super) struct Penalties {
+pub(crate) struct Penalties {
     networks: BTreeMap<AddressPrefix, Failures>,
     /// The same networks in the order of their last failure or login.
     order: BTreeSet<(Duration, AddressPrefix)>,
@@ -33,24 +33,24 @@ const FREE_SHARE: f64 = 0.5;
 const REFUSED_SHARE: f64 = 0.9;
 
 impl Penalties {
-    pub(super) fn new(failures: u32, forget: Duration) -> Self {
+    pub(crate) fn new(failures: u32, forget: Duration) -> Self {
         let (networks, order) = (BTreeMap::new(), BTreeSet::new());
         Self { networks, order, most: f64::from(failures), forget }
     }
 
-    pub(super) fn set_limits(&mut self, failures: u32, forget: Duration) {
+    pub(crate) fn set_limits(&mut self, failures: u32, forget: Duration) {
         (self.most, self.forget) = (f64::from(failures), forget);
     }
 
     /// The share of a network's connections that is refused.
-    pub(super) fn refused_share(&self, network: AddressPrefix, now: Duration) -> f64 {
+    pub(crate) fn refused_share(&self, network: AddressPrefix, now: Duration) -> f64 {
         let failures = self.networks.get(&network).map_or(0.0, |known| self.left(*known, now));
         let free = self.most * FREE_SHARE;
         ((failures - free) / (self.most - free)).clamp(0.0, 1.0) * REFUSED_SHARE
     }
 
     /// Counts a connection that has ended.
-    pub(super) fn charge(&mut self, network: AddressPrefix, outcome: Outcome, now: Duration) {
+    pub(crate) fn charge(&mut self, network: AddressPrefix, outcome: Outcome, now: Duration) {
         let cost = match outcome {
             Outcome::Served => return,
             Outcome::LeftEarly | Outcome::Displaced => 1.0,
@@ -61,7 +61,7 @@ impl Penalties {
     }
 
     /// Counts a successful login.
-    pub(super) fn repay(&mut self, network: AddressPrefix, now: Duration) {
+    pub(crate) fn repay(&mut self, network: AddressPrefix, now: Duration) {
         if self.networks.contains_key(&network) {
             self.change(network, -1.0, now);
         }

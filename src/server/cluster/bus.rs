@@ -20,7 +20,7 @@ use crate::server::summary::RoomId;
 use crate::store::host::AccountKey;
 
 /// What the hosts of a cluster share.
-pub(super) trait Bus: Send + Sync {
+pub(crate) trait Bus: Send + Sync {
     /// Appends a message to the log of a room, whose last message is number `last`, 0 for none; returns its
     /// number.
     fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
@@ -68,18 +68,18 @@ pub(super) trait Bus: Send + Sync {
 
 /// What is asked of all hosts.
 #[derive(Debug)]
-pub(super) struct HostRequest {
-    pub(super) bytes: Vec<u8>,
+pub(crate) struct HostRequest {
+    pub(crate) bytes: Vec<u8>,
     /// Dropped, it answers nothing.
-    pub(super) reply: oneshot::Sender<Vec<u8>>,
+    pub(crate) reply: oneshot::Sender<Vec<u8>>,
 }
 
 /// The answer of a bus, which comes in bounded time.
-pub(super) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
+pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
 
 /// Why a bus has not done something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BusFault {
+pub(crate) enum BusFault {
     /// The log goes on after the message that was named, or the key has a value. Nothing was kept.
     Refused,
     /// There is no answer. What was to be kept may be kept or not, even later.
@@ -88,7 +88,7 @@ pub(super) enum BusFault {
 
 /// The key of a value.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Key {
+pub(crate) enum Key {
     /// The record of a room.
     Room(RoomId),
     /// The newest checkpoint of a room.

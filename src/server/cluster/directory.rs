@@ -22,7 +22,7 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::{Instant, interval, sleep, timeout};
 
-pub(in crate::server) use self::places::Entrant;
+pub(crate) use self::places::Entrant;
 use super::HostContext;
 use super::bus::{BusFault, Key};
 use super::record::Record;
@@ -49,7 +49,7 @@ const TRIES: usize = 3;
 
 /// The rooms that a host shares. Clones are the same.
 #[derive(Clone)]
-pub(in crate::server) struct SharedRooms(Arc<Inner>);
+pub(crate) struct SharedRooms(Arc<Inner>);
 
 struct Inner {
     context: Arc<HostContext>,
@@ -79,7 +79,7 @@ struct RoomHandle {
 
 impl SharedRooms {
     /// Starts the directory on the current runtime.
-    pub(super) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
+    pub(crate) fn new(context: Arc<HostContext>, rooms: Rooms, standing: Vec<RoomWish>) -> Self {
         let (standing, records) = (Mutex::new(standing), Mutex::default());
         let shared = Self(Arc::new(Inner {
             context,
@@ -97,7 +97,7 @@ impl SharedRooms {
     }
 
     /// Opens a room, and joins it.
-    pub(in crate::server) async fn open(
+    pub(crate) async fn open(
         &self,
         wish: &RoomWish,
         visitor: &Entrant,
@@ -116,11 +116,7 @@ impl SharedRooms {
     }
 
     /// Joins a room.
-    pub(in crate::server) async fn enter(
-        &self,
-        id: RoomId,
-        visitor: &Entrant,
-    ) -> Result<Place, RoomRefusal> {
+    pub(crate) async fn enter(&self, id: RoomId, visitor: &Entrant) -> Result<Place, RoomRefusal> {
         let mode = locked(&self.0.records, |it| it.get(&id).map(|it| it.record.header.mode));
         if mode == Some(Mode::Alone) {
             return Err(RoomRefusal::Alone);
@@ -129,7 +125,7 @@ impl SharedRooms {
     }
 
     /// Watches a room.
-    pub(in crate::server) async fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
+    pub(crate) async fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
         let handle = self.handle(id).await?;
         if handle.watchers.fetch_add(1, Ordering::AcqRel) >= self.0.rooms.limits().most_watchers {
             handle.watchers.fetch_sub(1, Ordering::AcqRel);
@@ -139,14 +135,14 @@ impl SharedRooms {
     }
 
     /// Replaces what the host allows.
-    pub(in crate::server) fn set_limits(&self, mut limits: RoomLimits) {
+    pub(crate) fn set_limits(&self, mut limits: RoomLimits) {
         let standing = std::mem::take(&mut limits.standing);
         locked(&self.0.standing, |it| *it = standing);
         self.0.rooms.set_limits(limits);
     }
 
     /// Hands all rooms over to the other hosts, of which this one is none any more.
-    pub(in crate::server) async fn end(&self) {
+    pub(crate) async fn end(&self) {
         self.0.context.ending.send_replace(true);
         let all_ended = async {
             for handle in self.0.replicas.lock().await.values() {
@@ -159,7 +155,7 @@ impl SharedRooms {
 
     /// The snapshot of a room on this host.
     #[cfg(test)]
-    pub(super) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
+    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
         let replicas = self.0.replicas.try_lock().ok()?;
         let handle = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed())?;
         handle.interface.shown.view()

@@ -12,7 +12,7 @@ use tokio::sync::{mpsc, oneshot};
 use crate::store::host::{Lease, Leases, StoreFailure};
 
 /// The time that a lease lasts without being renewed.
-pub(super) const LEASE_TIME: Duration = Duration::from_secs(3);
+pub(crate) const LEASE_TIME: Duration = Duration::from_secs(3);
 /// How long the thread waits for further renewals after the first one.
 const GATHERED: Duration = Duration::from_millis(50);
 /// The most calls that wait: one a second for each room.
@@ -20,15 +20,15 @@ const MOST_CALLS: usize = 4_096;
 
 /// The sender of calls to the thread. Clones send to the same thread.
 #[derive(Clone)]
-pub(super) struct LeaseWorker {
+pub(crate) struct LeaseWorker {
     calls: mpsc::Sender<Call>,
 }
 
 /// The answer to a call; an error if it was not accepted.
-pub(super) type Reply<T> = oneshot::Receiver<Result<T, StoreFailure>>;
+pub(crate) type Reply<T> = oneshot::Receiver<Result<T, StoreFailure>>;
 
 /// What is asked of the leases.
-pub(super) enum Call {
+pub(crate) enum Call {
     Acquire(String, u64, oneshot::Sender<Result<Option<Lease>, StoreFailure>>),
     Renew(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
     Release(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
@@ -37,13 +37,13 @@ pub(super) enum Call {
 
 impl LeaseWorker {
     /// A sender, and the receiver of its calls.
-    pub(super) fn new() -> (Self, mpsc::Receiver<Call>) {
+    pub(crate) fn new() -> (Self, mpsc::Receiver<Call>) {
         let (calls, queue) = mpsc::channel(MOST_CALLS);
         (Self { calls }, queue)
     }
 
     /// Starts the thread, for the host called `host`.
-    pub(super) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
+    pub(crate) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
         let (worker, mut queue) = Self::new();
         thread::Builder::new().name("leases".to_owned()).spawn(move || {
             while let Some(first) = queue.blocking_recv() {
@@ -58,28 +58,28 @@ impl LeaseWorker {
     }
 
     /// Asks for the lease of a room, with an epoch above that of its log.
-    pub(super) fn acquire(&self, room: &str, epoch: u64) -> Reply<Option<Lease>> {
+    pub(crate) fn acquire(&self, room: &str, epoch: u64) -> Reply<Option<Lease>> {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Acquire(room.to_owned(), epoch, reply));
         answer
     }
 
     /// Renews a lease.
-    pub(super) fn renew(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn renew(&self, lease: &Lease) -> Reply<bool> {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Renew(lease.clone(), reply));
         answer
     }
 
     /// Releases a lease.
-    pub(super) fn release(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn release(&self, lease: &Lease) -> Reply<bool> {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Release(lease.clone(), reply));
         answer
     }
 
     /// Ends the lease of a room that is closed.
-    pub(super) fn forget(&self, lease: &Lease) -> Reply<bool> {
+    pub(crate) fn forget(&self, lease: &Lease) -> Reply<bool> {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Forget(lease.clone(), reply));
         answer
@@ -92,7 +92,7 @@ impl LeaseWorker {
 }
 
 /// Does what was asked, and answers: all renewals at once, after the rest.
-pub(super) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, host: &str) {
+pub(crate) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, host: &str) {
     let (mut held, mut replies) = (Vec::new(), Vec::new());
     for call in calls {
         match call {

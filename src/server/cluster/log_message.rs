@@ -23,36 +23,36 @@ use crate::server::room::Entry;
 /// The version of the format of messages, records and checkpoints.
 const FORMAT: u32 = 2;
 /// The most steps of a message: ten seconds.
-pub(super) const MOST_STEPS: u64 = 600;
+pub(crate) const MOST_STEPS: u64 = 600;
 
 /// A message of a room's log.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LogMessage {
+pub(crate) struct LogMessage {
     /// The epoch of the sequencer.
-    pub(super) epoch: u64,
+    pub(crate) epoch: u64,
     /// The number of the message before; 0 for none.
-    pub(super) last: u64,
+    pub(crate) last: u64,
     /// The steps that the room has taken before.
-    pub(super) tick: u64,
+    pub(crate) tick: u64,
     /// The steps that it takes.
-    pub(super) steps: u64,
+    pub(crate) steps: u64,
     /// The checksum of the room after a number of steps.
-    pub(super) check: Option<Check>,
+    pub(crate) check: Option<Check>,
     /// Their steps are counted from the first one of the message.
-    pub(super) entries: Vec<Entry>,
+    pub(crate) entries: Vec<Entry>,
 }
 
 /// The checksum of a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Check {
+pub(crate) struct Check {
     /// The steps that the room has taken.
-    pub(super) tick: u64,
-    pub(super) sum: u64,
+    pub(crate) tick: u64,
+    pub(crate) sum: u64,
 }
 
 /// Why bytes are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unreadable {
+pub(crate) enum Unreadable {
     /// They are of another version.
     OtherVersion,
     Damaged,
@@ -60,7 +60,7 @@ pub(super) enum Unreadable {
 
 impl LogMessage {
     /// The message as bytes.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let Self { epoch, last, tick, steps, check, entries } = self;
         let mut text = format!("{} {epoch} {last} {tick} {steps}", version());
         // Memory accepts every byte.
@@ -75,12 +75,12 @@ impl LogMessage {
     }
 
     /// Whether another message can follow in this one.
-    pub(super) fn has_room(&self, next: &Self) -> bool {
+    pub(crate) fn has_room(&self, next: &Self) -> bool {
         self.steps + next.steps <= MOST_STEPS
     }
 
     /// Appends the steps of the message that follows. Its checksum is left out.
-    pub(super) fn merge(&mut self, next: Self) {
+    pub(crate) fn merge(&mut self, next: Self) {
         let steps = self.steps;
         self.entries
             .extend(next.entries.into_iter().map(|it| Entry { step: it.step + steps, ..it }));
@@ -88,7 +88,7 @@ impl LogMessage {
     }
 
     /// The message of those bytes.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
         let text = str::from_utf8(bytes).map_err(|_| Unreadable::Damaged)?;
         let (head, rest) = text.split_once('\n').ok_or(Unreadable::Damaged)?;
         let (found, numbers) = head.split_once(' ').ok_or(Unreadable::Damaged)?;
@@ -116,12 +116,12 @@ impl LogMessage {
 }
 
 /// Reads a number of messages, steps or epochs; `None` for one that no room reaches.
-pub(super) fn number(word: &str) -> Option<u64> {
+pub(crate) fn number(word: &str) -> Option<u64> {
     word.parse().ok().filter(|number| *number <= MOST_COUNT)
 }
 
 /// The versions of the format and of the rules.
-pub(super) fn version() -> String {
+pub(crate) fn version() -> String {
     format!("{FORMAT}.{RULES_VERSION}")
 }
 

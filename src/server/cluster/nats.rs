@@ -49,7 +49,7 @@ const MOST_MESSAGES: i64 = 20_000;
 const MOST_QUEUED: usize = 1_024;
 
 /// A connection to NATS.
-pub(super) struct NatsBus {
+pub(crate) struct NatsBus {
     client: Client,
     context: Context,
     log: Stream,
@@ -63,7 +63,7 @@ impl NatsBus {
     ///
     /// # Errors
     /// A sentence, which shows no password.
-    pub(super) async fn connect(address: &str) -> Result<Self, String> {
+    pub(crate) async fn connect(address: &str) -> Result<Self, String> {
         let servers: Result<Vec<ServerAddr>, _> = address.split(',').map(str::parse).collect();
         let servers =
             servers.map_err(|_| "the address of NATS is none: nats://HOST:PORT".to_owned())?;

@@ -34,15 +34,15 @@ const MOST_ROWS: usize = 2_000;
 
 /// What other hosts have answered.
 #[derive(Debug, Default)]
-pub(in crate::server) struct OtherHosts {
+pub(crate) struct OtherHosts {
     /// The answers, by the names of the hosts.
-    pub(in crate::server) replies: BTreeMap<String, AdminReply>,
+    pub(crate) replies: BTreeMap<String, AdminReply>,
     /// The hosts that are there and have not answered, by their names.
-    pub(in crate::server) silent: BTreeMap<String, HostInfo>,
+    pub(crate) silent: BTreeMap<String, HostInfo>,
     /// The seconds since each host has announced itself.
-    pub(in crate::server) seconds: BTreeMap<String, u64>,
+    pub(crate) seconds: BTreeMap<String, u64>,
     /// What an operator has to know of the answers.
-    pub(in crate::server) remarks: Vec<String>,
+    pub(crate) remarks: Vec<String>,
 }
 
 /// What a host asks the others.
@@ -61,12 +61,12 @@ struct HostAnswer {
 
 impl SharedRooms {
     /// The name of this host among all that there ever were.
-    pub(in crate::server) fn own_name(&self) -> &str {
+    pub(crate) fn own_name(&self) -> &str {
         &self.context().notice.name
     }
 
     /// What this host says of itself.
-    pub(in crate::server) fn own_info(&self) -> HostInfo {
+    pub(crate) fn own_info(&self) -> HostInfo {
         let context = self.context();
         HostInfo {
             visitors: context.visitors.count(),
@@ -77,7 +77,7 @@ impl SharedRooms {
     }
 
     /// Asks all other hosts.
-    pub(in crate::server) async fn ask_others(&self, request: &AdminRequest) -> OtherHosts {
+    pub(crate) async fn ask_others(&self, request: &AdminRequest) -> OtherHosts {
         let context = self.context();
         let question = Question { from: self.own_name().to_owned(), request: request.clone() };
         let question = serde_json::to_vec(&question).unwrap_or_default();
@@ -112,7 +112,7 @@ impl SharedRooms {
 
     /// How the maps of a host differ from those of this one: a sentence. `None` if they do not, or if the host did not
     /// answer.
-    pub(in crate::server) fn map_difference(&self, host: &HostInfo) -> Option<String> {
+    pub(crate) fn map_difference(&self, host: &HostInfo) -> Option<String> {
         let own = self.context().catalog.map_keys().collect();
         let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
         let difference = difference(&own, &theirs)?;
@@ -121,7 +121,7 @@ impl SharedRooms {
     }
 
     /// Warns once of hosts whose maps differ from those of this one, which has just been started.
-    pub(super) async fn compare_maps(self) {
+    pub(crate) async fn compare_maps(self) {
         sleep(PAUSE).await;
         let others = self.ask_others(&AdminRequest::Hosts).await;
         let hosts = others.replies.into_values().filter_map(|reply| match reply {
@@ -134,7 +134,7 @@ impl SharedRooms {
     }
 
     /// Answers what other hosts ask, again and again.
-    pub(in crate::server) async fn answer_others(
+    pub(crate) async fn answer_others(
         self,
         answer: impl Fn(&AdminRequest) -> AdminReply + Send + Sync,
     ) {

@@ -27,7 +27,7 @@ use crate::server::room::{Command, Entry, MemberId, NAME_COLUMNS};
 
 /// A broadcast to the replicas of a room.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum PeerMessage {
+pub(crate) enum PeerMessage {
     /// A message that the log has, with its number.
     Appended(u64, LogMessage),
     /// Commands of the members on a host that is not the sequencer.
@@ -50,7 +50,7 @@ pub(super) enum PeerMessage {
 
 impl PeerMessage {
     /// The message as bytes.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
         match self {
             Self::Appended(number, message) => {
                 let mut bytes = format!("appended {number}\n").into_bytes();
@@ -85,7 +85,7 @@ impl PeerMessage {
     }
 
     /// Reads the bytes of a message.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unreadable> {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         let rest = bytes.get(line.len() + 1..).unwrap_or_default();
         let line = str::from_utf8(line).map_err(|_| Unreadable::Damaged)?;

@@ -21,24 +21,24 @@ use crate::server::summary::{RoomId, RoomSummary};
 
 /// The record of a room.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Record {
+pub(crate) struct Record {
     /// Whether the room is always there.
-    pub(super) stands: bool,
+    pub(crate) stands: bool,
     /// Whether a host runs it.
-    pub(super) is_running: bool,
+    pub(crate) is_running: bool,
     /// The number of records that were put so far, which grows while a host runs the room.
-    pub(super) heartbeat: u64,
+    pub(crate) heartbeat: u64,
     phase: Phase,
     names: Arc<[Line]>,
     /// The level of the present round.
     level: String,
     /// The header with which the log begins, as long as there is no checkpoint.
-    pub(super) header: Header,
+    pub(crate) header: Header,
 }
 
 impl Record {
     /// That of a room that nobody has entered yet.
-    pub(super) fn new(header: Header, stands: bool) -> Self {
+    pub(crate) fn new(header: Header, stands: bool) -> Self {
         let (names, level) = (Arc::from([]), header.level.clone());
         Self {
             stands,
@@ -52,19 +52,19 @@ impl Record {
     }
 
     /// The next one, of the room as it is.
-    pub(super) fn next(self, room: &Room, is_running: bool) -> Self {
+    pub(crate) fn next(self, room: &Room, is_running: bool) -> Self {
         let (phase, names) = (room.phase(), room.names().cloned().collect());
         let level = room.header().level.clone();
         Self { is_running, heartbeat: self.heartbeat + 1, phase, names, level, ..self }
     }
 
     /// The level of the present round.
-    pub(super) fn level(&self) -> &str {
+    pub(crate) fn level(&self) -> &str {
         &self.level
     }
 
     /// The room as lobbies show it, without those who watch.
-    pub(super) fn summary(&self, id: RoomId) -> RoomSummary {
+    pub(crate) fn summary(&self, id: RoomId) -> RoomSummary {
         RoomSummary {
             id,
             level: self.level.clone(),
@@ -77,7 +77,7 @@ impl Record {
     }
 
     /// The record as bytes.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let stands = if self.stands { "standing" } else { "opened" };
         let running = if self.is_running { "running" } else { "idle" };
         let (phase, ends) = match self.phase {
@@ -97,7 +97,7 @@ impl Record {
     }
 
     /// The record of those bytes; `None` if they are none, or of another version.
-    pub(super) fn parse(bytes: &[u8]) -> Option<Self> {
+    pub(crate) fn parse(bytes: &[u8]) -> Option<Self> {
         let mut lines = str::from_utf8(bytes).ok()?.lines().peekable();
         let words: Vec<&str> = lines.next()?.split(' ').collect();
         let [found, stands, running, heartbeat] = words.try_into().ok()?;

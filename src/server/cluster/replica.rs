@@ -36,7 +36,7 @@ use tokio::time::{Instant, sleep_until};
 
 use self::alone::Alone;
 use self::joining::PendingJoin;
-pub(super) use self::joining::{JoinRequest, Wish};
+pub(crate) use self::joining::{JoinRequest, Wish};
 use self::progress::Progress;
 use self::returning::PendingReturn;
 use self::times::{SECOND, Times, is_due};
@@ -53,7 +53,7 @@ use crate::server::summary::RoomId;
 use crate::store::host::Lease;
 
 /// The time from one message of a sequencer to the next.
-pub(super) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
+pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
 /// The steps in it.
 const STEPS: u32 = 2;
 /// The time without messages after which a replica reads the log.
@@ -63,7 +63,7 @@ const LEAST_STAY: Duration = Duration::from_secs(3);
 
 /// A room on one host.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
-pub(super) struct Replica {
+pub(crate) struct Replica {
     id: RoomId,
     context: Arc<HostContext>,
     interface: Arc<RoomInterface>,
@@ -105,18 +105,18 @@ struct Leasing {
 }
 
 /// The parts of a new replica.
-pub(super) struct Beginning {
-    pub(super) id: RoomId,
-    pub(super) record: Record,
-    pub(super) interface: Arc<RoomInterface>,
-    pub(super) watchers: Arc<AtomicUsize>,
-    pub(super) state: RoomState,
-    pub(super) broadcasts: mpsc::Receiver<Vec<u8>>,
-    pub(super) join_requests: mpsc::Receiver<JoinRequest>,
+pub(crate) struct Beginning {
+    pub(crate) id: RoomId,
+    pub(crate) record: Record,
+    pub(crate) interface: Arc<RoomInterface>,
+    pub(crate) watchers: Arc<AtomicUsize>,
+    pub(crate) state: RoomState,
+    pub(crate) broadcasts: mpsc::Receiver<Vec<u8>>,
+    pub(crate) join_requests: mpsc::Receiver<JoinRequest>,
 }
 
 impl Replica {
-    pub(super) fn new(context: Arc<HostContext>, beginning: Beginning) -> Self {
+    pub(crate) fn new(context: Arc<HostContext>, beginning: Beginning) -> Self {
         let Beginning { id, record, interface, watchers, state, broadcasts, join_requests } =
             beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
@@ -149,7 +149,7 @@ impl Replica {
     }
 
     /// Runs the room on this host, as long as it is needed here.
-    pub(super) async fn run(mut self) {
+    pub(crate) async fn run(mut self) {
         // What was appended before it subscribed.
         self.reaches_bus = self.read().await.is_ok();
         let mut next = Instant::now();

@@ -24,7 +24,7 @@ const CHECKED: u64 = STEPS_PER_SECOND as u64;
 const MOST_SUMS: usize = 8;
 
 /// A room, and how far the log is applied to it.
-pub(super) struct RoomState {
+pub(crate) struct RoomState {
     room: Room,
     log: RoundLog,
     /// The number of the last message.
@@ -39,7 +39,7 @@ pub(super) struct RoomState {
 
 /// The position of a message relative to a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Position {
+pub(crate) enum Position {
     /// It is the next one.
     Next,
     /// It was applied.
@@ -52,7 +52,7 @@ pub(super) enum Position {
 
 impl RoomState {
     /// A room that nobody has entered yet. `None` if the catalog has no such level.
-    pub(super) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
+    pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
         Some(Self::with(Room::new(catalog, header)?, [0; 3]))
     }
 
@@ -61,32 +61,32 @@ impl RoomState {
         Self { room, log, number, tick, epoch, sums: VecDeque::new() }
     }
 
-    pub(super) fn room(&self) -> &Room {
+    pub(crate) fn room(&self) -> &Room {
         &self.room
     }
 
     /// The number of the last message.
-    pub(super) fn number(&self) -> u64 {
+    pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
     /// The steps that the room has taken in all rounds.
-    pub(super) fn tick(&self) -> u64 {
+    pub(crate) fn tick(&self) -> u64 {
         self.tick
     }
 
     /// The epoch of the newest message.
-    pub(super) fn epoch(&self) -> u64 {
+    pub(crate) fn epoch(&self) -> u64 {
         self.epoch
     }
 
     /// The newest checksum.
-    pub(super) fn sum(&self) -> Option<Check> {
+    pub(crate) fn sum(&self) -> Option<Check> {
         self.sums.back().copied()
     }
 
     /// The position of message `number`.
-    pub(super) fn position(&self, number: u64, message: &LogMessage) -> Position {
+    pub(crate) fn position(&self, number: u64, message: &LogMessage) -> Position {
         let is_equal = |check: Check| {
             let own = self.sums.iter().find(|own| own.tick == check.tick);
             own.is_none_or(|own| *own == check)
@@ -103,13 +103,13 @@ impl RoomState {
     }
 
     /// Notes the number that the log has given to what was applied last.
-    pub(super) fn set_number(&mut self, number: u64) {
+    pub(crate) fn set_number(&mut self, number: u64) {
         self.number = number;
     }
 
     /// Applies the next message, which has no number as long as the log does not have it. One of an older epoch
     /// than the last changes nothing.
-    pub(super) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
+    pub(crate) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
         let mut all = Changes::default();
         self.number = number.unwrap_or(self.number);
         if message.epoch < self.epoch {
@@ -138,7 +138,7 @@ impl RoomState {
     }
 
     /// The whole state, compressed.
-    pub(super) fn checkpoint(&self) -> Vec<u8> {
+    pub(crate) fn checkpoint(&self) -> Vec<u8> {
         let head = format!("{} {} {}\n", self.number, self.tick, self.epoch);
         let mut encoder = ZlibEncoder::new(head.into_bytes(), Compression::fast());
         // Memory accepts every byte.
@@ -150,7 +150,7 @@ impl RoomState {
     ///
     /// # Errors
     /// A sentence: the bytes are none, or of another version, or of a level that the catalog does not have.
-    pub(super) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
+    pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let damaged = || "the checkpoint is damaged".to_owned();
         let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
         let head = str::from_utf8(&bytes[..end]).map_err(|_| damaged())?;

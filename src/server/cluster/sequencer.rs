@@ -28,7 +28,7 @@ const UNCLAIMED: Duration = Duration::from_secs(4);
 const MOST_ANSWERS: usize = 64;
 
 /// The commands that wait, the members who are claimed, and the message that is being appended.
-pub(super) struct ClusterSequencer {
+pub(crate) struct ClusterSequencer {
     lease: Lease,
     inbox: Inbox,
     /// When each member was claimed last.
@@ -62,7 +62,7 @@ struct Joining {
 impl ClusterSequencer {
     /// The sequencer of an epoch whose first message is still to be appended. Commands until then are lost: the
     /// predecessor may still append messages that change who is in the room.
-    pub(super) fn new(lease: Lease, state: &RoomState) -> Self {
+    pub(crate) fn new(lease: Lease, state: &RoomState) -> Self {
         let room = state.room();
         let inbox = Inbox::new(room.header().mode, room.next_member());
         let mut sequencer = Self {
@@ -81,16 +81,16 @@ impl ClusterSequencer {
         sequencer
     }
 
-    pub(super) fn lease(&self) -> &Lease {
+    pub(crate) fn lease(&self) -> &Lease {
         &self.lease
     }
 
-    pub(super) fn epoch(&self) -> u64 {
+    pub(crate) fn epoch(&self) -> u64 {
         self.lease.epoch()
     }
 
     /// The message that is being appended; otherwise the next one, of `steps` steps.
-    pub(super) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+    pub(crate) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let message = match self.sending.take() {
             Some(sent) if sent.last == state.number() => sent,
             // The predecessor has written before it was fenced off.
@@ -104,13 +104,13 @@ impl ClusterSequencer {
     }
 
     /// Whether a message is being appended.
-    pub(super) fn is_sending(&self) -> bool {
+    pub(crate) fn is_sending(&self) -> bool {
         self.sending.is_some()
     }
 
     /// Notes that the log has a message, which was applied to `state`; returns the answers to the requests that it
     /// fulfils.
-    pub(super) fn note(
+    pub(crate) fn note(
         &mut self,
         message: &LogMessage,
         state: &RoomState,
@@ -128,14 +128,14 @@ impl ClusterSequencer {
     }
 
     /// Goes on alone, if the epoch has begun; returns the message that the log may have.
-    pub(super) fn begin_alone(&mut self) -> Option<LogMessage> {
+    pub(crate) fn begin_alone(&mut self) -> Option<LogMessage> {
         let message = self.sending.take_if(|_| self.is_begun)?;
         self.is_alone = true;
         Some(message)
     }
 
     /// Goes on as usual, once the log has all messages; returns the answers to the requests that they fulfil.
-    pub(super) fn end_alone(&mut self) -> Vec<PeerMessage> {
+    pub(crate) fn end_alone(&mut self) -> Vec<PeerMessage> {
         self.is_alone = false;
         self.answers()
     }
@@ -151,7 +151,7 @@ impl ClusterSequencer {
     }
 
     /// Handles a request to join; returns the answer if it is known.
-    pub(super) fn request_join(
+    pub(crate) fn request_join(
         &mut self,
         token: u64,
         name: &Line,
@@ -177,7 +177,7 @@ impl ClusterSequencer {
     }
 
     /// Takes a command of a member on any host.
-    pub(super) fn command(&mut self, member: MemberId, command: Command, now: Instant) {
+    pub(crate) fn command(&mut self, member: MemberId, command: Command, now: Instant) {
         match command {
             Command::Leave => self.leave(member),
             Command::Away => self.set_away(member, now),
@@ -187,7 +187,7 @@ impl ClusterSequencer {
     }
 
     /// Notes that a host has these members; returns the answers to the requests that are refused for it.
-    pub(super) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
+    pub(crate) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
         for member in members {
             self.claimed.entry(*member).and_modify(|time| *time = now);
         }
@@ -195,7 +195,7 @@ impl ClusterSequencer {
     }
 
     /// Members whom no host claims any more are away.
-    pub(super) fn set_unclaimed_away(&mut self, now: Instant) {
+    pub(crate) fn set_unclaimed_away(&mut self, now: Instant) {
         let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
         let lost: Vec<MemberId> =
             self.claimed.iter().filter(|(_, time)| is_lost(time)).map(|(id, _)| *id).collect();
@@ -205,12 +205,12 @@ impl ClusterSequencer {
     }
 
     /// Whether nobody is in the room, and no message is being appended.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.sending.is_none() && self.inbox.is_empty()
     }
 
     /// Whether the log has all that members have done.
-    pub(super) fn is_settled(&self) -> bool {
+    pub(crate) fn is_settled(&self) -> bool {
         self.sending.is_none() && !self.inbox.has_moves()
     }
 
@@ -251,7 +251,7 @@ impl ClusterSequencer {
     }
 
     /// The next message, of `steps` steps.
-    pub(super) fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+    pub(crate) fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let mut entries = Vec::new();
         let Self { inbox, joining, .. } = self;
         for step in 0..steps {

@@ -25,7 +25,7 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-pub(super) use self::registry::VisitRegistry;
+pub(crate) use self::registry::VisitRegistry;
 use crate::server::admission::counted_address;
 use crate::server::{Refusal, locked};
 use crate::store::host::{
@@ -33,9 +33,9 @@ use crate::store::host::{
 };
 
 /// The time from one announcement of a host to the next.
-pub(super) const ANNOUNCED: Duration = Duration::from_secs(1);
+pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);
 /// The time in which a host that has announced itself is there.
-pub(super) const THERE: Duration = Duration::from_secs(5);
+pub(crate) const THERE: Duration = Duration::from_secs(5);
 /// The time after which a visitor over a limit is counted again.
 const AGAIN: Duration = Duration::from_millis(250);
 /// The most calls that wait.
@@ -43,7 +43,7 @@ const MOST_CALLS: usize = 256;
 
 /// The sender of calls to a thread, since the methods of [`Presence`] block. Clones send to the same thread.
 #[derive(Clone, Debug)]
-pub(in crate::server) struct Visits {
+pub(crate) struct Visits {
     calls: mpsc::Sender<Call>,
     /// The visits that are still to be ended in the database.
     ended: Arc<Mutex<Vec<VisitId>>>,
@@ -51,26 +51,26 @@ pub(in crate::server) struct Visits {
 
 /// A visit that counts on all hosts until it is dropped.
 #[derive(Debug)]
-pub(in crate::server) struct CountedVisit {
+pub(crate) struct CountedVisit {
     ids: Vec<VisitId>,
     visits: Visits,
 }
 
 /// A visit that is to begin, and the most there may be.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::server) struct NewVisit {
+pub(crate) struct NewVisit {
     /// `None` for a guest.
-    pub(in crate::server) key: Option<AccountKey>,
+    pub(crate) key: Option<AccountKey>,
     /// The most visits with the key.
-    pub(in crate::server) per_key: u32,
-    pub(in crate::server) address: IpAddr,
+    pub(crate) per_key: u32,
+    pub(crate) address: IpAddr,
     /// The most visits from the address.
-    pub(in crate::server) per_address: u32,
+    pub(crate) per_address: u32,
 }
 
 /// Why a visit does not begin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::server) enum VisitRefusal {
+pub(crate) enum VisitRefusal {
     /// There are too many, on all hosts together.
     TooMany(Refusal),
     /// The database was not asked, or has not answered.
@@ -79,7 +79,7 @@ pub(in crate::server) enum VisitRefusal {
 
 /// What is asked of the thread.
 #[derive(Debug)]
-pub(super) enum Call {
+pub(crate) enum Call {
     /// To begin a visit; its guard has the sender.
     Begin(NewVisit, Visits, oneshot::Sender<Begun>),
     /// To end what has ended.
@@ -96,20 +96,20 @@ type Begun = Result<Result<CountedVisit, TooMany>, StoreFailure>;
 
 /// A limit that is reached, counting only hosts that have announced themselves in the time `ago`.
 #[derive(Debug)]
-pub(super) struct TooMany {
+pub(crate) struct TooMany {
     reason: Refusal,
     ago: Duration,
 }
 
 impl Visits {
     /// A sender, and the receiver of its calls.
-    pub(super) fn new() -> (Self, mpsc::Receiver<Call>) {
+    pub(crate) fn new() -> (Self, mpsc::Receiver<Call>) {
         let (calls, queue) = mpsc::channel(MOST_CALLS);
         (Self { calls, ended: Arc::default() }, queue)
     }
 
     /// Starts the thread, for the host of `notice`.
-    pub(super) fn start(mut presence: Box<dyn Presence>, notice: HostNotice) -> io::Result<Self> {
+    pub(crate) fn start(mut presence: Box<dyn Presence>, notice: HostNotice) -> io::Result<Self> {
         let (visits, mut queue) = Self::new();
         let mut registry = VisitRegistry::new(notice, &visits);
         thread::Builder::new().name("visits".to_owned()).spawn(move || {
@@ -121,10 +121,7 @@ impl Visits {
     }
 
     /// Begins a visit.
-    pub(in crate::server) async fn begin(
-        &self,
-        new_visit: NewVisit,
-    ) -> Result<CountedVisit, VisitRefusal> {
+    pub(crate) async fn begin(&self, new_visit: NewVisit) -> Result<CountedVisit, VisitRefusal> {
         let came = Instant::now();
         loop {
             let waited = came.elapsed();
@@ -143,19 +140,19 @@ impl Visits {
     }
 
     /// Announces the host with so many visitors.
-    pub(super) fn announce(&self, load: usize) {
+    pub(crate) fn announce(&self, load: usize) {
         self.call(Call::Announce(u32::try_from(load).unwrap_or(u32::MAX)));
     }
 
     /// The hosts that are there; `None` if the database does not say.
-    pub(super) async fn hosts(&self) -> Option<Vec<HostRow>> {
+    pub(crate) async fn hosts(&self) -> Option<Vec<HostRow>> {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Hosts(reply));
         answer.await.ok()?.ok()
     }
 
     /// Forgets this host.
-    pub(super) async fn leave(&self) {
+    pub(crate) async fn leave(&self) {
         let (reply, answer) = oneshot::channel();
         self.call(Call::Leave(reply));
         _ = answer.await;

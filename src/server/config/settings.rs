@@ -5,18 +5,18 @@ use std::time::Duration;
 use super::Config;
 
 /// A setting whose value is a whole number.
-pub(super) struct Setting {
-    pub(super) name: &'static str,
+pub(crate) struct Setting {
+    pub(crate) name: &'static str,
     /// Its description, in lines of a comment.
-    pub(super) meaning: &'static str,
-    pub(super) least: u32,
-    pub(super) most: u32,
-    pub(super) get: fn(&Config) -> u32,
-    pub(super) set: fn(&mut Config, u32),
+    pub(crate) meaning: &'static str,
+    pub(crate) least: u32,
+    pub(crate) most: u32,
+    pub(crate) get: fn(&Config) -> u32,
+    pub(crate) set: fn(&mut Config, u32),
 }
 
 /// The settings in the order of a file.
-pub(super) const SETTINGS: [Setting; 21] = [
+pub(crate) const SETTINGS: [Setting; 21] = [
     Setting {
         name: "connections",
         meaning: "the most visitors at a time who have logged in",

@@ -24,7 +24,7 @@ pub struct StandingRoom(pub(crate) RoomWish);
 
 impl StandingRoom {
     /// The rooms of a host that names none: one to walk about in, and one to play in.
-    pub(super) fn usual() -> Vec<Self> {
+    pub(crate) fn usual() -> Vec<Self> {
         [Mode::Roam, Mode::Tag].map(|mode| Self(in_mode(mode))).into()
     }
 
@@ -83,7 +83,7 @@ fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
 }
 
 /// The standing rooms of an entry `room`; `None` after a fault of the whole list.
-pub(super) fn read(entry: &Entry<'_, '_>) -> Option<Vec<StandingRoom>> {
+pub(crate) fn read(entry: &Entry<'_, '_>) -> Option<Vec<StandingRoom>> {
     const EXAMPLE: &str = "[[room]]";
     let DeValue::Array(list) = entry.value else {
         entry.faults.push(entry.wrong_type("a list of tables", EXAMPLE));

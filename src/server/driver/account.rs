@@ -14,35 +14,35 @@ use crate::store::host::{
 
 /// What the store knows of a visitor.
 #[derive(Debug)]
-pub(super) struct Known {
+pub(crate) struct Known {
     /// The key; `None` for a guest.
-    pub(super) key: Option<AccountKey>,
+    pub(crate) key: Option<AccountKey>,
     /// The account; `None` for a guest, and before the name is chosen.
-    pub(super) account: Option<Account>,
-    pub(super) settings: AccountSettings,
+    pub(crate) account: Option<Account>,
+    pub(crate) settings: AccountSettings,
     /// The name that is offered.
-    pub(super) offer: Name,
+    pub(crate) offer: Name,
 }
 
 /// Names of visitors who have no account, while they are here.
 #[derive(Clone, Debug, Default)]
-pub(super) struct NamesInUse(Arc<Mutex<Vec<Name>>>);
+pub(crate) struct NamesInUse(Arc<Mutex<Vec<Name>>>);
 
 /// A name that is in use until this is dropped.
 #[derive(Debug)]
-pub(super) struct NameInUse {
+pub(crate) struct NameInUse {
     name: Name,
     names: NamesInUse,
 }
 
 /// What a visitor is told whom the store cannot find now.
-pub(super) const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
+pub(crate) const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
 /// What a visitor is told whose name cannot be kept.
 const NOT_NOW: &str = "The host can't keep this now; try again later.";
 
 impl Shared {
     /// What the store knows of a visitor, or a sentence why they may not play.
-    pub(super) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
+    pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
         let key = visitor.key.as_ref().and_then(|key| AccountKey::parse(key.fingerprint()));
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
@@ -87,7 +87,7 @@ impl Shared {
 }
 
 /// The name that a visitor wants, once it is theirs.
-pub(super) fn choose_name(
+pub(crate) fn choose_name(
     store: &mut dyn HostStore,
     origin: &Origin,
     key: Option<AccountKey>,
@@ -129,14 +129,14 @@ fn banned(ban: &Ban) -> String {
 }
 
 /// A name as lines have it.
-pub(super) fn line(name: &Name) -> Line {
+pub(crate) fn line(name: &Name) -> Line {
     // A name is printable, and fits.
     Line::of(name.as_str(), NAME_COLUMNS).unwrap_or_else(|| Line::of("guest", 5).expect("a line"))
 }
 
 impl NamesInUse {
     /// Reserves a name; `None` if somebody uses one that looks like it.
-    pub(super) fn reserve(&self, name: &Name) -> Option<NameInUse> {
+    pub(crate) fn reserve(&self, name: &Name) -> Option<NameInUse> {
         let is_free = locked(&self.0, |names| {
             let is_free = !names.iter().any(|other| other.looks_like(name));
             if is_free {

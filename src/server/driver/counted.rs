@@ -9,7 +9,7 @@ use crate::store::host::AccountKey;
 
 impl Shared {
     /// Counts a visitor on all hosts, or tells why they may not play, and how they depart.
-    pub(super) async fn begin_visit(
+    pub(crate) async fn begin_visit(
         &self,
         visitor: &Visitor,
         key: Option<AccountKey>,

@@ -10,7 +10,7 @@ use crate::server::rooms::RoomLimits;
 
 impl Shared {
     /// Tells the rooms what the host allows.
-    pub(super) fn limited(&self) -> impl Fn(RoomLimits) + Send + use<> {
+    pub(crate) fn limited(&self) -> impl Fn(RoomLimits) + Send + use<> {
         let rooms = self.rooms.clone();
         #[cfg(feature = "cluster")]
         let shared_rooms = self.cluster.clone();
@@ -25,7 +25,7 @@ impl Shared {
 }
 
 /// Tells the rooms what the host allows, whenever the configuration is read again.
-pub(super) async fn follow(
+pub(crate) async fn follow(
     mut config: watch::Receiver<Arc<Config>>,
     set_limits: impl Fn(RoomLimits) + Send + 'static,
 ) {

@@ -21,7 +21,7 @@ const PERIOD: Duration = Duration::from_secs(2);
 const REFUSED_PERIOD: Duration = Duration::from_mins(1);
 
 /// Records what waits, again and again, as long as the host exists.
-pub(super) async fn record_all(shared: Weak<Shared>) {
+pub(crate) async fn record_all(shared: Weak<Shared>) {
     loop {
         let mut refused = 0;
         loop {
@@ -88,7 +88,7 @@ impl Recorder {
     }
 
     /// Leaves everything on the disk when the host ends: results that wait in memory, and the log of the store.
-    pub(super) fn end(&self, store: &mut dyn HostStore) {
+    pub(crate) fn end(&self, store: &mut dyn HostStore) {
         if let Some(waiting) = &self.waiting
             && locked(waiting, WaitingResults::save).is_err()
         {

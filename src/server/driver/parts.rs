@@ -14,18 +14,18 @@ use crate::store::host::{HostStore, WaitingResults};
 
 /// What a [`GameHost`](super::GameHost) is made of.
 pub struct HostParts {
-    pub(super) live: LiveConfig,
-    pub(super) metrics: Arc<Metrics>,
-    pub(super) visitors: Visitors,
-    pub(super) catalog: Catalog,
-    pub(super) logs: Logs,
-    pub(super) load: Load,
-    pub(super) store: StoreWorker,
-    pub(super) waiting: Option<WaitingResults>,
+    pub(crate) live: LiveConfig,
+    pub(crate) metrics: Arc<Metrics>,
+    pub(crate) visitors: Visitors,
+    pub(crate) catalog: Catalog,
+    pub(crate) logs: Logs,
+    pub(crate) load: Load,
+    pub(crate) store: StoreWorker,
+    pub(crate) waiting: Option<WaitingResults>,
     /// Of all chance in rooms.
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
     #[cfg(feature = "cluster")]
-    pub(super) cluster: Option<Cluster>,
+    pub(crate) cluster: Option<Cluster>,
 }
 
 impl HostParts {

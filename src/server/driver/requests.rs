@@ -19,7 +19,7 @@ use crate::store::host::{Account, AccountSettings, Name, Origin};
 use crate::world::Difficulty;
 
 /// What the store has answered.
-pub(super) enum Reply {
+pub(crate) enum Reply {
     /// A name, with the account that has it now; `None` for a guest.
     Named(Name, Result<Option<Account>, String>),
     SessionEvent(SessionEvent),
@@ -34,13 +34,13 @@ pub(super) enum Reply {
 /// The most answers that wait for a session. Further ones are dropped, as those to a flood of wishes.
 const MOST_REPLIES: usize = 16;
 
-pub(super) fn replies() -> (mpsc::Sender<Reply>, mpsc::Receiver<Reply>) {
+pub(crate) fn replies() -> (mpsc::Sender<Reply>, mpsc::Receiver<Reply>) {
     mpsc::channel(MOST_REPLIES)
 }
 
 impl Visit {
     /// Does what the session requests.
-    pub(super) fn run_requests(&mut self) {
+    pub(crate) fn run_requests(&mut self) {
         loop {
             let requests = self.session.requests();
             if requests.is_empty() {
@@ -72,7 +72,7 @@ impl Visit {
     }
 
     /// Records an answer of the store.
-    pub(super) fn hear(&mut self, reply: Reply) {
+    pub(crate) fn hear(&mut self, reply: Reply) {
         let event = match reply {
             Reply::SessionEvent(event) => event,
             Reply::Named(name, Ok(account)) => self.take_name(name, account),
@@ -86,7 +86,7 @@ impl Visit {
     }
 
     /// Has a run verified and recorded.
-    pub(super) fn submit(&mut self, run: FinishedRun) {
+    pub(crate) fn submit(&mut self, run: FinishedRun) {
         let Some(account) = self.account.clone() else {
             let sentence = "A guest's result does not rank: come with a public key.";
             return self.notify(SessionEvent::Result(sentence.to_owned()));
@@ -101,7 +101,7 @@ impl Visit {
         }
     }
 
-    pub(super) fn notify(&mut self, event: SessionEvent) {
+    pub(crate) fn notify(&mut self, event: SessionEvent) {
         let now = self.shared.now();
         self.session.notify(event, now);
     }

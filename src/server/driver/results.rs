@@ -22,17 +22,17 @@ const MOST_ROWS: usize = 100;
 
 /// What replays runs and records them, on the thread of the store.
 #[derive(Clone, Debug)]
-pub(super) struct Recorder {
-    pub(super) catalog: Arc<Catalog>,
-    pub(super) metrics: Arc<Metrics>,
-    pub(super) visitors: Visitors,
+pub(crate) struct Recorder {
+    pub(crate) catalog: Arc<Catalog>,
+    pub(crate) metrics: Arc<Metrics>,
+    pub(crate) visitors: Visitors,
     /// The results that wait for a store that is away or full; `None` where none do.
-    pub(super) waiting: Option<Arc<Mutex<WaitingResults>>>,
+    pub(crate) waiting: Option<Arc<Mutex<WaitingResults>>>,
 }
 
 impl Recorder {
     /// Replays a run of an account and records it; a sentence about it for the player.
-    pub(super) fn record(
+    pub(crate) fn record(
         &self,
         store: &mut dyn HostStore,
         account: &Account,
@@ -61,11 +61,11 @@ impl Recorder {
     }
 
     /// The world of a level.
-    pub(super) fn world(&self, name: &str) -> Option<World> {
+    pub(crate) fn world(&self, name: &str) -> Option<World> {
         self.catalog.world(name).map(|world| World::clone(world))
     }
 
-    pub(super) fn failed(&self, failure: &StoreFailure) {
+    pub(crate) fn failed(&self, failure: &StoreFailure) {
         self.metrics.store_errors.count();
         events::store_failed(failure);
     }
@@ -123,7 +123,7 @@ fn kept(failure: &StoreFailure) -> &'static str {
 }
 
 /// The entries of a board.
-pub(super) fn board(
+pub(crate) fn board(
     store: &mut dyn HostStore,
     level: &str,
     difficulty: Difficulty,
@@ -146,7 +146,7 @@ pub(super) fn board(
 }
 
 /// Steps as minutes and seconds.
-pub(super) fn clock(steps: u64) -> String {
+pub(crate) fn clock(steps: u64) -> String {
     let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

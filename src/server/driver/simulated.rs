@@ -19,25 +19,25 @@ use crate::store::host::HostStore;
 use crate::terminal::Options;
 
 /// A host in simulated time.
-pub(in crate::server) struct Simulated {
+pub(crate) struct Simulated {
     host: GameHost,
 }
 
 /// What a host in simulated time begins with.
-pub(in crate::server) struct Setup {
-    pub(in crate::server) live: LiveConfig,
-    pub(in crate::server) visitors: Visitors,
-    pub(in crate::server) catalog: Catalog,
-    pub(in crate::server) logs: Logs,
-    pub(in crate::server) store: Box<dyn HostStore>,
+pub(crate) struct Setup {
+    pub(crate) live: LiveConfig,
+    pub(crate) visitors: Visitors,
+    pub(crate) catalog: Catalog,
+    pub(crate) logs: Logs,
+    pub(crate) store: Box<dyn HostStore>,
     /// How long the store takes for a call.
-    pub(in crate::server) store_time: Duration,
-    pub(in crate::server) worker: Worker,
-    pub(in crate::server) seed: u64,
+    pub(crate) store_time: Duration,
+    pub(crate) worker: Worker,
+    pub(crate) seed: u64,
 }
 
 /// A visit that runs.
-pub(in crate::server) struct Visiting {
+pub(crate) struct Visiting {
     looks: mpsc::UnboundedSender<Look>,
     task: JoinHandle<u8>,
 }
@@ -46,7 +46,7 @@ type Look = Box<dyn FnOnce(&mut Visit) + Send>;
 
 impl Simulated {
     /// It is to be called within a runtime.
-    pub(in crate::server) fn new(setup: Setup) -> Self {
+    pub(crate) fn new(setup: Setup) -> Self {
         let metrics = Arc::<Metrics>::default();
         let time = setup.store_time;
         let host = GameHost::start(HostParts {
@@ -65,16 +65,16 @@ impl Simulated {
         Self { host }
     }
 
-    pub(in crate::server) fn metrics(&self) -> &Metrics {
+    pub(crate) fn metrics(&self) -> &Metrics {
         &self.host.shared.metrics
     }
 
-    pub(in crate::server) fn rooms(&self) -> &Rooms {
+    pub(crate) fn rooms(&self) -> &Rooms {
         &self.host.shared.rooms
     }
 
     /// Serves a visitor, of whose terminal `change` knows more than their environment tells.
-    pub(in crate::server) fn serve(
+    pub(crate) fn serve(
         &self,
         visitor: Visitor,
         link: Link,
@@ -112,7 +112,7 @@ async fn serve(
 
 impl Visiting {
     /// Looks into the session with the newest snapshot of its room; `None` if it has ended.
-    pub(in crate::server) async fn look<T: Send + 'static>(
+    pub(crate) async fn look<T: Send + 'static>(
         &self,
         look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
     ) -> Option<T> {
@@ -126,7 +126,7 @@ impl Visiting {
         answered.await.ok()
     }
 
-    pub(in crate::server) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.task.is_finished()
     }
 }

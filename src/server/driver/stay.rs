@@ -20,7 +20,7 @@ use crate::server::session::SessionEvent;
 use crate::server::summary::{RoomId, RoomWish};
 
 /// A way into a room.
-pub(super) enum Way {
+pub(crate) enum Way {
     Watch(RoomId),
     Enter(RoomId),
     Open(RoomWish),
@@ -37,7 +37,7 @@ const GONE: &str = "Your place in the room is gone.";
 
 impl Visit {
     /// Enters a room. Only a visitor with a name can be a member.
-    pub(super) fn go(&mut self, way: Way) {
+    pub(crate) fn go(&mut self, way: Way) {
         if !matches!(way, Way::Watch(_)) {
             self.leave();
         }
@@ -70,7 +70,7 @@ impl Visit {
         self.enter(place);
     }
 
-    pub(super) fn enter(&mut self, place: Result<Place, RoomRefusal>) {
+    pub(crate) fn enter(&mut self, place: Result<Place, RoomRefusal>) {
         match place {
             Ok(place) => {
                 #[cfg(feature = "cluster")]
@@ -86,14 +86,14 @@ impl Visit {
     }
 
     /// Leaves the room, and submits what was won in it.
-    pub(super) fn leave(&mut self) {
+    pub(crate) fn leave(&mut self) {
         #[cfg(feature = "cluster")]
         self.give_place_up();
         self.part();
     }
 
     /// Ends the stay in the room, and submits what was won in it. If the server ends, the room keeps the place.
-    pub(super) fn part(&mut self) {
+    pub(crate) fn part(&mut self) {
         let Some(place) = self.place.take() else { return };
         self.presence.set_room(None);
         if let Some(run) = place.finished() {
@@ -102,7 +102,7 @@ impl Visit {
     }
 
     /// The server ends soon.
-    pub(super) fn drain(&mut self, now: Duration) {
+    pub(crate) fn drain(&mut self, now: Duration) {
         let time = self.shared.config.get().drain;
         self.is_draining = true;
         #[cfg(feature = "cluster")]
@@ -116,7 +116,7 @@ impl Visit {
     }
 
     /// What a visitor reads at the end of the server.
-    pub(super) fn last_sentence(&self) -> &'static str {
+    pub(crate) fn last_sentence(&self) -> &'static str {
         if self.can_return() {
             "This server has ended. Connect again, and you are where you were."
         } else {
@@ -133,7 +133,7 @@ impl Visit {
 #[cfg(feature = "cluster")]
 impl Visit {
     /// Takes a visitor with an account back to the room in which their last host has left them.
-    pub(super) fn look_for_place(&mut self) {
+    pub(crate) fn look_for_place(&mut self) {
         let Some(rooms) = self.shared.cluster.clone() else { return };
         let Some(key) = self.account.as_ref().map(|account| account.key) else { return };
         self.is_returning = true;
@@ -147,7 +147,7 @@ impl Visit {
     }
 
     /// Records where a visitor has returned to.
-    pub(super) fn returned(&mut self, place: Result<Place, RoomRefusal>) {
+    pub(crate) fn returned(&mut self, place: Result<Place, RoomRefusal>) {
         if !std::mem::take(&mut self.is_returning) {
             return;
         }

@@ -20,16 +20,16 @@ type Call = Box<dyn FnOnce(&mut dyn HostStore) + Send>;
 const MOST_CALLS: usize = 256;
 
 /// The thread of the store.
-pub(super) struct StoreWorker {
+pub(crate) struct StoreWorker {
     calls: Option<mpsc::Sender<Call>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// The answer to a call. It is an error if the call was not accepted, or has panicked.
-pub(super) type Answer<T> = oneshot::Receiver<T>;
+pub(crate) type Answer<T> = oneshot::Receiver<T>;
 
 impl StoreWorker {
-    pub(super) fn start(mut store: Box<dyn HostStore>) -> io::Result<Self> {
+    pub(crate) fn start(mut store: Box<dyn HostStore>) -> io::Result<Self> {
         let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
         let thread = thread::Builder::new().name("store".to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
@@ -41,7 +41,7 @@ impl StoreWorker {
 
     /// A task that takes `time` for each call.
     #[cfg(test)]
-    pub(super) fn simulated(mut store: Box<dyn HostStore>, time: std::time::Duration) -> Self {
+    pub(crate) fn simulated(mut store: Box<dyn HostStore>, time: std::time::Duration) -> Self {
         let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
@@ -53,7 +53,7 @@ impl StoreWorker {
     }
 
     /// Acts on the store, and answers. The answer is an error if too many calls wait.
-    pub(super) fn call<T: Send + 'static>(
+    pub(crate) fn call<T: Send + 'static>(
         &self,
         act: impl FnOnce(&mut dyn HostStore) -> T + Send + 'static,
     ) -> Answer<T> {
@@ -65,7 +65,7 @@ impl StoreWorker {
     }
 
     /// Acts on the store; returns whether it will, which it does not if too many calls wait.
-    pub(super) fn run(&self, act: impl FnOnce(&mut dyn HostStore) + Send + 'static) -> bool {
+    pub(crate) fn run(&self, act: impl FnOnce(&mut dyn HostStore) + Send + 'static) -> bool {
         let calls = self.calls.as_ref();
         let is_accepted = calls.is_some_and(|calls| calls.try_send(Box::new(act)).is_ok());
         if !is_accepted {

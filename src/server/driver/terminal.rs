@@ -4,7 +4,7 @@ use crate::server::Visitor;
 use crate::terminal::{Options, locale_without_utf8};
 
 /// What is known of a visitor's terminal.
-pub(super) fn options(visitor: &Visitor) -> Options {
+pub(crate) fn options(visitor: &Visitor) -> Options {
     Options {
         is_remote: true,
         is_ascii: ascii_locale(visitor).is_some(),
@@ -14,12 +14,12 @@ pub(super) fn options(visitor: &Visitor) -> Options {
 
 /// The setting of the visitor's locale that restricts them to ASCII. `None` for UTF-8, and if their
 /// client sends no locale.
-pub(super) fn ascii_locale(visitor: &Visitor) -> Option<String> {
+pub(crate) fn ascii_locale(visitor: &Visitor) -> Option<String> {
     locale_without_utf8(|name| variable(visitor, name))
 }
 
 /// A sentence for a visitor whose terminal cannot show the game.
-pub(super) fn refusal(visitor: &Visitor) -> Option<String> {
+pub(crate) fn refusal(visitor: &Visitor) -> Option<String> {
     let term = options(visitor).teletype?;
     Some(format!(
         "TERM is {term}, a terminal that cannot move its cursor, which playing needs. Set it to what \

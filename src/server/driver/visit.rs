@@ -29,38 +29,38 @@ use crate::terminal::Options;
     feature = "cluster",
     expect(clippy::struct_excessive_bools, reason = "each is a state of its own")
 )]
-pub(super) struct Visit {
-    pub(super) shared: Arc<Shared>,
-    pub(super) session: Session,
-    pub(super) key: Option<AccountKey>,
+pub(crate) struct Visit {
+    pub(crate) shared: Arc<Shared>,
+    pub(crate) session: Session,
+    pub(crate) key: Option<AccountKey>,
     /// The address that the visitor connects from.
-    pub(super) address: IpAddr,
-    pub(super) account: Option<Account>,
+    pub(crate) address: IpAddr,
+    pub(crate) account: Option<Account>,
     /// The name that a guest may take without asking.
-    pub(super) offer: Name,
+    pub(crate) offer: Name,
     /// The name, once it is chosen.
-    pub(super) name: Option<Name>,
-    pub(super) presence: Presence,
-    pub(super) guest_name: Option<NameInUse>,
-    pub(super) place: Option<Place>,
-    pub(super) rooms: watch::Receiver<Arc<[RoomSummary]>>,
+    pub(crate) name: Option<Name>,
+    pub(crate) presence: Presence,
+    pub(crate) guest_name: Option<NameInUse>,
+    pub(crate) place: Option<Place>,
+    pub(crate) rooms: watch::Receiver<Arc<[RoomSummary]>>,
     /// Whether the session is told of the rooms.
-    pub(super) in_lobby: bool,
-    pub(super) replies: mpsc::Sender<Reply>,
+    pub(crate) in_lobby: bool,
+    pub(crate) replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
     /// When the session was woken last.
     woken_at: Duration,
     /// When the oldest key came that the frame on its way answers.
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
-    pub(super) ends_at: Option<Duration>,
+    pub(crate) ends_at: Option<Duration>,
     /// Whether a frame is on its way.
     is_sending: bool,
     /// Whether the server ends.
-    pub(super) is_draining: bool,
+    pub(crate) is_draining: bool,
     /// Whether the visitor waits for the place in which they were before.
     #[cfg(feature = "cluster")]
-    pub(super) is_returning: bool,
+    pub(crate) is_returning: bool,
 }
 
 /// What a driver waits for.
@@ -84,7 +84,7 @@ const MOST_WAITING: usize = 64 << 10;
 const MESSAGE_COLUMNS: usize = 200;
 
 impl Visit {
-    pub(super) fn new(
+    pub(crate) fn new(
         shared: Arc<Shared>,
         visitor: &Visitor,
         known: Known,
@@ -146,7 +146,7 @@ impl Visit {
 
     /// Drives the session to its end; returns the exit status. The future may be dropped before, and
     /// the session driven on.
-    pub(super) async fn run(&mut self, link: &mut Link) -> u8 {
+    pub(crate) async fn run(&mut self, link: &mut Link) -> u8 {
         let status = self.drive(link).await;
         if self.is_draining {
             self.part();

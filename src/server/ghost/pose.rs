@@ -8,7 +8,7 @@ use crate::world::{FieldOfView, Figure, Heading, SpriteId};
 /// A pose. Coordinates are rounded to single precision, a few millionths of a cell, and headings to
 /// 65,536ths of a turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pose {
+pub(crate) struct Pose {
     position: [f32; 2],
     feet: f32,
     heading: u16,
@@ -20,7 +20,7 @@ const HEADINGS: f64 = 65_536.0;
 
 impl Pose {
     /// The pose of the player of `game`, who has walked so many cells.
-    pub(super) fn of(game: &Game, walked: f64) -> Self {
+    pub(crate) fn of(game: &Game, walked: f64) -> Self {
         let camera = game.camera(FieldOfView::default());
         let turns = camera.heading.degrees() / 360.0;
         Self {
@@ -33,7 +33,7 @@ impl Pose {
     }
 
     /// The figure in this pose.
-    pub(super) fn figure(self, sprite: SpriteId, opacity: u8) -> Figure {
+    pub(crate) fn figure(self, sprite: SpriteId, opacity: u8) -> Figure {
         let Self { position, feet, heading, frame } = self;
         let degrees = f64::from(heading) / HEADINGS * 360.0;
         Figure {

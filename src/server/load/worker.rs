@@ -42,7 +42,7 @@ impl Worker {
     };
 
     /// Lets the time of `work` pass.
-    pub(super) fn spend(self, work: Work) {
+    pub(crate) fn spend(self, work: Work) {
         let time = match work {
             Work::Arrival(bytes) => self.arrival + self.byte * bytes as u32,
             Work::Frame => self.frame,

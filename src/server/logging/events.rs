@@ -63,18 +63,18 @@ pub(crate) fn store_failed(error: impl Display) {
 }
 
 /// `count` connections of a network were accepted; without one, of several others.
-pub(super) fn accepted(network: Option<AddressPrefix>, count: u64) {
+pub(crate) fn accepted(network: Option<AddressPrefix>, count: u64) {
     info!(target: CONNECTIONS, network = or_others(network), count, "accepted");
 }
 
 /// `count` connections of a network were refused; without one, of several others.
-pub(super) fn refused(network: Option<AddressPrefix>, reason: Refusal, count: u64) {
+pub(crate) fn refused(network: Option<AddressPrefix>, reason: Refusal, count: u64) {
     let (network, reason) = (or_others(network), reason.name());
     info!(target: CONNECTIONS, network, reason, count, "refused");
 }
 
 /// `count` connections of a network have ended before their login; without one, of several others.
-pub(super) fn ended_early(network: Option<AddressPrefix>, outcome: Outcome, count: u64) {
+pub(crate) fn ended_early(network: Option<AddressPrefix>, outcome: Outcome, count: u64) {
     let (network, outcome) = (or_others(network), outcome.name());
     info!(target: CONNECTIONS, network, outcome, count, "disconnected");
 }

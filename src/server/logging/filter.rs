@@ -6,7 +6,7 @@ use std::str::FromStr;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 /// The topics of events.
-pub(super) const TOPICS: [&str; 5] = ["host", "connections", "rooms", "results", "admin"];
+pub(crate) const TOPICS: [&str; 5] = ["host", "connections", "rooms", "results", "admin"];
 
 /// The beginning of targets without a topic: the paths of modules.
 const PROGRAM: &str = env!("CARGO_CRATE_NAME");
@@ -38,7 +38,7 @@ impl LogFilter {
 
     /// The filter for a subscriber. Events of this program without a topic count as those of `host`, and
     /// events of libraries are not logged.
-    pub(super) fn targets(&self) -> Targets {
+    pub(crate) fn targets(&self) -> Targets {
         let of_topic = |topic| {
             let own = self.topics.iter().find(|(other, _)| *other == topic);
             own.map_or(self.level, |(_, level)| *level)

@@ -23,11 +23,7 @@ impl Write for Kept {
 
 /// What `act` logs.
 /// What is logged while `act` runs, by this thread.
-pub(in crate::server) fn logged(
-    format: LogFormat,
-    filter: &str,
-    act: impl FnOnce(&Logging),
-) -> String {
+pub(crate) fn logged(format: LogFormat, filter: &str, act: impl FnOnce(&Logging)) -> String {
     let kept = Kept::default();
     let writer = kept.clone();
     let (subscriber, logging) =

@@ -14,7 +14,7 @@ use crate::store::host::AddressPrefix;
 
 /// What a client brings about without logging in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::server) enum ConnectionEvent {
+pub(crate) enum ConnectionEvent {
     /// A connection was accepted.
     Accepted,
     /// A connection was refused.
@@ -25,7 +25,7 @@ pub(in crate::server) enum ConnectionEvent {
 
 /// Lets a few events a second through, and sums the others.
 #[derive(Debug, Default)]
-pub(in crate::server) struct Throttle {
+pub(crate) struct Throttle {
     /// The events of this second without a line; without a network, those of all that have no line.
     unlogged: BTreeMap<(ConnectionEvent, Option<AddressPrefix>), u64>,
 }
@@ -35,7 +35,7 @@ const MOST: usize = 4;
 
 impl Throttle {
     /// Logs an event of a client at `address`, at once or with the second.
-    pub(in crate::server) fn log(&mut self, event: ConnectionEvent, address: IpAddr) {
+    pub(crate) fn log(&mut self, event: ConnectionEvent, address: IpAddr) {
         let network = Some(AddressPrefix::network_of(address));
         let with_line = self.unlogged.keys().filter(|(_, network)| network.is_some()).count();
         if let Some(count) = self.unlogged.get_mut(&(event, network)) {
@@ -49,7 +49,7 @@ impl Throttle {
     }
 
     /// Logs the sums of the second that is over.
-    pub(in crate::server) fn end_second(&mut self) {
+    pub(crate) fn end_second(&mut self) {
         for ((event, network), count) in mem::take(&mut self.unlogged) {
             if count > 0 {
                 write(event, network, count);

@@ -15,17 +15,17 @@ pub struct Histogram {
 
 /// In microseconds. A frame takes a few hundred, a step of a room is one of 16,667, and above 50,000
 /// a player feels the delay of a key.
-pub(super) const BOUNDS: [u64; 15] = [
+pub(crate) const BOUNDS: [u64; 15] = [
     100, 250, 500, 1000, 2500, 5000, 10_000, 16_667, 25_000, 50_000, 100_000, 250_000, 500_000,
     1_000_000, 2_500_000,
 ];
 
 /// What a histogram holds at one time.
-pub(super) struct Distribution {
+pub(crate) struct Distribution {
     /// For each bound, and for no bound, the number of durations up to it.
-    pub(super) up_to: [u64; BOUNDS.len() + 1],
+    pub(crate) up_to: [u64; BOUNDS.len() + 1],
     /// In seconds.
-    pub(super) sum: f64,
+    pub(crate) sum: f64,
 }
 
 impl Histogram {
@@ -41,13 +41,13 @@ impl Histogram {
 
     /// The number of durations, and their mean in seconds.
     #[cfg(test)]
-    pub(in crate::server) fn count_and_mean(&self) -> (u64, f64) {
+    pub(crate) fn count_and_mean(&self) -> (u64, f64) {
         let Distribution { up_to, sum } = self.distribution();
         let count = up_to[BOUNDS.len()];
         (count, sum / count as f64)
     }
 
-    pub(super) fn distribution(&self) -> Distribution {
+    pub(crate) fn distribution(&self) -> Distribution {
         let mut count = 0;
         let up_to = array::from_fn(|bucket| {
             count += self.buckets[bucket].load(Ordering::Relaxed);

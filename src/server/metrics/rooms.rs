@@ -55,7 +55,7 @@ impl EachRoom {
     }
 
     /// All rooms.
-    pub(super) fn all(&self) -> Vec<(u32, Arc<RoomFigures>)> {
+    pub(crate) fn all(&self) -> Vec<(u32, Arc<RoomFigures>)> {
         locked(&self.0, |rooms| rooms.iter().map(|(id, it)| (*id, Arc::clone(it))).collect())
     }
 }

@@ -26,19 +26,19 @@ use crate::server::line::Line;
 
 /// The number of a member in a room. It is not used again after they leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) struct MemberId(pub(in crate::server) u32);
+pub(crate) struct MemberId(pub(crate) u32);
 
 impl MemberId {
     /// The greatest number, which a room that somebody joins each second reaches in 68 years.
-    pub(in crate::server) const MOST: Self = Self(i32::MAX as u32);
+    pub(crate) const MOST: Self = Self(i32::MAX as u32);
 
     /// Reads a number; `None` for one that no room reaches.
-    pub(in crate::server) fn parse(word: &str) -> Option<Self> {
+    pub(crate) fn parse(word: &str) -> Option<Self> {
         word.parse().ok().map(Self).filter(|id| *id <= Self::MOST)
     }
 
     /// Reads the number of the next member who joins, which may be one more.
-    pub(super) fn parse_next(word: &str) -> Option<u32> {
+    pub(crate) fn parse_next(word: &str) -> Option<u32> {
         word.parse().ok().filter(|next| *next <= Self::MOST.0 + 1)
     }
 }

@@ -74,7 +74,7 @@ impl<L: Log, W: Write> Recorded<L, W> {
     }
 
     /// Where it is recorded.
-    pub(in crate::server) fn output(&self) -> &W {
+    pub(crate) fn output(&self) -> &W {
         &self.output
     }
 }

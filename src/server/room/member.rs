@@ -20,18 +20,18 @@ pub(crate) struct Member {
     /// The place that is kept for the member; `None` if it is not.
     pub(crate) kept: Option<KeptPlace>,
     /// What the member wants in the next step.
-    pub(super) intents: Intents,
+    pub(crate) intents: Intents,
     /// What they wanted in the last one.
-    pub(super) acted: Intents,
+    pub(crate) acted: Intents,
     /// The step of the game in the picture that the member saw last.
-    pub(super) seen: u64,
+    pub(crate) seen: u64,
 }
 
 stored! { struct Member { id, name, color, player, points, kept, intents, acted, seen } }
 
 impl Member {
     /// What the member wants in the step that begins. The angles of it count in no other step.
-    pub(super) fn begin_step(&mut self) -> Intents {
+    pub(crate) fn begin_step(&mut self) -> Intents {
         self.acted = self.intents;
         self.intents = self.intents.with_look(Look::NONE);
         self.acted
@@ -39,7 +39,7 @@ impl Member {
 }
 
 /// What of `intents` somebody may do who cannot walk.
-pub(super) fn looking_only(intents: Intents) -> Intents {
+pub(crate) fn looking_only(intents: Intents) -> Intents {
     use Intent::{Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight};
     let looks = [Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight];
     let kept: Intents = intents.iter().filter(|intent| looks.contains(intent)).collect();

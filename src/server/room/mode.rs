@@ -95,7 +95,7 @@ impl Mode {
     }
 
     /// The rules among the players.
-    pub(super) fn multiplayer_rules(self) -> MultiplayerRules {
+    pub(crate) fn multiplayer_rules(self) -> MultiplayerRules {
         let usual = MultiplayerRules::default();
         match self {
             Self::Roam => MultiplayerRules { strikes: Strikes::Push, ..usual },
@@ -113,7 +113,7 @@ impl Mode {
     }
 
     /// The level as the mode needs it.
-    pub(super) fn prepared(self, world: World) -> World {
+    pub(crate) fn prepared(self, world: World) -> World {
         match self {
             Self::Together | Self::Alone => world,
             Self::Race => world.without_guards(),
@@ -127,7 +127,7 @@ impl Mode {
     }
 
     /// The time between the start of a round and its play, in steps.
-    pub(super) const fn countdown(self) -> u64 {
+    pub(crate) const fn countdown(self) -> u64 {
         match self {
             Self::Roam | Self::Together | Self::Alone => 0,
             Self::Race | Self::Tag => 3 * SECOND,
@@ -145,7 +145,7 @@ impl Mode {
     }
 
     /// The longest play of a round, in steps.
-    pub(super) const fn longest(self) -> u64 {
+    pub(crate) const fn longest(self) -> u64 {
         match self {
             Self::Roam => 60 * 60 * SECOND,
             Self::Together | Self::Alone => 20 * 60 * SECOND,

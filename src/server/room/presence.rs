@@ -16,7 +16,7 @@ use crate::game::{Intents, PlayerColor};
 use crate::server::line::Line;
 
 /// The longest time for which a member is away, in steps. Then they leave.
-pub(super) const AWAY: u64 = 60 * SECOND;
+pub(crate) const AWAY: u64 = 60 * SECOND;
 
 /// The place that is kept for a member with an account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub(crate) struct KeptPlace {
 
 impl KeptPlace {
     /// Whether such a place may be kept: nobody has more time to return than those who have just gone.
-    pub(super) fn is_possible(self) -> bool {
+    pub(crate) fn is_possible(self) -> bool {
         self.away.is_none_or(|left| (1..=AWAY).contains(&left))
     }
 }
@@ -63,7 +63,7 @@ impl Room {
         id < self.next_member() && !self.members.iter().any(|member| member.id == id)
     }
 
-    pub(super) fn join(&mut self, id: MemberId, color: PlayerColor, name: &Line) {
+    pub(crate) fn join(&mut self, id: MemberId, color: PlayerColor, name: &Line) {
         if self.is_full() || self.members.iter().any(|member| member.id == id) {
             return;
         }
@@ -72,7 +72,7 @@ impl Room {
         self.announce(format!("{name} comes in."));
     }
 
-    pub(super) fn seat(&mut self, seat: &Seat) {
+    pub(crate) fn seat(&mut self, seat: &Seat) {
         let game = Arc::make_mut(&mut self.game);
         let player = game.join(seat.color);
         self.members.push(Member {
@@ -88,7 +88,7 @@ impl Room {
         });
     }
 
-    pub(super) fn leave(&mut self, id: MemberId) {
+    pub(crate) fn leave(&mut self, id: MemberId) {
         let Some(index) = self.members.iter().position(|member| member.id == id) else { return };
         let member = self.members.remove(index);
         self.again.remove(&id);
@@ -99,14 +99,14 @@ impl Room {
     }
 
     /// From now on, the place of a member is kept.
-    pub(super) fn keep(&mut self, id: MemberId) {
+    pub(crate) fn keep(&mut self, id: MemberId) {
         if let Some(member) = self.member_mut(id) {
             member.kept.get_or_insert_default();
         }
     }
 
     /// The host of a member is gone. They leave if their place is not kept.
-    pub(super) fn go_away(&mut self, id: MemberId) {
+    pub(crate) fn go_away(&mut self, id: MemberId) {
         let Some(member) = self.member_mut(id) else { return };
         let Some(kept) = &mut member.kept else { return self.leave(id) };
         if kept.away.is_none() {
@@ -119,7 +119,7 @@ impl Room {
     }
 
     /// A member is on another host now.
-    pub(super) fn take_back(&mut self, id: MemberId, token: u64) {
+    pub(crate) fn take_back(&mut self, id: MemberId, token: u64) {
         let Some(member) = self.member_mut(id) else { return };
         let Some(kept) = &mut member.kept else { return };
         kept.token = token;
@@ -130,7 +130,7 @@ impl Room {
     }
 
     /// Counts a step for those who are away. Who has been for too long leaves.
-    pub(super) fn count_away(&mut self) {
+    pub(crate) fn count_away(&mut self) {
         let kept = self.members.iter_mut().filter_map(|member| member.kept.as_mut());
         for left in kept.filter_map(|kept| kept.away.as_mut()) {
             *left = left.saturating_sub(1);
@@ -141,7 +141,7 @@ impl Room {
         }
     }
 
-    pub(super) fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
+    pub(crate) fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
         self.members.iter_mut().find(|member| member.id == id)
     }
 }

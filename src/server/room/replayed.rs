@@ -69,7 +69,7 @@ fn play(
 }
 
 /// Why there is no level of that name, and what to do.
-pub(super) fn no_level(name: &str) -> String {
+pub(crate) fn no_level(name: &str) -> String {
     match name_in_map_key(name) {
         Some(map) => format!(
             "it was recorded in the map {map}.toml, which is not given or has changed since (it was {name}); \

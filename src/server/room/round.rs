@@ -25,7 +25,7 @@ use crate::game::{Game, Outcome, PlayerId};
 use crate::rng::SplitMix64;
 
 /// Steps of a game in a second.
-pub(super) const SECOND: u64 = 60;
+pub(crate) const SECOND: u64 = 60;
 /// How long the standings are shown.
 const STANDINGS: u64 = 10 * SECOND;
 
@@ -73,10 +73,10 @@ stored! { struct Standing { member, points, steps } }
 
 /// What a mode sees of its room.
 #[derive(Clone, Copy)]
-pub(super) struct Field<'a> {
-    pub(super) game: &'a Game,
-    pub(super) members: &'a [Member],
-    pub(super) step: u64,
+pub(crate) struct Field<'a> {
+    pub(crate) game: &'a Game,
+    pub(crate) members: &'a [Member],
+    pub(crate) step: u64,
 }
 
 impl Field<'_> {
@@ -107,7 +107,7 @@ impl Field<'_> {
 
 /// A round.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Round {
+pub(crate) struct Round {
     mode: Mode,
     phase: Phase,
     play: Play,
@@ -129,7 +129,7 @@ enum Play {
 stored! { enum Play { 0: Roam, 1: ToExit(it), 2: Tag(it), 3: Hide(it) } }
 
 impl Round {
-    pub(super) fn new(mode: Mode, seed: u64) -> Self {
+    pub(crate) fn new(mode: Mode, seed: u64) -> Self {
         let play = match mode {
             Mode::Roam => Play::Roam,
             Mode::Together | Mode::Alone | Mode::Race => Play::ToExit(Finishes::default()),
@@ -141,7 +141,7 @@ impl Round {
     }
 
     /// Refuses what another mode remembers, and what begins after `step`.
-    pub(super) fn check(&self, step: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, step: u64) -> Result<(), Unrestorable> {
         let is_possible = match (&self.play, self.mode) {
             (Play::Roam, Mode::Roam) => true,
             (Play::ToExit(finishes), Mode::Together | Mode::Alone | Mode::Race) => {
@@ -154,22 +154,22 @@ impl Round {
         check(is_possible, "what is played")
     }
 
-    pub(super) fn phase(&self) -> Phase {
+    pub(crate) fn phase(&self) -> Phase {
         self.phase
     }
 
     /// The standings, the winner first; empty before the end.
-    pub(super) fn standings(&self) -> &[Standing] {
+    pub(crate) fn standings(&self) -> &[Standing] {
         &self.standings
     }
 
     /// Whether the next round is due.
-    pub(super) fn is_over(&self, step: u64) -> bool {
+    pub(crate) fn is_over(&self, step: u64) -> bool {
         matches!(self.phase, Phase::Over { ends } if ends <= step)
     }
 
     /// What a member is.
-    pub(super) fn role(&self, member: MemberId) -> Role {
+    pub(crate) fn role(&self, member: MemberId) -> Role {
         match &self.play {
             Play::Roam => Role::Player,
             Play::ToExit(finishes) => finishes.role(member),
@@ -179,17 +179,17 @@ impl Round {
     }
 
     /// The finish of a member, if they have reached the exit.
-    pub(super) fn finish(&self, member: MemberId) -> Option<Finish> {
+    pub(crate) fn finish(&self, member: MemberId) -> Option<Finish> {
         self.finishes()?.of(member)
     }
 
     /// The members who have finished in `step`.
-    pub(super) fn finished_in(&self, step: u64) -> impl Iterator<Item = MemberId> {
+    pub(crate) fn finished_in(&self, step: u64) -> impl Iterator<Item = MemberId> {
         self.finishes().into_iter().flat_map(move |finishes| finishes.in_step(step))
     }
 
     /// The step in which the play began, while it goes on in a mode that ends at the exit.
-    pub(super) fn begun(&self) -> Option<u64> {
+    pub(crate) fn begun(&self) -> Option<u64> {
         let is_played = matches!(self.phase, Phase::Playing { .. });
         self.finishes().filter(|_| is_played).map(Finishes::begun)
     }
@@ -199,7 +199,7 @@ impl Round {
     }
 
     /// Whether a member cannot walk at present.
-    pub(super) fn holds(&self, member: MemberId, step: u64) -> bool {
+    pub(crate) fn holds(&self, member: MemberId, step: u64) -> bool {
         match (&self.play, self.phase) {
             (_, Phase::Waiting | Phase::Countdown { .. }) if self.mode == Mode::Race => true,
             (Play::Hide(hide), Phase::Countdown { .. }) => hide.role(member) == Role::Seeker,
@@ -209,12 +209,12 @@ impl Round {
     }
 
     /// Whether a member sees nothing at present.
-    pub(super) fn is_blind(&self, member: MemberId) -> bool {
+    pub(crate) fn is_blind(&self, member: MemberId) -> bool {
         matches!(self.mode, Mode::Hide) && self.holds(member, 0)
     }
 
     /// Advances the round by one step.
-    pub(super) fn step(&mut self, field: Field) {
+    pub(crate) fn step(&mut self, field: Field) {
         let (step, enough) = (field.step, field.members.len() >= self.mode.fewest());
         match self.phase {
             Phase::Waiting if enough => self.count_down(field),

@@ -8,22 +8,22 @@ use crate::game::{PlayerColor, STEP};
 use crate::server::line::Line;
 
 /// How many lines a room remembers.
-pub(super) const SAID: usize = 8;
+pub(crate) const SAID: usize = 8;
 
 impl Room {
-    pub(super) fn say(&mut self, id: MemberId, text: String) {
+    pub(crate) fn say(&mut self, id: MemberId, text: String) {
         let member = self.members.iter().find(|member| member.id == id);
         if let Some(by) = member.map(|member| (member.name.clone(), member.color)) {
             self.remember(Some(by), text);
         }
     }
 
-    pub(super) fn announce(&mut self, text: String) {
+    pub(crate) fn announce(&mut self, text: String) {
         self.remember(None, text);
     }
 
     /// Tells all that a member has reached the exit.
-    pub(super) fn announce_finish(&mut self, id: MemberId) {
+    pub(crate) fn announce_finish(&mut self, id: MemberId) {
         let Some(finish) = self.round.finish(id) else { return };
         let Some(member) = self.members.iter().find(|member| member.id == id) else { return };
         match self.header.mode {

@@ -6,44 +6,44 @@ use crate::server::simulation;
 use crate::world::{Difficulty, FieldOfView};
 
 /// Two levels with a hall in which the exit is straight ahead.
-pub(super) fn catalog() -> Arc<Catalog> {
+pub(crate) fn catalog() -> Arc<Catalog> {
     let map = simulation::HALL
         .replace("............>#", ".............#")
         .replace("@............#", "@.......>....#");
     Arc::new(simulation::catalog(&map))
 }
 
-pub(super) fn room(mode: Mode) -> Room {
+pub(crate) fn room(mode: Mode) -> Room {
     Room::new(&catalog(), Header::new("hall", mode, Difficulty::Normal, 7)).unwrap()
 }
 
-pub(super) fn line(text: &str) -> Line {
+pub(crate) fn line(text: &str) -> Line {
     Line::of(text, CHAT_COLUMNS).unwrap()
 }
 
-pub(super) fn join(room: &mut Room, name: &str) -> MemberId {
+pub(crate) fn join(room: &mut Room, name: &str) -> MemberId {
     let member = room.next_member();
     let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
     do_now(room, member, Command::Join { color, name: line(name) });
     member
 }
 
-pub(super) fn do_now(room: &mut Room, member: MemberId, command: Command) {
+pub(crate) fn do_now(room: &mut Room, member: MemberId, command: Command) {
     let step = room.step();
     room.apply(&Entry { step, member, command });
 }
 
-pub(super) fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
+pub(crate) fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
     let seen = room.view().game.steps();
     let intents = intents.iter().copied().collect();
     do_now(room, member, Command::Intents { seen, intents });
 }
 
-pub(super) fn advance(room: &mut Room, steps: u64) {
+pub(crate) fn advance(room: &mut Room, steps: u64) {
     (0..steps).for_each(|_| room.advance());
 }
 
-pub(super) fn position(room: &Room, member: MemberId) -> glam::DVec2 {
+pub(crate) fn position(room: &Room, member: MemberId) -> glam::DVec2 {
     let view = room.view();
     let player = view.member(member).unwrap().player.unwrap();
     view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()

@@ -36,15 +36,11 @@ enum Role {
 const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
 
 impl Place {
-    pub(in crate::server) fn member(
-        room: RoomId,
-        member: MemberId,
-        interface: Arc<RoomInterface>,
-    ) -> Self {
+    pub(crate) fn member(room: RoomId, member: MemberId, interface: Arc<RoomInterface>) -> Self {
         Self::new(room, Role::Member(member), interface)
     }
 
-    pub(in crate::server) fn watcher(
+    pub(crate) fn watcher(
         room: RoomId,
         interface: Arc<RoomInterface>,
         watchers: Arc<AtomicUsize>,

@@ -45,7 +45,7 @@ impl Logs {
     }
 
     /// The log of a new room.
-    pub(super) fn open(&self, id: RoomId) -> Box<dyn Log> {
+    pub(crate) fn open(&self, id: RoomId) -> Box<dyn Log> {
         (self.0)(id)
     }
 }

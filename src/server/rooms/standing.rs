@@ -13,7 +13,7 @@ impl Rooms {
     }
 
     /// Opens the standing rooms that are missing, and lets the superfluous ones close.
-    pub(super) fn open_standing(&self) {
+    pub(crate) fn open_standing(&self) {
         let (mut missing, closes_after) =
             locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));
         locked(&self.0.open, |open| {

@@ -162,7 +162,7 @@ impl Inbox {
     }
 
     /// Waits until somebody joins, or the room is closed.
-    pub(super) async fn joined(&self) {
+    pub(crate) async fn joined(&self) {
         while self.is_empty() && !self.is_closed() {
             self.joined.notified().await;
         }

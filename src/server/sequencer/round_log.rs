@@ -90,7 +90,7 @@ impl RoundLog {
     }
 
     /// Writes out what waits in memory, since no step follows for a while.
-    pub(super) fn flush(&mut self) {
+    pub(crate) fn flush(&mut self) {
         let result = self.log.flush();
         self.report(result);
     }

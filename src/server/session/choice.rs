@@ -10,7 +10,7 @@ use crate::world::Difficulty;
 
 /// What an entry of a menu does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Choice {
+pub(crate) enum Choice {
     /// Opens a page.
     Open(Page),
     /// Enters the room of the card.
@@ -33,7 +33,7 @@ pub(super) enum Choice {
 
 /// A room that one may enter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Target {
+pub(crate) enum Target {
     /// One that there is.
     Existing(RoomId),
     /// A new one, in the level of the catalog with that index.
@@ -42,7 +42,7 @@ pub(super) enum Target {
 
 impl Visit {
     /// Does what the selected entry says.
-    pub(super) fn choose(&mut self) {
+    pub(crate) fn choose(&mut self) {
         let Some(choice) = self.menu.choice() else { return };
         match choice {
             Choice::Open(page) => self.open(page),
@@ -86,7 +86,7 @@ impl Visit {
     }
 
     /// Asks for the board of the chosen level.
-    pub(super) fn ask_for_board(&mut self) {
+    pub(crate) fn ask_for_board(&mut self) {
         self.board.rows = None;
         let difficulty = self.identity.preferences.difficulty;
         if let Some(level) = self.host.catalog.names().get(self.board.level).cloned() {
@@ -95,7 +95,7 @@ impl Visit {
     }
 
     /// Records that the visitor is in no room any more.
-    pub(super) fn leave_room(&mut self, sentence: Option<String>) {
+    pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
         self.stay = None;
         self.note = sentence;
         self.ask(Request::Rooms);

@@ -36,7 +36,7 @@ const ROOM_KEYS: [&str; 2] = [
     "Tab lists the members, or watches another one.",
 ];
 /// What is said on a link that may make pictures coarse.
-pub(super) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
+pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
 /// The least rows of a picture with a banner above a menu.
 const LEAST_WITH_BANNER: u16 = 20;
@@ -49,7 +49,7 @@ thread_local! {
 
 impl Visit {
     /// Draws the page, with `room` as the newest snapshot.
-    pub(super) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
         let area = canvas.bounds();
         if is_too_small(area) {
             return too_small(canvas);

@@ -8,7 +8,7 @@ use crate::server::line::Line;
 
 impl Visit {
     /// Records an event of the driver.
-    pub(super) fn notify(&mut self, event: SessionEvent) {
+    pub(crate) fn notify(&mut self, event: SessionEvent) {
         self.is_stale = true;
         match event {
             SessionEvent::Named(answer) => self.named(answer),
@@ -63,7 +63,7 @@ impl Visit {
     }
 
     /// Shows the lobby for the first time.
-    pub(super) fn enter_lobby(&mut self) {
+    pub(crate) fn enter_lobby(&mut self) {
         self.note = None;
         self.ask(Request::Rooms);
         self.show(Page::Lobby);

@@ -10,7 +10,7 @@ use crate::world::{Difficulty, Figure};
 
 /// The ghosts of the level that is played.
 #[derive(Debug, Default)]
-pub(super) struct Ghosts {
+pub(crate) struct Ghosts {
     /// The level that they were asked for.
     level: Option<(String, Difficulty)>,
     ghosts: Option<Arc<[Ghost]>>,
@@ -18,15 +18,15 @@ pub(super) struct Ghosts {
 
 /// A ghost in a step.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Seen<'g> {
-    pub(super) ghost: &'g Ghost,
-    pub(super) color: PlayerColor,
-    pub(super) figure: Figure,
+pub(crate) struct Seen<'g> {
+    pub(crate) ghost: &'g Ghost,
+    pub(crate) color: PlayerColor,
+    pub(crate) figure: Figure,
 }
 
 impl Ghosts {
     /// Forgets all at the beginning of a round; returns the wish for those of its level.
-    pub(super) fn begin(&mut self, room: &RoomView) -> Option<Request> {
+    pub(crate) fn begin(&mut self, room: &RoomView) -> Option<Request> {
         *self = Self::default();
         let header = &room.header;
         header.mode.has_ghosts().then(|| {
@@ -37,7 +37,7 @@ impl Ghosts {
     }
 
     /// Takes the ghosts of a level, if it is still played.
-    pub(super) fn receive(&mut self, level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]>) {
+    pub(crate) fn receive(&mut self, level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]>) {
         if self.level == Some((level, difficulty)) {
             self.ghosts = Some(ghosts);
         }
@@ -45,7 +45,7 @@ impl Ghosts {
 
     /// The ghosts where they are now; the visitor's own one in their colour. There are some only
     /// while the round is played.
-    pub(super) fn seen<'g>(
+    pub(crate) fn seen<'g>(
         &'g self,
         room: &'g RoomView,
         own: Option<PlayerColor>,

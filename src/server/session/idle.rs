@@ -6,14 +6,14 @@ use super::IdleLimits;
 
 /// The time since the last key.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Idle {
+pub(crate) struct Idle {
     since: Duration,
     is_warned: bool,
 }
 
 /// What happens to those who press no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Patience {
+pub(crate) enum Patience {
     /// They are warned.
     Warns,
     /// They are put out.
@@ -22,19 +22,19 @@ pub(super) enum Patience {
 
 impl Idle {
     /// Counts from `now` on. Returns whether a warning was shown, which now is not any more.
-    pub(super) fn restart(&mut self, now: Duration) -> bool {
+    pub(crate) fn restart(&mut self, now: Duration) -> bool {
         let was_warned = self.is_warned;
         *self = Self { since: now, is_warned: false };
         was_warned
     }
 
     /// Whether the warning is shown.
-    pub(super) fn is_warned(&self) -> bool {
+    pub(crate) fn is_warned(&self) -> bool {
         self.is_warned
     }
 
     /// What happens at `now`, after which no key may be missing for longer than `limit`.
-    pub(super) fn step(
+    pub(crate) fn step(
         &mut self,
         limits: &IdleLimits,
         limit: Duration,
@@ -51,7 +51,7 @@ impl Idle {
     }
 
     /// The time of the next thing that happens if no key is pressed.
-    pub(super) fn next_at(&self, limits: &IdleLimits, limit: Duration) -> Duration {
+    pub(crate) fn next_at(&self, limits: &IdleLimits, limit: Duration) -> Duration {
         let wait = if self.is_warned { limit } else { limit.saturating_sub(limits.warning) };
         self.since + wait
     }

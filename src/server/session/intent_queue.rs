@@ -21,7 +21,7 @@ const MOST: usize = 8;
 
 /// The intents of a member.
 #[derive(Clone, Debug, Default)]
-pub(super) struct IntentQueue {
+pub(crate) struct IntentQueue {
     sent: Intents,
     sent_at: Option<Duration>,
     waiting: VecDeque<Intents>,
@@ -31,7 +31,7 @@ pub(super) struct IntentQueue {
 
 impl IntentQueue {
     /// Records what the member wants from now on.
-    pub(super) fn set(&mut self, intents: Intents) {
+    pub(crate) fn set(&mut self, intents: Intents) {
         if self.newest() == intents {
             return;
         }
@@ -42,18 +42,18 @@ impl IntentQueue {
     }
 
     /// Records that the member turns and tilts by these angles.
-    pub(super) fn turn(&mut self, by: Look) {
+    pub(crate) fn turn(&mut self, by: Look) {
         let [turn, tilt] = self.angles;
         self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
     }
 
     /// What the member wants now.
-    pub(super) fn newest(&self) -> Intents {
+    pub(crate) fn newest(&self) -> Intents {
         *self.waiting.back().unwrap_or(&self.sent)
     }
 
     /// What is to be sent at `now`, if something is.
-    pub(super) fn take(&mut self, now: Duration) -> Option<Intents> {
+    pub(crate) fn take(&mut self, now: Duration) -> Option<Intents> {
         if self.next_at().is_none_or(|due| due > now) {
             return None;
         }
@@ -64,7 +64,7 @@ impl IntentQueue {
     }
 
     /// The time of the next [`take`](Self::take) that gives something; `None` for never.
-    pub(super) fn next_at(&self) -> Option<Duration> {
+    pub(crate) fn next_at(&self) -> Option<Duration> {
         let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
         let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
         match (is_renewed, self.sent.is_empty()) {

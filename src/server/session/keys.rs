@@ -16,7 +16,7 @@ use crate::tui::Press;
 
 impl Visit {
     /// Handles an event of the terminal.
-    pub(super) fn event(&mut self, event: Event, now: Duration) {
+    pub(crate) fn event(&mut self, event: Event, now: Duration) {
         self.advance(now);
         match event {
             Event::Key(event) => self.key(event),
@@ -79,7 +79,7 @@ impl Visit {
     }
 
     /// Answers the question by a pending key that did not repeat.
-    pub(super) fn settle(&mut self) {
+    pub(crate) fn settle(&mut self) {
         if let Some(key) = self.pending.settle(self.now) {
             self.answer(key);
         }
@@ -172,7 +172,7 @@ impl Visit {
         }
     }
 
-    pub(super) fn press_to_answer(&mut self, key: Key, press: Press) {
+    pub(crate) fn press_to_answer(&mut self, key: Key, press: Press) {
         if let Some(key) = self.pending.press(key, press, self.now) {
             self.answer(key);
         }

@@ -9,7 +9,7 @@ use crate::terminal::{Key, KeyEvent};
 /// A line that is being typed. What is typed is what [`printable`] leaves of it, except for a blank at
 /// its end.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LineEntry {
+pub(crate) struct LineEntry {
     text: String,
     /// The most columns.
     columns: usize,
@@ -19,12 +19,12 @@ pub(super) struct LineEntry {
 
 impl LineEntry {
     /// An empty line of at most `columns`.
-    pub(super) fn new(columns: usize) -> Self {
+    pub(crate) fn new(columns: usize) -> Self {
         Self { columns, ..Self::default() }
     }
 
     /// A line with an offer in it.
-    pub(super) fn offering(offer: &Line, columns: usize) -> Self {
+    pub(crate) fn offering(offer: &Line, columns: usize) -> Self {
         Self { text: offer.to_string(), columns, is_offer: true }
     }
 
@@ -35,12 +35,12 @@ impl LineEntry {
     }
 
     /// The text as a line; `None` if it is blank.
-    pub(super) fn line(&self) -> Option<Line> {
+    pub(crate) fn line(&self) -> Option<Line> {
         Line::of(&self.text, self.columns)
     }
 
     /// Changes the text by a key. Returns whether it has changed.
-    pub(super) fn press(&mut self, event: KeyEvent) -> bool {
+    pub(crate) fn press(&mut self, event: KeyEvent) -> bool {
         if event.key == Key::Backspace {
             self.is_offer = false;
             return self.text.pop().is_some();
@@ -56,7 +56,7 @@ impl LineEntry {
     }
 
     /// The end of the text that fits in `columns` with a cursor after it.
-    pub(super) fn shown(&self, columns: usize) -> String {
+    pub(crate) fn shown(&self, columns: usize) -> String {
         let mut room = columns.saturating_sub(1);
         let fits = |character: &char| {
             let width = character.width().unwrap_or(0);

@@ -15,10 +15,10 @@ const WIDEST_VIEW: f64 = 120.0;
 
 /// How pictures are drawn.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Look {
-    pub(super) glyphs: GlyphSet,
-    pub(super) depth: ColorDepth,
-    pub(super) field_of_view: FieldOfView,
+pub(crate) struct Look {
+    pub(crate) glyphs: GlyphSet,
+    pub(crate) depth: ColorDepth,
+    pub(crate) field_of_view: FieldOfView,
     cell_aspect: CellAspect,
     /// What the terminal shows best.
     terminal_depth: ColorDepth,
@@ -26,12 +26,12 @@ pub(super) struct Look {
     shade_ink: ShadeInk,
     correction: Correction,
     marks_middle: bool,
-    pub(super) shows_ghosts: bool,
+    pub(crate) shows_ghosts: bool,
 }
 
 impl Look {
     /// For a terminal that shows only ASCII, or not, and the visitor `identity`.
-    pub(super) fn new(is_ascii: bool, identity: &Identity) -> Self {
+    pub(crate) fn new(is_ascii: bool, identity: &Identity) -> Self {
         let terminal_glyphs = if is_ascii { GlyphSet::Ascii } else { GlyphSet::Half };
         let field_of_view = identity.configuration.field_of_view;
         let mut look = Self { field_of_view, terminal_glyphs, ..Self::default() };
@@ -40,12 +40,12 @@ impl Look {
     }
 
     /// Whether only ASCII is sent: the terminal shows no more, and the visitor did not ask for it.
-    pub(super) fn is_ascii(&self) -> bool {
+    pub(crate) fn is_ascii(&self) -> bool {
         self.terminal_glyphs == GlyphSet::Ascii && !self.glyphs.has_blocks()
     }
 
     /// Takes over what is known of the terminal.
-    pub(super) fn follow_terminal(&mut self, protocol: &Protocol, preferences: &Preferences) {
+    pub(crate) fn follow_terminal(&mut self, protocol: &Protocol, preferences: &Preferences) {
         let aspect = protocol.size().cell_aspect.and_then(CellAspect::new);
         self.cell_aspect = aspect.unwrap_or_default();
         self.terminal_depth = protocol.color_depth();
@@ -57,7 +57,7 @@ impl Look {
     }
 
     /// Takes over what the visitor prefers.
-    pub(super) fn follow(&mut self, preferences: &Preferences) {
+    pub(crate) fn follow(&mut self, preferences: &Preferences) {
         self.glyphs = preferences.glyphs.unwrap_or(self.terminal_glyphs);
         self.depth = preferences.colors.unwrap_or(self.terminal_depth);
         self.marks_middle = preferences.crosshair;
@@ -66,13 +66,13 @@ impl Look {
     }
 
     /// Widens the field of view.
-    pub(super) fn widen(&mut self, degrees: f64) {
+    pub(crate) fn widen(&mut self, degrees: f64) {
         let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
         self.field_of_view = FieldOfView::from_degrees(view).unwrap_or(self.field_of_view);
     }
 
     /// The options of a picture without a flash.
-    pub(super) fn options(&self) -> DrawOptions {
+    pub(crate) fn options(&self) -> DrawOptions {
         DrawOptions {
             glyphs: self.glyphs,
             depth: self.depth,

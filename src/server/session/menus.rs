@@ -18,7 +18,7 @@ const FIRST_LEVEL: &str = "museum";
 
 impl Visit {
     /// The menu of `page`; an empty one if it has none.
-    pub(super) fn menu_of(&self, page: Page) -> Menu<Choice> {
+    pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
         match page {
             Page::Lobby => self.lobby_menu(),
             Page::Rooms { watches } => self.rooms_menu(watches),
@@ -111,7 +111,7 @@ impl Visit {
     }
 
     /// The title of the level of a room.
-    pub(super) fn level_title(&self, target: Target) -> String {
+    pub(crate) fn level_title(&self, target: Target) -> String {
         let catalog = &self.host.catalog;
         let name = match target {
             Target::Existing(id) => self.room(id).map(|room| room.level.as_str()),

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 /// The pace of frames.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(crate) struct Pace {
     frame_time: Duration,
     drawn_at: Option<Duration>,
     /// When all frames so far would have been drawn at the frame rate.
@@ -19,17 +19,17 @@ pub(super) struct Pace {
 const PROMPT: Duration = Duration::from_millis(16);
 
 impl Pace {
-    pub(super) fn new(frame_time: Duration) -> Self {
+    pub(crate) fn new(frame_time: Duration) -> Self {
         Self { frame_time, drawn_at: None, paid_at: Duration::ZERO }
     }
 
     /// Sets the time between two frames.
-    pub(super) fn set_frame_time(&mut self, frame_time: Duration) {
+    pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
         self.frame_time = frame_time;
     }
 
     /// The time of the next frame, earlier if it answers a key.
-    pub(super) fn next(&self, answers_key: bool) -> Duration {
+    pub(crate) fn next(&self, answers_key: bool) -> Duration {
         let Some(drawn_at) = self.drawn_at else { return Duration::ZERO };
         if answers_key {
             let credit = self.paid_at.saturating_sub(self.frame_time);
@@ -40,7 +40,7 @@ impl Pace {
     }
 
     /// Records a frame.
-    pub(super) fn drawn(&mut self, now: Duration) {
+    pub(crate) fn drawn(&mut self, now: Duration) {
         self.drawn_at = Some(now);
         self.paid_at = now.max(self.paid_at + self.frame_time);
     }

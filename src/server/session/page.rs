@@ -11,7 +11,7 @@ use crate::server::room::Mode;
 
 /// A page. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Page {
+pub(crate) enum Page {
     /// The name is typed.
     Name,
     Lobby,
@@ -45,34 +45,34 @@ pub(super) enum Page {
 
 impl Page {
     /// Whether the page has a menu.
-    pub(super) fn has_menu(self) -> bool {
+    pub(crate) fn has_menu(self) -> bool {
         !matches!(self, Self::Name | Self::Help | Self::Leaving | Self::Room | Self::Chat)
     }
 
     /// Whether a line is typed.
-    pub(super) fn is_typed_in(self) -> bool {
+    pub(crate) fn is_typed_in(self) -> bool {
         matches!(self, Self::Name | Self::Chat)
     }
 }
 
 /// A page with its menu.
-pub(super) type Shelved = (Page, Menu<Choice>);
+pub(crate) type Shelved = (Page, Menu<Choice>);
 
 impl Visit {
     /// Shows `page`, from which there is no way back.
-    pub(super) fn show(&mut self, page: Page) {
+    pub(crate) fn show(&mut self, page: Page) {
         self.behind.clear();
         self.enter((page, self.menu_of(page)));
     }
 
     /// Opens `page` over the one that is shown.
-    pub(super) fn open(&mut self, page: Page) {
+    pub(crate) fn open(&mut self, page: Page) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter((page, self.menu_of(page)));
     }
 
     /// Returns to the page from which this one was opened.
-    pub(super) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         let home = if self.stay.is_some() { Page::Room } else { Page::Lobby };
         let (page, _) = self.behind.pop().unwrap_or((home, Menu::new("")));
         self.enter((page, self.menu_of(page)));
@@ -80,7 +80,7 @@ impl Visit {
 
     /// Makes the menu anew, after something that it shows has changed. The choice stays the same if
     /// it still exists, unless it is the first one, which is the offer.
-    pub(super) fn renew_menu(&mut self) {
+    pub(crate) fn renew_menu(&mut self) {
         let (selected, choice) = (self.menu.selected(), self.menu.choice());
         let mut menu = self.menu_of(self.page).selecting(selected);
         if let Some(choice) = choice.filter(|_| selected > 0) {

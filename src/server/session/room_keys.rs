@@ -15,7 +15,7 @@ use crate::tui::Press;
 const VIEW_STEP: f64 = 6.0;
 
 impl Visit {
-    pub(super) fn press_in_room(&mut self, key: Key, press: Press) {
+    pub(crate) fn press_in_room(&mut self, key: Key, press: Press) {
         let action = self.bindings.action(key);
         match action {
             Some(Action::WidenView) => return self.widen_view(VIEW_STEP),
@@ -76,7 +76,7 @@ impl Visit {
     }
 
     /// Goes on after a death: from the last checkpoint, or from the beginning.
-    pub(super) fn retry(&mut self) {
+    pub(crate) fn retry(&mut self) {
         let Some(stay) = self.stay.as_mut().filter(|stay| stay.dead_since.is_some()) else {
             return;
         };

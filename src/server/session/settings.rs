@@ -12,7 +12,7 @@ use crate::world::Difficulty;
 
 /// A setting on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Preference {
+pub(crate) enum Preference {
     Difficulty,
     Keys,
     Mouse,
@@ -43,7 +43,7 @@ const USUAL: [(Preference, &str); 10] = [
 const IN_A_ROOM: [(Preference, &str); 2] = [(Preference::Map, "Map"), (Preference::Chat, "Chat")];
 
 impl Visit {
-    pub(super) fn settings_menu(&self) -> Menu<Choice> {
+    pub(crate) fn settings_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("settings").line("Enter or left and right change a setting.");
         let menu = if self.identity.has_account {
             menu
@@ -58,7 +58,7 @@ impl Visit {
     }
 
     /// Changes a setting to its next value, or to the one before if `forward` is false.
-    pub(super) fn change_preference(&mut self, preference: Preference, forward: bool) {
+    pub(crate) fn change_preference(&mut self, preference: Preference, forward: bool) {
         let before = (self.identity.preferences, self.identity.configuration.clone());
         self.change(preference, forward);
         self.look.follow(&self.identity.preferences);

@@ -7,7 +7,7 @@ const MOST: usize = 8;
 
 /// The steps that the last frames showed.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ShownSteps {
+pub(crate) struct ShownSteps {
     /// The number of the frame, and the step; the newest frame last.
     frames: VecDeque<(u64, u64)>,
 }
@@ -15,7 +15,7 @@ pub(super) struct ShownSteps {
 impl ShownSteps {
     /// Records that after `frame` frames, the last one shows the state after `step`. A frame that
     /// has changed nothing has no number of its own: the last one shows the new step, too.
-    pub(super) fn drawn(&mut self, frame: u64, step: u64) {
+    pub(crate) fn drawn(&mut self, frame: u64, step: u64) {
         match self.frames.back_mut() {
             Some(last) if last.0 == frame => last.1 = step,
             _ => self.frames.push_back((frame, step)),
@@ -27,13 +27,13 @@ impl ShownSteps {
 
     /// The step that the visitor sees if `answered` frames are answered. Before the first answer it
     /// is that of the first frame.
-    pub(super) fn seen(&self, answered: u64) -> u64 {
+    pub(crate) fn seen(&self, answered: u64) -> u64 {
         let seen = self.frames.iter().rfind(|frame| frame.0 <= answered);
         seen.or(self.frames.front()).map_or(0, |&(_, step)| step)
     }
 
     /// Forgets all frames, at the beginning of a game.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.frames.clear();
     }
 }

@@ -17,29 +17,29 @@ use crate::world::{Camera, FieldOfView, Figure};
 
 /// A stay in a room.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
-pub(super) struct Stay {
+pub(crate) struct Stay {
     /// The visitor as a member; `None` if they watch.
-    pub(super) member: Option<MemberId>,
+    pub(crate) member: Option<MemberId>,
     /// The member that they watch, unless they play themselves.
     watched: Option<MemberId>,
     /// Whether the last picture is that of another member: the visitor is no member, or has finished.
-    pub(super) is_watching: bool,
-    pub(super) talk: Talk,
-    pub(super) intents: IntentQueue,
-    pub(super) frames: ShownSteps,
-    pub(super) map: MapPanel,
+    pub(crate) is_watching: bool,
+    pub(crate) talk: Talk,
+    pub(crate) intents: IntentQueue,
+    pub(crate) frames: ShownSteps,
+    pub(crate) map: MapPanel,
     /// What the bell rings for.
-    pub(super) watch: Watch,
+    pub(crate) watch: Watch,
     /// The time in the game at which the last picture changes without a cause.
-    pub(super) next_change: Option<f64>,
-    pub(super) ghosts: Ghosts,
-    pub(super) shows_members: bool,
+    pub(crate) next_change: Option<f64>,
+    pub(crate) ghosts: Ghosts,
+    pub(crate) shows_members: bool,
     /// Whether the player is in the air in the last picture.
-    pub(super) is_airborne: bool,
+    pub(crate) is_airborne: bool,
     /// The time since which pictures show the player dead; `None` if the last one does not.
-    pub(super) dead_since: Option<Duration>,
+    pub(crate) dead_since: Option<Duration>,
     /// Whether the dead begin the round again, in place of going on from a checkpoint.
-    pub(super) dies_for_good: bool,
+    pub(crate) dies_for_good: bool,
     /// The members who could be watched in the last picture.
     members: Vec<MemberId>,
     /// What the last picture shows; `None` before the first one.
@@ -62,7 +62,7 @@ struct Shown {
 }
 
 impl Stay {
-    pub(super) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
+    pub(crate) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
         Self {
             member,
             watched: None,
@@ -84,7 +84,7 @@ impl Stay {
     }
 
     /// Takes over what is new in `room` before it is drawn; returns what is wanted to draw it.
-    pub(super) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
+    pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
         self.talk.hear(&room.said, now);
         self.talk.forget_old(now);
         let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
@@ -120,13 +120,13 @@ impl Stay {
     }
 
     /// Whether `room` has acted on all that the member wants.
-    pub(super) fn has_acted(&self, room: &RoomView) -> bool {
+    pub(crate) fn has_acted(&self, room: &RoomView) -> bool {
         let acted = self.member.and_then(|id| room.acted(id));
         acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
     }
 
     /// The ghosts in the picture.
-    pub(super) fn ghosts<'r>(
+    pub(crate) fn ghosts<'r>(
         &'r self,
         room: &'r RoomView,
         look: &Look,
@@ -138,7 +138,7 @@ impl Stay {
 
     /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
     /// Those who have finished are seen through only if nobody else plays. `None` if nobody is there.
-    pub(super) fn seen_through<'r>(
+    pub(crate) fn seen_through<'r>(
         &self,
         room: &'r RoomView,
     ) -> Option<(&'r MemberView, PlayerView<'r>)> {
@@ -151,13 +151,13 @@ impl Stay {
     }
 
     /// The camera of the picture.
-    pub(super) fn camera(&self, room: &RoomView, view: FieldOfView) -> Camera {
+    pub(crate) fn camera(&self, room: &RoomView, view: FieldOfView) -> Camera {
         let start = || room.game.world().start_camera(view);
         self.seen_through(room).map_or_else(start, |(_, player)| player.camera(view))
     }
 
     /// Watches the next member, or the one before.
-    pub(super) fn watch_another(&mut self, forward: bool) {
+    pub(crate) fn watch_another(&mut self, forward: bool) {
         let count = self.members.len();
         if count > 0 {
             let index = self.members.iter().position(|&id| Some(id) == self.watched).unwrap_or(0);
@@ -167,7 +167,7 @@ impl Stay {
     }
 
     /// Whether a picture of `room` would differ from the last one.
-    pub(super) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
+    pub(crate) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
         let Some(shown) = &self.shown else { return true };
         let elapsed = room.game.elapsed();
         shown.revision != room.game.revision()
@@ -183,7 +183,7 @@ impl Stay {
     }
 
     /// Records that `room` was drawn.
-    pub(super) fn drawn(&mut self, room: &RoomView, look: &Look) {
+    pub(crate) fn drawn(&mut self, room: &RoomView, look: &Look) {
         self.shown = Some(Shown {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
@@ -204,7 +204,7 @@ fn times(room: &RoomView) -> [Option<u64>; 2] {
 }
 
 /// The seconds of a round whose time counts; `None` in the others.
-pub(super) fn run_seconds(room: &RoomView) -> Option<u64> {
+pub(crate) fn run_seconds(room: &RoomView) -> Option<u64> {
     match room.header.mode {
         Mode::Race | Mode::Together | Mode::Alone => {
             Some(room.step.saturating_sub(room.begun?) / u64::from(STEPS_PER_SECOND))
@@ -214,7 +214,7 @@ pub(super) fn run_seconds(room: &RoomView) -> Option<u64> {
 }
 
 /// The seconds until something that the picture counts down to; `None` if it counts nothing down.
-pub(super) fn seconds_left(room: &RoomView) -> Option<u64> {
+pub(crate) fn seconds_left(room: &RoomView) -> Option<u64> {
     let counts = |ends: u64| match room.header.mode {
         Mode::Tag | Mode::Hide => true,
         // Others may go on for a while after the first one has finished.

@@ -16,17 +16,17 @@ const EARLIER: u64 = 2;
 
 /// A line that is shown.
 #[derive(Clone, Debug)]
-pub(in crate::server) struct Remark {
+pub(crate) struct Remark {
     /// Who said it; `None` for the room and the host.
-    pub(in crate::server) by: Option<(Line, PlayerColor)>,
-    pub(in crate::server) text: String,
+    pub(crate) by: Option<(Line, PlayerColor)>,
+    pub(crate) text: String,
     until: Duration,
     is_of_host: bool,
 }
 
 /// The lines that are shown.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Talk {
+pub(crate) struct Talk {
     /// The number of the last line in the room that is known; `None` before the first look.
     known: Option<u64>,
     remarks: VecDeque<Remark>,
@@ -36,7 +36,7 @@ pub(super) struct Talk {
 
 impl Talk {
     /// Takes what is new in `said`.
-    pub(super) fn hear(&mut self, said: &[Said], now: Duration) {
+    pub(crate) fn hear(&mut self, said: &[Said], now: Duration) {
         let Some(last) = said.last().map(|said| said.number) else { return };
         let known = self.known.unwrap_or(last.saturating_sub(EARLIER));
         self.known = Some(last);
@@ -47,39 +47,39 @@ impl Talk {
     }
 
     /// Shows a line of the host, even if chat is off.
-    pub(super) fn hear_host(&mut self, text: String, now: Duration) {
+    pub(crate) fn hear_host(&mut self, text: String, now: Duration) {
         self.push(Remark { by: None, text, until: now + SHOWN, is_of_host: true });
     }
 
     /// Whether `said` has lines that are new.
-    pub(super) fn is_behind(&self, said: &[Said]) -> bool {
+    pub(crate) fn is_behind(&self, said: &[Said]) -> bool {
         said.last().is_some_and(|said| self.known != Some(said.number))
     }
 
     /// Removes the lines that have been shown for long enough.
-    pub(super) fn forget_old(&mut self, now: Duration) -> bool {
+    pub(crate) fn forget_old(&mut self, now: Duration) -> bool {
         let before = self.remarks.len();
         self.remarks.retain(|remark| remark.until > now);
         self.remarks.len() < before
     }
 
     /// When the next line is removed.
-    pub(super) fn next_end(&self) -> Option<Duration> {
+    pub(crate) fn next_end(&self) -> Option<Duration> {
         self.remarks.iter().map(|remark| remark.until).min()
     }
 
     /// Switches chat on or off.
-    pub(super) fn toggle(&mut self) {
+    pub(crate) fn toggle(&mut self) {
         self.is_off = !self.is_off;
     }
 
     /// Whether chat is shown.
-    pub(super) fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         !self.is_off
     }
 
     /// The lines to show, the newest last.
-    pub(super) fn shown(&self) -> impl DoubleEndedIterator<Item = &Remark> {
+    pub(crate) fn shown(&self) -> impl DoubleEndedIterator<Item = &Remark> {
         self.remarks.iter().filter(|remark| !self.is_off || remark.is_of_host)
     }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// When the oldest of the keys came that are not answered.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Unanswered {
+pub(crate) struct Unanswered {
     /// Of those that have changed the screen.
     shown: Option<Duration>,
     /// Of those by which the visitor wants something else of the room.
@@ -18,14 +18,14 @@ pub(super) struct Unanswered {
 
 /// What a key has changed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Effect {
-    pub(super) is_shown: bool,
-    pub(super) is_wanted: bool,
+pub(crate) struct Effect {
+    pub(crate) is_shown: bool,
+    pub(crate) is_wanted: bool,
 }
 
 impl Unanswered {
     /// Records the effect of a key that came at `now`.
-    pub(super) fn press(&mut self, effect: Effect, now: Duration) {
+    pub(crate) fn press(&mut self, effect: Effect, now: Duration) {
         if effect.is_shown {
             self.shown.get_or_insert(now);
         }
@@ -35,13 +35,13 @@ impl Unanswered {
     }
 
     /// Records that the room has acted on all that was wanted, and that nothing has changed.
-    pub(super) fn forget_wanted(&mut self) {
+    pub(crate) fn forget_wanted(&mut self) {
         self.wanted = None;
     }
 
     /// When the oldest key came that a new picture answers, where `has_acted` says that the room has acted on all
     /// that was wanted.
-    pub(super) fn answer(&mut self, has_acted: bool) -> Option<Duration> {
+    pub(crate) fn answer(&mut self, has_acted: bool) -> Option<Duration> {
         let wanted = self.wanted.take_if(|_| has_acted);
         self.shown.take().into_iter().chain(wanted).min()
     }

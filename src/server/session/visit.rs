@@ -25,61 +25,61 @@ const MOST_ASKS: usize = 64;
 
 /// The state of a session.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
-pub(super) struct Visit {
-    pub(super) identity: Identity,
-    pub(super) host: HostFacts,
-    pub(super) requests: Vec<Request>,
-    pub(super) bindings: Bindings,
-    pub(super) controls: Controls,
-    pub(super) pointer: Pointer,
-    pub(super) clock: Clock,
-    pub(super) look: Look,
-    pub(super) detection: Detection,
-    pub(super) page: Page,
-    pub(super) menu: Menu<Choice>,
+pub(crate) struct Visit {
+    pub(crate) identity: Identity,
+    pub(crate) host: HostFacts,
+    pub(crate) requests: Vec<Request>,
+    pub(crate) bindings: Bindings,
+    pub(crate) controls: Controls,
+    pub(crate) pointer: Pointer,
+    pub(crate) clock: Clock,
+    pub(crate) look: Look,
+    pub(crate) detection: Detection,
+    pub(crate) page: Page,
+    pub(crate) menu: Menu<Choice>,
     /// The pages to return to, the next one last.
-    pub(super) behind: Vec<Shelved>,
-    pub(super) entry: LineEntry,
+    pub(crate) behind: Vec<Shelved>,
+    pub(crate) entry: LineEntry,
     /// Whether the driver is asked about the name.
-    pub(super) awaits_name: bool,
-    pub(super) help: HelpScroll,
-    pub(super) pending: PendingKey,
+    pub(crate) awaits_name: bool,
+    pub(crate) help: HelpScroll,
+    pub(crate) pending: PendingKey,
     /// A sentence about what happened last.
-    pub(super) note: Option<String>,
+    pub(crate) note: Option<String>,
     /// When the server ends, if it does.
-    pub(super) draining: Option<Draining>,
-    pub(super) rooms: Arc<[RoomSummary]>,
-    pub(super) board: Board,
+    pub(crate) draining: Option<Draining>,
+    pub(crate) rooms: Arc<[RoomSummary]>,
+    pub(crate) board: Board,
     /// The room that the visitor is in.
-    pub(super) stay: Option<Stay>,
-    pub(super) status: StatusLine,
+    pub(crate) stay: Option<Stay>,
+    pub(crate) status: StatusLine,
     /// The figures of frames and the link, and whether the status line shows them.
-    pub(super) stats: Option<Stats>,
-    pub(super) shows_stats: bool,
+    pub(crate) stats: Option<Stats>,
+    pub(crate) shows_stats: bool,
     /// Whether compression would make pictures finer, as far as is known.
-    pub(super) wants_compression: bool,
-    pub(super) idle: Idle,
+    pub(crate) wants_compression: bool,
+    pub(crate) idle: Idle,
     /// The number of frames that the terminal has answered.
-    pub(super) answered: u64,
+    pub(crate) answered: u64,
     /// The time of the last event.
-    pub(super) now: Duration,
+    pub(crate) now: Duration,
     /// Whether the screen must be drawn again, whatever the room does.
-    pub(super) is_stale: bool,
+    pub(crate) is_stale: bool,
     /// Why the session ends, if it does.
-    pub(super) farewell: Option<String>,
+    pub(crate) farewell: Option<String>,
 }
 
 /// The board that is shown.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Board {
+pub(crate) struct Board {
     /// The index of the level in the catalog.
-    pub(super) level: usize,
+    pub(crate) level: usize,
     /// The entries; `None` before they are known.
-    pub(super) rows: Option<Arc<[BoardRow]>>,
+    pub(crate) rows: Option<Arc<[BoardRow]>>,
 }
 
 impl Visit {
-    pub(super) fn new(identity: Identity, host: HostFacts, look: Look, now: Duration) -> Self {
+    pub(crate) fn new(identity: Identity, host: HostFacts, look: Look, now: Duration) -> Self {
         let mut idle = Idle::default();
         idle.restart(now);
         let mut clock = Clock::default();
@@ -123,25 +123,25 @@ impl Visit {
     }
 
     /// Requests something of the driver.
-    pub(super) fn ask(&mut self, ask: Request) {
+    pub(crate) fn ask(&mut self, ask: Request) {
         if self.requests.len() < MOST_ASKS {
             self.requests.push(ask);
         }
     }
 
     /// The room with that number, if it is listed.
-    pub(super) fn room(&self, id: RoomId) -> Option<&RoomSummary> {
+    pub(crate) fn room(&self, id: RoomId) -> Option<&RoomSummary> {
         self.rooms.iter().find(|room| room.id == id)
     }
 
     /// Whether a picture would differ from the one that is shown.
-    pub(super) fn is_stale(&self, room: Option<&RoomView>) -> bool {
+    pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
         let differs = |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, &self.look));
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 
     /// Does what is due at `now`.
-    pub(super) fn wake(&mut self, now: Duration) {
+    pub(crate) fn wake(&mut self, now: Duration) {
         self.advance(now);
         self.settle();
         if let Some(stay) = &mut self.stay {
@@ -155,7 +155,7 @@ impl Visit {
     }
 
     /// The time at which to wake again.
-    pub(super) fn wakes_at(&self) -> Option<Duration> {
+    pub(crate) fn wakes_at(&self) -> Option<Duration> {
         let held = &self.controls.held;
         let tap = self.is_playing() && held.has_taps();
         let turns = self.is_playing() && self.pointer.is_busy();
@@ -173,7 +173,7 @@ impl Visit {
     }
 
     /// Counts the steps up to `now`, and tells the room what the visitor wants in them.
-    pub(super) fn advance(&mut self, now: Duration) {
+    pub(crate) fn advance(&mut self, now: Duration) {
         let before = std::mem::replace(&mut self.now, now);
         if self.draining.is_some_and(|it| it.seconds(before) != it.seconds(now)) {
             self.renew_menu();
@@ -201,7 +201,7 @@ impl Visit {
     }
 
     /// Tells the room what the held keys and the buttons of the mouse want.
-    pub(super) fn want(&mut self) {
+    pub(crate) fn want(&mut self) {
         let intents = if self.is_playing() {
             let keys = self.controls.intents(&self.bindings, self.key_context());
             keys.iter().chain(self.pointer.clicked().iter()).collect()
@@ -217,17 +217,17 @@ impl Visit {
     }
 
     /// Whether keys walk.
-    pub(super) fn is_playing(&self) -> bool {
+    pub(crate) fn is_playing(&self) -> bool {
         self.page == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
     }
 
-    pub(super) fn key_context(&self) -> KeyContext {
+    pub(crate) fn key_context(&self) -> KeyContext {
         let is_airborne = self.stay.as_ref().is_some_and(|stay| stay.is_airborne);
         KeyContext { plays: self.is_playing(), is_airborne, flies: false }
     }
 
     /// Releases all keys, as if nobody touched the keyboard.
-    pub(super) fn release_keys(&mut self) {
+    pub(crate) fn release_keys(&mut self) {
         self.controls.held.release_all();
         self.controls.toggles.keeps_walking = false;
         self.want();
@@ -256,10 +256,10 @@ impl Visit {
 
 /// The end of the server, to which visitors see the seconds counted down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Draining {
-    pub(super) ends_at: Duration,
+pub(crate) struct Draining {
+    pub(crate) ends_at: Duration,
     /// Whether the visitor finds the room as it was on another host.
-    pub(super) can_return: bool,
+    pub(crate) can_return: bool,
 }
 
 impl Draining {
@@ -275,7 +275,7 @@ impl Draining {
         Some(self.ends_at.saturating_sub(after))
     }
 
-    pub(super) fn sentence(self, now: Duration) -> String {
+    pub(crate) fn sentence(self, now: Duration) -> String {
         let then = if self.can_return { " Connect again, and you are where you were." } else { "" };
         match self.seconds(now) {
             0 => format!("The server ends now.{then}"),
@@ -286,7 +286,7 @@ impl Draining {
 }
 
 /// The bindings without the keys that have another meaning in a room.
-pub(super) fn bindings_of(configuration: &Configuration) -> Bindings {
+pub(crate) fn bindings_of(configuration: &Configuration) -> Bindings {
     let keys = ['/', ';', '1'].map(Key::Char);
     configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
 }

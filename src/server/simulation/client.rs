@@ -16,8 +16,8 @@ use crate::server::{Counters, Visitor, locked};
 use crate::terminal::{Detected, WindowSize};
 
 /// A client and the session that serves it.
-pub(in crate::server) struct Client {
-    pub(in crate::server) visiting: Visiting,
+pub(crate) struct Client {
+    pub(crate) visiting: Visiting,
     end: FarEnd,
     terminal: Arc<Mutex<Terminal>>,
     conditions_changed: Arc<Notify>,
@@ -27,19 +27,19 @@ pub(in crate::server) struct Client {
 
 /// How a client and its link behave.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::server) struct Conditions {
+pub(crate) struct Conditions {
     /// Whether it takes what arrives.
-    pub(in crate::server) reads: bool,
+    pub(crate) reads: bool,
     /// Whether its terminal's answers leave.
-    pub(in crate::server) answers: bool,
+    pub(crate) answers: bool,
     /// The time that all takes that it sends.
-    pub(in crate::server) latency: Duration,
+    pub(crate) latency: Duration,
     /// In bytes a second, what arrives; `None` for no limit.
-    pub(in crate::server) rate: Option<u32>,
+    pub(crate) rate: Option<u32>,
 }
 
 /// A guest of that name whose connection compresses.
-pub(in crate::server) fn guest(name: &str, (columns, rows): (u16, u16)) -> Visitor {
+pub(crate) fn guest(name: &str, (columns, rows): (u16, u16)) -> Visitor {
     Visitor {
         peer: ([192, 0, 2, 1], 22).into(),
         key: None,
@@ -63,7 +63,7 @@ type Arrived = (Instant, usize);
 
 impl Client {
     /// Connects to a host, in a runtime.
-    pub(super) fn come(
+    pub(crate) fn come(
         host: &Simulated,
         visitor: Visitor,
         speaks: Speaks,
@@ -94,60 +94,60 @@ impl Client {
     }
 
     /// Sends bytes, which arrive after the latency, in a runtime.
-    pub(super) fn send(&self, bytes: &[u8]) {
+    pub(crate) fn send(&self, bytes: &[u8]) {
         let latency = locked(&self.terminal, |terminal| terminal.conditions.latency);
         _ = self.sent.send((Instant::now() + latency, bytes.to_vec()));
     }
 
-    pub(in crate::server) fn set(&self, change: impl FnOnce(&mut Conditions)) {
+    pub(crate) fn set(&self, change: impl FnOnce(&mut Conditions)) {
         locked(&self.terminal, |terminal| change(&mut terminal.conditions));
         self.conditions_changed.notify_one();
     }
 
     /// Changes the size of the window, which may have no cells.
-    pub(in crate::server) fn resize(&self, columns: u16, rows: u16) {
+    pub(crate) fn resize(&self, columns: u16, rows: u16) {
         let size = (columns.max(1), rows.max(1));
         locked(&self.terminal, |terminal| terminal.emulator.resize(size.0, size.1));
         self.end.resize(WindowSize::of_cells(columns, rows));
     }
 
     /// The server is about to end.
-    pub(in crate::server) fn drain(&self) {
+    pub(crate) fn drain(&self) {
         self.end.drain();
     }
 
     /// The connection has noticed that the link is cut.
-    pub(in crate::server) fn cut(&self) {
+    pub(crate) fn cut(&self) {
         self.end.end();
         self.set(|conditions| conditions.reads = true);
     }
 
-    pub(in crate::server) fn look<T>(&self, look: impl FnOnce(&Emulator) -> T) -> T {
+    pub(crate) fn look<T>(&self, look: impl FnOnce(&Emulator) -> T) -> T {
         locked(&self.terminal, |terminal| look(&terminal.emulator))
     }
 
     /// The number of bytes that were sent to it, taken or not.
-    pub(in crate::server) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.counters.frame_bytes.load(Ordering::Relaxed)
     }
 
     /// The number of frames that were sent to it, taken or not.
-    pub(in crate::server) fn frames(&self) -> u64 {
+    pub(crate) fn frames(&self) -> u64 {
         self.counters.frames.load(Ordering::Relaxed)
     }
 
     /// Whether it has taken all that was sent to it.
-    pub(in crate::server) fn has_all(&self) -> bool {
+    pub(crate) fn has_all(&self) -> bool {
         self.look(|emulator| emulator.bytes().len() as u64 == self.bytes())
     }
 
     /// When something arrived.
-    pub(in crate::server) fn arrivals(&self) -> Vec<Instant> {
+    pub(crate) fn arrivals(&self) -> Vec<Instant> {
         locked(&self.terminal, |it| it.arrivals.iter().map(|arrived| arrived.0).collect())
     }
 
     /// What has arrived since `begun`, split where it was another time.
-    pub(in crate::server) fn received(&self, begun: Instant) -> Vec<Vec<u8>> {
+    pub(crate) fn received(&self, begun: Instant) -> Vec<Vec<u8>> {
         locked(&self.terminal, |Terminal { emulator, arrivals, .. }| {
             let first = arrivals.partition_point(|(time, _)| *time <= begun);
             let mut end = first.checked_sub(1).map_or(0, |before| arrivals[before].1);

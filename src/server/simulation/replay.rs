@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::server::room::{Catalog, Room, RoomView, parse_log};
 
 /// Plays a recording again up to a step of its last round. Each round must begin as it did.
-pub(super) fn replayed(text: &str, catalog: &Arc<Catalog>, step: u64) -> Room {
+pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>, step: u64) -> Room {
     let rounds = parse_log(text).expect("a recording");
     let mut room = Room::new(catalog, rounds[0].0.clone()).expect("a level");
     for (index, (header, entries)) in rounds.iter().enumerate() {
@@ -31,7 +31,7 @@ pub(super) fn replayed(text: &str, catalog: &Arc<Catalog>, step: u64) -> Room {
 }
 
 /// Asserts that two rooms are in the same state, bit for bit.
-pub(super) fn assert_same(room: &RoomView, again: &Room) {
+pub(crate) fn assert_same(room: &RoomView, again: &Room) {
     let other = again.view();
     assert_eq!((room.step, &room.header), (other.step, &other.header));
     assert_eq!(room.game.checksum(), other.game.checksum());

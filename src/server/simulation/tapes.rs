@@ -11,11 +11,11 @@ use crate::server::summary::RoomId;
 
 /// The recordings of all rooms of a host. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub(in crate::server) struct Tapes(Arc<Mutex<BTreeMap<RoomId, Vec<u8>>>>);
+pub(crate) struct Tapes(Arc<Mutex<BTreeMap<RoomId, Vec<u8>>>>);
 
 impl Tapes {
     /// Logs of rooms that are recorded here.
-    pub(super) fn logs(&self) -> Logs {
+    pub(crate) fn logs(&self) -> Logs {
         let tapes = self.clone();
         Logs::new(move |room| {
             Box::new(Recorded::new(Queue::default(), Tape { room, tapes: tapes.clone() }))
@@ -23,13 +23,13 @@ impl Tapes {
     }
 
     /// What was recorded of a room.
-    pub(in crate::server) fn text(&self, room: RoomId) -> String {
+    pub(crate) fn text(&self, room: RoomId) -> String {
         let bytes = locked(&self.0, |tapes| tapes.get(&room).cloned()).unwrap_or_default();
         String::from_utf8(bytes).expect("a recording is text")
     }
 
     /// The rooms of which there is a recording.
-    pub(in crate::server) fn rooms(&self) -> Vec<RoomId> {
+    pub(crate) fn rooms(&self) -> Vec<RoomId> {
         locked(&self.0, |tapes| tapes.keys().copied().collect())
     }
 }

@@ -24,16 +24,16 @@ use crate::server::{Refusal, VisitId};
 use crate::terminal::WindowSize;
 
 /// A session that begins.
-pub(super) struct Begun {
-    pub(super) visitor: Visitor,
-    pub(super) link: Link,
-    pub(super) inlet: Inlet,
-    pub(super) handle: Handle,
-    pub(super) channel: ChannelId,
+pub(crate) struct Begun {
+    pub(crate) visitor: Visitor,
+    pub(crate) link: Link,
+    pub(crate) inlet: Inlet,
+    pub(crate) handle: Handle,
+    pub(crate) channel: ChannelId,
 }
 
 /// A client, as far as it has come.
-pub(super) struct Client {
+pub(crate) struct Client {
     shared: Arc<Shared>,
     line: Arc<Line>,
     visit: VisitId,
@@ -60,7 +60,7 @@ const NO_RSA: &str =
 const STANDARD_ERROR: u32 = 1;
 
 impl Client {
-    pub(super) fn new(
+    pub(crate) fn new(
         shared: Arc<Shared>,
         line: Arc<Line>,
         visit: VisitId,
@@ -86,23 +86,23 @@ impl Client {
     }
 
     /// Whether the method `none` succeeds.
-    pub(super) fn is_guest(&mut self, user: &str) -> bool {
+    pub(crate) fn is_guest(&mut self, user: &str) -> bool {
         mem::replace(&mut self.has_asked, true) || user == GUEST
     }
 
     /// The client has an RSA key, which is no account.
-    pub(super) fn offer_rsa(&mut self) {
+    pub(crate) fn offer_rsa(&mut self) {
         self.has_rsa_key = true;
     }
 
     /// The client has proved that it has `key`, or that it is a guest.
-    pub(super) fn accept(&mut self, user: &str, key: Option<KeyData>) {
+    pub(crate) fn accept(&mut self, user: &str, key: Option<KeyData>) {
         self.user = visitor::word(user);
         self.key = key;
     }
 
     /// The client is authenticated.
-    pub(super) fn log_in(&mut self) {
+    pub(crate) fn log_in(&mut self) {
         self.line.log_in();
         let key = self.key.clone();
         let logged_in =
@@ -116,14 +116,14 @@ impl Client {
     }
 
     /// Takes the first session channel.
-    pub(super) fn takes(&mut self, channel: ChannelId) -> bool {
+    pub(crate) fn takes(&mut self, channel: ChannelId) -> bool {
         let is_first = self.channel.is_none();
         self.channel.get_or_insert(channel);
         is_first
     }
 
     /// Takes the first terminal.
-    pub(super) fn attach(&mut self, term: &str, size: WindowSize) -> bool {
+    pub(crate) fn attach(&mut self, term: &str, size: WindowSize) -> bool {
         let is_first = self.terminal.is_none() && self.begin.is_some();
         if is_first {
             self.terminal = Some((visitor::word(term), size));
@@ -131,7 +131,7 @@ impl Client {
         is_first
     }
 
-    pub(super) fn resize(&mut self, size: WindowSize) {
+    pub(crate) fn resize(&mut self, size: WindowSize) {
         match (&self.inlet, &mut self.terminal) {
             (Some(inlet), _) => inlet.resize(size),
             (None, Some((_, first))) => *first = size,
@@ -139,21 +139,21 @@ impl Client {
         }
     }
 
-    pub(super) fn has_begun(&self) -> bool {
+    pub(crate) fn has_begun(&self) -> bool {
         self.begin.is_none()
     }
 
-    pub(super) fn inlet(&self) -> Option<&Inlet> {
+    pub(crate) fn inlet(&self) -> Option<&Inlet> {
         self.inlet.as_ref()
     }
 
     /// Nothing can be sent any more.
-    pub(super) fn close(&self) {
+    pub(crate) fn close(&self) {
         self.line.passage.close();
     }
 
     /// Starts the session, or says why not.
-    pub(super) fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
+    pub(crate) fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
         if let Some(reason) = self.refusal {
             let sentence = reason.sentence(&self.shared.config.get().admission);
             return refuse(channel, &sentence, session);
@@ -184,13 +184,13 @@ impl Client {
         Ok(())
     }
 
-    pub(super) fn window(&self, cells: [u32; 2], pixels: [u32; 2]) -> WindowSize {
+    pub(crate) fn window(&self, cells: [u32; 2], pixels: [u32; 2]) -> WindowSize {
         let config = self.shared.config.get();
         visitor::window_size(cells, pixels, [config.columns, config.rows])
     }
 
     /// Keeps a variable if it is one that is kept, and returns whether it is.
-    pub(super) fn keep(&mut self, name: &str, value: &str) -> bool {
+    pub(crate) fn keep(&mut self, name: &str, value: &str) -> bool {
         let is_kept = visitor::is_kept(name)
             && (self.environment.len() < MOST_VARIABLES || self.environment.contains_key(name));
         if is_kept {

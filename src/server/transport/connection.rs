@@ -25,9 +25,9 @@ use crate::server::logging::{ConnectionEvent, Throttle, events};
 use crate::server::{Admission, HostKey, LiveConfig, Outcome, VisitId};
 
 /// What the connections of a server have in common.
-pub(super) struct Shared {
-    pub(super) config: LiveConfig,
-    pub(super) counters: Arc<Counters>,
+pub(crate) struct Shared {
+    pub(crate) config: LiveConfig,
+    pub(crate) counters: Arc<Counters>,
     ssh: Arc<server::Config>,
     admission: Mutex<Admission>,
     logged: Mutex<Throttle>,
@@ -36,10 +36,10 @@ pub(super) struct Shared {
 }
 
 /// A connection that was admitted.
-pub(super) struct Entry {
-    pub(super) visit: VisitId,
+pub(crate) struct Entry {
+    pub(crate) visit: VisitId,
     /// That it is displaced, and what its client is told, if anything.
-    pub(super) displaced: oneshot::Receiver<Option<String>>,
+    pub(crate) displaced: oneshot::Receiver<Option<String>>,
 }
 
 /// The time for the first line of a client, its version, which no client has to think about.
@@ -57,7 +57,7 @@ const MOST_MESSAGES: usize = 32;
 const WINDOW: u32 = 32 << 10;
 
 impl Shared {
-    pub(super) fn new(
+    pub(crate) fn new(
         config: LiveConfig,
         key: &HostKey,
         counters: Arc<Counters>,
@@ -70,23 +70,23 @@ impl Shared {
     }
 
     /// Logs an event of a client, at once or with the second.
-    pub(super) fn log(&self, event: ConnectionEvent, address: IpAddr) {
+    pub(crate) fn log(&self, event: ConnectionEvent, address: IpAddr) {
         locked(&self.logged, |logged| logged.log(event, address));
     }
 
     /// Logs the sums of the second that is over.
-    pub(super) fn end_second(&self) {
+    pub(crate) fn end_second(&self) {
         locked(&self.logged, Throttle::end_second);
     }
 
     /// Acts on the admission, with the time since the server began.
-    pub(super) fn admission<T>(&self, act: impl FnOnce(&mut Admission, Duration) -> T) -> T {
+    pub(crate) fn admission<T>(&self, act: impl FnOnce(&mut Admission, Duration) -> T) -> T {
         locked(&self.admission, |admission| act(admission, self.begun.elapsed()))
     }
 }
 
 /// Serves a connection until it has ended.
-pub(super) async fn serve<H: Host>(
+pub(crate) async fn serve<H: Host>(
     shared: Arc<Shared>,
     host: Arc<H>,
     socket: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,

@@ -22,10 +22,10 @@ use crate::store::host::AddressPrefix;
 
 /// The refused connections that were told why in the last [`LINGER`].
 #[derive(Debug, Default)]
-pub(super) struct Explanations(VecDeque<(Duration, AddressPrefix)>);
+pub(crate) struct Explanations(VecDeque<(Duration, AddressPrefix)>);
 
 /// The version of the server, without the end of its line.
-pub(super) const VERSION: &str = "SSH-2.0-cellcaster";
+pub(crate) const VERSION: &str = "SSH-2.0-cellcaster";
 /// The longest time that one takes. A client closes the connection when it has read the message.
 const LINGER: Duration = Duration::from_secs(2);
 /// The most of them in that time.
@@ -41,7 +41,7 @@ const TOO_MANY_CONNECTIONS: u32 = 12;
 
 impl Explanations {
     /// Whether a connection of `network` that is refused at `now` is told why; counts it then.
-    pub(super) fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
+    pub(crate) fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
         while self.0.front().is_some_and(|(at, _)| *at + LINGER <= now) {
             self.0.pop_front();
         }
@@ -55,7 +55,7 @@ impl Explanations {
 }
 
 /// Sends the sentence, and closes the connection.
-pub(super) async fn explain(mut socket: TcpStream, sentence: String) {
+pub(crate) async fn explain(mut socket: TcpStream, sentence: String) {
     let told = async {
         socket.write_all(&message(&sentence)).await?;
         socket.shutdown().await?;

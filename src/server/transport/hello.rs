@@ -7,7 +7,7 @@
 
 /// Parses the first bytes of a client as they arrive.
 #[derive(Debug, Default)]
-pub(super) struct Hello {
+pub(crate) struct Hello {
     stage: Stage,
     /// What has arrived and is not parsed.
     bytes: Vec<u8>,
@@ -34,7 +34,7 @@ const COMPRESSION: usize = 7;
 impl Hello {
     /// Adds bytes that have arrived, and returns whether the client has sent its half of the key
     /// exchange.
-    pub(super) fn receive(&mut self, bytes: &[u8]) -> bool {
+    pub(crate) fn receive(&mut self, bytes: &[u8]) -> bool {
         if self.stage == Stage::Done {
             return true;
         }
@@ -47,13 +47,13 @@ impl Hello {
     }
 
     /// Whether the line of the client's version has arrived.
-    pub(super) fn has_version(&self) -> bool {
+    pub(crate) fn has_version(&self) -> bool {
         self.stage != Stage::Version
     }
 
     /// Whether what the server sends will be compressed: whether the first method in the client's
     /// list that the server has is one of compression.
-    pub(super) fn compresses(&self) -> bool {
+    pub(crate) fn compresses(&self) -> bool {
         self.compresses
     }
 

@@ -46,7 +46,7 @@ pub struct Inbound {
 
 /// The connection's end.
 #[derive(Clone, Debug)]
-pub(super) struct Inlet {
+pub(crate) struct Inlet {
     shared: Arc<Shared>,
 }
 
@@ -83,7 +83,7 @@ enum Appended {
 }
 
 /// Both ends.
-pub(super) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
+pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
     let waiting = Waiting::new(limits.bucket(Duration::ZERO));
     let [arrived, taken] = [(); 2].map(|()| Notify::new());
     let begun = Instant::now();
@@ -133,7 +133,7 @@ impl Drop for Inbound {
 
 impl Inlet {
     /// Passes bytes on, and waits where there is no room for them, or where they come too fast.
-    pub(super) async fn bytes(&self, mut bytes: &[u8]) {
+    pub(crate) async fn bytes(&self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
             let now = self.shared.begun.elapsed();
             let appended = locked(&self.shared.waiting, |waiting| waiting.append(bytes, now));
@@ -150,15 +150,15 @@ impl Inlet {
         }
     }
 
-    pub(super) fn resize(&self, size: WindowSize) {
+    pub(crate) fn resize(&self, size: WindowSize) {
         self.change(|waiting| waiting.size = Some(size));
     }
 
-    pub(super) fn drain(&self) {
+    pub(crate) fn drain(&self) {
         self.change(|waiting| waiting.drains = true);
     }
 
-    pub(super) fn end(&self) {
+    pub(crate) fn end(&self) {
         self.change(|waiting| waiting.ended = true);
         self.shared.taken.notify_one();
     }

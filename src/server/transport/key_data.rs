@@ -17,7 +17,7 @@ pub struct KeyData {
 
 impl KeyData {
     /// The data of a key; `None` if it can't be encoded.
-    pub(in crate::server) fn new(key: &public::KeyData) -> Option<Self> {
+    pub(crate) fn new(key: &public::KeyData) -> Option<Self> {
         let encoded = key.encode_vec().ok()?.into_boxed_slice();
         Some(Self { encoded, fingerprint: key.fingerprint(HashAlg::Sha256).to_string() })
     }

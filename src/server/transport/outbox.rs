@@ -32,7 +32,7 @@ pub struct Outbox {
 
 /// The state of the frame, which the outbox, the frame and the stream share.
 #[derive(Debug, Default)]
-pub(super) struct Passage {
+pub(crate) struct Passage {
     state: AtomicU8,
     /// Nothing can be sent any more.
     is_closed: AtomicBool,
@@ -64,13 +64,13 @@ const QUEUED: u8 = 1;
 const ENCRYPTED: u8 = 2;
 
 impl Outbox {
-    pub(super) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
+    pub(crate) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
         Self::on(Way::Channel(handle, channel), passage)
     }
 
     /// The parts of frames come out of a pipe.
     #[cfg(test)]
-    pub(super) fn into_pipe(pipe: UnboundedSender<Bytes>, passage: Arc<Passage>) -> Self {
+    pub(crate) fn into_pipe(pipe: UnboundedSender<Bytes>, passage: Arc<Passage>) -> Self {
         Self::on(Way::Pipe(pipe), passage)
     }
 
@@ -122,12 +122,12 @@ impl Outbox {
 }
 
 impl Passage {
-    pub(super) fn new(counters: Arc<Counters>) -> Self {
+    pub(crate) fn new(counters: Arc<Counters>) -> Self {
         Self { counters: OnceLock::from(counters), ..Self::default() }
     }
 
     /// The stream has written all bytes that it was given.
-    pub(super) fn flushed(self: &Arc<Self>) {
+    pub(crate) fn flushed(self: &Arc<Self>) {
         if self.state.load(Ordering::Acquire) != ENCRYPTED {
             return;
         }
@@ -140,19 +140,19 @@ impl Passage {
     }
 
     /// Nothing can be sent any more.
-    pub(super) fn close(&self) {
+    pub(crate) fn close(&self) {
         self.is_closed.store(true, Ordering::Release);
         locked(&self.rest, Option::take);
         self.changed.notify_one();
     }
 
     /// The number of parts of frames so far.
-    pub(super) fn parts(&self) -> u64 {
+    pub(crate) fn parts(&self) -> u64 {
         self.parts.load(Ordering::Acquire)
     }
 
     /// Whether a part of a frame waits for the client's window.
-    pub(super) fn is_waiting(&self) -> bool {
+    pub(crate) fn is_waiting(&self) -> bool {
         self.state.load(Ordering::Acquire) == QUEUED
     }
 

@@ -16,20 +16,20 @@ use crate::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones are the same end.
 #[derive(Clone, Debug)]
-pub(in crate::server) struct FarEnd {
+pub(crate) struct FarEnd {
     inlet: Inlet,
     passage: Weak<Passage>,
 }
 
 /// What a session sends.
 #[derive(Debug)]
-pub(in crate::server) struct Parts {
+pub(crate) struct Parts {
     parts: UnboundedReceiver<Bytes>,
     passage: Weak<Passage>,
 }
 
 /// A link of which `counters` count the frames, and its other end.
-pub(in crate::server) fn pipe(counters: Arc<Counters>) -> (Link, FarEnd, Parts) {
+pub(crate) fn pipe(counters: Arc<Counters>) -> (Link, FarEnd, Parts) {
     let passage = Arc::new(Passage::new(counters));
     let (sender, parts) = unbounded_channel();
     let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
@@ -41,20 +41,20 @@ pub(in crate::server) fn pipe(counters: Arc<Counters>) -> (Link, FarEnd, Parts) 
 
 impl FarEnd {
     /// Sends bytes, and waits where the session does not take them.
-    pub(in crate::server) async fn send(&self, bytes: &[u8]) {
+    pub(crate) async fn send(&self, bytes: &[u8]) {
         self.inlet.bytes(bytes).await;
     }
 
-    pub(in crate::server) fn resize(&self, size: WindowSize) {
+    pub(crate) fn resize(&self, size: WindowSize) {
         self.inlet.resize(size);
     }
 
-    pub(in crate::server) fn drain(&self) {
+    pub(crate) fn drain(&self) {
         self.inlet.drain();
     }
 
     /// Ends the link: nothing arrives any more, and nothing can be sent.
-    pub(in crate::server) fn end(&self) {
+    pub(crate) fn end(&self) {
         if let Some(passage) = self.passage.upgrade() {
             passage.close();
         }
@@ -65,12 +65,12 @@ impl FarEnd {
 impl Parts {
     /// Waits for the next part of a frame; `None` after the end of the session. The session learns with
     /// [`Parts::written`] that the part has left.
-    pub(in crate::server) async fn next(&mut self) -> Option<Bytes> {
+    pub(crate) async fn next(&mut self) -> Option<Bytes> {
         self.parts.recv().await
     }
 
     /// The last part has left, and so has been dropped.
-    pub(in crate::server) fn written(&self) {
+    pub(crate) fn written(&self) {
         if let Some(passage) = self.passage.upgrade() {
             passage.flushed();
         }

@@ -28,17 +28,17 @@ pub struct Visitor {
 }
 
 /// In characters: of a user name, of `TERM`, and of the value of a variable.
-pub(super) const LONGEST_WORD: usize = 64;
+pub(crate) const LONGEST_WORD: usize = 64;
 /// The most variables that are kept.
-pub(super) const MOST_VARIABLES: usize = 16;
+pub(crate) const MOST_VARIABLES: usize = 16;
 
 /// The printable characters of `text`, at most [`LONGEST_WORD`] of them.
-pub(super) fn word(text: &str) -> String {
+pub(crate) fn word(text: &str) -> String {
     text.chars().filter(|char| !char.is_control()).take(LONGEST_WORD).collect()
 }
 
 /// Whether a variable of that name is kept.
-pub(super) fn is_kept(name: &str) -> bool {
+pub(crate) fn is_kept(name: &str) -> bool {
     let is_locale = name.strip_prefix("LC_").is_some_and(|category| {
         (1..=32).contains(&category.len())
             && category.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_')
@@ -47,7 +47,7 @@ pub(super) fn is_kept(name: &str) -> bool {
 }
 
 /// The size of a window as a client states it, within 1 to `most` cells in each direction.
-pub(super) fn window_size(cells: [u32; 2], pixels: [u32; 2], most: [u16; 2]) -> WindowSize {
+pub(crate) fn window_size(cells: [u32; 2], pixels: [u32; 2], most: [u16; 2]) -> WindowSize {
     let [columns, rows] =
         [0, 1].map(|axis| u16::try_from(cells[axis]).unwrap_or(u16::MAX).clamp(1, most[axis]));
     // Pixels of a window that was cut say nothing about the shape of a cell.

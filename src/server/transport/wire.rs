@@ -25,23 +25,23 @@ use crate::server::bucket::Bucket;
 
 /// The limits of a client's bytes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ByteLimits {
+pub(crate) struct ByteLimits {
     /// The most bytes before authentication.
-    pub(super) before_login: u64,
+    pub(crate) before_login: u64,
     /// The most bytes a second after it. Bytes of four seconds may come at once.
-    pub(super) per_second: u32,
+    pub(crate) per_second: u32,
 }
 
 impl ByteLimits {
     /// The bytes that may come after authentication, from `now` on.
-    pub(super) fn bucket(&self, now: Duration) -> Bucket {
+    pub(crate) fn bucket(&self, now: Duration) -> Bucket {
         let rate = f64::from(self.per_second);
         Bucket::new(rate, rate * BURST, now)
     }
 }
 
 /// A socket with limits.
-pub(super) struct Wire<S> {
+pub(crate) struct Wire<S> {
     socket: S,
     line: Arc<Line>,
     hello: Hello,
@@ -53,8 +53,8 @@ pub(super) struct Wire<S> {
 
 /// The state of a connection, for the tasks that it concerns.
 #[derive(Debug)]
-pub(super) struct Line {
-    pub(super) passage: Arc<Passage>,
+pub(crate) struct Line {
+    pub(crate) passage: Arc<Passage>,
     limits: ByteLimits,
     begun: Instant,
     has_version: AtomicBool,
@@ -72,14 +72,14 @@ pub(super) struct Line {
 /// The time whose bytes may come at once.
 const BURST: f64 = 4.0;
 /// The fewest bytes that are read after a pause, so that pauses are few.
-pub(super) const FEWEST: f64 = 1024.0;
+pub(crate) const FEWEST: f64 = 1024.0;
 /// The most bytes that are read at once. Packets are 32 KB and their frame (RFC 4253, section 6.1).
 const LONGEST_PACKET: usize = 35_000;
 const READER: usize = 0;
 const WRITER: usize = 1;
 
 impl<S> Wire<S> {
-    pub(super) fn new(socket: S, line: Arc<Line>) -> Self {
+    pub(crate) fn new(socket: S, line: Arc<Line>) -> Self {
         let bucket = line.limits.bucket(line.begun.elapsed());
         let pause = Box::pin(sleep_until(Instant::now()));
         Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
@@ -87,7 +87,7 @@ impl<S> Wire<S> {
 }
 
 impl Line {
-    pub(super) fn new(limits: ByteLimits, passage: Arc<Passage>) -> Self {
+    pub(crate) fn new(limits: ByteLimits, passage: Arc<Passage>) -> Self {
         Self {
             passage,
             limits,
@@ -104,46 +104,46 @@ impl Line {
     }
 
     /// Whether the client has sent the line of its version.
-    pub(super) fn has_version(&self) -> bool {
+    pub(crate) fn has_version(&self) -> bool {
         self.has_version.load(Ordering::Acquire)
     }
 
     /// Whether the client has sent its half of the key exchange, after which it may wait for its
     /// user.
-    pub(super) fn has_exchanged(&self) -> bool {
+    pub(crate) fn has_exchanged(&self) -> bool {
         self.has_exchanged.load(Ordering::Acquire)
     }
 
     /// Whether what is sent is compressed after authentication.
-    pub(super) fn compresses(&self) -> bool {
+    pub(crate) fn compresses(&self) -> bool {
         self.compresses.load(Ordering::Acquire)
     }
 
-    pub(super) fn is_logged_in(&self) -> bool {
+    pub(crate) fn is_logged_in(&self) -> bool {
         self.is_logged_in.load(Ordering::Acquire)
     }
 
     /// The client is authenticated.
-    pub(super) fn log_in(&self) {
+    pub(crate) fn log_in(&self) {
         self.is_logged_in.store(true, Ordering::Release);
     }
 
-    pub(super) fn limits(&self) -> ByteLimits {
+    pub(crate) fn limits(&self) -> ByteLimits {
         self.limits
     }
 
-    pub(super) fn begun(&self) -> Instant {
+    pub(crate) fn begun(&self) -> Instant {
         self.begun
     }
 
     /// When the client has last sent anything, or made room in a full socket. While a frame does not
     /// fit in the socket, russh reads nothing, and on a slow link that lasts.
-    pub(super) fn last_sign(&self) -> Instant {
+    pub(crate) fn last_sign(&self) -> Instant {
         self.begun + Duration::from_millis(self.last_sign.load(Ordering::Acquire))
     }
 
     /// Fails all reading and writing from now on.
-    pub(super) fn cut(&self) {
+    pub(crate) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
         for waker in locked(&self.wakers, mem::take).into_iter().flatten() {
             waker.wake();

@@ -7,7 +7,7 @@ use crate::store::Preferences;
 
 /// The number of an account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct AccountId(pub(super) i64);
+pub struct AccountId(pub(crate) i64);
 
 /// The SHA-256 of the data of a public key: its fingerprint.
 ///
@@ -53,7 +53,7 @@ impl AccountSettings {
     /// The longest configuration that is kept, in bytes.
     pub const MOST_BYTES: usize = 16 << 10;
 
-    pub(super) fn checked(&self) -> Result<&Self, StoreFailure> {
+    pub(crate) fn checked(&self) -> Result<&Self, StoreFailure> {
         let is_short = self.configuration.len() <= Self::MOST_BYTES;
         is_short.then_some(self).ok_or_else(|| StoreFailure::new("the settings are too long"))
     }

@@ -68,7 +68,7 @@ impl Ban {
 
 impl BanTarget {
     /// Whether a ban of it takes the place of one of `other`.
-    pub(super) fn is_same(&self, other: &Self) -> bool {
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Name(name), Self::Name(other)) => name.looks_like(other),
             _ => self == other,
@@ -140,7 +140,7 @@ impl fmt::Display for AddressPrefix {
 }
 
 /// The ban of `bans` that applies to somebody; of several, the one that ends last.
-pub(super) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
+pub(crate) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
     let applying = bans.into_iter().filter(|ban| ban.target.applies_to(identity));
     applying.max_by_key(|ban| (ban.until.is_none(), ban.until))
 }

@@ -48,12 +48,12 @@ pub enum Refusal {
 }
 
 impl StoreFailure {
-    pub(super) fn new(sentence: impl Into<String>) -> Self {
+    pub(crate) fn new(sentence: impl Into<String>) -> Self {
         Self { sentence: sentence.into(), cause: Cause::Refused }
     }
 
     /// That of a store whose disk is full.
-    pub(super) fn full(sentence: impl Into<String>) -> Self {
+    pub(crate) fn full(sentence: impl Into<String>) -> Self {
         Self { sentence: sentence.into(), cause: Cause::Full }
     }
 
@@ -74,7 +74,7 @@ impl StoreFailure {
     }
 
     /// Whether every call fails for now, and the same call may succeed later.
-    pub(super) fn is_of_now(&self) -> bool {
+    pub(crate) fn is_of_now(&self) -> bool {
         self.is_away() || self.is_full()
     }
 

@@ -23,10 +23,10 @@ use super::StoreFailure;
 /// The right to have a room, for a while.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lease {
-    pub(super) room: String,
-    pub(super) host: String,
-    pub(super) epoch: u64,
-    pub(super) time: Duration,
+    pub(crate) room: String,
+    pub(crate) host: String,
+    pub(crate) epoch: u64,
+    pub(crate) time: Duration,
 }
 
 /// Where leases are kept.

@@ -153,7 +153,7 @@ impl Name {
     }
 
     /// The keys of the name: two names that share one are not told from each other.
-    pub(super) fn keys(&self) -> Vec<String> {
+    pub(crate) fn keys(&self) -> Vec<String> {
         key::of(&self.0)
     }
 

@@ -34,7 +34,7 @@ pub enum Visitor {
 
 /// The number of a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct VisitId(pub(super) i64);
+pub struct VisitId(pub(crate) i64);
 
 /// A visit that counts.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -44,7 +44,7 @@ impl Origin {
 
     /// Counts an account: the time, in milliseconds since 1970, from which on the network has its whole allowance
     /// again, after `known`.
-    pub(super) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, Refusal> {
+    pub(crate) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, Refusal> {
         let now = milliseconds(now);
         let pause = HOUR / i64::from(self.rate.per_hour.max(1));
         let most = pause * (i64::from(self.rate.at_once.max(1)) - 1);
@@ -60,7 +60,7 @@ impl Origin {
 }
 
 /// A time in milliseconds since 1970.
-pub(super) fn milliseconds(time: UnixTime) -> i64 {
+pub(crate) fn milliseconds(time: UnixTime) -> i64 {
     // Some thousands of years.
     const LAST: u64 = 1 << 37;
     (time.seconds().min(LAST) * 1000) as i64

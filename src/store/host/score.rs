@@ -47,8 +47,8 @@ pub struct DailyScore {
 /// The try of a daily run that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DailyTry {
-    pub(super) account: AccountId,
-    pub(super) day: Day,
+    pub(crate) account: AccountId,
+    pub(crate) day: Day,
 }
 
 impl LevelBoard {
@@ -108,7 +108,7 @@ impl DailyTry {
 }
 
 /// The best of a known result and a run, and what the run improves.
-pub(super) fn with_run(known: Option<Best>, run: &VerifiedLevel) -> (Best, Improved) {
+pub(crate) fn with_run(known: Option<Best>, run: &VerifiedLevel) -> (Best, Improved) {
     let of_run = Best { tally: run.tally(), rank: run.rank() };
     let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
     let time = of_run.tally.steps < known.tally.steps;

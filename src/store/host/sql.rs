@@ -19,7 +19,7 @@ mod bans;
 mod results;
 mod value;
 
-pub(super) use value::{Row, Value, values};
+pub(crate) use value::{Row, Value, values};
 
 use super::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, DailyScore, DailyTry, Day,
@@ -84,7 +84,7 @@ pub trait Database: Send {
 /// The store in a database.
 #[derive(Debug)]
 pub struct SqlStore<D> {
-    pub(super) database: D,
+    pub(crate) database: D,
 }
 
 impl<D: Database> HostStore for SqlStore<D> {

@@ -39,7 +39,7 @@ pub type SqliteStore = SqlStore<SqliteFile>;
 /// The file of a [`SqliteStore`].
 #[derive(Debug)]
 pub struct SqliteFile {
-    pub(super) connection: Connection,
+    pub(crate) connection: Connection,
 }
 
 impl SqliteStore {

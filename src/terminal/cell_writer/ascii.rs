@@ -3,7 +3,7 @@
 /// The substitute of `symbol`, the text of a cell: the symbol if it is a single ASCII character,
 /// otherwise a similar character or a question mark. The empty second cell of a wide character
 /// becomes a space.
-pub(super) fn substitute(symbol: &str) -> char {
+pub(crate) fn substitute(symbol: &str) -> char {
     let Some(character) = symbol.chars().next() else { return ' ' };
     match character {
         ' '..='~' => character,

@@ -9,7 +9,7 @@ use super::style::{Shade, Style};
 
 /// A character that shows at most two colours, each in a whole half of its cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BlockElement {
+pub(crate) enum BlockElement {
     /// The upper half in the text colour, the lower half in the background colour.
     Upper,
     /// The upper half in the background colour, the lower half in the text colour.
@@ -23,7 +23,7 @@ pub(super) enum BlockElement {
 impl BlockElement {
     /// The character in UTF-8, and the number of its bytes.
     #[inline]
-    pub(super) const fn encoded(self) -> ([u8; 4], usize) {
+    pub(crate) const fn encoded(self) -> ([u8; 4], usize) {
         match self {
             Self::Upper => ([0xE2, 0x96, 0x80, 0], 3),
             Self::Lower => ([0xE2, 0x96, 0x84, 0], 3),
@@ -32,7 +32,7 @@ impl BlockElement {
         }
     }
 
-    pub(super) const fn character(self) -> char {
+    pub(crate) const fn character(self) -> char {
         match self {
             Self::Upper => '▀',
             Self::Lower => '▄',
@@ -43,7 +43,7 @@ impl BlockElement {
 
     /// Finds the element by its bytes in UTF-8, since this runs for every changed cell.
     #[inline]
-    pub(super) fn of(symbol: &str) -> Option<Self> {
+    pub(crate) fn of(symbol: &str) -> Option<Self> {
         match *symbol.as_bytes() {
             [b' '] => Some(Self::Space),
             [0xE2, 0x96, 0x80] => Some(Self::Upper),
@@ -55,13 +55,13 @@ impl BlockElement {
 
     /// Whether it shows one colour.
     #[inline]
-    pub(super) fn is_flat(self) -> bool {
+    pub(crate) fn is_flat(self) -> bool {
         matches!(self, Self::Full | Self::Space)
     }
 
     /// The colours of the upper and the lower half.
     #[inline]
-    pub(super) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {
+    pub(crate) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {
         match self {
             Self::Upper => [text, ground],
             Self::Lower => [ground, text],
@@ -72,7 +72,7 @@ impl BlockElement {
 }
 
 /// The block element and style with the fewest bytes after `current` that show these two halves.
-pub(super) fn cheapest(halves: [Shade; 2], current: Option<Style>) -> (BlockElement, Style) {
+pub(crate) fn cheapest(halves: [Shade; 2], current: Option<Style>) -> (BlockElement, Style) {
     let [top, bottom] = halves;
     let plain = |element, [text, ground]: [Shade; 2]| (element, Style::plain(text, ground));
     let Some(current) = current else { return plain(BlockElement::Upper, halves) };
@@ -88,7 +88,7 @@ pub(super) fn cheapest(halves: [Shade; 2], current: Option<Style>) -> (BlockElem
 /// The block element and the colours with the fewest bytes after a text colour and a background that show
 /// these two halves; there must be no modifiers if they are equal.
 #[inline]
-pub(super) fn cheapest_after(
+pub(crate) fn cheapest_after(
     [text, ground]: [Shade; 2],
     [top, bottom]: [Shade; 2],
 ) -> (BlockElement, [Shade; 2]) {

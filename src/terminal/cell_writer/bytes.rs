@@ -16,7 +16,7 @@ pub(crate) struct Bytes {
 }
 
 /// A piece in progress at the end of [`Bytes`]. It counts as written only after [`Piece::finish`].
-pub(super) struct Piece<'a> {
+pub(crate) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
     /// The number of bytes in this piece, at most [`LONGEST`].
     end: usize,
@@ -37,7 +37,7 @@ impl Bytes {
         &self.memory[..self.length]
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.length == 0
     }
 
@@ -48,7 +48,7 @@ impl Bytes {
 
     /// Begins a piece.
     #[inline]
-    pub(super) fn piece(&mut self) -> Piece<'_> {
+    pub(crate) fn piece(&mut self) -> Piece<'_> {
         self.make_room(ROOM);
         let room = &mut self.memory[self.length..][..ROOM];
         let room = room.try_into().expect("there is as much behind what is written");
@@ -79,25 +79,25 @@ impl Bytes {
 impl Piece<'_> {
     /// The number of bytes in this piece.
     #[inline]
-    pub(super) fn end(&self) -> usize {
+    pub(crate) fn end(&self) -> usize {
         self.end
     }
 
     /// Sets the number of bytes in this piece.
     #[inline]
-    pub(super) fn end_at(&mut self, end: usize) {
+    pub(crate) fn end_at(&mut self, end: usize) {
         self.end = end;
     }
 
     /// Writes a byte at a place in this piece.
     #[inline]
-    pub(super) fn put(&mut self, place: usize, byte: u8) {
+    pub(crate) fn put(&mut self, place: usize, byte: u8) {
         self.room[place & LONGEST] = byte;
     }
 
     /// Writes all of `text`, of which the first `count` bytes are part of the piece.
     #[inline]
-    pub(super) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
+    pub(crate) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         const { assert!(LENGTH <= EXCESS) };
         debug_assert!(self.end <= LONGEST, "a piece is too long");
         let start = self.end & LONGEST;
@@ -107,7 +107,7 @@ impl Piece<'_> {
 
     /// Adds the piece to the written bytes.
     #[inline]
-    pub(super) fn finish(self) {
+    pub(crate) fn finish(self) {
         *self.length += self.end;
     }
 }

@@ -5,7 +5,7 @@ use std::hint::select_unpredictable;
 use super::bytes::Piece;
 
 /// A control sequence in progress, with at least one parameter at its end.
-pub(super) struct ControlSequence<'a, 'b> {
+pub(crate) struct ControlSequence<'a, 'b> {
     piece: &'a mut Piece<'b>,
     start: usize,
 }
@@ -13,7 +13,7 @@ pub(super) struct ControlSequence<'a, 'b> {
 impl<'a, 'b> ControlSequence<'a, 'b> {
     /// Begins a sequence at the end of `piece`.
     #[inline]
-    pub(super) fn begin(piece: &'a mut Piece<'b>) -> Self {
+    pub(crate) fn begin(piece: &'a mut Piece<'b>) -> Self {
         let start = piece.end();
         piece.push([INTRODUCER[0]], 1);
         Self { piece, start }
@@ -21,26 +21,26 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
 
     /// Adds the parameter `number`.
     #[inline]
-    pub(super) fn parameter(&mut self, number: u8) {
+    pub(crate) fn parameter(&mut self, number: u8) {
         let decimal = DECIMALS[usize::from(number)];
         self.piece.push(decimal.text(), decimal.length());
     }
 
     /// Adds parameters in decimal, each after a separator: the first `count` bytes of `text`.
     #[inline]
-    pub(super) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
+    pub(crate) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         self.piece.push(text, count);
     }
 
     /// Adds several parameters.
     #[inline]
-    pub(super) fn parameters(&mut self, numbers: impl IntoIterator<Item = u8>) {
+    pub(crate) fn parameters(&mut self, numbers: impl IntoIterator<Item = u8>) {
         numbers.into_iter().for_each(|number| self.parameter(number));
     }
 
     /// Adds a position or a distance on the screen as a parameter.
     #[inline]
-    pub(super) fn place(&mut self, number: u16) {
+    pub(crate) fn place(&mut self, number: u16) {
         match u8::try_from(number) {
             Ok(small) => self.parameter(small),
             Err(_) => self.large_place(number),
@@ -58,7 +58,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     /// Calls `write` to add parameters, and removes them unless `needed`. Where the branch is badly
     /// predictable, this takes less time than a test first.
     #[inline]
-    pub(super) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
+    pub(crate) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
         let before = self.piece.end();
         write(self);
         let end = self.piece.end();
@@ -67,7 +67,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
 
     /// Ends the sequence with the final byte `last`.
     #[inline]
-    pub(super) fn end(self, last: u8) {
+    pub(crate) fn end(self, last: u8) {
         // Replace the separator before the first parameter.
         self.piece.put(self.start + 1, INTRODUCER[1]);
         self.piece.push([last], 1);
@@ -79,7 +79,7 @@ const SEPARATOR: u8 = b';';
 
 /// The number of digits of `number`.
 #[inline]
-pub(super) fn digits(number: u8) -> usize {
+pub(crate) fn digits(number: u8) -> usize {
     DECIMALS[usize::from(number)].length() - 1
 }
 

@@ -11,7 +11,7 @@ use super::shift::{CELL, Loss, Shifts};
 use super::style::Style;
 
 /// Makes a row look like its target.
-pub(super) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
+pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
     if *row.intricate {
         draw_intricate_row(pen, &mut row);
     } else {
@@ -46,7 +46,7 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
 
 /// Draws one cell of a row.
 #[inline(never)]
-pub(super) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
+pub(crate) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
     let target = row.targets[column];
     draw_target(pen, row, column, target);
     row.shown[column] = target;

@@ -10,7 +10,7 @@ use ratatui::style::Modifier;
 
 /// A character one cell wide, and its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Glyph {
+pub(crate) struct Glyph {
     character: char,
     /// The modifiers as bits, which have an order.
     modifiers: u16,
@@ -18,11 +18,11 @@ pub(super) struct Glyph {
 
 /// The id of a glyph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct GlyphId(u16);
+pub(crate) struct GlyphId(u16);
 
 /// The glyphs that have an id.
 #[derive(Debug)]
-pub(super) struct GlyphTable {
+pub(crate) struct GlyphTable {
     glyphs: Vec<Glyph>,
     ids: BTreeMap<Glyph, GlyphId>,
     /// The glyphs that were looked up last, with their ids, each in its place: nearly all that a frame has.
@@ -33,7 +33,7 @@ pub(super) struct GlyphTable {
 const RECENT: usize = 128;
 
 impl Glyph {
-    pub(super) const fn new(character: char, modifier: Modifier) -> Self {
+    pub(crate) const fn new(character: char, modifier: Modifier) -> Self {
         Self { character, modifiers: modifier.bits() }
     }
 
@@ -43,30 +43,30 @@ impl Glyph {
         (self.character as usize ^ usize::from(self.modifiers)) % RECENT
     }
 
-    pub(super) fn character(self) -> char {
+    pub(crate) fn character(self) -> char {
         self.character
     }
 
-    pub(super) fn modifier(self) -> Modifier {
+    pub(crate) fn modifier(self) -> Modifier {
         Modifier::from_bits_truncate(self.modifiers)
     }
 }
 
 impl GlyphId {
     /// The id of a space without modifiers, in every table.
-    pub(super) const SPACE: Self = Self(0);
+    pub(crate) const SPACE: Self = Self(0);
     /// The id of an upper half block without modifiers, in every table.
-    pub(super) const UPPER_HALF: Self = Self(1);
+    pub(crate) const UPPER_HALF: Self = Self(1);
     /// The maximum number of glyphs in a table.
-    pub(super) const COUNT: u16 = 3900;
+    pub(crate) const COUNT: u16 = 3900;
 
     /// The id as a number, which is less than [`GlyphId::COUNT`].
-    pub(super) const fn get(self) -> u16 {
+    pub(crate) const fn get(self) -> u16 {
         self.0
     }
 
     /// The id with this number, which must be from [`GlyphId::get`].
-    pub(super) fn new(id: u16) -> Self {
+    pub(crate) fn new(id: u16) -> Self {
         Self(id)
     }
 }
@@ -74,13 +74,13 @@ impl GlyphId {
 impl GlyphTable {
     /// The id of `glyph`, a new one if necessary; `None` if the table is full.
     #[inline]
-    pub(super) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
+    pub(crate) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
         self.recent_id(glyph).or_else(|| self.find(glyph))
     }
 
     /// The id of `glyph` if it was looked up recently.
     #[inline]
-    pub(super) fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
+    pub(crate) fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
         let (recent, id) = self.recent[glyph.place()];
         (recent == glyph).then_some(id)
     }
@@ -100,7 +100,7 @@ impl GlyphTable {
     }
 
     /// The glyph with this id.
-    pub(super) fn glyph(&self, id: GlyphId) -> Glyph {
+    pub(crate) fn glyph(&self, id: GlyphId) -> Glyph {
         self.glyphs[usize::from(id.0)]
     }
 }

@@ -25,7 +25,7 @@ use crate::terminal::{Fidelity, thread_memory};
 
 /// Draws rows inexactly; keeps its memory between rows, one for each thread.
 #[derive(Debug, Default)]
-pub(super) struct RowEncoder {
+pub(crate) struct RowEncoder {
     inks: Inks,
     /// The colours of the row's targets, and of the cells on the screen.
     wanted: Colors,
@@ -55,7 +55,7 @@ thread_local! {
 
 impl RowEncoder {
     /// Makes rows look like their targets within `fidelity`.
-    pub(super) fn draw_rows<'a>(
+    pub(crate) fn draw_rows<'a>(
         pen: &mut Pen,
         shifts: &mut Shifts,
         rows: impl Iterator<Item = Row<'a>>,

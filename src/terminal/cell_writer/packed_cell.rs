@@ -15,7 +15,7 @@ use crate::color::Rgb;
 
 /// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// Two colours with any block element, or with a mosaic or its inverse.
     Block(Shape),
     /// A glyph without modifiers, in a text and a background colour.
@@ -27,16 +27,16 @@ pub(super) enum Form {
 /// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half, of a
 /// shape's dots and the rest, or of the text and the background. A block of one colour is one of halves.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct PackedCell(u64);
+pub(crate) struct PackedCell(u64);
 
 impl PackedCell {
     /// An unknown cell. No target is equal to it.
-    pub(super) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
+    pub(crate) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
     /// A cell of several characters, of a character wider than a cell, or of a glyph without an id.
     /// It is sent whenever its row changes.
     const INTRICATE: Self = Self((Self::SHAPES + 1) << Self::KIND);
     /// A space in the terminal's default colours.
-    pub(super) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
+    pub(crate) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
     /// The position of the form: the shape of blocks, zero for halves; after two others, the ids of glyphs.
     const KIND: u32 = 2 * Shade::BITS;
@@ -49,7 +49,7 @@ impl PackedCell {
 
     /// Packs `cell`.
     #[inline]
-    pub(super) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
@@ -58,13 +58,13 @@ impl PackedCell {
     }
 
     /// A space in the style of `cell`.
-    pub(super) fn blank(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn blank(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         Self::of_element(BlockElement::Space, Style::of(cell), glyph_table)
     }
 
     /// A cell of two colours, the first above the second.
     #[inline]
-    pub(super) fn of_colors(colors: [Color; 2]) -> Self {
+    pub(crate) fn of_colors(colors: [Color; 2]) -> Self {
         let shades = colors.map(Shade::of);
         match halves(BlockElement::Upper, Style::plain(shades[0], shades[1])) {
             Some(halves) => Self::of_halves(halves),
@@ -74,13 +74,13 @@ impl PackedCell {
 
     /// A cell of two pixels, the first above the second.
     #[inline]
-    pub(super) fn of_pixels(pixels: [Rgb; 2]) -> Self {
+    pub(crate) fn of_pixels(pixels: [Rgb; 2]) -> Self {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
     /// A mosaic in the colours of its dots and of the rest.
     #[inline]
-    pub(super) fn of_mosaic(
+    pub(crate) fn of_mosaic(
         mosaic: Mosaic,
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
@@ -114,7 +114,7 @@ impl PackedCell {
     }
 
     /// A character in a text and a background colour.
-    pub(super) fn of_character(
+    pub(crate) fn of_character(
         character: char,
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
@@ -162,7 +162,7 @@ impl PackedCell {
 
     /// A character that cannot be drawn as a block.
     #[inline(never)]
-    pub(super) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
         let id = glyph_table.id(Glyph::new(character, style.modifier));
         let colors = [style.foreground, style.background];
         id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
@@ -170,7 +170,7 @@ impl PackedCell {
 
     /// A shape as `element` draws it in this style.
     #[inline]
-    pub(super) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
+    pub(crate) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
         Self::of_shape(shape, element.halves(style.foreground, style.background))
     }
 
@@ -185,7 +185,7 @@ impl PackedCell {
     }
 
     /// The character and its style; `None` for blocks and intricate cells.
-    pub(super) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
+    pub(crate) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
         let id = (self.0 >> Self::KIND).checked_sub(Self::FIRST_GLYPH)?;
         let glyph = glyph_table.glyph(GlyphId::new(id as u16));
         let [foreground, background] = self.colors();
@@ -194,31 +194,31 @@ impl PackedCell {
     }
 
     /// Whether the cell may be wider than one column.
-    pub(super) fn is_intricate(self) -> bool {
+    pub(crate) fn is_intricate(self) -> bool {
         self == Self::INTRICATE
     }
 
     /// Whether this shown cell need not be sent for the target `wanted`.
-    pub(super) fn is(self, wanted: Self) -> bool {
+    pub(crate) fn is(self, wanted: Self) -> bool {
         self == wanted && self != Self::INTRICATE
     }
 
     /// A hash whose upper bits are the best. It has few bits, so that the compiler computes several
     /// at once.
     #[inline]
-    pub(super) fn hash(self) -> u32 {
+    pub(crate) fn hash(self) -> u32 {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
     }
 
     /// Three hashes of sixteen bits.
-    pub(super) fn hashes(self) -> [u16; 3] {
+    pub(crate) fn hashes(self) -> [u16; 3] {
         let hash = self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         [48, 32, 16].map(|from| (hash >> from) as u16)
     }
 
     /// The form and the colours; `None` if the cell may only be shown exactly.
     #[inline]
-    pub(super) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
+    pub(crate) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
         let form = match self.0 >> Self::KIND {
             shape @ ..Self::SHAPES => Form::Block(Shape::new(shape as u8)),
             id => {
@@ -231,26 +231,26 @@ impl PackedCell {
     }
 
     /// The same form in other colours.
-    pub(super) fn recolored(self, colors: [Shade; 2]) -> Self {
+    pub(crate) fn recolored(self, colors: [Shade; 2]) -> Self {
         Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
 
     /// The colours of the upper and the lower half of a block.
     #[inline]
-    pub(super) fn halves(self) -> Option<[Shade; 2]> {
+    pub(crate) fn halves(self) -> Option<[Shade; 2]> {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
     /// The shape of a block, and the colours of its dots and of the rest.
     #[inline]
-    pub(super) fn block(self) -> Option<(Shape, [Shade; 2])> {
+    pub(crate) fn block(self) -> Option<(Shape, [Shade; 2])> {
         let kind = self.0 >> Self::KIND;
         (kind < Self::SHAPES).then(|| (Shape::new(kind as u8), self.colors()))
     }
 
     /// The same for a block of pixels.
     #[inline]
-    pub(super) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
+    pub(crate) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
         const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
         const PIXELS: u64 = PIXEL << Shade::BITS | PIXEL;
         const BOTH_KINDS: u64 = 3 * (PIXELS / 2);
@@ -261,7 +261,7 @@ impl PackedCell {
 
     /// The two colours of any cell.
     #[inline]
-    pub(super) fn colors(self) -> [Shade; 2] {
+    pub(crate) fn colors(self) -> [Shade; 2] {
         [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
     }
 }

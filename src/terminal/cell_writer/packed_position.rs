@@ -8,16 +8,16 @@ use ratatui::layout::Position;
 
 /// A position on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PackedPosition(u32);
+pub(crate) struct PackedPosition(u32);
 
 impl PackedPosition {
     #[inline]
-    pub(super) fn of(position: Position) -> Self {
+    pub(crate) fn of(position: Position) -> Self {
         Self(u32::from(position.y) << u16::BITS | u32::from(position.x))
     }
 
     #[inline]
-    pub(super) fn get(self) -> Position {
+    pub(crate) fn get(self) -> Position {
         Position { x: self.0 as u16, y: (self.0 >> u16::BITS) as u16 }
     }
 }

@@ -23,7 +23,7 @@ use quantizer::Quantizer;
 
 /// The known entries of the terminal's palette.
 #[derive(Debug, Default)]
-pub(super) struct Palette {
+pub(crate) struct Palette {
     /// Whether entries may be defined.
     is_on: bool,
     /// The colour of each entry; [`Shade::DEFAULT`] for undefined ones.
@@ -68,18 +68,18 @@ struct Near {
 
 /// A colour that may be sent for another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Telling {
-    pub(super) ink: Ink,
+pub(crate) struct Telling {
+    pub(crate) ink: Ink,
     /// The bytes of its parameters.
-    pub(super) bytes: f32,
+    pub(crate) bytes: f32,
     /// The price of its error, in bytes.
-    pub(super) error: f32,
+    pub(crate) error: f32,
 }
 
 impl Telling {
     /// The bytes and the price together.
     #[inline]
-    pub(super) fn cost(self) -> f32 {
+    pub(crate) fn cost(self) -> f32 {
         self.bytes + self.error
     }
 }
@@ -94,36 +94,36 @@ const KNOWN_FOR: u32 = 8;
 
 impl Palette {
     /// Sets whether entries may be defined, and forgets all definitions.
-    pub(super) fn set_on(&mut self, is_on: bool) {
+    pub(crate) fn set_on(&mut self, is_on: bool) {
         *self = if is_on { Self::on() } else { Self::default() };
     }
 
     /// Sets that all colours are told as entries, and forgets all definitions.
-    pub(super) fn set_quantizing(&mut self) {
+    pub(crate) fn set_quantizing(&mut self) {
         let quantizer = Some(Box::new(Quantizer::new()));
         *self = Self { is_on: true, quantizer, ..Self::default() };
     }
 
     /// Whether all colours are told as entries.
-    pub(super) fn is_quantizing(&self) -> bool {
+    pub(crate) fn is_quantizing(&self) -> bool {
         self.quantizer.is_some()
     }
 
     /// Replaces the colours of all targets by those of entries, if all colours are told as entries.
     /// Returns the definitions of entries that the terminal must receive before them.
-    pub(super) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
+    pub(crate) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
         let mut definitions = Bytes::default();
         self.quantizer.as_mut()?.quantize(screen, &mut definitions);
         (!definitions.is_empty()).then_some(definitions)
     }
 
     /// Whether entries may be defined.
-    pub(super) fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         self.is_on
     }
 
     /// Forgets all definitions.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         if self.quantizer.is_some() {
             self.set_quantizing();
         } else {
@@ -140,7 +140,7 @@ impl Palette {
 
     /// The shade to send to the terminal for a colour.
     #[inline]
-    pub(super) fn told(&self, shade: Shade) -> Shade {
+    pub(crate) fn told(&self, shade: Shade) -> Shade {
         if self.is_on { self.entry_or_itself(shade) } else { shade }
     }
 
@@ -157,7 +157,7 @@ impl Palette {
 
     /// The cheapest colour to send for `wanted`, whose own parameters take this number of bytes.
     #[inline]
-    pub(super) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> Telling {
+    pub(crate) fn telling(&mut self, wanted: Ink, bytes: f32, price: Price) -> Telling {
         let mut telling = Telling { ink: wanted, bytes, error: 0.0 };
         if self.is_on {
             self.shorten(&mut telling, price);

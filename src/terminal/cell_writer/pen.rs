@@ -21,7 +21,7 @@ use super::style::Style;
 
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
-pub(super) struct Pen {
+pub(crate) struct Pen {
     /// Begins with the start of synchronized output.
     frame: Bytes,
     /// The size of the terminal.
@@ -47,7 +47,7 @@ const REPEAT: u8 = b'b';
 
 impl Pen {
     /// A pen for a terminal of this size and otherwise unknown state.
-    pub(super) fn new(size: Size) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
         Self {
             frame: Bytes::default(),
             size,
@@ -61,17 +61,17 @@ impl Pen {
     }
 
     /// Sets whether a block that is drawn several times is written once and repeated.
-    pub(super) fn set_repeats(&mut self, repeats: bool) {
+    pub(crate) fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
     }
 
     /// The terminal's palette.
-    pub(super) fn palette(&mut self) -> &mut Palette {
+    pub(crate) fn palette(&mut self) -> &mut Palette {
         &mut self.palette
     }
 
     /// Defines entries of the palette for the targets of `screen`, where that saves bytes.
-    pub(super) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
+    pub(crate) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
         if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
             // The definitions borrow the palette, so they are taken out of it and put back.
             self.frame().push_text(definitions.as_slice());
@@ -81,7 +81,7 @@ impl Pen {
 
     /// Replaces the colours of all targets by those of the palette's entries, if the terminal shows no
     /// others, and defines these.
-    pub(super) fn quantize(&mut self, screen: &mut Screen) {
+    pub(crate) fn quantize(&mut self, screen: &mut Screen) {
         if let Some(definitions) = self.palette.quantize(screen) {
             self.frame().push_text(definitions.as_slice());
             // Its colours may be those of entries that have changed.
@@ -90,22 +90,22 @@ impl Pen {
     }
 
     /// Whether the terminal repeats characters (REP).
-    pub(super) fn repeats(&self) -> bool {
+    pub(crate) fn repeats(&self) -> bool {
         self.repeats
     }
 
     /// The terminal's style; `None` if it is unknown.
-    pub(super) fn style(&self) -> Option<Style> {
+    pub(crate) fn style(&self) -> Option<Style> {
         self.style
     }
 
     /// The position of the cursor; `None` if it is unknown.
-    pub(super) fn position(&self) -> Option<Position> {
+    pub(crate) fn position(&self) -> Option<Position> {
         self.cursor().filter(|cursor| cursor.x < self.size.width)
     }
 
     /// The position of the cursor, which moves to the first cell if its position is unknown.
-    pub(super) fn settle(&mut self) -> Position {
+    pub(crate) fn settle(&mut self) -> Position {
         self.position().unwrap_or_else(|| {
             self.move_to(Position::ORIGIN);
             Position::ORIGIN
@@ -113,13 +113,13 @@ impl Pen {
     }
 
     /// Sets the size of the terminal.
-    pub(super) fn set_size(&mut self, size: Size) {
+    pub(crate) fn set_size(&mut self, size: Size) {
         self.size = size;
         self.cursor = None;
     }
 
     /// Ends the frame and returns it, unless it is empty. The next bytes belong to another frame.
-    pub(super) fn finish_frame(&mut self) -> Option<&[u8]> {
+    pub(crate) fn finish_frame(&mut self) -> Option<&[u8]> {
         if self.frame.is_empty() {
             return None;
         }
@@ -128,26 +128,26 @@ impl Pen {
     }
 
     /// Begins another frame.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.frame.clear();
     }
 
     /// Forgets the terminal's state and the unsent bytes.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.frame.clear();
         self.palette.forget();
         (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
 
     /// Writes a crossterm command that changes neither the cursor's position nor the style.
-    pub(super) fn command(&mut self, command: impl Command) {
+    pub(crate) fn command(&mut self, command: impl Command) {
         // A write to memory cannot fail.
         _ = queue!(self.frame(), command);
     }
 
     /// Moves the cursor to `target`, or to the nearest cell of the screen, as the terminal would.
     #[inline(never)]
-    pub(super) fn move_to(&mut self, target: Position) {
+    pub(crate) fn move_to(&mut self, target: Position) {
         let (cursor, size) = (self.cursor(), self.size);
         let target = Position {
             x: target.x.min(size.width.saturating_sub(1)),
@@ -159,7 +159,7 @@ impl Pen {
         self.cursor = Some(PackedPosition::of(target));
     }
 
-    pub(super) fn set_style(&mut self, target: Style) {
+    pub(crate) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
             let current = self.style;
             self.frame();
@@ -173,7 +173,7 @@ impl Pen {
 
     /// Draws a block at a position on the screen: a shape as `element` draws it, that of the halves if it has one
     /// colour.
-    pub(super) fn draw_block(
+    pub(crate) fn draw_block(
         &mut self,
         position: Position,
         (shape, element): (Shape, BlockElement),
@@ -238,7 +238,7 @@ impl Pen {
     }
 
     /// Draws text without control characters.
-    pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
+    pub(crate) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
         self.move_to(position);
         self.set_style(style);
         self.frame().push_text(text.as_bytes());
@@ -263,7 +263,7 @@ impl Pen {
     }
 
     /// Moves a stretch of row `y`. The cells to its right move away and back.
-    pub(super) fn shift_row(&mut self, shift: &Shift, y: u16) {
+    pub(crate) fn shift_row(&mut self, shift: &Shift, y: u16) {
         let (start, end) = (shift.columns.start as u16, shift.columns.end as u16);
         let by = shift.by as u16;
         let is_whole = end == self.size.width;

@@ -19,7 +19,7 @@ use crate::terminal::thread_memory;
 
 /// The progress of refinement.
 #[derive(Debug)]
-pub(super) struct Refinement {
+pub(crate) struct Refinement {
     /// The number of frames until the picture is exact.
     frames: usize,
 }
@@ -52,17 +52,17 @@ thread_local! {
 }
 
 impl Refinement {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { frames: FRAMES }
     }
 
     /// Starts again after a motion.
-    pub(super) fn disturb(&mut self) {
+    pub(crate) fn disturb(&mut self) {
         self.frames = FRAMES;
     }
 
     /// Draws the next refinement frame of the whole screen.
-    pub(super) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+    pub(crate) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }
@@ -88,7 +88,7 @@ impl Refinement {
     }
 
     /// Draws the next refinement frame of the rows that rest while others change.
-    pub(super) fn draw_resting(pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+    pub(crate) fn draw_resting(pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }

@@ -45,23 +45,23 @@ pub struct Screen {
 }
 
 /// A row of the screen.
-pub(super) struct Row<'a> {
-    pub(super) y: u16,
-    pub(super) glyph_table: &'a GlyphTable,
-    pub(super) shown: &'a mut [PackedCell],
-    pub(super) targets: &'a [PackedCell],
+pub(crate) struct Row<'a> {
+    pub(crate) y: u16,
+    pub(crate) glyph_table: &'a GlyphTable,
+    pub(crate) shown: &'a mut [PackedCell],
+    pub(crate) targets: &'a [PackedCell],
     /// The landmarks of its targets in the last frame.
-    pub(super) marks: &'a mut [Mark],
-    pub(super) wanted: &'a [Cell],
-    pub(super) intricate: &'a mut bool,
-    pub(super) exact: &'a mut bool,
+    pub(crate) marks: &'a mut [Mark],
+    pub(crate) wanted: &'a [Cell],
+    pub(crate) intricate: &'a mut bool,
+    pub(crate) exact: &'a mut bool,
     /// The number of frames for which it has not changed.
-    pub(super) rested: u8,
+    pub(crate) rested: u8,
 }
 
 impl Screen {
     /// A blank screen.
-    pub(super) fn blank(size: Size) -> Self {
+    pub(crate) fn blank(size: Size) -> Self {
         let mut screen = Self::default();
         screen.resize(size);
         screen.clear(ClearType::All, Position::ORIGIN);
@@ -70,7 +70,7 @@ impl Screen {
     }
 
     /// Changes the size and sets all targets blank. The shown cells are then unknown.
-    pub(super) fn resize(&mut self, size: Size) {
+    pub(crate) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
         for targets in [&mut self.shown, &mut self.targets] {
@@ -91,26 +91,26 @@ impl Screen {
     }
 
     /// Sets whether targets are restricted to ASCII, from the next frame on.
-    pub(super) fn set_ascii(&mut self, is_ascii: bool) {
+    pub(crate) fn set_ascii(&mut self, is_ascii: bool) {
         self.is_ascii = is_ascii;
         self.redraw();
     }
 
     /// Forgets the shown cells and has all rows drawn again.
-    pub(super) fn redraw(&mut self) {
+    pub(crate) fn redraw(&mut self) {
         self.forget();
         self.changed.fill(true);
     }
 
     /// Forgets the shown cells.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.shown.fill(PackedCell::UNKNOWN);
         self.exact.fill(false);
     }
 
     /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. Its
     /// targets become blank.
-    pub(super) fn clear(&mut self, region: ClearType, cursor: Position) {
+    pub(crate) fn clear(&mut self, region: ClearType, cursor: Position) {
         let row = usize::from(cursor.y) * self.width;
         let at = row + usize::from(cursor.x);
         let end = self.shown.len();
@@ -141,7 +141,7 @@ impl Screen {
 
     /// Sets the target of a cell; does nothing off the screen.
     #[inline]
-    pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
+    pub(crate) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
         if x < self.width && y < self.changed.len() {
             self.set(y * self.width + x, cell);
@@ -192,17 +192,17 @@ impl Screen {
     }
 
     /// Whether any target has changed since the rows were drawn.
-    pub(super) fn is_changed(&self) -> bool {
+    pub(crate) fn is_changed(&self) -> bool {
         self.changed.contains(&true)
     }
 
     /// Whether every row shows exactly its targets, as rows without columns do.
-    pub(super) fn is_exact(&self) -> bool {
+    pub(crate) fn is_exact(&self) -> bool {
         self.width == 0 || !self.exact.contains(&false)
     }
 
     /// The two colours of a shown cell; `None` if they are unknown, and off the screen.
-    pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
+    pub(crate) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
         let (_, colors) = self.shown.get(place)?.recolorable(&self.glyph_table)?;
@@ -211,55 +211,55 @@ impl Screen {
 
     /// The mosaic that a shown cell is, if it is one.
     #[cfg(feature = "lab")]
-    pub(super) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
+    pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;
         Some(shape.mosaic())
     }
 
     /// The shown cells and the targets of each row.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
         self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
     /// The targets of all cells, row by row.
-    pub(super) fn targets(&self) -> impl Iterator<Item = &PackedCell> {
+    pub(crate) fn targets(&self) -> impl Iterator<Item = &PackedCell> {
         self.targets.iter()
     }
 
     /// Replaces the colours of all targets.
-    pub(super) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.targets, color);
     }
 
     /// Records that the terminal shows other colours in place of some, so that all rows must be
     /// compared with their targets.
-    pub(super) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.shown, color);
         self.changed.fill(true);
     }
 
     /// The styles of the intricate targets.
-    pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
+    pub(crate) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
         rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
     }
 
     /// Returns the changed rows, from the top, and marks them as unchanged.
-    pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|_, changed| std::mem::take(changed))
     }
 
     /// Counts a frame for the rows that have not changed.
-    pub(super) fn count_rest(&mut self) {
+    pub(crate) fn count_rest(&mut self) {
         for (rested, &changed) in self.rested.iter_mut().zip(&self.changed) {
             *rested = if changed { 0 } else { rested.saturating_add(1) };
         }
     }
 
     /// The rows that do not show exactly their targets.
-    pub(super) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|is_exact, _| !is_exact)
     }
 
@@ -301,12 +301,12 @@ fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
 
 impl Row<'_> {
     /// The number of its cells.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.targets.len()
     }
 
     /// Whether every cell differs from its target in its colours at most.
-    pub(super) fn is_near(&self) -> bool {
+    pub(crate) fn is_near(&self) -> bool {
         let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
         let mut targets = self.shown.iter().zip(self.targets);
         targets.all(|(&shown, &target)| {
@@ -319,7 +319,7 @@ impl Row<'_> {
     }
 
     /// Records that the terminal has moved a part of the row.
-    pub(super) fn shift(&mut self, shift: &Shift) {
+    pub(crate) fn shift(&mut self, shift: &Shift) {
         shift.apply(self.shown, PackedCell::UNKNOWN);
     }
 }

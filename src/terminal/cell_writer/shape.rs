@@ -12,14 +12,14 @@ use crate::canvas::Mosaic;
 
 /// A mosaic without the last dot. There are fewer than [`Shape::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shape(u8);
+pub(crate) struct Shape(u8);
 
 /// The number of shapes of octants; those of sextants follow.
 const OCTANTS: u8 = 128;
 
 /// The parts that the dots and the rest of a cell have in common with the dots and the rest of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Overlap {
+pub(crate) struct Overlap {
     /// Of dots and dots, and of rest and rest.
     straight: [u8; 2],
     /// Of the first cell's dots and the other's rest, and the reverse.
@@ -29,7 +29,7 @@ pub(super) struct Overlap {
 impl Overlap {
     /// For each pair of colours, the index of the first cell's and of the other's, and the number of parts.
     #[inline]
-    pub(super) fn pairs(self) -> [([usize; 2], u8); 4] {
+    pub(crate) fn pairs(self) -> [([usize; 2], u8); 4] {
         let Self { straight, crossed } = self;
         [([0, 0], straight[0]), ([0, 1], crossed[0]), ([1, 0], crossed[1]), ([1, 1], straight[1])]
     }
@@ -37,16 +37,16 @@ impl Overlap {
 
 impl Shape {
     /// The upper half, in cells of two pixels.
-    pub(super) const HALF: Self = Self(0);
+    pub(crate) const HALF: Self = Self(0);
     /// No dot: a cell has another shape.
-    pub(super) const NONE: Self = Self(Self::HALF_MASK);
-    pub(super) const COUNT: u8 = OCTANTS + 32;
+    pub(crate) const NONE: Self = Self(Self::HALF_MASK);
+    pub(crate) const COUNT: u8 = OCTANTS + 32;
     /// The numbers of octant shapes are counted from that of the upper half.
     const HALF_MASK: u8 = 0x0F;
 
     /// The shape of a mosaic, and whether its colours change places.
     #[inline]
-    pub(super) const fn of(mosaic: Mosaic) -> (Self, bool) {
+    pub(crate) const fn of(mosaic: Mosaic) -> (Self, bool) {
         match mosaic.mask() {
             Ok(mask) => {
                 let is_inverse = mask & 0x80 != 0;
@@ -61,7 +61,7 @@ impl Shape {
         }
     }
 
-    pub(super) const fn mosaic(self) -> Mosaic {
+    pub(crate) const fn mosaic(self) -> Mosaic {
         match self.0.checked_sub(OCTANTS) {
             None => Mosaic::octants(self.0 ^ Self::HALF_MASK),
             Some(mask) => Mosaic::sextants(mask),
@@ -70,19 +70,19 @@ impl Shape {
 
     /// The number of the shape, less than [`Shape::COUNT`].
     #[inline]
-    pub(super) const fn get(self) -> u8 {
+    pub(crate) const fn get(self) -> u8 {
         self.0
     }
 
     /// The shape with this number, which must be from [`Shape::get`].
     #[inline]
-    pub(super) const fn new(number: u8) -> Self {
+    pub(crate) const fn new(number: u8) -> Self {
         Self(number)
     }
 
     /// The character that shows the shape as `element` does a half block, in UTF-8, and the number of its bytes.
     #[inline]
-    pub(super) fn encoded(self, element: BlockElement) -> ([u8; 4], usize) {
+    pub(crate) fn encoded(self, element: BlockElement) -> ([u8; 4], usize) {
         let inverse = match element {
             BlockElement::Upper => 0,
             BlockElement::Lower => 1,
@@ -94,23 +94,23 @@ impl Shape {
 
     /// The bytes of its character.
     #[inline]
-    pub(super) fn bytes(self) -> f32 {
+    pub(crate) fn bytes(self) -> f32 {
         if ENCODED[usize::from(self.0)][0][3] == 0 { 3.0 } else { 4.0 }
     }
 
     /// The parts of a cell, in twenty-fourths, with the colour of the dots and with the other.
     #[inline]
-    pub(super) fn parts(self) -> [u8; 2] {
+    pub(crate) fn parts(self) -> [u8; 2] {
         let dots = PARTS[usize::from(self.0)].count_ones() as u8;
         [dots, Self::PARTS - dots]
     }
 
     /// The number of parts of a cell.
-    pub(super) const PARTS: u8 = 24;
+    pub(crate) const PARTS: u8 = 24;
 
     /// The parts of a cell of this shape that another shape colours alike, and otherwise.
     #[inline]
-    pub(super) fn overlap(self, other: Self) -> Overlap {
+    pub(crate) fn overlap(self, other: Self) -> Overlap {
         let [one, other] = [self, other].map(|shape| PARTS[usize::from(shape.0)]);
         let count = |parts: u32| parts.count_ones() as u8;
         let both = count(one & other);

@@ -10,19 +10,19 @@ mod stretch;
 use std::ops::Range;
 
 use self::landmarks::Landmarks;
-pub(super) use self::landmarks::Mark;
+pub(crate) use self::landmarks::Mark;
 use self::stretch::best_stretch;
 use super::screen::Row;
 
 /// A stretch of a row that moves by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Shift {
+pub(crate) struct Shift {
     /// The stretch. Cells that move out of it are lost, and cells that become free are unknown.
-    pub(super) columns: Range<usize>,
+    pub(crate) columns: Range<usize>,
     /// The distance, in columns.
-    pub(super) by: usize,
+    pub(crate) by: usize,
     /// The direction.
-    pub(super) way: Way,
+    pub(crate) way: Way,
 }
 
 /// A direction and a distance.
@@ -43,25 +43,25 @@ impl Move {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     Left,
     Right,
 }
 
 /// The approximate cost of sending a cell that shows the wrong content, in units of 1 / [`BYTE`]
 /// bytes.
-pub(super) type Loss = i16;
+pub(crate) type Loss = i16;
 
 /// The loss of one byte.
-pub(super) const BYTE: Loss = 16;
+pub(crate) const BYTE: Loss = 16;
 /// The loss of a completely wrong cell.
-pub(super) const CELL: Loss = 12 * BYTE;
+pub(crate) const CELL: Loss = 12 * BYTE;
 /// The approximate cost of a shift: two motions, a deletion and an insertion.
 const SHIFT: i32 = 20 * BYTE as i32;
 
 /// Finds the shifts of a row, one after another; keeps its memory between rows.
 #[derive(Debug, Default)]
-pub(super) struct Shifts {
+pub(crate) struct Shifts {
     landmarks: Landmarks,
     /// The present losses, the losses after a move, and the losses after the best move.
     losses: Vec<Loss>,
@@ -72,14 +72,14 @@ pub(super) struct Shifts {
 impl Shifts {
     /// Begins a row. `lose` adds the losses of showing the cells that are now at the first column
     /// and after it, at the second column and after it.
-    pub(super) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
+    pub(crate) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
         self.landmarks.find(row.targets, row.marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
     /// The shift with the smallest loss after it, if it saves more than its cost.
-    pub(super) fn next(
+    pub(crate) fn next(
         &mut self,
         mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
     ) -> Option<Shift> {
@@ -111,12 +111,12 @@ impl Shifts {
     }
 
     /// The loss of each cell of the row.
-    pub(super) fn losses(&self) -> &[Loss] {
+    pub(crate) fn losses(&self) -> &[Loss] {
         &self.losses
     }
 
     /// Ends the row: its present targets are the previous ones of the next frame.
-    pub(super) fn end(&self, row: &mut Row) {
+    pub(crate) fn end(&self, row: &mut Row) {
         row.marks.copy_from_slice(self.landmarks.marks());
     }
 }
@@ -155,7 +155,7 @@ impl Shift {
     }
 
     /// Moves the values in `row` as the terminal moves its cells; uncovered ones become `unknown`.
-    pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
+    pub(crate) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         match self.way {
             Way::Left => stretch.rotate_left(self.by),

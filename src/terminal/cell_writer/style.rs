@@ -10,14 +10,14 @@ use super::super::sequence;
 use super::bytes::Bytes;
 use super::bytes::Piece;
 use super::control::ControlSequence;
-pub(super) use shade::{Kind, Shade};
+pub(crate) use shade::{Kind, Shade};
 
 /// The colours and modifiers of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Style {
-    pub(super) foreground: Shade,
-    pub(super) background: Shade,
-    pub(super) modifier: Modifier,
+    pub(crate) foreground: Shade,
+    pub(crate) background: Shade,
+    pub(crate) modifier: Modifier,
 }
 
 /// A modifier, and the parameters to turn it on and off.
@@ -60,27 +60,27 @@ impl Style {
     }
 
     /// These two colours, without modifiers.
-    pub(super) fn plain(foreground: Shade, background: Shade) -> Self {
+    pub(crate) fn plain(foreground: Shade, background: Shade) -> Self {
         Self { foreground, background, modifier: Modifier::empty() }
     }
 
     /// These two colours, as ratatui names them, without modifiers.
-    pub(super) fn in_colors(colors: [Color; 2]) -> Self {
+    pub(crate) fn in_colors(colors: [Color; 2]) -> Self {
         let [foreground, background] = colors.map(Shade::of);
         Self::plain(foreground, background)
     }
 
-    pub(super) fn has_no_modifiers(self) -> bool {
+    pub(crate) fn has_no_modifiers(self) -> bool {
         self.modifier.is_empty()
     }
 
     /// The text colour and the background.
-    pub(super) fn colors(self) -> [Shade; 2] {
+    pub(crate) fn colors(self) -> [Shade; 2] {
         [self.foreground, self.background]
     }
 
     /// The text colour and the background; `None` with modifiers.
-    pub(super) fn plain_colors(self) -> Option<[Shade; 2]> {
+    pub(crate) fn plain_colors(self) -> Option<[Shade; 2]> {
         self.has_no_modifiers().then_some(self.colors())
     }
 
@@ -96,7 +96,7 @@ impl Style {
     /// to the ones to send.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    pub(super) fn push_from(
+    pub(crate) fn push_from(
         self,
         current: Option<Self>,
         told: impl Fn(Shade) -> Shade,

@@ -4,7 +4,7 @@ use ratatui::buffer::{Cell, CellWidth};
 
 /// The text of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Symbol {
+pub(crate) enum Symbol {
     /// Nothing to show: the text is empty, has no width, or contains a control character. A terminal
     /// would obey a control character, and would add a character without a width to the cell before.
     Blank,
@@ -17,12 +17,12 @@ pub(super) enum Symbol {
 impl Symbol {
     /// The text of `cell`.
     #[inline]
-    pub(super) fn of(cell: &Cell) -> Self {
+    pub(crate) fn of(cell: &Cell) -> Self {
         Self::classify(cell.symbol(), |_| cell.cell_width())
     }
 
     /// A text without a cell.
-    pub(super) fn of_text(text: &str) -> Self {
+    pub(crate) fn of_text(text: &str) -> Self {
         Self::classify(text, CellWidth::cell_width)
     }
 

@@ -32,17 +32,17 @@ use super::style::{Shade, Style};
 
 /// The target of a cell: the colours of its halves, or of its character and its background.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
-    pub(super) inks: [Ink; 2],
+pub(crate) struct Wanted {
+    pub(crate) inks: [Ink; 2],
     /// The shape of a block; that of the halves for a character.
-    pub(super) shape: Shape,
+    pub(crate) shape: Shape,
     /// The bytes of its only glyph; `None` if any block element will do.
-    pub(super) character: Option<u8>,
+    pub(crate) character: Option<u8>,
 }
 
 /// The action on a cell that is not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Action {
+pub(crate) enum Action {
     /// Draw it exactly.
     DrawExactly,
     /// Draw it as this block element, or a character by its own glyph, in this style.
@@ -54,24 +54,24 @@ pub(super) enum Action {
 const KEPT: usize = 4;
 
 /// The tables in which colours are looked up.
-pub(super) struct Store<'a> {
-    pub(super) inks: &'a mut Inks,
-    pub(super) palette: &'a mut Palette,
+pub(crate) struct Store<'a> {
+    pub(crate) inks: &'a mut Inks,
+    pub(crate) palette: &'a mut Palette,
 }
 
 /// The parameters that apply to a whole row.
 #[derive(Clone, Copy)]
-pub(super) struct Terms {
-    pub(super) price: Price,
+pub(crate) struct Terms {
+    pub(crate) price: Price,
     /// The terminal's style before the row.
-    pub(super) style: Option<Style>,
+    pub(crate) style: Option<Style>,
     /// Whether the terminal repeats characters.
-    pub(super) repeats: bool,
+    pub(crate) repeats: bool,
 }
 
 /// A search and its memory.
 #[derive(Debug, Default)]
-pub(super) struct Trellis {
+pub(crate) struct Trellis {
     /// The cells that at least one path draws.
     steps: Vec<Step>,
     actions: Vec<(u16, Action)>,
@@ -123,7 +123,7 @@ impl Trellis {
     /// Returns the best actions on the cells of a row, without the cells to keep. `keep` is the
     /// cost of keeping each cell. `wanted` returns the target of a cell, or `None` if it may only
     /// be drawn exactly.
-    pub(super) fn search(
+    pub(crate) fn search(
         &mut self,
         keep: &[[f32; 2]],
         wanted: impl Fn(usize, &mut Inks) -> Option<Wanted>,

@@ -7,7 +7,7 @@ use super::super::Fidelity;
 /// The fidelity follows from this estimate and the rate alone. Raising and lowering it step by step
 /// was refused: it is then late at the beginning of motion, when lag is most noticeable.
 #[derive(Debug, Default)]
-pub(super) struct Demand {
+pub(crate) struct Demand {
     exact_bytes: f64,
 }
 
@@ -19,17 +19,17 @@ const SAVING: f64 = 0.32;
 /// The share of a high estimate that is left after one more frame.
 const DECAY: f64 = 0.99;
 /// The coarsest fidelity: beyond it, fewer frames are better than coarser ones.
-pub(super) const MIN_FIDELITY: Fidelity = Fidelity::new(48);
+pub(crate) const MIN_FIDELITY: Fidelity = Fidelity::new(48);
 
 impl Demand {
     /// Updates the estimate with a frame of motion.
-    pub(super) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
+    pub(crate) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
         self.exact_bytes = (self.exact_bytes * DECAY).max(bytes as f64 * saving);
     }
 
     /// The best fidelity for a link that carries `rate` bytes a second.
-    pub(super) fn fidelity_within(&self, rate: f64) -> Fidelity {
+    pub(crate) fn fidelity_within(&self, rate: f64) -> Fidelity {
         let excess = self.exact_bytes * FRAMES_PER_SECOND / rate;
         let tolerance = (excess - 1.0).max(0.0) / SAVING;
         Fidelity::new(tolerance.min(f64::from(MIN_FIDELITY.tolerance())).round() as u8)

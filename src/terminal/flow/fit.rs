@@ -14,7 +14,7 @@
 
 /// Sums over frames, in bytes and seconds.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     weight: f64,
     bytes: f64,
     seconds: f64,
@@ -25,14 +25,14 @@ pub(super) struct Fit {
 
 /// The line, in seconds and seconds a byte.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// The time of a frame of 0 bytes.
-    pub(super) constant: f64,
-    pub(super) per_byte: f64,
+    pub(crate) constant: f64,
+    pub(crate) per_byte: f64,
     /// The slope of the line through the origin, which is the largest possible slope.
-    pub(super) through_origin: f64,
+    pub(crate) through_origin: f64,
     /// The standard deviation of frames from the line.
-    pub(super) deviation: f64,
+    pub(crate) deviation: f64,
 }
 
 /// The weight of the past after one more frame.
@@ -42,7 +42,7 @@ const ORIGIN_WEIGHT: f64 = 0.25;
 
 impl Fit {
     /// Adds a frame.
-    pub(super) fn add(&mut self, bytes: f64, seconds: f64) {
+    pub(crate) fn add(&mut self, bytes: f64, seconds: f64) {
         self.weight = self.weight * FORGETTING_FACTOR + 1.0;
         self.bytes = self.bytes * FORGETTING_FACTOR + bytes;
         self.seconds = self.seconds * FORGETTING_FACTOR + seconds;
@@ -52,12 +52,12 @@ impl Fit {
     }
 
     /// The mean bytes and seconds of a frame; `None` if there was no frame.
-    pub(super) fn mean(&self) -> Option<(f64, f64)> {
+    pub(crate) fn mean(&self) -> Option<(f64, f64)> {
         (self.weight > 0.0).then(|| (self.bytes / self.weight, self.seconds / self.weight))
     }
 
     /// The line, with neither coefficient below zero; `None` if there was no frame.
-    pub(super) fn line(&self) -> Option<Line> {
+    pub(crate) fn line(&self) -> Option<Line> {
         let (mean_bytes, mean_seconds) = self.mean()?;
         let weight = self.weight + ORIGIN_WEIGHT;
         let (center_bytes, center_seconds) = (self.bytes / weight, self.seconds / weight);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// A request to the terminal, after a frame or alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Request {
+pub(crate) enum Request {
     /// No request, since the terminal does not answer.
     Nothing,
     /// A request for the terminal's status.
@@ -16,71 +16,71 @@ pub(in super::super) enum Request {
 
 /// A sent frame, or a request alone, which counts 0 bytes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sent {
-    pub(super) at: Duration,
-    pub(super) bytes: usize,
-    pub(super) request: Request,
+pub(crate) struct Sent {
+    pub(crate) at: Duration,
+    pub(crate) bytes: usize,
+    pub(crate) request: Request,
 }
 
 /// The unanswered frames and requests, oldest first.
 #[derive(Debug, Default)]
-pub(super) struct InFlight(VecDeque<Sent>);
+pub(crate) struct InFlight(VecDeque<Sent>);
 
 impl InFlight {
-    pub(super) fn push(&mut self, sent: Sent) {
+    pub(crate) fn push(&mut self, sent: Sent) {
         self.0.push_back(sent);
     }
 
-    pub(super) fn oldest(&self) -> Option<Sent> {
+    pub(crate) fn oldest(&self) -> Option<Sent> {
         self.0.front().copied()
     }
 
     /// Removes the oldest entry.
-    pub(super) fn pop(&mut self) {
+    pub(crate) fn pop(&mut self) {
         self.0.pop_front();
     }
 
     /// Removes the fences at the front.
-    pub(super) fn pop_fences(&mut self) {
+    pub(crate) fn pop_fences(&mut self) {
         while self.oldest().is_some_and(|sent| sent.request == Request::Fence) {
             self.pop();
         }
     }
 
     /// The number of entries before the oldest fence; `None` if there is no fence.
-    pub(super) fn before_fence(&self) -> Option<usize> {
+    pub(crate) fn before_fence(&self) -> Option<usize> {
         self.0.iter().position(|sent| sent.request == Request::Fence)
     }
 
     /// Removes the oldest fence and all entries before it; returns the fence.
-    pub(super) fn pop_through_fence(&mut self) -> Option<Sent> {
+    pub(crate) fn pop_through_fence(&mut self) -> Option<Sent> {
         let place = self.before_fence()?;
         self.0.drain(..=place).next_back()
     }
 
     /// Removes all entries.
-    pub(super) fn drain(&mut self) -> impl Iterator<Item = Sent> {
+    pub(crate) fn drain(&mut self) -> impl Iterator<Item = Sent> {
         self.0.drain(..)
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.0.clear();
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// The number of frames.
-    pub(super) fn frames(&self) -> usize {
+    pub(crate) fn frames(&self) -> usize {
         self.0.iter().filter(|sent| sent.bytes > 0).count()
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         self.0.iter().map(|sent| sent.bytes).sum()
     }
 }

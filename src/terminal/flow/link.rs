@@ -7,7 +7,7 @@ use super::min_round_trip::MinRoundTrip;
 
 /// The estimates of a link.
 #[derive(Debug, Default)]
-pub(super) struct Link {
+pub(crate) struct Link {
     min_round_trip: Option<MinRoundTrip>,
     last_round_trip: Option<Duration>,
     answered_at: Duration,
@@ -54,7 +54,7 @@ const MAX_SECONDS: f64 = 86_400.0;
 
 impl Link {
     /// Updates the estimates with the answer to a frame.
-    pub(super) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
+    pub(crate) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         let round_trip = now.saturating_sub(sent_at);
         let minimum = MinRoundTrip::with(self.min_round_trip, now, round_trip);
         // The link could begin to carry it when the first byte could arrive and the frame before it
@@ -67,7 +67,7 @@ impl Link {
     }
 
     /// Updates the estimates with a frame that the system has accepted.
-    pub(super) fn written(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
+    pub(crate) fn written(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         self.add_transfer(now, bytes, now.saturating_sub(sent_at));
         self.answered_at = now;
     }
@@ -104,17 +104,17 @@ impl Link {
     }
 
     /// Whether the link has carried a frame.
-    pub(super) fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.fit.mean().is_some()
     }
 
     /// Whether an answer can arrive after this short a time.
-    pub(super) fn is_plausible(&self, round_trip: Duration) -> bool {
+    pub(crate) fn is_plausible(&self, round_trip: Duration) -> bool {
         self.min_round_trip.is_none_or(|minimum| round_trip >= minimum.get() / 2)
     }
 
     /// The round-trip time of the latest answer.
-    pub(super) fn last_round_trip(&self) -> Option<Duration> {
+    pub(crate) fn last_round_trip(&self) -> Option<Duration> {
         self.last_round_trip
     }
 
@@ -127,7 +127,7 @@ impl Link {
     }
 
     /// The maximum of bytes a second that should be sent; `None` for no maximum.
-    pub(super) fn usable_rate(&self) -> Option<f64> {
+    pub(crate) fn usable_rate(&self) -> Option<f64> {
         let seconds = self.seconds_per_byte();
         let rate = (seconds > 0.0).then(|| seconds.recip());
         let is_past = |at| self.answered_at.saturating_sub(at) > AFTER_STALL;
@@ -140,30 +140,30 @@ impl Link {
     }
 
     /// The time for which this number of bytes occupies the link.
-    pub(super) fn time_for(&self, bytes: usize) -> Duration {
+    pub(crate) fn time_for(&self, bytes: usize) -> Duration {
         Duration::from_secs_f64((bytes as f64 * self.seconds_per_byte()).min(MAX_SECONDS))
     }
 
     /// The expected round-trip time of a frame of mean size that no other frame delays.
-    pub(super) fn expected_round_trip(&self) -> Duration {
+    pub(crate) fn expected_round_trip(&self) -> Duration {
         let bytes = self.fit.mean().map_or(0.0, |(bytes, _)| bytes);
         self.min_round_trip() + self.time_for(bytes as usize)
     }
 
     /// The mean excess of a round trip over its expected time.
-    pub(super) fn jitter(&self) -> Duration {
+    pub(crate) fn jitter(&self) -> Duration {
         Duration::from_secs_f64(self.fit.line().map_or(0.0, |line| line.constant))
     }
 
     /// The maximum excess of a round trip over its mean, unless the link has changed.
-    pub(super) fn jitter_range(&self) -> Duration {
+    pub(crate) fn jitter_range(&self) -> Duration {
         let deviation = self.fit.line().map_or(0.0, |line| line.deviation);
         Duration::from_secs_f64(LATE_DEVIATIONS * deviation)
     }
 
     /// The latest time at which the answer to the oldest frame in flight arrives, unless the link
     /// has changed; `None` if the link is unknown.
-    pub(super) fn latest_answer(&self, sent_at: Duration, bytes: usize) -> Option<Duration> {
+    pub(crate) fn latest_answer(&self, sent_at: Duration, bytes: usize) -> Option<Duration> {
         let begun = (sent_at + self.min_round_trip()).max(self.answered_at);
         let time = self.time_for(bytes) + self.jitter() + self.jitter_range();
         self.is_known().then(|| begun + time + CLOCK_GRANULARITY)

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 /// The minimum of this half of the window and of the one before it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MinRoundTrip {
+pub(crate) struct MinRoundTrip {
     since: Duration,
     current: Duration,
     previous: Duration,
@@ -19,7 +19,7 @@ const HALF_WINDOW: Duration = Duration::from_secs(30);
 
 impl MinRoundTrip {
     /// The minimum after a `round_trip` that ended at `now`.
-    pub(super) fn with(before: Option<Self>, now: Duration, round_trip: Duration) -> Self {
+    pub(crate) fn with(before: Option<Self>, now: Duration, round_trip: Duration) -> Self {
         match before {
             None => Self { since: now, current: round_trip, previous: round_trip },
             Some(old) if now.saturating_sub(old.since) > HALF_WINDOW => {
@@ -29,7 +29,7 @@ impl MinRoundTrip {
         }
     }
 
-    pub(super) fn get(self) -> Duration {
+    pub(crate) fn get(self) -> Duration {
         self.current.min(self.previous)
     }
 }

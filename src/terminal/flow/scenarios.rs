@@ -101,7 +101,7 @@ fn row(player: &Player) -> String {
     )
 }
 
-pub(super) fn table() -> String {
+pub(crate) fn table() -> String {
     let mut table = String::from(
         "| link | `-C` | frames/s | key to frame, median ms | 95th % | fidelity, median | 95th % | \
          longest freeze, s | most in flight, kB |\n|---|---|---|---|---|---|---|---|---|\n",
@@ -122,7 +122,7 @@ const DROPS: [(u64, u32); 3] = [(20, 20), (50, 20), (50, 8)];
 
 /// The maximum of bytes that wait for a link after its rate has dropped: the median and the maximum
 /// of drops at different times.
-pub(super) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f64; 2] {
+pub(crate) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f64; 2] {
     let mut queued: Vec<f64> = (0..21)
         .map(|phase| {
             let mut link = Simulation::of_one(milliseconds(delay), 10.0 * 125_000.0, frames);
@@ -139,7 +139,7 @@ pub(super) fn queued_after_drop(delay: u64, kilobits: u32, frames: Frames) -> [f
     [queued[10], queued[20]]
 }
 
-pub(super) fn table_of_drops() -> String {
+pub(crate) fn table_of_drops() -> String {
     let mut table = String::from(
         "| 10 Mbit/s, delay | drops to | `-C` | in flight then, median kB | most | arrives after, median s | at \
          most |\n|---|---|---|---|---|---|---|\n",

@@ -9,9 +9,9 @@ mod player;
 
 use std::collections::VecDeque;
 
-pub(super) use self::frames::{FrameSource, Frames, saving};
+pub(crate) use self::frames::{FrameSource, Frames, saving};
 use self::player::Upward;
-pub(super) use self::player::{Latency, Player, Shown};
+pub(crate) use self::player::{Latency, Player, Shown};
 use super::*;
 use crate::rng::SplitMix64;
 
@@ -20,24 +20,24 @@ const FRAME_TIME: Duration = Duration::from_millis(33);
 /// The maximum size of a packet, in bytes.
 const PACKET: f64 = 1400.0;
 /// A rate that no player exhausts, in bytes a second.
-pub(super) const UNLIMITED: f64 = 1e9;
+pub(crate) const UNLIMITED: f64 = 1e9;
 
 /// The properties of a link.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Conditions {
+pub(crate) struct Conditions {
     /// The delay in each direction.
-    pub(super) delay: Duration,
+    pub(crate) delay: Duration,
     /// The maximum additional delay of a packet.
-    pub(super) jitter: Duration,
+    pub(crate) jitter: Duration,
     /// The rate towards the players, in bytes a second.
-    pub(super) rate: f64,
+    pub(crate) rate: f64,
 }
 
 /// A link with players at its end.
-pub(super) struct Simulation {
-    pub(super) now: Duration,
-    pub(super) conditions: Conditions,
-    pub(super) players: Vec<Player>,
+pub(crate) struct Simulation {
+    pub(crate) now: Duration,
+    pub(crate) conditions: Conditions,
+    pub(crate) players: Vec<Player>,
     /// Packets that wait for the link: the player's number, the bytes, and the frame that ends with
     /// the packet.
     queue: VecDeque<(usize, f64, Option<usize>)>,
@@ -48,13 +48,13 @@ pub(super) struct Simulation {
 
 impl Simulation {
     /// Players with these `frames`, who begin one after another.
-    pub(super) fn new(conditions: Conditions, frames: &[Frames]) -> Self {
+    pub(crate) fn new(conditions: Conditions, frames: &[Frames]) -> Self {
         let players = frames.iter().map(|frames| Player::new(Box::new(*frames))).collect();
         Self::of_players(conditions, players)
     }
 
     /// One player with frames from `source`.
-    pub(super) fn of_source(conditions: Conditions, source: impl FrameSource + 'static) -> Self {
+    pub(crate) fn of_source(conditions: Conditions, source: impl FrameSource + 'static) -> Self {
         Self::of_players(conditions, vec![Player::new(Box::new(source))])
     }
 
@@ -73,12 +73,12 @@ impl Simulation {
         simulation
     }
 
-    pub(super) fn of_one(delay: Duration, rate: f64, frames: Frames) -> Self {
+    pub(crate) fn of_one(delay: Duration, rate: f64, frames: Frames) -> Self {
         Self::new(Conditions { delay, jitter: Duration::ZERO, rate }, &[frames])
     }
 
     /// Simulates this time, in which all players move.
-    pub(super) fn walk(&mut self, time: Duration) {
+    pub(crate) fn walk(&mut self, time: Duration) {
         let until = self.now + time;
         while self.now < until {
             self.carry();
@@ -90,7 +90,7 @@ impl Simulation {
     }
 
     /// The number of bytes that wait for the link.
-    pub(super) fn queued(&self) -> f64 {
+    pub(crate) fn queued(&self) -> f64 {
         self.queue.iter().map(|packet| packet.1).sum::<f64>() - self.carried
     }
 

@@ -7,7 +7,7 @@ use super::Device;
 /// Bytes for a terminal that does not accept more at present. They are few, since no frame is drawn
 /// while there are any.
 #[derive(Debug, Default)]
-pub(super) struct OutputQueue {
+pub(crate) struct OutputQueue {
     bytes: Vec<u8>,
     /// The number of accepted bytes.
     taken: usize,
@@ -16,7 +16,7 @@ pub(super) struct OutputQueue {
 impl OutputQueue {
     /// Writes `bytes` after those that wait, as far as `device` accepts them at once. They are kept if the
     /// device does not accept all of them.
-    pub(super) fn send(&mut self, bytes: &[u8], device: &Device) -> io::Result<()> {
+    pub(crate) fn send(&mut self, bytes: &[u8], device: &Device) -> io::Result<()> {
         if self.is_empty() {
             let accepted = device.write_some(bytes);
             if !accepted.as_ref().is_ok_and(|&count| count == bytes.len()) {
@@ -30,7 +30,7 @@ impl OutputQueue {
     }
 
     /// Writes those of the waiting bytes that `device` accepts at once.
-    pub(super) fn write_to(&mut self, device: &Device) -> io::Result<()> {
+    pub(crate) fn write_to(&mut self, device: &Device) -> io::Result<()> {
         self.taken += device.write_some(&self.bytes[self.taken..])?;
         if self.taken == self.bytes.len() {
             self.clear();
@@ -39,17 +39,17 @@ impl OutputQueue {
     }
 
     /// Whether `sequence` is among the bytes, and the device has not accepted all of it.
-    pub(super) fn withholds(&self, sequence: &str) -> bool {
+    pub(crate) fn withholds(&self, sequence: &str) -> bool {
         let mut places = self.bytes.windows(sequence.len());
         let last = places.rposition(|bytes| bytes == sequence.as_bytes());
         last.is_some_and(|place| place + sequence.len() > self.taken)
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.bytes.clear();
         self.taken = 0;
     }

@@ -14,7 +14,7 @@ use crate::fault::printable;
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
 
 /// Sets the guard that the hook uses.
-pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
+pub(crate) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     static HOOK: Once = Once::new();
     let mut current = lock();
     if current.is_some() {
@@ -26,7 +26,7 @@ pub(super) fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
 }
 
 /// Removes `guard`; panics are then handled as before.
-pub(super) fn release(guard: &Guard) {
+pub(crate) fn release(guard: &Guard) {
     let mut current = lock();
     if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
         *current = None;

@@ -5,7 +5,7 @@ use super::super::sequence;
 
 /// An answer of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Answer {
+pub(crate) enum Answer {
     /// The terminal supports the kitty keyboard protocol.
     KeyFlags,
     /// The terminal shows 24-bit colours.
@@ -25,12 +25,12 @@ pub(in super::super) enum Answer {
 }
 
 /// Whether `unit`, a control sequence, has the form of a report, which no key has.
-pub(super) fn is_report(unit: &[u8]) -> bool {
+pub(crate) fn is_report(unit: &[u8]) -> bool {
     matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'] | [_, _, b'2', b';', .., b'R'])
 }
 
 /// The answer in the report `unit`; `None` if it answers no query of this program.
-pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
+pub(crate) fn parse_report(unit: &[u8]) -> Option<Answer> {
     match unit {
         [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
         [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
@@ -44,7 +44,7 @@ pub(super) fn parse_report(unit: &[u8]) -> Option<Answer> {
 
 /// The answer in the string `unit`, which is neither a control sequence nor a device control
 /// string.
-pub(super) fn parse_string(unit: &[u8]) -> Option<Answer> {
+pub(crate) fn parse_string(unit: &[u8]) -> Option<Answer> {
     let color = unit.strip_prefix(b"\x1b")?.strip_prefix(sequence::PALETTE_REPORT)?;
     let end = color.iter().position(|byte| !byte.is_ascii_hexdigit() && *byte != b'/');
     let mut channels = color[..end.unwrap_or(color.len())].split(|byte| *byte == b'/').map(channel);
@@ -61,7 +61,7 @@ fn channel(digits: &[u8]) -> Option<u16> {
 
 /// The answer in the device control string `unit`; `None` for a refusal, and if it answers no query
 /// of this program.
-pub(super) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
+pub(crate) fn parse_device_control(unit: &[u8]) -> Option<Answer> {
     if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
         let name = name.strip_suffix(b"\x1b\\").unwrap_or(name);
         return str::from_utf8(name).ok().map(|name| Answer::Version(known(name)));

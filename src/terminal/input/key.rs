@@ -5,7 +5,7 @@ use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Report
 use super::super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 
 /// The key event of `unit`; `None` if it is not a key, or one that cannot be bound.
-pub(super) fn parse(unit: &[u8]) -> Option<KeyEvent> {
+pub(crate) fn parse(unit: &[u8]) -> Option<KeyEvent> {
     match unit {
         [0x1b, character] => {
             let event = parse(&[*character])?;

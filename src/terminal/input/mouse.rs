@@ -9,7 +9,7 @@ const OTHERS: u32 = 64 | 128;
 
 /// The report in `unit`, a control sequence: `CSI < button ; column ; row` and `M`, or `m` for a
 /// released button (xterm's control sequences, "Extended coordinates").
-pub(super) fn parse(unit: &[u8]) -> Option<MouseReport> {
+pub(crate) fn parse(unit: &[u8]) -> Option<MouseReport> {
     let text = str::from_utf8(unit.strip_prefix(b"\x1b[<")?).ok()?;
     let (numbers, is_release) = match text.strip_suffix('M') {
         Some(numbers) => (numbers, false),
@@ -22,7 +22,7 @@ pub(super) fn parse(unit: &[u8]) -> Option<MouseReport> {
 }
 
 /// The report in `unit`: `CSI M` and three bytes, from old terminals without the other form.
-pub(super) fn parse_bytes(unit: &[u8]) -> Option<MouseReport> {
+pub(crate) fn parse_bytes(unit: &[u8]) -> Option<MouseReport> {
     let &[code, column, row] = unit.strip_prefix(b"\x1b[M")? else { return None };
     let [code, column, row] = [code, column, row].map(|byte| u32::from(byte.saturating_sub(32)));
     Some(MouseReport { kind: kind(code, false)?, place: [column, row] })

@@ -21,7 +21,7 @@ const PLACES: [(&str, &str); 7] = [
 
 /// The key of a US keyboard at the place of `key`, if `key` types a non-Latin letter: the key that
 /// the terminal has reported (`told`), or else the one in the table.
-pub(in super::super) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
+pub(crate) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
     let Key::Char(letter) = key else { return None };
     if !letter.is_alphabetic() || is_latin(letter) {
         return None;

@@ -13,18 +13,18 @@ use crate::terminal::sequence;
 
 /// What the program has changed in the terminal, and which answers may still arrive.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::terminal) struct Changes {
-    pub(super) reports: Reports,
-    pub(in crate::terminal) fences: Fences,
+pub(crate) struct Changes {
+    pub(crate) reports: Reports,
+    pub(crate) fences: Fences,
     /// Whether answers to status requests may arrive.
-    pub(super) awaits_statuses: bool,
+    pub(crate) awaits_statuses: bool,
     /// Whether entries of the palette may have been defined.
-    pub(super) palette_defined: bool,
+    pub(crate) palette_defined: bool,
 }
 
 impl Changes {
     /// Adds the sequences that take the screen: the alternate one, without a cursor.
-    pub(super) fn push_start(&mut self, text: &mut String) {
+    pub(crate) fn push_start(&mut self, text: &mut String) {
         text.push_str(&sequence::of(EnterAlternateScreen));
         text.push_str(&sequence::of(Hide));
         // Long lines are cut, so that a narrower window does not scroll.
@@ -35,7 +35,7 @@ impl Changes {
 
     /// The sequences that undo all changes, in reverse order, but leave the alternate screen. If
     /// input may still arrive, a fence is among them, whose answer follows all of it.
-    pub(in crate::terminal) fn end(&mut self, now: Duration) -> String {
+    pub(crate) fn end(&mut self, now: Duration) -> String {
         let mut text = self.end_of_frame();
         self.reports.push_end(&mut text);
         if self.has_pending_reports() {
@@ -49,7 +49,7 @@ impl Changes {
 
     /// The same sequences for a terminal that does not read, some of whose input was discarded before
     /// it was read. There is no fence among them, whose answer would arrive too late.
-    pub(in crate::terminal) fn end_after_loss(&mut self) -> String {
+    pub(crate) fn end_after_loss(&mut self) -> String {
         let mut text = self.end_of_frame();
         self.reports.push_end_after_loss(&mut text);
         push_end_of_screen(&mut text);
@@ -58,12 +58,12 @@ impl Changes {
     }
 
     /// Records that no keyboard flags of the program were sent: they need not be undone.
-    pub(in crate::terminal) fn forget_key_flags(&mut self) {
+    pub(crate) fn forget_key_flags(&mut self) {
         self.reports.key_flags = KeyFlags::Unset;
     }
 
     /// Records that the terminal may have received a part of what [`Changes::end`] has returned.
-    pub(in crate::terminal) fn doubt_key_flags(&mut self) {
+    pub(crate) fn doubt_key_flags(&mut self) {
         if self.reports.key_flags == KeyFlags::Received {
             self.reports.key_flags = KeyFlags::Pushed;
         }

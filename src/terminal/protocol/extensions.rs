@@ -18,7 +18,7 @@ use crate::terminal::{ColorSource, Detected, Event, sequence};
 
 /// The results of the probes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Extensions {
+pub(crate) struct Extensions {
     is_probed: bool,
     palette: Palette,
     /// Whether all colours are shown as entries of the palette.
@@ -54,7 +54,7 @@ impl Palette {
 
 impl Protocol {
     /// Adds the probes to `queries`.
-    pub(super) fn probe_extensions(&mut self, queries: &mut String) {
+    pub(crate) fn probe_extensions(&mut self, queries: &mut String) {
         self.extensions.is_probed = true;
         queries.push_str(sequence::PROBE_PALETTE);
         queries.push_str(sequence::PROBE_REPETITION);
@@ -62,14 +62,14 @@ impl Protocol {
     }
 
     /// Records that the terminal has repeated a half block.
-    pub(super) fn repeats_blocks(&mut self) {
+    pub(crate) fn repeats_blocks(&mut self) {
         if self.extensions.is_probed {
             self.writer.set_repeats(true);
         }
     }
 
     /// Records the terminal's report of the colour of the probed palette entry.
-    pub(super) fn palette_reported(&mut self, color: [u16; 3]) {
+    pub(crate) fn palette_reported(&mut self, color: [u16; 3]) {
         if self.extensions.is_probed {
             self.extensions.palette = self.extensions.palette.after_report(color);
             self.use_palette();
@@ -77,7 +77,7 @@ impl Protocol {
     }
 
     /// Uses the palette if it can be defined and reset and the terminal shows 24-bit colours.
-    pub(super) fn use_palette(&mut self) {
+    pub(crate) fn use_palette(&mut self) {
         let is_true = matches!(self.color_depth, Detected::Certain(ColorDepth::True))
             || self.color_depth() == ColorDepth::True && !self.extensions.owns_palette;
         if self.extensions.palette == Palette::Reset && is_true {
@@ -88,7 +88,7 @@ impl Protocol {
 
     /// Shows all colours as entries of the palette if they can be defined and reset and the terminal
     /// has not answered that it shows 24-bit colours. Called after all its answers.
-    pub(super) fn use_own_palette(&mut self) {
+    pub(crate) fn use_own_palette(&mut self) {
         let shows_few = self.color_depth == Detected::Guess(ColorDepth::Indexed256);
         if self.extensions.palette == Palette::Reset && shows_few && !self.is_ending {
             self.extensions.owns_palette = true;

@@ -61,27 +61,27 @@ impl Protocol {
         }
     }
 
-    pub(in crate::terminal) fn push_event(&mut self, event: Event) {
+    pub(crate) fn push_event(&mut self, event: Event) {
         self.events.push_back(event);
     }
 
     /// Whether `is_such` holds for an event that was not taken yet.
-    pub(in crate::terminal) fn has_event(&self, is_such: impl Fn(&Event) -> bool) -> bool {
+    pub(crate) fn has_event(&self, is_such: impl Fn(&Event) -> bool) -> bool {
         self.events.iter().any(is_such)
     }
 
     /// Whether an event asks the program to end.
-    pub(in crate::terminal) fn is_asked_to_quit(&self) -> bool {
+    pub(crate) fn is_asked_to_quit(&self) -> bool {
         self.has_event(|event| matches!(event, Event::Quit(_)))
     }
 
     /// The time at which half a key is taken for a whole one.
-    pub(in crate::terminal) fn gives_up_at(&self) -> Option<Duration> {
+    pub(crate) fn gives_up_at(&self) -> Option<Duration> {
         self.decoder.patience().map(|patience| self.received_at + patience)
     }
 
     /// Stops waiting for the rest of a key.
-    pub(in crate::terminal) fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         let events = &mut self.events;
         self.decoder.give_up(|input| {
             // An answer is always a whole unit, never the rest of one.
@@ -187,7 +187,7 @@ impl Protocol {
 
     /// Records that the terminal has received the keyboard flags, if it has answered all frames before
     /// them.
-    pub(super) fn confirm_key_flags(&mut self) {
+    pub(crate) fn confirm_key_flags(&mut self) {
         let key_flags = &mut self.changes.reports.key_flags;
         if *key_flags == KeyFlags::Pushed
             && self.flow.frames_answered() >= self.frames_before_key_flags
@@ -217,7 +217,7 @@ impl Protocol {
 
     /// Records what tmux says of the client that shows the program. A depth that the user has chosen
     /// stays.
-    pub(in crate::terminal) fn take_tmux_client(&mut self, client: TmuxClient) {
+    pub(crate) fn take_tmux_client(&mut self, client: TmuxClient) {
         if let Detected::Guess(before) = self.color_depth {
             let depth =
                 if client.has_true_color() { ColorDepth::True } else { ColorDepth::Indexed256 };
@@ -250,7 +250,7 @@ impl Protocol {
     }
 
     /// Forgets the screen, so that the next frame is drawn whole, in a window of this size.
-    pub(in crate::terminal) fn repaint(&mut self, size: WindowSize) {
+    pub(crate) fn repaint(&mut self, size: WindowSize) {
         self.size = size;
         self.writer.forget();
         self.writer.set_size(self.size.cells());

@@ -5,8 +5,8 @@ use crate::terminal::sequence;
 
 /// The enabled reports while the terminal is taken.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Reports {
-    pub(super) key_flags: KeyFlags,
+pub(crate) struct Reports {
+    pub(crate) key_flags: KeyFlags,
     /// The unit of mouse positions; `None` if the mouse is not reported.
     mouse: Option<MouseUnits>,
 }
@@ -14,7 +14,7 @@ pub(super) struct Reports {
 /// What is known about keyboard flags of the program's own, with which keys are reported in the kitty
 /// protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum KeyFlags {
+pub(crate) enum KeyFlags {
     /// There are none.
     #[default]
     Unset,
@@ -26,12 +26,12 @@ pub(super) enum KeyFlags {
 
 impl Reports {
     /// Whether a key or mouse report may arrive at any time.
-    pub(super) fn are_frequent(self) -> bool {
+    pub(crate) fn are_frequent(self) -> bool {
         self.key_flags != KeyFlags::Unset || self.mouse.is_some()
     }
 
     /// Adds the sequences that enable the reports.
-    pub(super) fn push_start(&mut self, text: &mut String) {
+    pub(crate) fn push_start(&mut self, text: &mut String) {
         text.push_str(sequence::ENABLE_FOCUS_REPORTS);
         if self.key_flags != KeyFlags::Unset {
             text.push_str(sequence::PUSH_KEY_FLAGS);
@@ -41,7 +41,7 @@ impl Reports {
     }
 
     /// Adds the sequences that disable the reports, in reverse order.
-    pub(super) fn push_end(self, text: &mut String) {
+    pub(crate) fn push_end(self, text: &mut String) {
         push_mouse(text, self.mouse, None);
         if self.key_flags != KeyFlags::Unset {
             text.push_str(sequence::POP_KEY_FLAGS);
@@ -51,7 +51,7 @@ impl Reports {
 
     /// Does the same for a terminal that may have lost what was sent to it. A pop without its push
     /// would take the flags of another program.
-    pub(super) fn push_end_after_loss(self, text: &mut String) {
+    pub(crate) fn push_end_after_loss(self, text: &mut String) {
         let known = match self.key_flags {
             KeyFlags::Pushed => {
                 text.push_str(sequence::CLEAR_KEY_FLAGS);
@@ -63,7 +63,7 @@ impl Reports {
     }
 
     /// Sets whether and in which unit the mouse is reported.
-    pub(super) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
+    pub(crate) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
         push_mouse(text, self.mouse, mouse);
         self.mouse = mouse;
     }

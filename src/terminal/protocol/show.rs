@@ -91,19 +91,19 @@ impl Protocol {
 
     /// The time at which to check again whether a frame may be sent, even if nothing arrives before
     /// then; `None` for never.
-    pub(in crate::terminal) fn opens_at(&self) -> Option<Duration> {
+    pub(crate) fn opens_at(&self) -> Option<Duration> {
         self.flow.opens_at()
     }
 
     /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
-    pub(in crate::terminal) fn probe(&mut self, now: Duration) {
+    pub(crate) fn probe(&mut self, now: Duration) {
         if self.output.is_empty() && self.flow.probe_is_due(now) {
             self.queue_queries("", now);
         }
     }
 
     /// Adds `queries` with a fence after them to the output.
-    pub(super) fn queue_queries(&mut self, queries: &str, now: Duration) {
+    pub(crate) fn queue_queries(&mut self, queries: &str, now: Duration) {
         self.flow.sent(now, 0, Request::Fence);
         self.output.extend_from_slice(queries.as_bytes());
         self.queue_fence(now);
@@ -111,7 +111,7 @@ impl Protocol {
 
     /// Moves the bytes of the drawn frame to the output, with a request after them. Nothing is added
     /// after a frame of no bytes.
-    pub(in crate::terminal) fn queue_frame(&mut self, now: Duration) {
+    pub(crate) fn queue_frame(&mut self, now: Duration) {
         let Some(drawn) = self.drawn.take() else { return };
         // The writer writes only to memory, so that nothing can fail.
         _ = Backend::flush(&mut self.writer);

@@ -9,7 +9,7 @@ use crate::terminal::{Event, QuitReason};
 
 /// Whether input or a signal arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Received {
+pub(crate) enum Received {
     Something,
     Nothing,
 }
@@ -22,7 +22,7 @@ impl Session {
     }
 
     /// Waits until `wake_at` for input, signals, or room for bytes.
-    pub(super) fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<Received> {
+    pub(crate) fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<Received> {
         let timeout = wake_at.map(|time| time.saturating_sub(self.guard.now()));
         let has_queued = !self.guard.has_written_all();
         let ready = self.guard.device().wait(&self.signals, has_queued, timeout)?;

@@ -105,7 +105,7 @@ impl Session {
     }
 
     /// Whether the program has been asked to end.
-    pub(super) fn is_ending(&self) -> bool {
+    pub(crate) fn is_ending(&self) -> bool {
         self.guard.is_shutting_down() || self.protocol.is_asked_to_quit()
     }
 
@@ -115,12 +115,12 @@ impl Session {
 
     /// The time at which to check again whether a frame may be sent, even without an event before
     /// then; `None` for never.
-    pub(super) fn opens_at(&self) -> Option<Duration> {
+    pub(crate) fn opens_at(&self) -> Option<Duration> {
         if self.guard.has_written_all() { self.protocol.opens_at() } else { None }
     }
 
     /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
-    pub(super) fn probe(&mut self) -> io::Result<()> {
+    pub(crate) fn probe(&mut self) -> io::Result<()> {
         if self.guard.has_written_all() {
             self.protocol.probe(self.guard.now());
             self.send()?;
@@ -129,7 +129,7 @@ impl Session {
     }
 
     /// Sends the output of the protocol, as far as the terminal accepts it at once.
-    pub(super) fn send(&mut self) -> io::Result<()> {
+    pub(crate) fn send(&mut self) -> io::Result<()> {
         let now = self.guard.now();
         self.protocol.queue_frame(now);
         let changes = self.protocol.changes();
@@ -146,7 +146,7 @@ impl Session {
     }
 
     /// Sends the bytes that the terminal has not accepted yet.
-    pub(super) fn send_queued(&mut self) -> io::Result<()> {
+    pub(crate) fn send_queued(&mut self) -> io::Result<()> {
         self.guard.write_queued()?;
         self.update_written();
         Ok(())

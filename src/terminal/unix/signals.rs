@@ -60,7 +60,7 @@ type Incoming = SignalsInfo<WithRawSiginfo>;
 
 /// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Signal {
+pub(crate) enum Signal {
     /// The window has another size.
     Resized,
     /// The program should stop for a while.
@@ -73,7 +73,7 @@ pub(in super::super) enum Signal {
 
 /// The signals that arrive during a session. Before and after it, they have their default effects.
 #[derive(Debug)]
-pub(in super::super) struct Signals {
+pub(crate) struct Signals {
     receiver: UnixStream,
     handle: Handle,
     thread: Option<JoinHandle<()>>,
@@ -84,7 +84,7 @@ pub(in super::super) struct Signals {
 impl Signals {
     /// Begins to receive signals. If a signal should end the program and the program continues, the
     /// thread gives the terminal back through `guard` and ends the program.
-    pub(in super::super) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
+    pub(crate) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
         let (receiver, sender) = UnixStream::pair()?;
         receiver.set_nonblocking(true)?;
         sender.set_nonblocking(true)?;
@@ -103,7 +103,7 @@ impl Signals {
     }
 
     /// Returns the signals since the last call.
-    pub(in super::super) fn take(&mut self) -> Vec<Signal> {
+    pub(crate) fn take(&mut self) -> Vec<Signal> {
         let mut signals = mem::take(&mut self.deferred);
         let mut numbers = [0; 64];
         while let Ok(count @ 1..) = self.receiver.read(&mut numbers) {
@@ -114,7 +114,7 @@ impl Signals {
 
     /// Stops this program, and those that were started with it, until the shell continues them.
     /// Returns at once if there is no shell to continue them.
-    pub(in super::super) fn stop_until_continued(&mut self) -> io::Result<()> {
+    pub(crate) fn stop_until_continued(&mut self) -> io::Result<()> {
         if !is_a_job()? {
             return Ok(());
         }

@@ -18,10 +18,10 @@ use crate::render::Frame;
 use crate::tui::correction::{local_contrast, raised};
 
 /// The shades of one, two and three quarters.
-pub(super) const SHADES: [char; 3] = ['░', '▒', '▓'];
+pub(crate) const SHADES: [char; 3] = ['░', '▒', '▓'];
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does, `PIXELS` in each cell.
-pub(super) fn draw<const PIXELS: usize, C: Canvas>(
+pub(crate) fn draw<const PIXELS: usize, C: Canvas>(
     area: Rect,
     canvas: &mut C,
     (depth, ink): (ColorDepth, ShadeInk),

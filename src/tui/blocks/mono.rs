@@ -21,7 +21,7 @@ use crate::tui::correction::local_contrast;
 use crate::tui::outline::{Edge, outline};
 
 /// Draws the pixels of `frame` as [`super::draw_frame`] does, `PIXELS` in each cell.
-pub(super) fn draw<const PIXELS: usize>(
+pub(crate) fn draw<const PIXELS: usize>(
     area: Rect,
     canvas: &mut impl Canvas,
     above: u32,

@@ -16,7 +16,7 @@ const SURE_COUNT: u32 = 4;
 const SURE_SPAN: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum State {
+pub(crate) enum State {
     Up,
     /// The key is down; releases are reported.
     Down,
@@ -32,10 +32,10 @@ pub(super) enum State {
 
 /// The state of a key.
 #[derive(Clone, Debug)]
-pub(super) struct HeldKey<K> {
-    pub(super) key: K,
-    pub(super) state: State,
-    pub(super) timing: RepeatTiming,
+pub(crate) struct HeldKey<K> {
+    pub(crate) key: K,
+    pub(crate) state: State,
+    pub(crate) timing: RepeatTiming,
     /// The time of its last byte, if any.
     last_byte: Option<Duration>,
     /// The time at which it was last pressed, as far as that is certain.
@@ -69,7 +69,7 @@ struct Series {
 }
 
 impl<K: Copy + Eq> HeldKey<K> {
-    pub(super) fn new(key: K) -> Self {
+    pub(crate) fn new(key: K) -> Self {
         Self {
             key,
             state: State::Up,
@@ -82,7 +82,7 @@ impl<K: Copy + Eq> HeldKey<K> {
         }
     }
 
-    pub(super) fn hold(&self) -> Hold {
+    pub(crate) fn hold(&self) -> Hold {
         match self.state {
             _ if self.tap.pauses => Hold::Up,
             State::Repeats | State::Lingers => Hold::Held,
@@ -93,20 +93,20 @@ impl<K: Copy + Eq> HeldKey<K> {
         }
     }
 
-    pub(super) fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         matches!(self.state, State::Down | State::Repeats | State::Lingers)
     }
 
-    pub(super) fn has_taps(&self) -> bool {
+    pub(crate) fn has_taps(&self) -> bool {
         self.tap.left > 0 || self.tap.pauses
     }
 
-    pub(super) fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         self.tap.step();
     }
 
     /// Handles a press where releases are reported.
-    pub(super) fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
+    pub(crate) fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
         let was_held = self.hold() == Hold::Held;
         self.tap.add(steps, was_held);
         self.state = State::Down;
@@ -116,7 +116,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// Handles a byte of the key where releases are not reported. `is_newest` says whether the last
     /// byte was of the same key.
-    pub(super) fn byte(
+    pub(crate) fn byte(
         &mut self,
         steps: u32,
         now: Duration,
@@ -171,14 +171,14 @@ impl<K: Copy + Eq> HeldKey<K> {
     }
 
     /// Handles the press of another key, which ends the repetition of this one.
-    pub(super) fn end_repetition(&mut self) {
+    pub(crate) fn end_repetition(&mut self) {
         if self.state == State::Repeats {
             self.state = State::Lingers;
         }
     }
 
     /// Holds this key if it was pressed together with `newer`, which is held.
-    pub(super) fn join(&mut self, newer: &Self) {
+    pub(crate) fn join(&mut self, newer: &Self) {
         if self.was_pressed_within(CHORD, newer) {
             self.state = State::Lingers;
             self.tap = Tap::default();
@@ -186,12 +186,12 @@ impl<K: Copy + Eq> HeldKey<K> {
     }
 
     /// Whether this key may have been down without a repetition when `newer` was pressed.
-    pub(super) fn may_be_down_at(&self, newer: &Self, prior: RepeatTiming) -> bool {
+    pub(crate) fn may_be_down_at(&self, newer: &Self, prior: RepeatTiming) -> bool {
         self.was_pressed_within(self.timing.or(prior).delay_or_default(), newer)
     }
 
     /// Whether this key was pressed at or before `time` and may have been down ever since.
-    pub(super) fn is_down_since(&self, time: Duration) -> bool {
+    pub(crate) fn is_down_since(&self, time: Duration) -> bool {
         let may_be_down = !matches!(self.state, State::Up | State::Suppressed);
         may_be_down && self.pressed <= time
     }
@@ -205,7 +205,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// Marks the key as up. Its tap continues to its end, so that two opposing taps lead back to
     /// the start.
-    pub(super) fn mark_as_up(&mut self) {
+    pub(crate) fn mark_as_up(&mut self) {
         if !matches!(self.state, State::Suppressed | State::Up) {
             self.repeated = self.state == State::Repeats;
             self.state = State::Up;
@@ -213,7 +213,7 @@ impl<K: Copy + Eq> HeldKey<K> {
     }
 
     /// Marks the key as up and ignores its repetitions.
-    pub(super) fn suppress(&mut self) {
+    pub(crate) fn suppress(&mut self) {
         let may_repeat = matches!(self.state, State::Down | State::Repeats | State::Suppressed);
         self.state = if may_repeat { State::Suppressed } else { State::Up };
         self.last_byte = self.last_byte.filter(|_| may_repeat);
@@ -222,7 +222,7 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// The time at which the key expires if no byte of it comes until then; `None` if it does not
     /// expire by itself.
-    pub(super) fn expiry(&self, prior: RepeatTiming) -> Option<Duration> {
+    pub(crate) fn expiry(&self, prior: RepeatTiming) -> Option<Duration> {
         let timing = self.timing.or(prior);
         match self.state {
             State::Pressed => Some(self.last_byte? + timing.first_timeout()),

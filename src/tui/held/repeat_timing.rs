@@ -25,33 +25,33 @@ const DEFAULT_INTERVAL: Duration = Duration::from_millis(60);
 
 /// The delay and the interval of a keyboard, as far as they are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct RepeatTiming {
-    pub(super) delay: Option<Duration>,
+pub(crate) struct RepeatTiming {
+    pub(crate) delay: Option<Duration>,
     /// The longest recent interval; it decays slowly.
-    pub(super) interval: Option<Duration>,
+    pub(crate) interval: Option<Duration>,
 }
 
 impl RepeatTiming {
     /// This timing, completed from `prior`.
-    pub(super) fn or(self, prior: Self) -> Self {
+    pub(crate) fn or(self, prior: Self) -> Self {
         Self { delay: self.delay.or(prior.delay), interval: self.interval.or(prior.interval) }
     }
 
     /// Whether the first repetition of a key may come after `gap`.
-    pub(super) fn may_begin_after(self, gap: Duration) -> bool {
+    pub(crate) fn may_begin_after(self, gap: Duration) -> bool {
         let earliest = self.delay.map_or(SHORTEST_DELAY, |delay| delay * 3 / 4);
         (earliest.max(SHORTEST_DELAY)..=LONGEST_DELAY).contains(&gap)
     }
 
     /// Whether `count` bytes in the time `span` are too many for taps.
-    pub(super) fn is_repetition(self, count: u32, span: Duration) -> bool {
+    pub(crate) fn is_repetition(self, count: u32, span: Duration) -> bool {
         let mean = SHORTEST_TAP + TAP_SLACK * (count.saturating_sub(1)).min(MOST_SLACKS);
         let known = self.interval.map_or(Duration::ZERO, |interval| interval * 5 / 4);
         span <= mean.max(known.min(SHORTEST_TAP * 3 / 2)) * count
     }
 
     /// Learns from a first repetition that came after `delay`.
-    pub(super) fn learn_delay(&mut self, delay: Duration) {
+    pub(crate) fn learn_delay(&mut self, delay: Duration) {
         if (SHORTEST_DELAY..=LONGEST_DELAY).contains(&delay) {
             // A link can delay a byte, but not advance it: shorter delays are taken at once.
             let known = self.delay.unwrap_or(delay);
@@ -60,23 +60,23 @@ impl RepeatTiming {
     }
 
     /// Learns from a repetition that came after `interval`.
-    pub(super) fn learn_interval(&mut self, interval: Duration) {
+    pub(crate) fn learn_interval(&mut self, interval: Duration) {
         let longest = self.interval.map_or(Duration::ZERO, |longest| longest * 7 / 8);
         self.interval = Some(interval.max(longest));
     }
 
     /// How long a pressed key may be down before its first repetition.
-    pub(super) fn first_timeout(self) -> Duration {
+    pub(crate) fn first_timeout(self) -> Duration {
         self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + SHORTEST_TAP)
     }
 
     /// The delay, or that of most systems if it is unknown.
-    pub(super) fn delay_or_default(self) -> Duration {
+    pub(crate) fn delay_or_default(self) -> Duration {
         self.delay.unwrap_or(DEFAULT_DELAY)
     }
 
     /// How long a repeating key may send nothing.
-    pub(super) fn timeout(self) -> Duration {
+    pub(crate) fn timeout(self) -> Duration {
         let interval = self.interval.unwrap_or(DEFAULT_INTERVAL);
         (interval * MISSED_HALVES / 2).clamp(SHORTEST_TIMEOUT, LONGEST_TIMEOUT)
     }

@@ -50,7 +50,7 @@ pub struct Explored {
 
 /// The cells of a row that have been seen: a bit for each. Beyond the last cell there are none.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenRow<'a>(&'a [u32]);
+pub(crate) struct SeenRow<'a>(&'a [u32]);
 
 /// The number of cells in a word.
 const WORD: u32 = u32::BITS;
@@ -111,7 +111,7 @@ impl Explored {
     }
 
     /// The cells of a row that have been seen.
-    pub(super) fn row(&self, row: u32) -> SeenRow<'_> {
+    pub(crate) fn row(&self, row: u32) -> SeenRow<'_> {
         let words = self.words_of_a_row();
         SeenRow(self.words.chunks_exact(words.max(1)).nth(row as usize).unwrap_or_default())
     }
@@ -174,7 +174,7 @@ impl Explored {
 
 impl SeenRow<'_> {
     #[inline]
-    pub(super) fn contains(self, column: u32) -> bool {
+    pub(crate) fn contains(self, column: u32) -> bool {
         let word = self.0.get((column / WORD) as usize);
         word.is_some_and(|word| word >> (column % WORD) & 1 == 1)
     }

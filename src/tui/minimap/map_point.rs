@@ -9,7 +9,7 @@ use crate::color::Rgb;
 
 /// The content of a point of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MapPoint {
+pub(crate) enum MapPoint {
     /// Outside of the map, or unexplored.
     Void,
     Wall(Rgb),
@@ -27,8 +27,8 @@ pub(super) enum MapPoint {
 
 /// Floor, with a colour by its height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Floor {
-    pub(super) kind: FloorKind,
+pub(crate) struct Floor {
+    pub(crate) kind: FloorKind,
     color: Rgb,
     /// Its colour if it is visible.
     lit: Rgb,
@@ -36,7 +36,7 @@ pub(super) struct Floor {
 
 /// The kinds of floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FloorKind {
+pub(crate) enum FloorKind {
     /// At the height of the map's own floor.
     Base,
     /// Above it.
@@ -73,13 +73,13 @@ const SAME_HEIGHT: f64 = 0.05;
 
 impl Floor {
     /// Water at `height`.
-    pub(super) fn water(height: f64) -> Self {
+    pub(crate) fn water(height: f64) -> Self {
         let depth = height.min(0.0).abs();
         Self::of(FloorKind::Water, mix(BASE, WATER, (depth + 0.3) / (depth + 0.6)))
     }
 
     /// Floor at `height` with the mean colour `color`.
-    pub(super) fn new(height: f64, color: Rgb) -> Self {
+    pub(crate) fn new(height: f64, color: Rgb) -> Self {
         // The share is one half at the height or depth `half`.
         let share = |half: f64| height.abs() / (height.abs() + half);
         if height > SAME_HEIGHT {
@@ -118,7 +118,7 @@ fn mix(one: Rgb, other: Rgb, share: f64) -> Rgb {
 
 /// The colour of a wall with the mean colour `color`: the same, but neither as dark as floor nor as
 /// bright as the arrow.
-pub(super) fn of_wall(color: Rgb) -> Rgb {
+pub(crate) fn of_wall(color: Rgb) -> Rgb {
     let (least, most) = WALLS;
     let luma = color.luma();
     if luma < least {
@@ -132,7 +132,7 @@ pub(super) fn of_wall(color: Rgb) -> Rgb {
 }
 
 impl MapPoint {
-    pub(super) fn color(self) -> Rgb {
+    pub(crate) fn color(self) -> Rgb {
         match self {
             Self::Void => VOID,
             Self::Wall(color) | Self::Door(color) => color,
@@ -146,7 +146,7 @@ impl MapPoint {
     }
 
     /// The index of the point's colour among the 16.
-    pub(super) fn index_of_16(self) -> u8 {
+    pub(crate) fn index_of_16(self) -> u8 {
         match self {
             Self::Void => 0,
             Self::Wall(_) => 7,
@@ -166,7 +166,7 @@ impl MapPoint {
     }
 
     /// Whether the point's pixel at that position of the screen is lit if there are no colours.
-    pub(super) fn is_lit(self, x: u32, y: u32) -> bool {
+    pub(crate) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
             Self::Wall(_) | Self::Door(_) => true,
             Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
@@ -182,11 +182,11 @@ impl MapPoint {
     }
 
     /// Whether the point is a letter among the patterns of a map without colour.
-    pub(super) fn is_thing(self) -> bool {
+    pub(crate) fn is_thing(self) -> bool {
         matches!(self, Self::Exit | Self::Key | Self::Item | Self::Ornament)
     }
 
-    pub(super) fn character(self) -> char {
+    pub(crate) fn character(self) -> char {
         match self {
             Self::Void => ' ',
             Self::Wall(_) => '#',
@@ -207,7 +207,7 @@ impl MapPoint {
 
     /// The importance of the point: a pixel that covers several points shows the most important
     /// one.
-    pub(super) fn importance(self) -> u8 {
+    pub(crate) fn importance(self) -> u8 {
         match self {
             Self::Void => 0,
             Self::Floor(_) => 1,

@@ -7,26 +7,26 @@ use super::top_view::{Row, TopView};
 use super::window::Window;
 
 /// A map and the part of it that is shown.
-pub(super) struct Picture<'a> {
-    pub(super) top_view: TopView<'a>,
-    pub(super) window: Window,
+pub(crate) struct Picture<'a> {
+    pub(crate) top_view: TopView<'a>,
+    pub(crate) window: Window,
 }
 
 impl<'a> Picture<'a> {
     /// The pixels in row `y`.
-    pub(super) fn row(&self, y: u32) -> PixelRow<'_, 'a> {
+    pub(crate) fn row(&self, y: u32) -> PixelRow<'_, 'a> {
         let y = self.window.y_of(y);
         PixelRow { picture: self, y, middle: self.top_view.row(y) }
     }
 
     /// The map point at a pixel.
-    pub(super) fn point(&self, x: u32, y: u32) -> MapPoint {
+    pub(crate) fn point(&self, x: u32, y: u32) -> MapPoint {
         self.row(y).point(x)
     }
 }
 
 /// A row of pixels of a map.
-pub(super) struct PixelRow<'p, 'a> {
+pub(crate) struct PixelRow<'p, 'a> {
     picture: &'p Picture<'a>,
     /// The position of the middle of the pixels.
     y: f64,
@@ -37,7 +37,7 @@ pub(super) struct PixelRow<'p, 'a> {
 impl PixelRow<'_, '_> {
     /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
     #[inline]
-    pub(super) fn point(&self, x: u32) -> MapPoint {
+    pub(crate) fn point(&self, x: u32) -> MapPoint {
         let window = &self.picture.window;
         let x = window.x_of(x);
         match window.cells_per_pixel() {

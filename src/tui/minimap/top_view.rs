@@ -14,7 +14,7 @@ use crate::world::{
 };
 
 /// A world seen from above.
-pub(super) struct TopView<'a> {
+pub(crate) struct TopView<'a> {
     world: &'a World,
     visible_floor: VisibleFloor<'a>,
     explored: Option<&'a Explored>,
@@ -42,7 +42,7 @@ const LEAST_GLASS_OPACITY: u8 = 96;
 impl<'a> TopView<'a> {
     /// A top view of `world`. `columns` are the hits of the picture from `camera`, cells that are
     /// not `explored` are hidden, and `pixel` is the width of a pixel in cells.
-    pub(super) fn new(
+    pub(crate) fn new(
         world: &'a World,
         camera: &Camera,
         (columns, explored): (&'a [Column], Option<&'a Explored>),
@@ -56,7 +56,7 @@ impl<'a> TopView<'a> {
     }
 
     /// The row of points at the distance `y` from the map's northern edge.
-    pub(super) fn row(&self, y: f64) -> Row<'_> {
+    pub(crate) fn row(&self, y: f64) -> Row<'_> {
         let row = u32::try_from(cell_at(y)).ok();
         Row {
             view: self,
@@ -71,7 +71,7 @@ impl<'a> TopView<'a> {
     }
 
     /// Whether the floor at `point` is in view.
-    pub(super) fn is_visible(&self, point: DVec2) -> bool {
+    pub(crate) fn is_visible(&self, point: DVec2) -> bool {
         self.visible_floor.contains(point)
     }
 
@@ -85,7 +85,7 @@ impl<'a> TopView<'a> {
 }
 
 /// The points on a line from west to east.
-pub(super) struct Row<'a> {
+pub(crate) struct Row<'a> {
     view: &'a TopView<'a>,
     tiles: &'a [TileId],
     /// Which cells are not hidden, if any are.
@@ -100,7 +100,7 @@ impl Row<'_> {
     /// The map point at the distance `x` from the map's western edge, which is the middle of a
     /// pixel.
     #[inline]
-    pub(super) fn point(&self, x: f64) -> MapPoint {
+    pub(crate) fn point(&self, x: f64) -> MapPoint {
         let column = cell_at(x) as usize;
         let Some(&tile) = self.tiles.get(column) else { return MapPoint::Void };
         if self.seen.is_some_and(|seen| !seen.contains(column as u32)) {

@@ -12,7 +12,7 @@ const SCALES: [f64; 10] = [0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0]
 
 /// The part of the map that an area shows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Window {
+pub(crate) struct Window {
     /// The width and the height of the area in pixels.
     size: DVec2,
     /// The number of pixels per cell of the map.
@@ -26,7 +26,7 @@ pub(super) struct Window {
 
 impl Window {
     /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
-    pub(super) fn new(
+    pub(crate) fn new(
         area: Rect,
         glyphs: GlyphSet,
         world: &World,
@@ -56,27 +56,27 @@ impl Window {
     }
 
     /// The width of a pixel in cells of the map.
-    pub(super) fn pixel(&self) -> f64 {
+    pub(crate) fn pixel(&self) -> f64 {
         1.0 / self.scale.x
     }
 
     /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
-    pub(super) fn cells_per_pixel(&self) -> [u32; 2] {
+    pub(crate) fn cells_per_pixel(&self) -> [u32; 2] {
         self.cells_per_pixel
     }
 
     /// The distance of the centres of a column of pixels from the map's western edge.
-    pub(super) fn x_of(&self, column: u32) -> f64 {
+    pub(crate) fn x_of(&self, column: u32) -> f64 {
         (f64::from(column) + 0.5 + self.corner.x) / self.scale.x
     }
 
     /// The distance of the centres of a row of pixels from the map's northern edge.
-    pub(super) fn y_of(&self, row: u32) -> f64 {
+    pub(crate) fn y_of(&self, row: u32) -> f64 {
         (f64::from(row) + 0.5 + self.corner.y) / self.scale.y
     }
 
     /// The cell of the area that shows `point`.
-    pub(super) fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
+    pub(crate) fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
         let pixel = (point * self.scale - self.corner).floor();
         let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
         let [columns, rows] = self.pixels_per_cell;
@@ -85,14 +85,14 @@ impl Window {
 
     /// The numbers of the map's cells that are shown from left to right and from top to bottom.
     #[cfg(feature = "terminal")]
-    pub(super) fn extent(&self) -> DVec2 {
+    pub(crate) fn extent(&self) -> DVec2 {
         self.size / self.scale
     }
 }
 
 /// The part of `room` that the map fills; the rest would be blank.
 #[cfg(feature = "terminal")]
-pub(super) fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
+pub(crate) fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
     let pixels = pixels_within(room, glyphs);
     let needed = map_size(world) * scale(world, pixels, glyphs, zoom);
     let needed = needed.ceil().min(pixels);
@@ -101,7 +101,7 @@ pub(super) fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32
 }
 
 /// The width and the height of the map in cells.
-pub(super) fn map_size(world: &World) -> DVec2 {
+pub(crate) fn map_size(world: &World) -> DVec2 {
     DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
 }
 

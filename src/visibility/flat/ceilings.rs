@@ -12,20 +12,20 @@ use crate::world::{Ceiling, Heights};
 
 /// The ceilings of a level scene.
 #[derive(Clone, Copy)]
-pub(super) struct Ceilings<'a> {
+pub(crate) struct Ceilings<'a> {
     scene: Scene<'a>,
     /// Whether any cell that a ray may enter is under the sky.
     is_any_open: bool,
 }
 
 impl<'a> Ceilings<'a> {
-    pub(super) fn new(scene: Scene<'a>) -> Self {
+    pub(crate) fn new(scene: Scene<'a>) -> Self {
         Self { scene, is_any_open: scene.world.has_open_sky() }
     }
 
     /// Whether some part of `rows` of a billboard at `depth` is above the ceilings, and may show there under
     /// the sky.
-    pub(super) fn let_past(self, depth: f64, rows: &Range<u32>) -> bool {
+    pub(crate) fn let_past(self, depth: f64, rows: &Range<u32>) -> bool {
         self.is_any_open && rows.start < self.row_of_top(depth)
     }
 
@@ -36,7 +36,7 @@ impl<'a> Ceilings<'a> {
 
     /// Calls `show` for each part of `rows` of a billboard at `depth` that no ceiling hides in `column`, of which
     /// the second part says whether its ray ends at a wall.
-    pub(super) fn for_each_open(
+    pub(crate) fn for_each_open(
         self,
         (column, is_at_wall): (u32, bool),
         depth: f64,

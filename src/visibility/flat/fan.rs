@@ -18,7 +18,7 @@ use crate::visibility::{Column, Projection};
 use crate::world::Grid;
 
 /// The rays of a picture.
-pub(super) struct Fan<'a, C> {
+pub(crate) struct Fan<'a, C> {
     caster: &'a C,
     grid: &'a Grid,
     projection: &'a Projection,
@@ -46,12 +46,12 @@ enum Step {
 const HAIR: f64 = 1e-6;
 
 impl<'a, C: Caster> Fan<'a, C> {
-    pub(super) fn new(caster: &'a C, grid: &'a Grid, projection: &'a Projection) -> Self {
+    pub(crate) fn new(caster: &'a C, grid: &'a Grid, projection: &'a Projection) -> Self {
         Self { caster, grid, projection }
     }
 
     /// Finds all `columns`.
-    pub(super) fn cast(&self, columns: &mut [Column]) {
+    pub(crate) fn cast(&self, columns: &mut [Column]) {
         let last = columns.len() - 1;
         for index in [0, last].into_iter().take(columns.len()) {
             columns[index] = self.cast_one(index);

@@ -38,7 +38,7 @@ const LAYERS_OF_A_COLUMN: usize = 16;
 /// The memory of the flat way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FlatMemory {
-    pub(super) passed: PassedHits,
+    pub(crate) passed: PassedHits,
     left: PassedLeft,
     visible: VisibleCells,
     /// The layers before they are put in order.
@@ -63,7 +63,7 @@ struct PassedLeft {
 
 /// Fills the layers of `list`, whose columns are known. Returns the time at which one of the
 /// billboards next changes its appearance; `None` for never.
-pub(super) fn fill(
+pub(crate) fn fill(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
@@ -187,19 +187,19 @@ fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
 
 impl PassedHits {
     /// Removes all hits and keeps the memory.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.list.clear();
     }
 
     /// Reserves memory for the hits that this number of `rays` pass in all but extreme maps, so
     /// that a turn of the camera towards more of them allocates nothing.
-    pub(super) fn make_room_for(&mut self, rays: usize) {
+    pub(crate) fn make_room_for(&mut self, rays: usize) {
         const OF_A_RAY: usize = 8;
         self.list.reserve(rays * OF_A_RAY);
     }
 
     /// Adds a hit that the ray of `column` passed: columns from the left, hits from near to far.
-    pub(super) fn push(&mut self, column: usize, hit: Hit) {
+    pub(crate) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));
     }
 }

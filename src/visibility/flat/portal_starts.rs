@@ -83,7 +83,7 @@ impl<'a> PortalStarts<'a> {
 }
 
 /// Removes the parts left to the portal way from the columns of the flat way.
-pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
+pub(crate) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let DrawList { columns, flat_columns, is_flat, .. } = list;
     let mut starts = PortalStarts::new(scene.world);
     let is_left = |column: &Column| column.hit.as_ref().is_some_and(|hit| starts.leave(hit.cell));

@@ -121,7 +121,7 @@ pub(crate) fn for_each_wall_part<'l>(
 }
 
 /// The light of the face that the ray of column `x` hit.
-pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
+pub(crate) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Face::new(scene, x, hit, true).light.at(hit.u)
 }
 

@@ -20,23 +20,23 @@ use crate::world::sprite::builtin;
 
 /// The part of a ray within one gap.
 #[derive(Clone, Debug)]
-pub(super) struct RayPart {
-    pub(super) column: u32,
+pub(crate) struct RayPart {
+    pub(crate) column: u32,
     /// The rows that no nearer surface covers.
-    pub(super) rows: Range<u32>,
-    pub(super) from: f64,
-    pub(super) to: f64,
-    pub(super) gap: GapId,
+    pub(crate) rows: Range<u32>,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) gap: GapId,
     /// The height of the top of a pillar below it, which hides what is lower.
-    pub(super) top_below: Option<f64>,
-    pub(super) image: ImageId,
+    pub(crate) top_below: Option<f64>,
+    pub(crate) image: ImageId,
 }
 
 impl RayPart {
     /// The part of the ray of `column`, whose clip is `clip`, up to `to`, for billboards that are higher than
     /// the top of a pillar below it.
     #[inline]
-    pub(super) fn new(
+    pub(crate) fn new(
         bundle: &Bundle,
         column: u32,
         clip: &Clip,
@@ -51,7 +51,7 @@ impl RayPart {
 
 /// Finds the billboards in view, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Finder {
+pub(crate) struct Finder {
     /// The billboards of each image, from near to far, as indices.
     of_image: Vec<Range<usize>>,
     in_view: ImagesInView,
@@ -61,7 +61,7 @@ pub(super) struct Finder {
 
 impl Finder {
     /// Reserves memory for the images of all but extreme maps.
-    pub(super) fn make_room(&mut self, world: &World, width: usize) {
+    pub(crate) fn make_room(&mut self, world: &World, width: usize) {
         self.of_image.clear();
         self.of_image.reserve(IMAGES_AT_ONCE);
         self.is_covered.clear();
@@ -71,7 +71,7 @@ impl Finder {
 
     /// Finds the billboards in the `segments` of rays. Returns the number of things and figures
     /// considered.
-    pub(super) fn find(
+    pub(crate) fn find(
         &mut self,
         scene: Scene<'_>,
         segments: &[RaySegment],
@@ -114,7 +114,7 @@ impl Finder {
     }
 
     /// Cuts out the visible billboards of a part of a ray, from far to near.
-    pub(super) fn cut(
+    pub(crate) fn cut(
         &self,
         scene: Scene<'_>,
         gaps: &TileGaps,

@@ -8,7 +8,7 @@ use crate::visibility::{DrawList, Layer, Scene};
 
 /// An item that a ray passes.
 #[derive(Clone, Debug)]
-pub(super) enum Passed {
+pub(crate) enum Passed {
     /// An index into the masked and translucent columns.
     SeeThrough(usize),
     /// The billboards in a part of the ray.
@@ -17,14 +17,14 @@ pub(super) enum Passed {
 
 /// Memory for ordering layers, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LayerMemory {
+pub(crate) struct LayerMemory {
     /// The layers of each column together, from far to near.
     by_column: Vec<Layer>,
 }
 
 impl LayerMemory {
     /// Reserves memory for as many layers as `list` has memory for.
-    pub(super) fn make_room(&mut self, list: &DrawList) {
+    pub(crate) fn make_room(&mut self, list: &DrawList) {
         self.by_column.clear();
         self.by_column.reserve(list.layers.capacity());
     }
@@ -32,7 +32,7 @@ impl LayerMemory {
 
 /// Makes the layers of `list` from the items that rays passed: in each column, nearer items come
 /// later.
-pub(super) fn fill(
+pub(crate) fn fill(
     scene: Scene<'_>,
     gaps: &TileGaps,
     passed: &Chains<Passed>,

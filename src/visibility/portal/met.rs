@@ -12,23 +12,23 @@ use crate::visibility::{Extent, Facing, Material, SeeThroughColumn, WallColumn};
 use crate::world::{Light, Paint, Tile, TileKind};
 
 /// An upright face, where a ray meets it.
-pub(super) struct Met {
+pub(crate) struct Met {
     /// The kind of line that the face is on, or to which it is most nearly parallel.
-    pub(super) side: Side,
-    pub(super) facing: Facing,
+    pub(crate) side: Side,
+    pub(crate) facing: Facing,
     /// The approach of the ray to the face, in cells per unit of `t`.
-    pub(super) slope: f64,
-    pub(super) t: f64,
+    pub(crate) slope: f64,
+    pub(crate) t: f64,
     /// The position along the face, from 0 at its left end to 1 at its right.
-    pub(super) u: f64,
+    pub(crate) u: f64,
     /// The cell from which the ray meets it.
-    pub(super) before: Place,
+    pub(crate) before: Place,
 }
 
 impl BundleWalk<'_> {
     /// The face at `line` where the ray of `column` meets it.
     #[inline]
-    pub(super) fn met_at(&self, line: &Line, column: u32) -> Met {
+    pub(crate) fn met_at(&self, line: &Line, column: u32) -> Met {
         let ray = self.ray(column);
         let t = self.memory.distances[column as usize];
         let &Line { side, ref face, before, .. } = line;
@@ -39,7 +39,7 @@ impl BundleWalk<'_> {
 
     /// Shows a face of `place` in `rows`.
     #[inline]
-    pub(super) fn show_face(
+    pub(crate) fn show_face(
         &mut self,
         column: u32,
         rows: Range<u32>,
@@ -58,7 +58,7 @@ impl BundleWalk<'_> {
     }
 
     /// Records a see-through face of `place` in `rows`.
-    pub(super) fn pass(
+    pub(crate) fn pass(
         &mut self,
         column: u32,
         rows: Range<u32>,

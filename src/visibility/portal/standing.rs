@@ -15,7 +15,7 @@ use crate::world::{Tile, TileKind};
 
 impl BundleWalk<'_> {
     /// Handles the object in the gap of `bundle`. The rows above it remain open.
-    pub(super) fn meet_standing(&mut self, bundle: &Bundle) {
+    pub(crate) fn meet_standing(&mut self, bundle: &Bundle) {
         let surroundings = self.surroundings;
         let Some(tile) = surroundings.tile(bundle.place) else { return };
         for column in bundle.columns.clone() {

@@ -8,24 +8,24 @@ use crate::world::sprite::builtin;
 use crate::world::{Camera, Cell, Tile, TileId};
 
 /// The most reflections of a ray. The mirror after the last one shows only its tint.
-pub(super) const MOST_BOUNCES: u32 = 8;
+pub(crate) const MOST_BOUNCES: u32 = 8;
 
 /// The location of a ray: in a cell, or off the map.
-pub(super) type Place = Option<(Cell, TileId)>;
+pub(crate) type Place = Option<(Cell, TileId)>;
 
 /// The values that all rays of a frame share.
-pub(super) struct Surroundings<'a> {
-    pub(super) scene: Scene<'a>,
-    pub(super) gaps: &'a TileGaps,
+pub(crate) struct Surroundings<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) gaps: &'a TileGaps,
     /// The rise above which there is only sky.
-    pub(super) top: Rise,
+    pub(crate) top: Rise,
     /// Whether there is any thing or figure, or the player in a mirror.
-    pub(super) has_things: bool,
-    pub(super) order: CommonOrder,
+    pub(crate) has_things: bool,
+    pub(crate) order: CommonOrder,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
+    pub(crate) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
         let world = scene.world;
         let has_figures = !world.figures().is_empty();
         let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
@@ -43,7 +43,7 @@ impl<'a> Surroundings<'a> {
         Self { scene, gaps, top, has_things, order }
     }
 
-    pub(super) fn tile(&self, place: Place) -> Option<&'a Tile> {
+    pub(crate) fn tile(&self, place: Place) -> Option<&'a Tile> {
         let (_, id) = place?;
         self.scene.world.tiles().get(usize::from(id.0))
     }

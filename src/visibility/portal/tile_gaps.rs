@@ -64,7 +64,7 @@ impl TileGaps {
     }
 
     /// Reserves memory for the gaps of all tiles of `world`.
-    pub(super) fn make_room(&mut self, world: &World) {
+    pub(crate) fn make_room(&mut self, world: &World) {
         const OF_A_TILE: usize = 2;
         self.gaps.clear();
         self.of_tiles.clear();
@@ -87,7 +87,7 @@ impl TileGaps {
 
     /// The gaps in `place`: the upper one, and the lower one if there are two.
     #[inline]
-    pub(super) fn upper_and_lower(&self, place: Place) -> Option<(GapId, Option<GapId>)> {
+    pub(crate) fn upper_and_lower(&self, place: Place) -> Option<(GapId, Option<GapId>)> {
         let mut gaps = self.of(place);
         let lowest = gaps.next()?;
         Some(gaps.next().map_or((lowest, None), |upper| (upper, Some(lowest))))
@@ -119,7 +119,7 @@ impl VisibleGap {
     }
 
     /// Finds the rows of the bottom and the top of the gap at each of `distances`.
-    pub(super) fn find_rows(
+    pub(crate) fn find_rows(
         &self,
         projection: &Projection,
         distances: &[f64],

@@ -3,7 +3,7 @@
 
 /// The nearest integer, away from 0 for ties; values beyond 64 bits wrap around.
 #[inline]
-pub(super) fn rounded(number: f64) -> i64 {
+pub(crate) fn rounded(number: f64) -> i64 {
     // Doubles of this size are the integers, so that the addition rounds to an integer.
     const INTEGERS: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
     const MOST: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 2)) as f64;
@@ -32,7 +32,7 @@ fn rounded_tie_or_large(number: f64) -> i64 {
 
 /// The largest integer not above `number`, for numbers in the middle half of 64 bits.
 #[inline]
-pub(super) fn floor(number: f64) -> i64 {
+pub(crate) fn floor(number: f64) -> i64 {
     const MOST: f64 = (1_u64 << 62) as f64;
     let whole = number.clamp(-MOST, MOST) as i64;
     whole - i64::from(whole as f64 > number)

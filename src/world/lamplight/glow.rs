@@ -17,7 +17,7 @@ use crate::world::{Cell, Grid, Light, TileId};
 
 /// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
-pub(super) struct Glow {
+pub(crate) struct Glow {
     /// What it adds in its own cell.
     light: Light,
     /// The cells as a tree: each comes before those behind it.
@@ -37,7 +37,7 @@ struct Branch {
 }
 
 impl Glow {
-    pub(super) fn of(lamp: &Lamp) -> Self {
+    pub(crate) fn of(lamp: &Lamp) -> Self {
         let mut lines = lines(lamp);
         // Lines that share their first cells are neighbours, and shorter ones come first.
         sort::by(&mut lines, |one, other| one.cells.cmp(&other.cells));
@@ -63,7 +63,7 @@ impl Glow {
 
     /// Calls `add` for each cell of `grid` that a lamp at `place` lights, with what it adds there.
     /// Light passes through tiles for which `is_clear` is true.
-    pub(super) fn shine(
+    pub(crate) fn shine(
         &self,
         grid: &Grid,
         place: Cell,

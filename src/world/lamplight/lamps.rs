@@ -11,7 +11,7 @@ use crate::world::{Cell, Grid, Light, Thing, ThingKind, Tile, TileId, TileKind, 
 
 /// Whether light is added or taken away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Change {
+pub(crate) enum Change {
     Add,
     TakeAway,
 }
@@ -26,7 +26,7 @@ enum Carrier {
 
 /// The glow of each kind of lamp that was needed so far. Worlds that differ in it are equal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Glows {
+pub(crate) struct Glows {
     list: Vec<(Lamp, Arc<Glow>)>,
 }
 
@@ -83,7 +83,7 @@ impl World {
     }
 
     /// Takes away the light of the things in `cell` for which `is_taken` is true.
-    pub(in crate::world) fn put_out(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
+    pub(crate) fn put_out(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
         for thing in self.things.between(cell.row, cell.column, cell.column) {
             let lamp = self.sprites[usize::from(thing.sprite.0)].lamp;
             if let Some(lamp) = lamp.filter(|_| is_taken(thing.kind) && thing.burns()) {
@@ -95,7 +95,7 @@ impl World {
 
     /// Sets the tile of `cell`, which must be on the map. Lamplight passes it from now on, or no
     /// longer does.
-    pub(in crate::world) fn set_tile(&mut self, cell: Cell, tile: TileId) {
+    pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
         let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
         let before = self.grid.tile(i64::from(cell.column), i64::from(cell.row)).map(kind);
         let changes = |carrier: &Carrier| {
@@ -114,7 +114,7 @@ impl World {
     }
 
     /// Computes all lamplight anew, without lamps that move.
-    pub(in crate::world) fn light_up(&mut self) {
+    pub(crate) fn light_up(&mut self) {
         let is_dim = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
         let is_needed = self.tiles.iter().any(is_dim);
         self.lamplight.is_needed = is_needed;

@@ -33,7 +33,7 @@ pub(crate) enum Repeat {
 
 /// The area levels of a texture that were made so far.
 #[derive(Clone)]
-pub(super) struct AreaLevels {
+pub(crate) struct AreaLevels {
     /// The number of steps along both axes.
     steps: [u8; 2],
     across: Vec<OnceLock<Box<MipLevel>>>,
@@ -61,7 +61,7 @@ impl AreaLod {
 }
 
 impl AreaLevels {
-    pub(super) fn new(picture: &MipLevel) -> Self {
+    pub(crate) fn new(picture: &MipLevel) -> Self {
         let steps = [picture.width(), picture.height()].map(steps_for);
         let count = steps.map(usize::from).into_iter().product();
         let none = || (0..count).map(|_| OnceLock::new()).collect();
@@ -70,7 +70,7 @@ impl AreaLevels {
 
     /// The level of `picture` with this extent.
     #[inline]
-    pub(super) fn level(&self, picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> &MipLevel {
+    pub(crate) fn level(&self, picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> &MipLevel {
         let [across, down] = self.steps;
         let lod = AreaLod { across: lod.across.min(across - 1), down: lod.down.min(down - 1) };
         let levels = match repeat {

@@ -29,7 +29,7 @@ pub struct MipLevel {
 impl MipLevel {
     /// A level with these texels, column by column. `alpha` is in the same order, or empty if all texels are
     /// opaque.
-    pub(super) fn new(
+    pub(crate) fn new(
         width: NonZeroU32,
         height: NonZeroU32,
         texels: Vec<Rgb>,
@@ -68,7 +68,7 @@ impl MipLevel {
     }
 
     /// The colour of the texel at `(x, y)`, and its alpha.
-    pub(super) fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
+    pub(crate) fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         let index = x as usize * self.height.get() as usize + y as usize;
         (self.texels[index], self.alpha.get(index).copied().unwrap_or(u8::MAX))
     }
@@ -83,7 +83,7 @@ impl MipLevel {
         &self.halved
     }
 
-    pub(super) fn has_alpha(&self) -> bool {
+    pub(crate) fn has_alpha(&self) -> bool {
         !self.alpha.is_empty()
     }
 
@@ -180,7 +180,7 @@ fn texel_index(coordinate: f64, count: u32) -> usize {
 }
 
 /// The mip levels after `level`, down to one texel.
-pub(super) fn smaller(level: &MipLevel) -> Vec<MipLevel> {
+pub(crate) fn smaller(level: &MipLevel) -> Vec<MipLevel> {
     let &MipLevel { width, height, ref texels, ref alpha, .. } = level;
     let texels = texels.iter().copied().map(linear_16).collect();
     let mut light = Light { width, height, texels, alpha: alpha.clone() };

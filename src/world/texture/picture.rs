@@ -8,14 +8,14 @@ use crate::color::Rgb;
 
 /// The picture itself, and what is computed from all of it.
 #[derive(Clone)]
-pub(super) struct Picture {
-    pub(super) level: MipLevel,
-    pub(super) mean: Rgb,
+pub(crate) struct Picture {
+    pub(crate) level: MipLevel,
+    pub(crate) mean: Rgb,
 }
 
 /// Where a texture has its picture from.
 #[derive(Clone)]
-pub(super) enum Source {
+pub(crate) enum Source {
     Made(Picture),
     OnDemand { paint: Arc<Paint>, made: OnceLock<Picture> },
 }
@@ -25,7 +25,7 @@ type Paint = dyn Fn() -> Picture + Send + Sync;
 
 impl Picture {
     /// The picture with the texel `texel(x, y)` at `(x, y)`, and its alpha.
-    pub(super) fn from_fn(
+    pub(crate) fn from_fn(
         width: NonZeroU32,
         height: NonZeroU32,
         mut texel: impl FnMut(u32, u32) -> (Rgb, u8),
@@ -44,19 +44,19 @@ impl Picture {
 
 impl Source {
     /// The picture that `paint` makes when it is first read.
-    pub(super) fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
+    pub(crate) fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
         Self::OnDemand { paint: Arc::new(paint), made: OnceLock::new() }
     }
 
     #[inline]
-    pub(super) fn picture(&self) -> &Picture {
+    pub(crate) fn picture(&self) -> &Picture {
         match self {
             Self::Made(picture) => picture,
             Self::OnDemand { paint, made } => made.get_or_init(&**paint),
         }
     }
 
-    pub(super) fn is_made(&self) -> bool {
+    pub(crate) fn is_made(&self) -> bool {
         match self {
             Self::Made(_) => true,
             Self::OnDemand { made, .. } => made.get().is_some(),
@@ -64,7 +64,7 @@ impl Source {
     }
 
     /// Whether both are painted by the same function.
-    pub(super) fn is_same(&self, other: &Self) -> bool {
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::OnDemand { paint: one, .. }, Self::OnDemand { paint: other, .. }) => {
                 Arc::ptr_eq(one, other)

@@ -23,7 +23,7 @@ fn recorded(config: &str) -> (Running, PathBuf) {
 }
 
 /// A new user key.
-pub(super) fn user_key(folder: &Path) -> PathBuf {
+pub(crate) fn user_key(folder: &Path) -> PathBuf {
     let path = folder.join("user");
     let mut keygen = Command::new("ssh-keygen");
     let made = keygen.args(["-q", "-t", "ed25519", "-N", "", "-f"]).arg(&path);

@@ -14,7 +14,7 @@ use crate::support::cellcaster;
 use crate::transport::{folder, wait_until};
 
 /// A hall whose exit is a few steps ahead.
-pub(super) const HALL: &str = r##"title = "The moss hall"
+pub(crate) const HALL: &str = r##"title = "The moss hall"
 grid = '''
 #########
 #@....>.#
@@ -28,7 +28,7 @@ grid = '''
 "##;
 
 /// A folder of maps.
-pub(super) fn maps(files: &[(&str, &str)]) -> PathBuf {
+pub(crate) fn maps(files: &[(&str, &str)]) -> PathBuf {
     let maps = folder();
     for (name, text) in files {
         fs::write(maps.join(name), text).unwrap();
@@ -49,7 +49,7 @@ fn complaint(arguments: &[&str]) -> String {
     error
 }
 
-pub(super) fn scores(data: &Path, arguments: &[&str]) -> String {
+pub(crate) fn scores(data: &Path, arguments: &[&str]) -> String {
     let words = [&["scores"], arguments].concat();
     let output = cellcaster(&words).env("CELLCASTER_DATA", data).output().unwrap();
     assert!(output.status.success(), "{output:?}");
@@ -61,7 +61,7 @@ fn replay(arguments: &[&Path]) -> Output {
 }
 
 /// Presses a number in the lobby and takes what the next pages offer, with a name that is new.
-pub(super) fn choose(player: &Player, name: &str, entry: &str) {
+pub(crate) fn choose(player: &Player, name: &str, entry: &str) {
     player.wait_for("Enter takes it");
     player.send(format!("\x15{name}"));
     player.wait_for(name);

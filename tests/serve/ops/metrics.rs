@@ -10,7 +10,7 @@ use super::running::Running;
 use crate::transport::PATIENCE;
 
 /// A port that was free a moment ago.
-pub(super) fn free_port() -> u16 {
+pub(crate) fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
@@ -32,12 +32,12 @@ fn answer(address: impl ToSocketAddrs, request: &[u8]) -> String {
     answer
 }
 
-pub(super) fn scrape(port: u16) -> BTreeMap<String, f64> {
+pub(crate) fn scrape(port: u16) -> BTreeMap<String, f64> {
     scrape_at((Ipv4Addr::LOCALHOST, port))
 }
 
 /// The figures of a host that tells them at another address.
-pub(super) fn scrape_at(address: impl ToSocketAddrs) -> BTreeMap<String, f64> {
+pub(crate) fn scrape_at(address: impl ToSocketAddrs) -> BTreeMap<String, f64> {
     let answer = answer(address, b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
     let (head, body) = answer.split_once("\r\n\r\n").unwrap();
     assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");

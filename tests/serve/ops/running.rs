@@ -16,8 +16,8 @@ use crate::player::Player;
 use crate::support::cellcaster;
 use crate::transport::{PATIENCE, folder, wait_until};
 
-pub(super) struct Running {
-    pub(super) folder: PathBuf,
+pub(crate) struct Running {
+    pub(crate) folder: PathBuf,
     process: Child,
     port: String,
     options: Vec<String>,
@@ -27,17 +27,17 @@ pub(super) struct Running {
 
 impl Running {
     /// A server with this configuration, logging in `format`.
-    pub(super) fn start(config: &str, format: &str) -> Self {
+    pub(crate) fn start(config: &str, format: &str) -> Self {
         Self::start_with(config, format, &[])
     }
 
     /// As [`Running::start`], with more options.
-    pub(super) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
+    pub(crate) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
         Self::start_in(None, config, format, options)
     }
 
     /// As [`Running::start_with`], in a namespace of networks.
-    pub(super) fn start_in(
+    pub(crate) fn start_in(
         namespace: Option<&str>,
         config: &str,
         format: &str,
@@ -54,36 +54,36 @@ impl Running {
     }
 
     /// Adds an option for the next start.
-    pub(super) fn add_option(&mut self, option: &str) {
+    pub(crate) fn add_option(&mut self, option: &str) {
         self.options.push(option.to_owned());
     }
 
     /// Starts the server again in the same folder, with the same options.
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         (self.process, self.port) =
             spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
     }
 
     /// A connection that says nothing yet.
-    pub(super) fn connect(&self) -> TcpStream {
+    pub(crate) fn connect(&self) -> TcpStream {
         TcpStream::connect(format!("127.0.0.1:{}", self.port)).unwrap()
     }
 
-    pub(super) fn log(&self) -> String {
+    pub(crate) fn log(&self) -> String {
         fs::read_to_string(self.folder.join("log")).unwrap()
     }
 
-    pub(super) fn wait_for_log(&self, text: &str) {
+    pub(crate) fn wait_for_log(&self, text: &str) {
         wait_until(&format!("{text} in the log"), || self.log().contains(text));
     }
 
     /// A client of OpenSSH in a terminal.
-    pub(super) fn visitor(&self) -> Player {
+    pub(crate) fn visitor(&self) -> Player {
         self.player(None)
     }
 
     /// A client of OpenSSH with a key, or as a guest.
-    pub(super) fn player(&self, key: Option<&Path>) -> Player {
+    pub(crate) fn player(&self, key: Option<&Path>) -> Player {
         let key = key.map_or_else(|| "none".to_owned(), |key| key.display().to_string());
         let identity = format!("IdentityFile={key}");
         let options = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
@@ -96,20 +96,20 @@ impl Running {
     }
 
     /// Waits until the operator sees so many visitors.
-    pub(super) fn wait_for_visitors(&self, count: usize) {
+    pub(crate) fn wait_for_visitors(&self, count: usize) {
         wait_until("visitors", || {
             let lines = self.admin_says(&["who"]).lines().count();
             lines == if count == 0 { 1 } else { count + 1 }
         });
     }
 
-    pub(super) fn admin(&self, arguments: &[&str]) -> Output {
+    pub(crate) fn admin(&self, arguments: &[&str]) -> Output {
         let words = [&["admin"], arguments].concat();
         cellcaster(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
     }
 
     /// What `admin` writes, which succeeds.
-    pub(super) fn admin_says(&self, arguments: &[&str]) -> String {
+    pub(crate) fn admin_says(&self, arguments: &[&str]) -> String {
         let output = self.admin(arguments);
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), error.as_str()), (Some(0), ""), "{arguments:?}");
@@ -117,16 +117,16 @@ impl Running {
     }
 
     /// The number of the process.
-    pub(super) fn process(&self) -> u32 {
+    pub(crate) fn process(&self) -> u32 {
         self.process.id()
     }
 
-    pub(super) fn signal(&self, signal: Signal) {
+    pub(crate) fn signal(&self, signal: Signal) {
         kill_process(Pid::from_child(&self.process), signal).unwrap();
     }
 
     /// The exit status of the process.
-    pub(super) fn wait_for_end(&mut self) -> Option<i32> {
+    pub(crate) fn wait_for_end(&mut self) -> Option<i32> {
         let end = Instant::now() + PATIENCE;
         loop {
             if let Some(status) = self.process.try_wait().unwrap() {

@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 /// A relay to a server. Clones of its streams live in threads that end with the connections.
-pub(super) struct Relay {
-    pub(super) port: u16,
+pub(crate) struct Relay {
+    pub(crate) port: u16,
     is_cut: Arc<AtomicBool>,
 }
 
 impl Relay {
     /// A relay for one connection.
-    pub(super) fn to(server: SocketAddr) -> Self {
+    pub(crate) fn to(server: SocketAddr) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let is_cut = Arc::<AtomicBool>::default();
@@ -32,7 +32,7 @@ impl Relay {
     }
 
     /// Passes nothing on any more.
-    pub(super) fn cut(&self) {
+    pub(crate) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
     }
 }

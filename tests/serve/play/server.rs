@@ -17,7 +17,7 @@ use crate::emulator::Speaks;
 use crate::player::Player;
 use crate::transport::folder;
 
-pub(super) struct GameServer {
+pub(crate) struct GameServer {
     folder: PathBuf,
     running: Option<Running>,
 }
@@ -29,12 +29,12 @@ struct Running {
 }
 
 impl GameServer {
-    pub(super) fn open() -> Self {
+    pub(crate) fn open() -> Self {
         Self::open_with(|_| ())
     }
 
     /// A server with what `fill` puts into its store.
-    pub(super) fn open_with(fill: impl FnOnce(&mut SqliteStore)) -> Self {
+    pub(crate) fn open_with(fill: impl FnOnce(&mut SqliteStore)) -> Self {
         let folder = folder();
         let mut store = SqliteStore::open(&folder).unwrap();
         fill(&mut store);
@@ -44,28 +44,28 @@ impl GameServer {
     }
 
     /// Ends the server, and starts another one with the same data.
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         self.end();
         self.running = Some(Running::start(&self.folder));
     }
 
     /// Asks the server to end.
-    pub(super) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         let stop = self.running.as_mut().and_then(|running| running.stop.take());
         stop.map(|stop| stop.send(()));
     }
 
-    pub(super) fn address(&self) -> SocketAddr {
+    pub(crate) fn address(&self) -> SocketAddr {
         self.running.as_ref().unwrap().address
     }
 
     /// A client of OpenSSH in a terminal.
-    pub(super) fn player(&self, options: &[&str]) -> Player {
+    pub(crate) fn player(&self, options: &[&str]) -> Player {
         player_at(self.address().port(), options)
     }
 
     /// The path of a new key.
-    pub(super) fn user_key(&self) -> String {
+    pub(crate) fn user_key(&self) -> String {
         let path = self.folder.join("user");
         let status = Command::new("ssh-keygen")
             .args(["-q", "-t", "ed25519", "-N", "", "-f"])
@@ -116,7 +116,7 @@ impl Running {
 }
 
 /// A client of OpenSSH in a terminal that connects to `port`.
-pub(super) fn player_at(port: u16, options: &[&str]) -> Player {
+pub(crate) fn player_at(port: u16, options: &[&str]) -> Player {
     let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                  -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
     let port = port.to_string();

@@ -22,21 +22,21 @@ use crate::player::Player;
 pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 const WINDOW: (u16, u16) = (80, 24);
 
-pub(super) struct House {
-    pub(super) address: SocketAddr,
-    pub(super) counters: Arc<Counters>,
-    pub(super) folder: PathBuf,
+pub(crate) struct House {
+    pub(crate) address: SocketAddr,
+    pub(crate) counters: Arc<Counters>,
+    pub(crate) folder: PathBuf,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl House {
-    pub(super) fn open() -> Self {
+    pub(crate) fn open() -> Self {
         Self::open_with(|_| {})
     }
 
     /// A server on a free port, at which any number of clients of this machine may play.
-    pub(super) fn open_with(change: impl FnOnce(&mut Config)) -> Self {
+    pub(crate) fn open_with(change: impl FnOnce(&mut Config)) -> Self {
         let folder = folder();
         let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
         config.admission.per_address = 1000;
@@ -52,7 +52,7 @@ impl House {
     }
 
     /// What `ssh` is told to connect.
-    pub(super) fn arguments(&self, options: &[&str]) -> Vec<String> {
+    pub(crate) fn arguments(&self, options: &[&str]) -> Vec<String> {
         let fixed = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
                      -o LogLevel=ERROR -o IdentitiesOnly=yes -p";
         let port = self.address.port().to_string();
@@ -64,21 +64,21 @@ impl House {
     }
 
     /// A client of OpenSSH in a terminal.
-    pub(super) fn player(&self, options: &[&str]) -> Player {
+    pub(crate) fn player(&self, options: &[&str]) -> Player {
         let mut arguments = self.arguments(options);
         arguments.extend(["-tt", "ann@127.0.0.1"].map(str::to_owned));
         Player::start(WINDOW, Speaks::Kitty, "ssh", arguments, &[])
     }
 
     /// A client whose session runs.
-    pub(super) fn visitor(&self, options: &[&str]) -> Player {
+    pub(crate) fn visitor(&self, options: &[&str]) -> Player {
         let player = self.player(options);
         player.wait_for("[typed");
         player
     }
 
     /// Runs `ssh` without a terminal, and returns its output, errors and status.
-    pub(super) fn run(&self, options: &[&str], rest: &[&str]) -> (String, String, Option<i32>) {
+    pub(crate) fn run(&self, options: &[&str], rest: &[&str]) -> (String, String, Option<i32>) {
         let output = Command::new("ssh").args(self.arguments(options)).args(rest).output().unwrap();
         (
             String::from_utf8(output.stdout).unwrap(),
@@ -88,11 +88,11 @@ impl House {
     }
 
     /// A new user key.
-    pub(super) fn user_key(&self, name: &str, comment: &str) -> String {
+    pub(crate) fn user_key(&self, name: &str, comment: &str) -> String {
         self.user_key_of("ed25519", name, comment)
     }
 
-    pub(super) fn user_key_of(&self, kind: &str, name: &str, comment: &str) -> String {
+    pub(crate) fn user_key_of(&self, kind: &str, name: &str, comment: &str) -> String {
         let path = self.folder.join(name);
         let status = Command::new("ssh-keygen")
             .args(["-q", "-t", kind, "-N", "", "-C", comment, "-f"])
@@ -103,7 +103,7 @@ impl House {
     }
 
     /// Asserts that somebody who comes now gets an answer.
-    pub(super) fn assert_answers(&self) {
+    pub(crate) fn assert_answers(&self) {
         let mut player = self.visitor(&[]);
         player.send("x");
         player.wait_for("[typed x]");
@@ -114,7 +114,7 @@ impl House {
     /// Does something beside a visitor to whom a frame is due every tenth of a second, and asserts that
     /// they have lost none of them. On a machine under load, one of ten may leave later than the next
     /// is due.
-    pub(super) fn beside_another<T>(&self, act: impl FnOnce() -> T) -> T {
+    pub(crate) fn beside_another<T>(&self, act: impl FnOnce() -> T) -> T {
         let bystander = self.visitor(&[]);
         bystander.send("T");
         bystander.wait_for("[due 1 ");
@@ -129,16 +129,16 @@ impl House {
         result
     }
 
-    pub(super) fn sessions(&self) -> usize {
+    pub(crate) fn sessions(&self) -> usize {
         self.counters.sessions.load(Ordering::Relaxed)
     }
 
     /// Asks the server to end.
-    pub(super) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.stop.take().map(|stop| stop.send(()));
     }
 
-    pub(super) fn wait_for_end(&mut self) {
+    pub(crate) fn wait_for_end(&mut self) {
         self.stop();
         self.thread.take().map(JoinHandle::join).transpose().unwrap();
     }

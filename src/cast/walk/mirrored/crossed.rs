@@ -14,7 +14,7 @@ pub(crate) struct Crossed {
     /// The cell behind the line; `None` for the edge of the map, where the walk ends.
     pub(crate) into: Option<(Cell, TileId)>,
     /// The coordinate of the line along the straight ray.
-    pub(super) line: f64,
+    pub(crate) line: f64,
 }
 
 impl Crossed {
@@ -29,13 +29,13 @@ impl Crossed {
 /// The face on a line that rays have crossed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrossedFace {
-    pub(super) side: Side,
+    pub(crate) side: Side,
     /// The north or west end, along the straight rays.
-    pub(super) corner: DVec2,
+    pub(crate) corner: DVec2,
     /// Whether the face is mirrored along its line.
-    pub(super) is_mirrored: bool,
+    pub(crate) is_mirrored: bool,
     /// Whether the north or west end is on the left.
-    pub(super) is_from_left: bool,
+    pub(crate) is_from_left: bool,
 }
 
 impl CrossedFace {

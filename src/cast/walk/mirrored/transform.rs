@@ -30,7 +30,7 @@ impl MirrorTransform {
     }
 
     /// Whether lines of kind `side` are mirrored along themselves.
-    pub(super) fn is_mirrored_along(self, side: Side) -> bool {
+    pub(crate) fn is_mirrored_along(self, side: Side) -> bool {
         match side {
             Side::X => self.y.is_mirrored,
             Side::Y => self.x.is_mirrored,
@@ -39,7 +39,7 @@ impl MirrorTransform {
 
     /// Adds a mirror at `line`, of kind `side`. Returns the column or row on the map behind it for the one at
     /// `index` along the straight ray.
-    pub(super) fn reflect(&mut self, side: Side, line: i64, index: i64) -> i64 {
+    pub(crate) fn reflect(&mut self, side: Side, line: i64, index: i64) -> i64 {
         let along = match side {
             Side::X => &mut self.x,
             Side::Y => &mut self.y,

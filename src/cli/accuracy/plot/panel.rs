@@ -13,7 +13,7 @@ const BOTTOM: f64 = 40.0;
 /// The greatest number of labelled powers of ten.
 const MOST_TICKS: usize = 6;
 
-pub(super) struct Panel {
+pub(crate) struct Panel {
     problem: String,
     title: String,
     points: Vec<Point>,
@@ -33,7 +33,7 @@ struct Point {
 
 impl Panel {
     /// The panel of `problem`; `None` if it has no points.
-    pub(super) fn new(table: &Table, diagram: &Diagram, problem: &str) -> Option<Self> {
+    pub(crate) fn new(table: &Table, diagram: &Diagram, problem: &str) -> Option<Self> {
         let methods = methods(table);
         let rows = table.rows.iter().filter(|row| row.keys[0] == problem);
         let mut points: Vec<Point> = rows
@@ -56,7 +56,7 @@ impl Panel {
     }
 
     /// The marks of the panel with its top left corner at `corner`.
-    pub(super) fn marks(&self, corner: (f64, f64), width: f64) -> Vec<Mark> {
+    pub(crate) fn marks(&self, corner: (f64, f64), width: f64) -> Vec<Mark> {
         let mut marks = self.axes(corner, width);
         let at = |cost: f64, error: f64| {
             let x = corner.0 + LEFT + self.cost.share(cost) * (width - LEFT - RIGHT);

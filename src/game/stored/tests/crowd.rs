@@ -19,7 +19,7 @@ impl Crowd {
     }
 
     /// Lets the same happen in all `games`, which are equal.
-    pub(super) fn step(&mut self, games: &mut [&mut Game]) {
+    pub(crate) fn step(&mut self, games: &mut [&mut Game]) {
         let present: Vec<PlayerId> = games[0].players().collect();
         let joins = present.is_empty() || self.random.one_in(120);
         if joins && present.len() < self.most {
@@ -48,7 +48,7 @@ impl Crowd {
     }
 
     /// The same in games for one.
-    pub(super) fn step_alone(&mut self, games: &mut [&mut Game]) {
+    pub(crate) fn step_alone(&mut self, games: &mut [&mut Game]) {
         let intents = self.want(0);
         for game in games {
             game.step(intents);

@@ -14,7 +14,7 @@ use crate::tui::{FirstPerson, GlyphSet, View};
 use crate::world::{Camera, World};
 
 /// A window that shows pictures.
-pub(super) struct Window {
+pub(crate) struct Window {
     glyphs: GlyphSet,
     depth: ColorDepth,
     filter: Filter,
@@ -24,13 +24,13 @@ pub(super) struct Window {
 
 impl Window {
     /// A window of `size` cells.
-    pub(super) fn new(size: Size, glyphs: GlyphSet, depth: ColorDepth, filter: Filter) -> Self {
+    pub(crate) fn new(size: Size, glyphs: GlyphSet, depth: ColorDepth, filter: Filter) -> Self {
         let buffer = Buffer::empty(Rect::from(size));
         Self { glyphs, depth, filter, view: View::default(), buffer }
     }
 
     /// Draws and paints the view of `camera`.
-    pub(super) fn show(&mut self, world: &World, camera: &Camera) {
+    pub(crate) fn show(&mut self, world: &World, camera: &Camera) {
         let Self { glyphs, depth, filter, view, buffer } = self;
         let widget =
             FirstPerson::new(world, camera).glyphs(*glyphs).color_depth(*depth).filter(*filter);
@@ -38,7 +38,7 @@ impl Window {
     }
 
     /// The mean light of each half of a cell in sRGB, from 0 to 255, row by row of halves.
-    pub(super) fn halves(&self) -> Vec<[f64; 3]> {
+    pub(crate) fn halves(&self) -> Vec<[f64; 3]> {
         let rows = self.buffer.content.chunks(usize::from(self.buffer.area.width).max(1));
         rows.flat_map(|cells| {
             [0, 1].into_iter().flat_map(move |half| cells.iter().map(move |cell| light(cell, half)))

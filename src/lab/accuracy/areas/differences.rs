@@ -8,7 +8,7 @@ const FAR: f64 = 24.0;
 
 /// Sums over halves of cells; where there are two, of textures and of edges.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Differences {
+pub(crate) struct Differences {
     pixels: [u64; 2],
     errors: [f64; 2],
     far: u64,
@@ -19,7 +19,7 @@ pub(super) struct Differences {
 
 impl Differences {
     /// Adds a picture of a camera that stands still.
-    pub(super) fn add_still(&mut self, truth: &Truth, picture: &[[f64; 3]]) {
+    pub(crate) fn add_still(&mut self, truth: &Truth, picture: &[[f64; 3]]) {
         for (half, shown) in truth.halves.iter().zip(picture) {
             let differences: [f64; 3] =
                 std::array::from_fn(|channel| (shown[channel] - half.color[channel]).abs());
@@ -33,7 +33,7 @@ impl Differences {
     }
 
     /// Adds the change from one picture to the next.
-    pub(super) fn add_motion(&mut self, truths: [&Truth; 2], pictures: [&[[f64; 3]]; 2]) {
+    pub(crate) fn add_motion(&mut self, truths: [&Truth; 2], pictures: [&[[f64; 3]]; 2]) {
         let halves = truths[0].halves.iter().zip(&truths[1].halves);
         for ((one, other), (before, after)) in halves.zip(pictures[0].iter().zip(pictures[1])) {
             let place = usize::from(one.is_at_edge || other.is_at_edge);
@@ -49,7 +49,7 @@ impl Differences {
     }
 
     /// The figures of the table, without the time.
-    pub(super) fn values(&self) -> Vec<Value> {
+    pub(crate) fn values(&self) -> Vec<Value> {
         let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
         let pixels = self.pixels.iter().sum();
         let share = |count: u64| Value::Share(count as f64 / u64::max(pixels, 1) as f64);

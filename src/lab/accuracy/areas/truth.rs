@@ -13,17 +13,17 @@ use crate::world::{Camera, World};
 const SCALE: u32 = 8;
 
 /// The halves of a window's cells, row by row.
-pub(super) struct Truth {
-    pub(super) halves: Vec<Half>,
+pub(crate) struct Truth {
+    pub(crate) halves: Vec<Half>,
 }
 
 /// The upper or the lower half of a cell.
 #[derive(Clone, Copy)]
-pub(super) struct Half {
+pub(crate) struct Half {
     /// The mean light in sRGB, not rounded, from 0 to 255.
-    pub(super) color: [f64; 3],
+    pub(crate) color: [f64; 3],
     /// Whether its samples show more than one surface.
-    pub(super) is_at_edge: bool,
+    pub(crate) is_at_edge: bool,
 }
 
 /// What a sample shows: a surface, and for walls the line of the grid that they stand on.
@@ -31,7 +31,7 @@ type Shown = (Option<Surface>, Option<(Side, u32)>);
 
 impl Truth {
     /// The view of `camera` in a window of `size` cells.
-    pub(super) fn new(world: &World, camera: &Camera, size: Size) -> Self {
+    pub(crate) fn new(world: &World, camera: &Camera, size: Size) -> Self {
         let (width, height) = (u32::from(size.width), 2 * u32::from(size.height));
         let scaled = |side: u32| NonZeroU32::new(side * SCALE).unwrap_or(NonZeroU32::MIN);
         let scaled = FrameSize { width: scaled(width), height: scaled(height) };

@@ -11,7 +11,7 @@ use crate::color::palette::{nearest_of_16, nearest_of_256, of_256};
 /// Every fifteenth value of each channel.
 const STEP: usize = 15;
 
-pub(super) fn features() -> Vec<Feature> {
+pub(crate) fn features() -> Vec<Feature> {
     vec![
         palette("palette of 256", 16..=255, nearest_of_256),
         palette("palette of 16", 0..=15, nearest_of_16),

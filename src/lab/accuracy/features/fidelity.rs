@@ -19,7 +19,7 @@ const TURN: f64 = 0.05;
 /// The difference that is just seen, in ΔE.
 const SEEN: f64 = 2.3;
 
-pub(super) fn features(world: &World) -> Vec<Feature> {
+pub(crate) fn features(world: &World) -> Vec<Feature> {
     [
         ("fidelity: exact", Fidelity::EXACT),
         ("fidelity: high", Fidelity::HIGH),

@@ -16,7 +16,7 @@ const HEADINGS: [f64; 6] = [0.0, 33.0, 101.0, 170.0, 222.0, 295.0];
 const ROOM: &str = "grid = '''\n############\n#..........#\n#...@......#\n#.......#..#\n#..........#\n\
                     #....#.....#\n#..........#\n############\n'''\n[things]\n'@' = { start = 0 }\n";
 
-pub(super) fn features() -> Vec<Feature> {
+pub(crate) fn features() -> Vec<Feature> {
     let mut features: Vec<Feature> = ["light: red", "light: green", "light: blue"]
         .into_iter()
         .enumerate()

@@ -15,7 +15,7 @@ use crate::world::{Cell, Grid, Line, Opening, Outline, TileKind, World};
 
 const RAYS: usize = 2000;
 
-pub(super) fn features(seed: u64) -> Vec<Feature> {
+pub(crate) fn features(seed: u64) -> Vec<Feature> {
     let [pillars, diagonals, thin] = [
         "a = { pillar = '#ffffff' }\nb = { pillar = '#ffffff', radius = 0.5 }\n\
          c = { pillar = '#ffffff', radius = 0.125 }\nd = { pillar = '#ffffff', radius = 1e-9 }",

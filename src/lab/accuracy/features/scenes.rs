@@ -24,7 +24,7 @@ const HEIGHT: u32 = 90;
 /// The number of pictures of each feature.
 const PICTURES: usize = 12;
 
-pub(super) fn features(seed: u64) -> Vec<Feature> {
+pub(crate) fn features(seed: u64) -> Vec<Feature> {
     vec![heights(seed), mirrors(seed), sprites(seed)]
 }
 

@@ -13,7 +13,7 @@ use crate::space::{Block, Body, Plane, Ray, Scene, Shape, SolidTexture, Sphere};
 const RAYS: usize = 2000;
 const BODIES: usize = 6;
 
-pub(super) fn features(seed: u64) -> Vec<Feature> {
+pub(crate) fn features(seed: u64) -> Vec<Feature> {
     let mut random = SplitMix64::new(seed);
     let mut point = |reach: f64| {
         let mut coordinate = || random.between(-reach, reach);

@@ -19,13 +19,13 @@ pub enum Integrator {
 
 /// A motion from rest at position 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// The friction, per second.
-    pub(super) rate: f64,
+    pub(crate) rate: f64,
     /// The length of a step in seconds.
-    pub(super) step: f64,
+    pub(crate) step: f64,
     /// The velocity that is approached.
-    pub(super) target: f64,
+    pub(crate) target: f64,
 }
 
 impl Integrator {
@@ -45,7 +45,7 @@ impl Integrator {
     }
 
     /// How often a step evaluates the right-hand side, or the solution.
-    pub(super) const fn evaluations(self) -> u64 {
+    pub(crate) const fn evaluations(self) -> u64 {
         match self {
             Self::Euler | Self::ImplicitEuler | Self::ClosedForm => 1,
             Self::Heun => 2,
@@ -54,7 +54,7 @@ impl Integrator {
     }
 
     /// The velocity and the position after a step.
-    pub(super) fn step(self, motion: &Motion, (velocity, place): (f64, f64)) -> (f64, f64) {
+    pub(crate) fn step(self, motion: &Motion, (velocity, place): (f64, f64)) -> (f64, f64) {
         let Motion { rate, step, target } = *motion;
         let slope = |velocity: f64| rate * (target - velocity);
         match self {
@@ -94,7 +94,7 @@ impl Integrator {
 
     /// The largest rate · step at which a step takes the velocity no farther from the target than
     /// it was, found by bisection; infinite if there is none up to 10¹².
-    pub(super) fn limit_of_stability(self) -> f64 {
+    pub(crate) fn limit_of_stability(self) -> f64 {
         const BISECTIONS: u32 = 60;
         let is_stable = |step: f64| {
             let (velocity, _) = self.step(&Motion { rate: 1.0, step, target: 0.0 }, (1.0, 0.0));

@@ -4,7 +4,7 @@ use super::super::fixed_point::Fixed;
 use super::Motion;
 
 /// Where a motion should be.
-pub(super) struct Truth {
+pub(crate) struct Truth {
     velocity: Fixed,
     place: Fixed,
 }
@@ -12,7 +12,7 @@ pub(super) struct Truth {
 impl Truth {
     /// The truth after `steps` steps: `v = w·(1 − e^(−rate·t))`, and
     /// `x = w·(t − (1 − e^(−rate·t)) / rate)`.
-    pub(super) fn new(motion: &Motion, steps: u64) -> Self {
+    pub(crate) fn new(motion: &Motion, steps: u64) -> Self {
         let [rate, step, target] = [motion.rate, motion.step, motion.target].map(Fixed::new);
         let time = &step * &Fixed::new(steps as f64);
         let approached = &Fixed::new(1.0) - &(&rate * &time).exponential_of_minus();
@@ -21,7 +21,7 @@ impl Truth {
     }
 
     /// The absolute errors of a velocity and a place; infinite for those that are not finite.
-    pub(super) fn errors(&self, (velocity, place): (f64, f64)) -> [f64; 2] {
+    pub(crate) fn errors(&self, (velocity, place): (f64, f64)) -> [f64; 2] {
         [(velocity, &self.velocity), (place, &self.place)].map(|(value, truth)| {
             if value.is_finite() {
                 (&Fixed::new(value) - truth).to_f64().abs()

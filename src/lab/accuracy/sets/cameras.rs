@@ -6,7 +6,7 @@ use super::{Set, hall, places};
 use crate::cast::Ray;
 use crate::world::{Camera, FieldOfView, Heading};
 
-pub(super) fn sets() -> Vec<Set> {
+pub(crate) fn sets() -> Vec<Set> {
     let headings = [0.0, 30.0, 45.0, 90.0, 200.0, 315.0];
     let everywhere =
         || places().into_iter().flat_map(|place| headings.map(|degrees| (place, degrees)));

@@ -6,7 +6,7 @@ use super::{Set, all, hall, places, turned};
 use crate::cast::Ray;
 use crate::rng::SplitMix64;
 
-pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
+pub(crate) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     vec![
         set("axis-parallel", all(&places(), &turned(1.0, 0.0))),
         set("negative zero", all(&places(), &negative_zeros())),

@@ -8,7 +8,7 @@ use super::{Set, all, made};
 use crate::cast::Ray;
 use crate::rng::SplitMix64;
 
-pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
+pub(crate) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     vec![corridor(), long_map(), plain(random)]
 }
 

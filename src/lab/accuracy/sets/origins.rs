@@ -6,7 +6,7 @@ use super::{Set, all, hall, made, turned};
 use crate::cast::Ray;
 use crate::rng::SplitMix64;
 
-pub(super) fn sets(random: &mut SplitMix64) -> Vec<Set> {
+pub(crate) fn sets(random: &mut SplitMix64) -> Vec<Set> {
     let set = |name, rays| Set { name, grid: hall(), rays };
     vec![
         set("on lines", all(&on_lines(), &slopes())),

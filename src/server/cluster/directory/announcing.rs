@@ -7,17 +7,17 @@ use crate::server::cluster::HostContext;
 use crate::server::cluster::visits::{ANNOUNCED, Visits};
 
 impl SharedRooms {
-    pub(in crate::server::cluster) fn context(&self) -> &HostContext {
+    pub(crate) fn context(&self) -> &HostContext {
         &self.0.context
     }
 
     /// The visits of this host, which are counted with those of all others.
-    pub(in crate::server) fn visits(&self) -> &Visits {
+    pub(crate) fn visits(&self) -> &Visits {
         &self.0.context.visits
     }
 
     /// Announces this host, again and again.
-    pub(super) async fn announce(self) {
+    pub(crate) async fn announce(self) {
         let mut periods = interval(ANNOUNCED);
         while !*self.0.context.ending.borrow() {
             periods.tick().await;

@@ -14,14 +14,14 @@ use crate::store::host::AccountKey;
 
 /// Who joins a room.
 #[derive(Clone, Debug)]
-pub(in crate::server) struct Entrant {
-    pub(in crate::server) name: Line,
+pub(crate) struct Entrant {
+    pub(crate) name: Line,
     /// The key of their account, with which they may return; `None` for a guest.
-    pub(in crate::server) key: Option<AccountKey>,
+    pub(crate) key: Option<AccountKey>,
 }
 
 impl SharedRooms {
-    pub(super) async fn join(&self, id: RoomId, entrant: &Entrant) -> Result<Place, RoomRefusal> {
+    pub(crate) async fn join(&self, id: RoomId, entrant: &Entrant) -> Result<Place, RoomRefusal> {
         let Entrant { name, key } = entrant;
         let wish = Wish::Join { name: name.clone(), is_kept: key.is_some() };
         let place = self.be_member(id, wish).await?;
@@ -32,14 +32,14 @@ impl SharedRooms {
     }
 
     /// The room and the member in which a player's last host may have left them.
-    pub(in crate::server) async fn place_of(&self, key: AccountKey) -> Option<(RoomId, MemberId)> {
+    pub(crate) async fn place_of(&self, key: AccountKey) -> Option<(RoomId, MemberId)> {
         let bytes = self.0.context.bus.get(Key::Place(key)).await.ok()??;
         let (id, member) = str::from_utf8(&bytes).ok()?.split_once(' ')?;
         Some((RoomId(id.parse().ok()?), MemberId::parse(member)?))
     }
 
     /// Takes a player back to the room and the member.
-    pub(in crate::server) async fn resume(
+    pub(crate) async fn resume(
         &self,
         key: AccountKey,
         (id, member): (RoomId, MemberId),
@@ -52,7 +52,7 @@ impl SharedRooms {
     }
 
     /// Forgets where a player was, who has left.
-    pub(in crate::server) async fn forget_place(&self, key: AccountKey) {
+    pub(crate) async fn forget_place(&self, key: AccountKey) {
         // Else the room says later that they have left.
         _ = self.0.context.bus.remove(Key::Place(key)).await;
     }

@@ -16,7 +16,7 @@ use crate::server::summary::RoomId;
 
 impl SharedRooms {
     /// Makes those that are missing, and lists those of the configuration.
-    pub(super) async fn make_standing(&self) {
+    pub(crate) async fn make_standing(&self) {
         let standing = locked(&self.0.standing, |standing| standing.clone());
         let (mut own, mut is_known) = (BTreeSet::new(), true);
         for (index, wish) in standing.iter().enumerate() {
@@ -41,7 +41,7 @@ impl SharedRooms {
     }
 
     /// Shows lobbies the rooms.
-    pub(super) fn show(&self) {
+    pub(crate) fn show(&self) {
         // Under the lock, so that an older list never replaces a newer one.
         locked(&self.0.records, |records| {
             let own = locked(&self.0.own_standing, |own| own.clone());

@@ -5,21 +5,21 @@ use std::fmt::Write;
 use crate::server::cluster::bus::Key;
 use crate::server::summary::RoomId;
 
-pub(super) const BUCKET: &str = "cellcaster";
-pub(super) const NUMBERS: &str = "cellcaster.number";
+pub(crate) const BUCKET: &str = "cellcaster";
+pub(crate) const NUMBERS: &str = "cellcaster.number";
 /// With the version of the format of requests.
-pub(super) const OPERATOR: &str = "cellcaster.operator.1";
-pub(super) const ROOMS: &str = "room.";
+pub(crate) const OPERATOR: &str = "cellcaster.operator.1";
+pub(crate) const ROOMS: &str = "room.";
 
-pub(super) fn log_subject(room: RoomId) -> String {
+pub(crate) fn log_subject(room: RoomId) -> String {
     format!("cellcaster.log.{room}")
 }
 
-pub(super) fn peers_subject(room: RoomId) -> String {
+pub(crate) fn peers_subject(room: RoomId) -> String {
     format!("cellcaster.peers.{room}")
 }
 
-pub(super) fn key_name(key: &Key) -> String {
+pub(crate) fn key_name(key: &Key) -> String {
     match key {
         Key::Room(room) => format!("{ROOMS}{room}"),
         Key::Checkpoint(room) => format!("checkpoint.{room}"),

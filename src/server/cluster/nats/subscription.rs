@@ -9,7 +9,7 @@ use crate::server::cluster::bus::{BusFault, HostRequest};
 
 impl NatsBus {
     /// What is said on a subject from now on.
-    pub(super) async fn subscription(&self, subject: String) -> Result<Subscriber, BusFault> {
+    pub(crate) async fn subscription(&self, subject: String) -> Result<Subscriber, BusFault> {
         let subscription = self.client.subscribe(subject).await.map_err(unknown)?;
         // From now on, nothing is missed.
         self.client.flush().await.map_err(unknown)?;
@@ -18,7 +18,7 @@ impl NatsBus {
 }
 
 /// What is made of the messages, as long as somebody receives it.
-pub(super) fn forward<T: Send + 'static>(
+pub(crate) fn forward<T: Send + 'static>(
     mut subscription: Subscriber,
     client: &Client,
     make: fn(&Client, Message) -> T,
@@ -42,7 +42,7 @@ pub(super) fn forward<T: Send + 'static>(
 }
 
 /// A request, whose answer is sent to who has asked.
-pub(super) fn host_request(client: &Client, message: Message) -> HostRequest {
+pub(crate) fn host_request(client: &Client, message: Message) -> HostRequest {
     let (reply, answer) = oneshot::channel::<Vec<u8>>();
     if let Some(inbox) = message.reply {
         let client = client.clone();

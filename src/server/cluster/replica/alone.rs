@@ -28,7 +28,7 @@ use crate::server::cluster::sequencer::ClusterSequencer;
 const MOST_ALONE: Duration = Duration::from_mins(10);
 
 /// The messages that the log does not have yet.
-pub(super) struct Alone {
+pub(crate) struct Alone {
     since: Instant,
     /// The first one may be in the log. It is not changed any more.
     messages: VecDeque<LogMessage>,
@@ -39,7 +39,7 @@ pub(super) struct Alone {
 
 impl Replica {
     /// Decides what becomes of a room whose log does not answer for a while.
-    pub(super) fn lack_bus(&mut self, now: Instant) {
+    pub(crate) fn lack_bus(&mut self, now: Instant) {
         let is_standing_still = now.duration_since(self.times.moved) >= STANDSTILL;
         if !is_standing_still || !self.has_lease(now) {
             return;
@@ -58,7 +58,7 @@ impl Replica {
     }
 
     /// Takes the steps that are due, or appends all of them to the log once the bus answers.
-    pub(super) async fn go_on_alone(&mut self, now: Instant) {
+    pub(crate) async fn go_on_alone(&mut self, now: Instant) {
         let has_lease = self.has_lease(now);
         let Some(alone) = &mut self.alone else { return };
         if let Some(probe) = alone.probe.take_if(|probe| probe.is_finished()) {
@@ -144,7 +144,7 @@ impl Replica {
 
     /// Whether the room has gone on alone past a message of the log. If another host has written it, the room is not
     /// ahead but has diverged.
-    pub(super) fn is_ahead_of(&mut self, message: &LogMessage) -> bool {
+    pub(crate) fn is_ahead_of(&mut self, message: &LogMessage) -> bool {
         let Some(sequencer) = self.sequencer.as_ref().filter(|_| self.alone.is_some()) else {
             return false;
         };
@@ -156,7 +156,7 @@ impl Replica {
     }
 
     /// Gives up what the log does not have: another host had the lease, and has written.
-    pub(super) fn diverge(&mut self) {
+    pub(crate) fn diverge(&mut self) {
         if self.alone.take().is_some() {
             tracing::warn!(room = %self.id, "a room was alone while another host had its lease");
             self.is_diverged = true;

@@ -7,7 +7,7 @@ use crate::server::cluster::peer_message::PeerMessage;
 
 impl Replica {
     /// Handles a broadcast.
-    pub(super) async fn receive_broadcast(&mut self, bytes: &[u8]) {
+    pub(crate) async fn receive_broadcast(&mut self, bytes: &[u8]) {
         let now = Instant::now();
         let message = match PeerMessage::parse(bytes) {
             Ok(message) => message,
@@ -58,12 +58,12 @@ impl Replica {
     }
 
     /// Sends a message to the other hosts. One that is lost is sent again, or read in the log.
-    pub(super) async fn broadcast(&mut self, message: &PeerMessage) {
+    pub(crate) async fn broadcast(&mut self, message: &PeerMessage) {
         _ = self.context.bus.broadcast(self.id, message.to_bytes()).await;
     }
 
     /// Passes on answers of the sequencer, on all hosts.
-    pub(super) async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
+    pub(crate) async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
         for answer in answers {
             self.answer(&answer);
             self.broadcast(&answer).await;
@@ -71,7 +71,7 @@ impl Replica {
     }
 
     /// Passes on an answer of the sequencer, if the request was made here.
-    pub(super) fn answer(&mut self, answer: &PeerMessage) {
+    pub(crate) fn answer(&mut self, answer: &PeerMessage) {
         match *answer {
             PeerMessage::Joined(token, member, color) => self.admit(token, member, color),
             PeerMessage::Full(token) => self.refuse_join(token),

@@ -13,17 +13,17 @@ use crate::server::room::MemberId;
 use crate::server::rooms::RoomRefusal;
 
 /// A request to be a member.
-pub(in crate::server::cluster) struct JoinRequest {
-    pub(in crate::server::cluster) wish: Wish,
-    pub(in crate::server::cluster) reply: Reply,
+pub(crate) struct JoinRequest {
+    pub(crate) wish: Wish,
+    pub(crate) reply: Reply,
 }
 
 /// Where the number of the member goes.
-pub(super) type Reply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
+pub(crate) type Reply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
 
 /// Which member somebody wants to be.
 #[derive(Clone, Debug)]
-pub(in crate::server::cluster) enum Wish {
+pub(crate) enum Wish {
     /// A new one.
     Join {
         name: Line,
@@ -35,7 +35,7 @@ pub(in crate::server::cluster) enum Wish {
 }
 
 /// A request to join that the sequencer has not answered.
-pub(super) struct PendingJoin {
+pub(crate) struct PendingJoin {
     token: u64,
     name: Line,
     is_kept: bool,
@@ -45,12 +45,12 @@ pub(super) struct PendingJoin {
 }
 
 /// The time after which the request is sent again.
-pub(super) const AGAIN: Duration = Duration::from_millis(500);
+pub(crate) const AGAIN: Duration = Duration::from_millis(500);
 /// The time after which the request fails. Another host takes over a room in less.
-pub(super) const PATIENCE: Duration = Duration::from_secs(8);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(8);
 
 impl Replica {
-    pub(super) async fn receive_join(&mut self, request: JoinRequest) {
+    pub(crate) async fn receive_join(&mut self, request: JoinRequest) {
         let (now, token) = (Instant::now(), self.context.chance());
         let JoinRequest { wish, reply } = request;
         let (name, is_kept) = match wish {
@@ -64,7 +64,7 @@ impl Replica {
     }
 
     /// Sends requests without an answer again, and fails those that are too old.
-    pub(super) async fn repeat_joins(&mut self, now: Instant) {
+    pub(crate) async fn repeat_joins(&mut self, now: Instant) {
         let is_late = |pending: &mut PendingJoin| now.duration_since(pending.since) >= PATIENCE;
         for late in self.pending_joins.extract_if(.., is_late) {
             _ = late.reply.send(Err(RoomRefusal::NotNow));
@@ -91,7 +91,7 @@ impl Replica {
     }
 
     /// Lets in whoever has asked for it here, as a member.
-    pub(super) fn admit(&mut self, token: u64, member: MemberId, color: PlayerColor) {
+    pub(crate) fn admit(&mut self, token: u64, member: MemberId, color: PlayerColor) {
         let Some(pending) = self.take_pending_join(token) else { return };
         self.interface.inbox.admit(member, color);
         if pending.reply.send(Ok(member)).is_err() {
@@ -100,7 +100,7 @@ impl Replica {
     }
 
     /// Refuses whoever has asked here, since the room is full.
-    pub(super) fn refuse_join(&mut self, token: u64) {
+    pub(crate) fn refuse_join(&mut self, token: u64) {
         if let Some(pending) = self.take_pending_join(token) {
             _ = pending.reply.send(Err(RoomRefusal::Full));
         }

@@ -7,11 +7,11 @@ use tokio::time::Instant;
 use super::Replica;
 
 /// The time without steps after which members are told.
-pub(super) const STANDSTILL: Duration = Duration::from_millis(1_500);
+pub(crate) const STANDSTILL: Duration = Duration::from_millis(1_500);
 
 /// How the room goes on.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Progress {
+pub(crate) enum Progress {
     Usual,
     Waiting,
     Alone,
@@ -30,7 +30,7 @@ impl Progress {
 
 impl Replica {
     /// Tells members when the room begins to wait, goes on alone, or goes on as usual.
-    pub(super) fn tell(&mut self, now: Instant) {
+    pub(crate) fn tell(&mut self, now: Instant) {
         let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
         let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
         let progress = match &self.alone {

@@ -16,7 +16,7 @@ use crate::server::sequencer::{FAULT, message as panic_message};
 impl Replica {
     /// Takes a message of the log, and those that it lets in are told. Returns whether the ones before it
     /// were there.
-    pub(super) async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
+    pub(crate) async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
         if self.is_ahead_of(message) {
             return true;
         }
@@ -56,7 +56,7 @@ impl Replica {
     }
 
     /// Applies a message, and shows the room after it. A fault ends the room on this host.
-    pub(super) fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
+    pub(crate) fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
         let apply = || {
             interface.shown.replace(|| {
@@ -81,7 +81,7 @@ impl Replica {
     }
 
     /// Reads the log to its end.
-    pub(super) async fn read(&mut self) -> Result<(), BusFault> {
+    pub(crate) async fn read(&mut self) -> Result<(), BusFault> {
         self.times.read = Some(Instant::now());
         if self.is_diverged {
             self.restore().await?;
@@ -120,7 +120,7 @@ impl Replica {
     }
 
     /// Tells the others of a message that this host has appended.
-    pub(super) async fn announce(&mut self, number: u64, message: LogMessage) {
+    pub(crate) async fn announce(&mut self, number: u64, message: LogMessage) {
         self.broadcast(&PeerMessage::Appended(number, message)).await;
     }
 }

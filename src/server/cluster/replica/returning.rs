@@ -12,7 +12,7 @@ use crate::server::room::MemberId;
 use crate::server::rooms::RoomRefusal;
 
 /// A request to return that is neither granted nor refused.
-pub(super) struct PendingReturn {
+pub(crate) struct PendingReturn {
     token: u64,
     member: MemberId,
     /// `None` for a member of this host, who was away since the host was cut off.
@@ -25,7 +25,7 @@ pub(super) struct PendingReturn {
 const MOST_LAST_MESSAGES: usize = 15;
 
 impl Replica {
-    pub(super) async fn receive_return(&mut self, member: MemberId, reply: Reply, now: Instant) {
+    pub(crate) async fn receive_return(&mut self, member: MemberId, reply: Reply, now: Instant) {
         if self.interface.inbox.seated().contains(&member) {
             _ = reply.send(Err(RoomRefusal::Taken));
             return;
@@ -41,7 +41,7 @@ impl Replica {
     }
 
     /// Notes what the log has granted, sends the other requests again, and fails those that are too old.
-    pub(super) async fn repeat_returns(&mut self, now: Instant) {
+    pub(crate) async fn repeat_returns(&mut self, now: Instant) {
         self.settle_returns(now);
         let is_due = |pending: &&mut PendingReturn| now.duration_since(pending.last) >= AGAIN;
         let due = self.pending_returns.iter_mut().filter(is_due).map(|pending| {
@@ -92,7 +92,7 @@ impl Replica {
     }
 
     /// Passes on that a member has a host.
-    pub(super) fn refuse_return(&mut self, token: u64) {
+    pub(crate) fn refuse_return(&mut self, token: u64) {
         // The log knows better.
         self.settle_returns(Instant::now());
         let index = self.pending_returns.iter().position(|pending| pending.token == token);
@@ -102,7 +102,7 @@ impl Replica {
     }
 
     /// Has the members of this host return who were away while it was cut off.
-    pub(super) async fn return_own(&mut self, now: Instant) {
+    pub(crate) async fn return_own(&mut self, now: Instant) {
         self.settle_returns(now);
         let is_pending =
             |member: &MemberId| self.pending_returns.iter().any(|it| it.member == *member);
@@ -116,7 +116,7 @@ impl Replica {
 
     /// Frees the seats of members who have left the room since this host did not claim them, or who are on
     /// another host now.
-    pub(super) fn dismiss_lost(&mut self) {
+    pub(crate) fn dismiss_lost(&mut self) {
         for member in self.interface.inbox.seated() {
             // The log has not let in numbers from the next one on yet.
             if self.state.room().has_lost(member) || !self.is_own(member) {
@@ -134,7 +134,7 @@ impl Replica {
     }
 
     /// The members of this host are away, since it ends. If it is the sequencer, the log has that then.
-    pub(super) async fn part_with_members(&mut self) {
+    pub(crate) async fn part_with_members(&mut self) {
         for member in self.interface.inbox.seated() {
             self.interface.inbox.part(member);
         }

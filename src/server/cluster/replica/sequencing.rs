@@ -20,7 +20,7 @@ const ASKED_AGAIN: Duration = Duration::from_millis(500);
 
 impl Replica {
     /// Renews the lease, or asks for it where nobody seems to have it.
-    pub(super) async fn keep_lease(&mut self, now: Instant) {
+    pub(crate) async fn keep_lease(&mut self, now: Instant) {
         if let Some(reply) = &mut self.leasing.renewing {
             match reply.try_recv() {
                 Err(TryRecvError::Empty) => {}
@@ -94,7 +94,7 @@ impl Replica {
         self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_TIME);
     }
 
-    pub(super) fn step_down(&mut self) {
+    pub(crate) fn step_down(&mut self) {
         if let Some(sequencer) = self.sequencer.take() {
             tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has lost a room");
         }
@@ -103,7 +103,7 @@ impl Replica {
     }
 
     /// Appends the next message to the log, if one is due.
-    pub(super) async fn sequence(&mut self, now: Instant) {
+    pub(crate) async fn sequence(&mut self, now: Instant) {
         if self.alone.is_some() {
             return self.go_on_alone(now).await;
         }
@@ -135,7 +135,7 @@ impl Replica {
     }
 
     /// Keeps a checkpoint every few seconds, and the record of the room when it changes.
-    pub(super) async fn keep(&mut self, now: Instant) {
+    pub(crate) async fn keep(&mut self, now: Instant) {
         let is_time = is_due(self.times.kept, now, CHECKPOINTS);
         // Who was replaced without noticing it has appended nothing now, and must not keep what is old.
         let is_surely_sequencer = self.times.published == Some(now);
@@ -165,7 +165,7 @@ impl Replica {
     }
 
     /// Leaves the room to other hosts, or closes it if nobody needs it.
-    pub(super) async fn end(mut self) {
+    pub(crate) async fn end(mut self) {
         if *self.ending.borrow() {
             self.join_requests.close();
             self.part_with_members().await;

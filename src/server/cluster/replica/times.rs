@@ -7,31 +7,31 @@ use tokio::time::Instant;
 use crate::server::sequencer::STEP;
 
 /// The time from one claim, or renewal, to the next.
-pub(super) const SECOND: Duration = Duration::from_secs(1);
+pub(crate) const SECOND: Duration = Duration::from_secs(1);
 /// The most steps that follow at once after a delay.
 const MOST_DUE: u64 = 6;
 
 /// When what is done from time to time was done last.
-pub(super) struct Times {
+pub(crate) struct Times {
     /// The room has taken steps, or was found to rest.
-    pub(super) moved: Instant,
-    pub(super) read: Option<Instant>,
-    pub(super) restored: Option<Instant>,
-    pub(super) claimed: Option<Instant>,
-    pub(super) leased: Option<Instant>,
+    pub(crate) moved: Instant,
+    pub(crate) read: Option<Instant>,
+    pub(crate) restored: Option<Instant>,
+    pub(crate) claimed: Option<Instant>,
+    pub(crate) leased: Option<Instant>,
     /// When the lease ends if it is not renewed, by this host's clock.
-    pub(super) lease_ends: Option<Instant>,
-    pub(super) kept: Option<Instant>,
-    pub(super) published: Option<Instant>,
+    pub(crate) lease_ends: Option<Instant>,
+    pub(crate) kept: Option<Instant>,
+    pub(crate) published: Option<Instant>,
     /// Somebody needed the replica.
-    pub(super) needed: Instant,
+    pub(crate) needed: Instant,
     /// Up to when the sequencer has taken steps.
-    pub(super) stepped: Instant,
+    pub(crate) stepped: Instant,
 }
 
 impl Times {
     /// Nothing was done yet but the start.
-    pub(super) fn new(now: Instant) -> Self {
+    pub(crate) fn new(now: Instant) -> Self {
         Self {
             moved: now,
             read: None,
@@ -48,13 +48,13 @@ impl Times {
 }
 
 /// The steps that are due since `stepped`, which is moved on.
-pub(super) fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
+pub(crate) fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
     let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
     *stepped = if due > MOST_DUE { now } else { *stepped + STEP * due as u32 };
     due.min(MOST_DUE)
 }
 
 /// Whether `pause` has passed since `last`.
-pub(super) fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
+pub(crate) fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
     last.is_none_or(|last| now.duration_since(last) >= pause)
 }

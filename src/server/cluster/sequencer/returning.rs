@@ -20,7 +20,7 @@ const UNHEARD: Duration = Duration::from_millis(2_500);
 const MOST_REQUESTS: usize = 64;
 
 /// A request to return.
-pub(super) struct ReturnRequest {
+pub(crate) struct ReturnRequest {
     token: u64,
     member: MemberId,
     since: Instant,
@@ -37,7 +37,7 @@ enum Decision {
 impl ClusterSequencer {
     /// Handles a request to return; returns the answer if it is refused. One that is granted is answered by the
     /// log.
-    pub(in crate::server::cluster) fn request_return(
+    pub(crate) fn request_return(
         &mut self,
         token: u64,
         member: MemberId,
@@ -68,7 +68,7 @@ impl ClusterSequencer {
     }
 
     /// Refuses the open requests to return to members who have a host; returns the answers.
-    pub(super) fn refuse_returns(&mut self, claimed: &[MemberId]) -> Vec<PeerMessage> {
+    pub(crate) fn refuse_returns(&mut self, claimed: &[MemberId]) -> Vec<PeerMessage> {
         let is_refused =
             |it: &&mut ReturnRequest| it.decision == Decision::Open && claimed.contains(&it.member);
         let refused = self.returning.iter_mut().filter(is_refused).map(|request| {
@@ -79,7 +79,7 @@ impl ClusterSequencer {
     }
 
     /// Grants the open request to return to a member who is away now.
-    pub(super) fn take_back_if_requested(&mut self, member: MemberId, now: Instant) {
+    pub(crate) fn take_back_if_requested(&mut self, member: MemberId, now: Instant) {
         let is_open = |it: &&ReturnRequest| it.decision == Decision::Open && it.member == member;
         if let Some(token) = self.returning.iter().find(is_open).map(|request| request.token) {
             self.take_back(token, member, now);

@@ -12,14 +12,14 @@ use crate::server::locked;
 use crate::server::summary::RoomId;
 
 /// The bus of one host.
-pub(super) struct SimulatedBus {
+pub(crate) struct SimulatedBus {
     world: World,
     host: usize,
     revisions: Mutex<BTreeMap<Key, u64>>,
 }
 
 impl SimulatedBus {
-    pub(super) fn new(world: World, host: usize) -> Self {
+    pub(crate) fn new(world: World, host: usize) -> Self {
         Self { world, host, revisions: Mutex::default() }
     }
 

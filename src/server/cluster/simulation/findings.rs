@@ -28,7 +28,7 @@ struct Played {
 
 impl Run {
     /// Plays each log from its beginning, and compares what hosts show with it.
-    pub(super) fn assert_log(&self) {
+    pub(crate) fn assert_log(&self) {
         for host in &self.hosts {
             assert_eq!(host.metrics.checks_different.get(), 0, "a host differs");
         }
@@ -51,7 +51,7 @@ impl Run {
     }
 
     /// The members of rooms who are not away are those who are there.
-    pub(super) fn assert_members(&self) {
+    pub(crate) fn assert_members(&self) {
         let mut there: BTreeMap<RoomId, BTreeSet<MemberId>> = BTreeMap::new();
         for place in self.players.iter().filter_map(|player| player.place.as_ref()) {
             if place.closed().is_some() {
@@ -87,7 +87,7 @@ impl Run {
     }
 
     /// Nobody takes the place of one who plays.
-    pub(super) async fn assert_nobody_is_displaced(&self) {
+    pub(crate) async fn assert_nobody_is_displaced(&self) {
         for player in &self.players {
             let is_there = |place: &&Place| place.closed().is_none();
             let Some(place) = player.place.as_ref().filter(is_there) else { continue };

@@ -16,15 +16,15 @@ use crate::store::host::AccountKey;
 /// The players from this one on are guests.
 const FIRST_GUEST: usize = 4;
 
-pub(super) struct Player {
-    pub(super) host: usize,
-    pub(super) place: Option<Place>,
-    pub(super) entrant: Entrant,
+pub(crate) struct Player {
+    pub(crate) host: usize,
+    pub(crate) place: Option<Place>,
+    pub(crate) entrant: Entrant,
     entering: Option<JoinHandle<Result<Arrived, RoomRefusal>>>,
     /// Whether they connect to their host, and ask for the place in which they were.
     connects: bool,
     /// Places that another connection of theirs has taken.
-    pub(super) taken: Vec<(usize, Place)>,
+    pub(crate) taken: Vec<(usize, Place)>,
 }
 
 /// A player who is in a room.
@@ -35,7 +35,7 @@ struct Arrived {
 }
 
 impl Player {
-    pub(super) fn new(index: usize) -> Self {
+    pub(crate) fn new(index: usize) -> Self {
         let name = Line::of(&format!("p{index}"), 16).expect("a name");
         let key = (index < FIRST_GUEST).then(|| AccountKey::new([index as u8; 32]));
         Self {
@@ -49,7 +49,7 @@ impl Player {
     }
 
     /// Their host ends.
-    pub(super) fn part(&mut self) {
+    pub(crate) fn part(&mut self) {
         if let Some(mut place) = self.place.take() {
             place.set_kept(true);
         }
@@ -66,7 +66,7 @@ impl Player {
 
 impl Run {
     /// A player does something.
-    pub(super) async fn act(&mut self, index: usize) {
+    pub(crate) async fn act(&mut self, index: usize) {
         self.arrive(index).await;
         let Self { chance, hosts, players, .. } = self;
         let player = &mut players[index];
@@ -144,7 +144,7 @@ impl Run {
     }
 
     /// Notes if a player was let in.
-    pub(super) async fn arrive(&mut self, index: usize) {
+    pub(crate) async fn arrive(&mut self, index: usize) {
         let player = &mut self.players[index];
         let Some(entering) = player.entering.take_if(|it| it.is_finished()) else { return };
         let Ok(Arrived { place, host, is_return }) = entering.await.expect("no panic") else {

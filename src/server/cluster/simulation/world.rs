@@ -17,26 +17,26 @@ use crate::server::locked;
 use crate::server::summary::RoomId;
 use crate::store::host::{HostNotice, MemoryLeases, MemoryPresence};
 
-pub(super) const PATIENCE: Duration = Duration::from_secs(1);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
 /// The time from one look whether a fault is over to the next.
-pub(super) const LOOK: Duration = Duration::from_millis(10);
+pub(crate) const LOOK: Duration = Duration::from_millis(10);
 
 /// What the hosts have in common, and what is wrong.
 #[derive(Clone)]
-pub(super) struct World(Arc<Mutex<Inner>>);
+pub(crate) struct World(Arc<Mutex<Inner>>);
 
-pub(super) struct Inner {
-    pub(super) chance: SplitMix64,
+pub(crate) struct Inner {
+    pub(crate) chance: SplitMix64,
     /// All messages there ever were.
-    pub(super) logs: BTreeMap<RoomId, Vec<Kept>>,
+    pub(crate) logs: BTreeMap<RoomId, Vec<Kept>>,
     /// The number before which messages of a room are dropped.
-    pub(super) dropped: BTreeMap<RoomId, u64>,
-    pub(super) messages: u64,
-    pub(super) rooms: u32,
-    pub(super) values: BTreeMap<Key, (u64, Option<Vec<u8>>)>,
-    pub(super) changes: Vec<(RoomId, Option<Vec<u8>>)>,
-    pub(super) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
-    pub(super) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
+    pub(crate) dropped: BTreeMap<RoomId, u64>,
+    pub(crate) messages: u64,
+    pub(crate) rooms: u32,
+    pub(crate) values: BTreeMap<Key, (u64, Option<Vec<u8>>)>,
+    pub(crate) changes: Vec<(RoomId, Option<Vec<u8>>)>,
+    pub(crate) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
+    pub(crate) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
     leases: MemoryLeases,
     presence: MemoryPresence,
     asked_at: Instant,
@@ -45,36 +45,36 @@ pub(super) struct Inner {
 
 /// A message of a log.
 #[derive(Clone)]
-pub(super) struct Kept {
-    pub(super) number: u64,
-    pub(super) host: usize,
-    pub(super) bytes: Vec<u8>,
-    pub(super) at: Instant,
+pub(crate) struct Kept {
+    pub(crate) number: u64,
+    pub(crate) host: usize,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) at: Instant,
 }
 
 /// The links of a host.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Link {
+pub(crate) struct Link {
     /// Whether it reaches nobody on the bus.
-    pub(super) is_cut: bool,
+    pub(crate) is_cut: bool,
     /// Whether it does not reach the database.
-    pub(super) has_no_database: bool,
+    pub(crate) has_no_database: bool,
     /// Whether the host stands still.
-    pub(super) is_frozen: bool,
+    pub(crate) is_frozen: bool,
     /// The part of answers and of what is said that is lost: one in this many.
-    pub(super) loses_one_in: Option<usize>,
+    pub(crate) loses_one_in: Option<usize>,
     /// The longest delay.
-    pub(super) delay: u64,
+    pub(crate) delay: u64,
 }
 
 /// What a host says of itself.
-pub(super) fn notice(host: usize) -> HostNotice {
+pub(crate) fn notice(host: usize) -> HostNotice {
     let (name, address) = (format!("host:{host} 1"), format!("host{host}.example.org:2222"));
     HostNotice { name, version: "0.1.0".to_owned(), address, load: 0 }
 }
 
 impl World {
-    pub(super) fn new(seed: u64, hosts: usize) -> Self {
+    pub(crate) fn new(seed: u64, hosts: usize) -> Self {
         let good = Link { delay: 2, ..Link::default() };
         Self(Arc::new(Mutex::new(Inner {
             chance: SplitMix64::new(seed),
@@ -93,16 +93,16 @@ impl World {
         })))
     }
 
-    pub(super) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
         locked(&self.0, act)
     }
 
-    pub(super) fn bus(&self, host: usize) -> Box<dyn Bus> {
+    pub(crate) fn bus(&self, host: usize) -> Box<dyn Bus> {
         Box::new(SimulatedBus::new(self.clone(), host))
     }
 
     /// The leases of a host, by the one clock of the database.
-    pub(super) fn lease_worker(&self, host: usize) -> LeaseWorker {
+    pub(crate) fn lease_worker(&self, host: usize) -> LeaseWorker {
         let (worker, mut queue) = LeaseWorker::new();
         let world = self.clone();
         tokio::spawn(async move {
@@ -120,7 +120,7 @@ impl World {
     }
 
     /// The visits of a host, by the same clock.
-    pub(super) fn visits(&self, host: usize) -> Visits {
+    pub(crate) fn visits(&self, host: usize) -> Visits {
         let (visits, mut queue) = Visits::new();
         let mut registry = VisitRegistry::new(notice(host), &visits);
         let world = self.clone();
@@ -142,26 +142,26 @@ impl World {
         });
     }
 
-    pub(super) fn link(&self, host: usize) -> Link {
+    pub(crate) fn link(&self, host: usize) -> Link {
         self.with(|inner| inner.links[host])
     }
 
-    pub(super) fn set(&self, host: usize, change: impl FnOnce(&mut Link)) {
+    pub(crate) fn set(&self, host: usize, change: impl FnOnce(&mut Link)) {
         self.with(|inner| change(&mut inner.links[host]));
     }
 
     /// All messages of a room's log that there ever were.
-    pub(super) fn log(&self, room: RoomId) -> Vec<Kept> {
+    pub(crate) fn log(&self, room: RoomId) -> Vec<Kept> {
         self.with(|inner| inner.logs.get(&room).cloned().unwrap_or_default())
     }
 
     /// The first record of a room.
-    pub(super) fn first_record(&self, room: RoomId) -> Option<Vec<u8>> {
+    pub(crate) fn first_record(&self, room: RoomId) -> Option<Vec<u8>> {
         self.with(|inner| inner.changes.iter().find(|change| change.0 == room)?.1.clone())
     }
 
     /// A way through the network; a host that stands still does not go on.
-    pub(super) async fn pass(&self, host: usize) {
+    pub(crate) async fn pass(&self, host: usize) {
         let delay = self.with(|inner| {
             let longest = inner.links[host].delay;
             inner.chance.below(longest as usize + 1)
@@ -172,7 +172,7 @@ impl World {
         }
     }
 
-    pub(super) fn is_lost(&self, host: usize) -> bool {
+    pub(crate) fn is_lost(&self, host: usize) -> bool {
         self.with(|inner| {
             let link = inner.links[host];
             link.is_cut || link.loses_one_in.is_some_and(|most| inner.chance.one_in(most))
@@ -193,7 +193,7 @@ impl Inner {
         &mut self.presence
     }
 
-    pub(super) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {
+    pub(crate) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {
         if let Key::Room(room) = key {
             self.changes.push((room, value.clone()));
         }
@@ -202,7 +202,7 @@ impl Inner {
         self.messages
     }
 
-    pub(super) fn revision(&self, key: &Key) -> u64 {
+    pub(crate) fn revision(&self, key: &Key) -> u64 {
         self.values.get(key).map_or(0, |value| value.0)
     }
 }

@@ -9,7 +9,7 @@ use crate::server::logging::events;
 use crate::store::host::{HostNotice, Presence, StoreFailure, VisitBegin, VisitId};
 
 /// The visits of this host.
-pub(in crate::server::cluster) struct VisitRegistry {
+pub(crate) struct VisitRegistry {
     notice: HostNotice,
     /// Those that count, and that nobody has ended.
     counting: BTreeSet<VisitId>,
@@ -22,13 +22,13 @@ pub(in crate::server::cluster) struct VisitRegistry {
 }
 
 impl VisitRegistry {
-    pub(in crate::server::cluster) fn new(notice: HostNotice, visits: &Visits) -> Self {
+    pub(crate) fn new(notice: HostNotice, visits: &Visits) -> Self {
         let (counting, ended) = (BTreeSet::new(), Arc::clone(&visits.ended));
         Self { notice, counting, ended, is_unsure: false, is_away: false, has_left: false }
     }
 
     /// Does what a call asks for, and answers.
-    pub(in crate::server::cluster) fn run(&mut self, presence: &mut dyn Presence, call: Call) {
+    pub(crate) fn run(&mut self, presence: &mut dyn Presence, call: Call) {
         self.end(presence);
         match call {
             Call::Begin(new_visit, visits, reply) => {

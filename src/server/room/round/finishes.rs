@@ -18,7 +18,7 @@ pub(crate) struct Finish {
 
 /// Who has reached the exit, and when.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub(super) struct Finishes {
+pub(crate) struct Finishes {
     begun: u64,
     /// The steps to the exit, also of members who have left since.
     times: BTreeMap<MemberId, u64>,
@@ -27,38 +27,38 @@ pub(super) struct Finishes {
 stored! { struct Finishes { begun, times } }
 
 impl Finishes {
-    pub(super) fn begin(&mut self, step: u64) {
+    pub(crate) fn begin(&mut self, step: u64) {
         self.begun = step;
     }
 
     /// The step in which the play began.
-    pub(super) fn begun(&self) -> u64 {
+    pub(crate) fn begun(&self) -> u64 {
         self.begun
     }
 
-    pub(super) fn role(&self, member: MemberId) -> Role {
+    pub(crate) fn role(&self, member: MemberId) -> Role {
         if self.times.contains_key(&member) { Role::Done } else { Role::Player }
     }
 
-    pub(super) fn of(&self, member: MemberId) -> Option<Finish> {
+    pub(crate) fn of(&self, member: MemberId) -> Option<Finish> {
         let steps = *self.times.get(&member)?;
         let before = self.times.values().filter(|&&other| other < steps).count();
         Some(Finish { place: before + 1, steps })
     }
 
     /// The members who have finished in `step`.
-    pub(super) fn in_step(&self, step: u64) -> impl Iterator<Item = MemberId> {
+    pub(crate) fn in_step(&self, step: u64) -> impl Iterator<Item = MemberId> {
         let finished = self.times.iter().filter(move |(_, time)| self.begun + **time == step);
         finished.map(|(&member, _)| member)
     }
 
     /// The step in which the first member has finished.
-    pub(super) fn first(&self) -> Option<u64> {
+    pub(crate) fn first(&self) -> Option<u64> {
         self.times.values().min().map(|time| self.begun + time)
     }
 
     /// Records who has finished; returns whether all have.
-    pub(super) fn step(&mut self, field: Field) -> bool {
+    pub(crate) fn step(&mut self, field: Field) -> bool {
         let time = field.step - self.begun;
         for id in field.ids().filter(|&id| field.has_won(id)) {
             self.times.entry(id).or_insert(time);
@@ -68,7 +68,7 @@ impl Finishes {
 
     /// The scores: all who have not finished are last. The shortest time wins a race; in the campaign, all who are
     /// out are equal.
-    pub(super) fn scores(&self, mode: Mode, field: Field) -> BTreeMap<MemberId, Score> {
+    pub(crate) fn scores(&self, mode: Mode, field: Field) -> BTreeMap<MemberId, Score> {
         let rank = |time: u64| if mode == Mode::Together { 0 } else { time };
         let score = |id| {
             let steps = self.times.get(&id).copied();

@@ -12,7 +12,7 @@ const MEMBERS_A_SEEKER: usize = 4;
 
 /// The state of a round of hide and seek.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Hide {
+pub(crate) struct Hide {
     /// The seekers, with the steps for which they stayed hidden; `None` for those of the start.
     seekers: BTreeMap<MemberId, Option<u64>>,
     /// The step in which the search began.
@@ -23,7 +23,7 @@ stored! { struct Hide { seekers, since } }
 
 impl Hide {
     /// Chooses the first seekers.
-    pub(super) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
+    pub(crate) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
         let mut ids: Vec<MemberId> = field.ids().collect();
         let count = ids.len().div_ceil(MEMBERS_A_SEEKER).min(ids.len().saturating_sub(1));
         for _ in 0..count {
@@ -32,17 +32,17 @@ impl Hide {
         }
     }
 
-    pub(super) fn begins_until(&self, step: u64) -> bool {
+    pub(crate) fn begins_until(&self, step: u64) -> bool {
         self.since.is_none_or(|since| since <= step)
     }
 
-    pub(super) fn role(&self, member: MemberId) -> Role {
+    pub(crate) fn role(&self, member: MemberId) -> Role {
         if self.seekers.contains_key(&member) { Role::Seeker } else { Role::Player }
     }
 
     /// Finds whom a seeker touches; returns whether the round is decided: all are found, or nobody
     /// seeks any more.
-    pub(super) fn step(&mut self, field: Field) -> bool {
+    pub(crate) fn step(&mut self, field: Field) -> bool {
         let since = *self.since.get_or_insert(field.step);
         let is_seeker = |id: &MemberId| self.seekers.contains_key(id);
         let (seekers, hidden): (Vec<MemberId>, Vec<MemberId>) = field.ids().partition(is_seeker);
@@ -54,7 +54,7 @@ impl Hide {
     }
 
     /// The scores: who stayed hidden longest wins, and the first seekers are last.
-    pub(super) fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
+    pub(crate) fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
         let whole = field.step - self.since.unwrap_or(field.step);
         let hidden = |id| match self.seekers.get(&id) {
             None => whole,

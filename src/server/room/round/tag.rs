@@ -14,7 +14,7 @@ const SPARED: u64 = 4 * SECOND;
 
 /// The state of a round of tag.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Tag {
+pub(crate) struct Tag {
     it: Option<MemberId>,
     /// The step in which "it" last changed.
     since: u64,
@@ -28,26 +28,26 @@ stored! { struct Tag { it, since, before, times } }
 
 impl Tag {
     /// Chooses the first "it".
-    pub(super) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
+    pub(crate) fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
         let ids: Vec<MemberId> = field.ids().collect();
         self.it = ids.get(chance.below(ids.len())).copied();
         self.since = field.step;
     }
 
-    pub(super) fn begins_until(&self, step: u64) -> bool {
+    pub(crate) fn begins_until(&self, step: u64) -> bool {
         self.since <= step
     }
 
-    pub(super) fn role(&self, member: MemberId) -> Role {
+    pub(crate) fn role(&self, member: MemberId) -> Role {
         if self.it == Some(member) { Role::Seeker } else { Role::Player }
     }
 
     /// Whether a member stands still since they have just been touched.
-    pub(super) fn holds(&self, member: MemberId, step: u64) -> bool {
+    pub(crate) fn holds(&self, member: MemberId, step: u64) -> bool {
         self.it == Some(member) && step < self.since + PAUSE
     }
 
-    pub(super) fn step(&mut self, field: Field) {
+    pub(crate) fn step(&mut self, field: Field) {
         let Some(it) = self.it.filter(|&it| field.member(it).is_some()) else {
             // Whoever was "it" has left; the one of the longest time follows, so that nobody gains.
             let longest = field.ids().max_by_key(|id| self.time(*id));
@@ -65,7 +65,7 @@ impl Tag {
     }
 
     /// The scores: who was "it" for the shortest time wins.
-    pub(super) fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
+    pub(crate) fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
         field
             .ids()
             .map(|id| (id, Score { rank: self.time(id), steps: Some(self.time(id)) }))

@@ -14,7 +14,7 @@ use crate::game::STEP;
 use crate::server::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
 
 /// Draws who is in the room, and their points.
-pub(super) fn draw_members(
+pub(crate) fn draw_members(
     canvas: &mut impl Canvas,
     picture: Rect,
     room: &RoomView,
@@ -36,7 +36,7 @@ pub(super) fn draw_members(
 }
 
 /// Draws the standings of a round that is over.
-pub(super) fn draw_standings(
+pub(crate) fn draw_standings(
     canvas: &mut impl Canvas,
     picture: Rect,
     room: &RoomView,

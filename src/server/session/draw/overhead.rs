@@ -33,7 +33,7 @@ struct Overhead {
 }
 
 /// Draws the names of the others and of the ghosts that `player` sees near.
-pub(super) fn draw(
+pub(crate) fn draw(
     canvas: &mut impl Canvas,
     area: Rect,
     options: &DrawOptions,
@@ -98,7 +98,7 @@ fn label(member: &MemberView, mode: Mode) -> String {
 }
 
 /// The colour of a member, on black.
-pub(super) fn style(color: PlayerColor, depth: ColorDepth) -> Style {
+pub(crate) fn style(color: PlayerColor, depth: ColorDepth) -> Style {
     match depth {
         ColorDepth::Mono => Style::new().add_modifier(Modifier::REVERSED),
         depth => {

@@ -13,7 +13,7 @@ use crate::server::session::visit::Visit;
 
 impl Visit {
     /// Draws the mode, the time, what the player is and has, and who is watched.
-    pub(super) fn draw_room_status(
+    pub(crate) fn draw_room_status(
         &mut self,
         canvas: &mut impl Canvas,
         area: Rect,

@@ -14,7 +14,7 @@ use crate::server::session::visit::Visit;
 const ROWS_ABOVE: u16 = 3;
 
 /// Draws `remarks`, the newest at the bottom; above the typed line if there is one.
-pub(super) fn draw<'r>(
+pub(crate) fn draw<'r>(
     canvas: &mut impl Canvas,
     picture: Rect,
     remarks: impl DoubleEndedIterator<Item = &'r Remark>,
@@ -35,7 +35,7 @@ pub(super) fn draw<'r>(
 
 impl Visit {
     /// Draws the line of chat that is typed.
-    pub(super) fn draw_chat_entry(&self, canvas: &mut impl Canvas, picture: Rect) {
+    pub(crate) fn draw_chat_entry(&self, canvas: &mut impl Canvas, picture: Rect) {
         const PROMPT: &str = " say: ";
         let room = usize::from(picture.width).saturating_sub(PROMPT.len());
         let line = Line::raw(format!("{PROMPT}{}", self.entry.shown(room)));

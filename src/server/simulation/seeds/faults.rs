@@ -34,7 +34,7 @@ const KEYS: [&str; 20] = [
 
 impl Run {
     /// Something happens to a client that is not the steady one.
-    pub(super) fn disturb(&mut self) {
+    pub(crate) fn disturb(&mut self) {
         let others = &self.connected[1..];
         if others.is_empty() {
             if !self.is_draining {
@@ -92,7 +92,7 @@ impl Run {
         }
     }
 
-    pub(super) fn wake(&mut self, client: usize) {
+    pub(crate) fn wake(&mut self, client: usize) {
         let Self { rig, silent, .. } = self;
         if let Some(index) = silent.iter().position(|(other, _)| *other == client) {
             let (_, before) = silent.swap_remove(index);
@@ -113,7 +113,7 @@ impl Run {
     }
 
     /// The client closes its connection.
-    pub(super) fn leave(&mut self, client: usize) {
+    pub(crate) fn leave(&mut self, client: usize) {
         self.connected.retain(|other| *other != client);
         self.silent.retain(|(other, _)| *other != client);
         self.rig.clients[client].cut();
@@ -125,7 +125,7 @@ impl Run {
     }
 
     /// The connections whose clients are gone for long enough notice it.
-    pub(super) fn notice(&mut self) {
+    pub(crate) fn notice(&mut self) {
         let now = self.rig.now();
         let due: Vec<usize> = self
             .cut

@@ -20,7 +20,7 @@ const LONGEST_ANSWER: Duration = Duration::from_millis(100);
 
 impl Run {
     /// Nothing has delayed the pictures of the steady member.
-    pub(super) fn assert_steady(&self, begun: Instant, end: Instant) {
+    pub(crate) fn assert_steady(&self, begun: Instant, end: Instant) {
         let arrivals = self.rig.clients[STEADY].arrivals();
         let times: Vec<Instant> =
             arrivals.into_iter().filter(|time| (begun..end).contains(time)).chain([end]).collect();
@@ -30,7 +30,7 @@ impl Run {
     }
 
     /// Each key of the bystander was answered in time.
-    pub(super) fn assert_answered(&mut self) {
+    pub(crate) fn assert_answered(&mut self) {
         self.rig.pump(BETWEEN_KEYS.as_millis() as u64);
         let Some(Bystander { client, pressed }) = &self.bystander else { return };
         let arrivals = self.rig.clients[*client].arrivals();
@@ -42,7 +42,7 @@ impl Run {
     }
 
     /// The recordings of all rooms that are open give their states again.
-    pub(super) fn assert_replays(&self) {
+    pub(crate) fn assert_replays(&self) {
         let levels = Arc::new(catalog(&hall()));
         for room in self.rig.tapes.rooms() {
             let text = self.rig.tapes.text(room);
@@ -54,7 +54,7 @@ impl Run {
     }
 
     /// The members of rooms are those who are connected and think so.
-    pub(super) fn assert_members(&self) {
+    pub(crate) fn assert_members(&self) {
         let rooms = self.rig.rooms().summaries().borrow().clone();
         let mut members: Vec<String> =
             rooms.iter().flat_map(|room| room.members.iter().map(ToString::to_string)).collect();
@@ -71,7 +71,7 @@ impl Run {
     }
 
     /// Each screen shows what its session draws on an empty one.
-    pub(super) fn assert_screens(&mut self) {
+    pub(crate) fn assert_screens(&mut self) {
         let answering = self.connected.iter().filter(|client| !self.mute.contains(client));
         for client in answering.copied().collect::<Vec<_>>() {
             // While a picture counts seconds down, a new one may be on its way.
@@ -102,7 +102,7 @@ impl Run {
     }
 
     /// Nothing that somebody typed has reached a terminal but printable characters.
-    pub(super) fn assert_harmless(&self) {
+    pub(crate) fn assert_harmless(&self) {
         for client in &self.rig.clients {
             let (title, is_obeyed) = client.look(|emulator| {
                 let mut sequences = emulator.bytes().windows(4);
@@ -113,7 +113,7 @@ impl Run {
     }
 
     /// All leave, and no task is left but those of the host.
-    pub(super) fn assert_no_task_left(mut self) {
+    pub(crate) fn assert_no_task_left(mut self) {
         let bystander = self.bystander.take().map(|bystander| bystander.client);
         for client in std::mem::take(&mut self.connected).into_iter().chain(bystander) {
             self.leave(client);

@@ -9,7 +9,7 @@ use unicode_security::skeleton;
 /// and `i` is not. So there are two keys, the skeleton of the name in lower case, and the skeleton of the
 /// name as it is, put in lower case then. Names that differ in case alone share the first one, and names
 /// with the same skeleton share the second one.
-pub(super) fn of(name: &str) -> Vec<String> {
+pub(crate) fn of(name: &str) -> Vec<String> {
     let of_lower_case: String = skeleton(&folded(name)).collect();
     let of_name: String = skeleton(name).collect();
     let mut keys = vec![of_lower_case, folded(&of_name)];

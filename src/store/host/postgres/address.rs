@@ -10,16 +10,16 @@ use super::tls::Tls;
 use crate::store::host::StoreFailure;
 
 /// How a database is reached.
-pub(super) struct Address {
-    pub(super) config: Config,
+pub(crate) struct Address {
+    pub(crate) config: Config,
     /// `None` where the connection is not encrypted.
-    pub(super) tls: Option<Tls>,
+    pub(crate) tls: Option<Tls>,
     /// The server and the database, to name in sentences.
-    pub(super) shown: String,
+    pub(crate) shown: String,
 }
 
 impl Address {
-    pub(super) fn parse(text: &str) -> Result<Self, StoreFailure> {
+    pub(crate) fn parse(text: &str) -> Result<Self, StoreFailure> {
         let mut config: Config = text.parse().map_err(|_| no_address())?;
         let host = host(&config).ok_or_else(no_address)?;
         let database = config.get_dbname().or(config.get_user()).unwrap_or("").to_owned();

@@ -83,7 +83,7 @@ fn held(lease: &Lease) -> serde_json::Value {
 }
 
 /// A time in milliseconds, of at most a year.
-pub(super) fn milliseconds(time: Duration) -> i64 {
+pub(crate) fn milliseconds(time: Duration) -> i64 {
     const LONGEST: Duration = Duration::from_hours(365 * 24);
     time.min(LONGEST).as_millis() as i64
 }

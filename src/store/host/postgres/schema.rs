@@ -8,7 +8,7 @@ use crate::store::host::sql::{Statements, values};
 /// The lock under which tables are made, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD, FOURTH];
+pub(crate) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD, FOURTH];
 
 /// As those of SQLite. A text is compared by its bytes, whatever the language of the database.
 const FIRST: &str = r#"
@@ -134,7 +134,7 @@ enum Found {
 }
 
 /// Brings a database to the newest version, all at once or not at all.
-pub(super) fn migrate(call: &Call<'_>, migrations: &[&str]) -> Result<(), StoreFailure> {
+pub(crate) fn migrate(call: &Call<'_>, migrations: &[&str]) -> Result<(), StoreFailure> {
     // Not serializable: what another host has made while this one waited for the lock is to be seen.
     let patience = SCHEMA_PATIENCE.as_millis();
     call.batch(&format!("BEGIN; SET LOCAL statement_timeout = {patience}"))?;
@@ -163,7 +163,7 @@ fn apply(call: &Call<'_>, migrations: &[&str]) -> Result<(), StoreFailure> {
 }
 
 /// Whether a database has the tables, which must be of the newest version.
-pub(super) fn check_to_read(call: &Call<'_>) -> Result<bool, StoreFailure> {
+pub(crate) fn check_to_read(call: &Call<'_>) -> Result<bool, StoreFailure> {
     match found(call, MIGRATIONS.len())? {
         Found::Nothing => Ok(false),
         Found::Version(version) if version < MIGRATIONS.len() => Err(StoreFailure::new(format!(

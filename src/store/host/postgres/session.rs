@@ -23,7 +23,7 @@ const SETTINGS: &str = "SET idle_in_transaction_session_timeout = 10000; \
     WHERE current_setting('synchronous_commit') = 'off'";
 
 /// A connection that is made when it is needed.
-pub(super) struct Link {
+pub(crate) struct Link {
     address: Address,
     is_to_read: bool,
     /// `None` at the end alone.
@@ -41,7 +41,7 @@ struct Session {
 }
 
 /// Statements over a connection, up to a deadline.
-pub(super) struct Call<'a> {
+pub(crate) struct Call<'a> {
     runtime: &'a Runtime,
     session: &'a Session,
     deadline: tokio::time::Instant,
@@ -51,7 +51,7 @@ pub(super) struct Call<'a> {
 
 /// Why a statement failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Fault {
+pub(crate) enum Fault {
     /// The connection is lost, and what a transaction has changed is not kept.
     Lost,
     /// Nobody knows what the server has done: the time was over, or the connection was lost while a change was
@@ -66,7 +66,7 @@ pub(super) enum Fault {
 }
 
 impl Link {
-    pub(super) fn new(address: Address, is_to_read: bool) -> Result<Self, StoreFailure> {
+    pub(crate) fn new(address: Address, is_to_read: bool) -> Result<Self, StoreFailure> {
         let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| {
             StoreFailure::new(format!("the host's store can't have a connection: {error}"))
         })?;
@@ -74,7 +74,7 @@ impl Link {
     }
 
     /// A call that ends after `patience`. A connection is made if there is none.
-    pub(super) fn call(&mut self, patience: Duration) -> Result<Call<'_>, StoreFailure> {
+    pub(crate) fn call(&mut self, patience: Duration) -> Result<Call<'_>, StoreFailure> {
         let deadline = tokio::time::Instant::now() + patience;
         self.look_at_the_connection();
         if self.session.as_ref().is_none_or(|session| session.client.is_closed()) {
@@ -88,7 +88,7 @@ impl Link {
     }
 
     /// Gives a connection up, and all that is under way over it.
-    pub(super) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.session = None;
     }
 
@@ -159,17 +159,17 @@ impl Drop for Link {
 
 impl Call<'_> {
     /// Why the last statement failed.
-    pub(super) fn fault(&self) -> Option<Fault> {
+    pub(crate) fn fault(&self) -> Option<Fault> {
         self.fault.get()
     }
 
     /// Runs statements without parameters.
-    pub(super) fn batch(&self, sql: &str) -> Result<(), StoreFailure> {
+    pub(crate) fn batch(&self, sql: &str) -> Result<(), StoreFailure> {
         self.wait(self.session.client.batch_execute(sql))
     }
 
     /// Keeps what a transaction has changed.
-    pub(super) fn commit(&self) -> Result<(), StoreFailure> {
+    pub(crate) fn commit(&self) -> Result<(), StoreFailure> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(Fault::Lost | Fault::Unknown) => {
                 self.fault.set(Some(Fault::Unknown));

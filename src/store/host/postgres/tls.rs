@@ -21,13 +21,13 @@ use crate::store::host::StoreFailure;
 
 /// What makes encrypted connections.
 #[derive(Clone)]
-pub(super) struct Tls {
+pub(crate) struct Tls {
     config: Arc<ClientConfig>,
 }
 
 impl Tls {
     /// TLS with the certificates that the system trusts, or those of the file that `SSL_CERT_FILE` names.
-    pub(super) fn of_system() -> Result<Self, StoreFailure> {
+    pub(crate) fn of_system() -> Result<Self, StoreFailure> {
         let mut roots = RootCertStore::empty();
         roots.add_parsable_certificates(load_native_certs().certs);
         if roots.is_empty() {
@@ -59,7 +59,7 @@ impl MakeTlsConnect<Socket> for Tls {
 }
 
 /// The beginning of an encrypted connection.
-pub(super) struct Handshake {
+pub(crate) struct Handshake {
     config: Arc<ClientConfig>,
     name: Option<ServerName<'static>>,
 }
@@ -78,7 +78,7 @@ impl TlsConnect<Socket> for Handshake {
 }
 
 /// An encrypted connection.
-pub(super) struct Encrypted(client::TlsStream<Socket>);
+pub(crate) struct Encrypted(client::TlsStream<Socket>);
 
 impl TlsStream for Encrypted {
     fn channel_binding(&self) -> ChannelBinding {

@@ -66,7 +66,7 @@ fn checked<T: ToSql>(kind: &Type) -> Result<Type, String> {
 }
 
 /// A text as the tables have it.
-pub(super) fn escaped(text: &str) -> Cow<'_, str> {
+pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     if !text.contains(['\0', ESCAPE]) {
         return Cow::Borrowed(text);
     }

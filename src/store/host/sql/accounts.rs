@@ -14,7 +14,7 @@ use crate::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";
 
-pub(super) fn of_key(
+pub(crate) fn of_key(
     database: &dyn Statements,
     key: &AccountKey,
 ) -> Result<Option<Account>, StoreFailure> {
@@ -22,7 +22,7 @@ pub(super) fn of_key(
     database.row(&sql, values![&key.bytes()[..]])?.as_ref().map(account).transpose()
 }
 
-pub(super) fn named(
+pub(crate) fn named(
     database: &dyn Statements,
     name: &Name,
 ) -> Result<Option<Account>, StoreFailure> {
@@ -36,7 +36,7 @@ pub(super) fn named(
     database.row(&sql, values![first, last, name.as_str()])?.as_ref().map(account).transpose()
 }
 
-pub(super) fn create(
+pub(crate) fn create(
     database: &dyn Statements,
     origin: Option<&Origin>,
     key: &AccountKey,
@@ -60,7 +60,7 @@ pub(super) fn create(
     Ok(Account { id, key, name, named_at: now, created_at: now, seen_at: now })
 }
 
-pub(super) fn rename(
+pub(crate) fn rename(
     database: &dyn Statements,
     id: AccountId,
     name: &Name,
@@ -82,7 +82,7 @@ pub(super) fn rename(
     Ok(Account { name: name.clone(), named_at: now, ..known })
 }
 
-pub(super) fn note_visit(
+pub(crate) fn note_visit(
     database: &dyn Statements,
     id: AccountId,
     now: UnixTime,
@@ -91,7 +91,7 @@ pub(super) fn note_visit(
     database.execute(sql, values![id, now]).map(|_| ())
 }
 
-pub(super) fn settings(
+pub(crate) fn settings(
     database: &dyn Statements,
     id: AccountId,
 ) -> Result<AccountSettings, StoreFailure> {
@@ -120,7 +120,7 @@ pub(super) fn settings(
     Ok(AccountSettings { preferences, configuration: row.get(8)? })
 }
 
-pub(super) fn set_settings(
+pub(crate) fn set_settings(
     database: &dyn Statements,
     id: AccountId,
     settings: &AccountSettings,

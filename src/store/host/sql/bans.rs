@@ -7,7 +7,7 @@ const KEY: &str = "key";
 const NAME: &str = "name";
 const ADDRESSES: &str = "addresses";
 
-pub(super) fn add(database: &dyn Statements, ban: &Ban) -> Result<(), StoreFailure> {
+pub(crate) fn add(database: &dyn Statements, ban: &Ban) -> Result<(), StoreFailure> {
     remove(database, &ban.target)?;
     let (kind, target) = match &ban.target {
         BanTarget::Key(key) => (KEY, key.to_string()),
@@ -21,7 +21,7 @@ pub(super) fn add(database: &dyn Statements, ban: &Ban) -> Result<(), StoreFailu
     database.execute(sql, values).map(|_| ())
 }
 
-pub(super) fn remove(database: &dyn Statements, target: &BanTarget) -> Result<bool, StoreFailure> {
+pub(crate) fn remove(database: &dyn Statements, target: &BanTarget) -> Result<bool, StoreFailure> {
     let mut removed = false;
     for (id, ban) in all(database)? {
         if ban.target.is_same(target) {
@@ -32,7 +32,7 @@ pub(super) fn remove(database: &dyn Statements, target: &BanTarget) -> Result<bo
     Ok(removed)
 }
 
-pub(super) fn in_force(database: &dyn Statements, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
+pub(crate) fn in_force(database: &dyn Statements, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
     let bans = all(database)?.into_iter().map(|(_, ban)| ban);
     Ok(bans.filter(|ban| ban.is_in_force(now)).collect())
 }

@@ -14,7 +14,7 @@ use crate::world::Difficulty;
 const BEST: &str = "steps, treasure, treasure_total, secrets, secrets_total, alarms, deaths, \
                     stunned, rank";
 
-pub(super) fn record(
+pub(crate) fn record(
     database: &dyn Statements,
     account: AccountId,
     run: &VerifiedLevel,
@@ -72,7 +72,7 @@ fn write(
     database.execute(&sql, values).map(|_| ())
 }
 
-pub(super) fn begin_daily(
+pub(crate) fn begin_daily(
     database: &dyn Statements,
     account: AccountId,
     day: Day,
@@ -85,7 +85,7 @@ pub(super) fn begin_daily(
     Ok((count > 0).then_some(DailyTry { account, day }))
 }
 
-pub(super) fn record_daily(
+pub(crate) fn record_daily(
     database: &dyn Statements,
     daily: &DailyTry,
     run: &VerifiedDescent,
@@ -107,7 +107,7 @@ pub(super) fn record_daily(
     Ok(true)
 }
 
-pub(super) fn bests(
+pub(crate) fn bests(
     database: &dyn Statements,
     account: AccountId,
 ) -> Result<Vec<(LevelBoard, Best)>, StoreFailure> {
@@ -120,7 +120,7 @@ pub(super) fn bests(
     Ok(bests)
 }
 
-pub(super) fn level_boards(database: &dyn Statements) -> Result<Vec<LevelBoard>, StoreFailure> {
+pub(crate) fn level_boards(database: &dyn Statements) -> Result<Vec<LevelBoard>, StoreFailure> {
     let rows = database.rows("SELECT DISTINCT level, difficulty FROM results", &[])?;
     let known = rows.iter().map(board).collect::<Result<Vec<_>, _>>()?;
     let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
@@ -128,7 +128,7 @@ pub(super) fn level_boards(database: &dyn Statements) -> Result<Vec<LevelBoard>,
     Ok(boards)
 }
 
-pub(super) fn level_scores(
+pub(crate) fn level_scores(
     database: &dyn Statements,
     board: &LevelBoard,
     most: usize,
@@ -146,7 +146,7 @@ pub(super) fn level_scores(
     database.rows(&sql, values)?.iter().map(score).collect()
 }
 
-pub(super) fn daily_scores(
+pub(crate) fn daily_scores(
     database: &dyn Statements,
     day: Day,
     most: usize,
@@ -161,7 +161,7 @@ pub(super) fn daily_scores(
     database.rows(sql, values![day.number(), limit(most)])?.iter().map(score).collect()
 }
 
-pub(super) fn script(
+pub(crate) fn script(
     database: &dyn Statements,
     account: AccountId,
     board: &LevelBoard,

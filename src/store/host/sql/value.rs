@@ -17,20 +17,17 @@ pub enum Value {
 
 /// The columns of a row.
 #[derive(Debug)]
-pub struct Row(pub(in crate::store::host) Vec<Value>);
+pub struct Row(pub(crate) Vec<Value>);
 
 /// What a column can be read as.
-pub(in crate::store::host) trait FromValue: Sized {
+pub(crate) trait FromValue: Sized {
     /// `None` if the column holds something else.
     fn from_value(value: &Value) -> Option<Self>;
 }
 
 impl Row {
     /// The value of a column.
-    pub(in crate::store::host) fn get<T: FromValue>(
-        &self,
-        column: usize,
-    ) -> Result<T, StoreFailure> {
+    pub(crate) fn get<T: FromValue>(&self, column: usize) -> Result<T, StoreFailure> {
         self.0.get(column).and_then(T::from_value).ok_or_else(|| {
             let sentence = format!("the host's store has a value of another kind: column {column}");
             StoreFailure::new(sentence)
@@ -44,7 +41,7 @@ macro_rules! values {
         &[$($crate::store::host::sql::Value::from($value)),*]
     };
 }
-pub(in crate::store::host) use values;
+pub(crate) use values;
 
 impl From<i64> for Value {
     fn from(number: i64) -> Self {

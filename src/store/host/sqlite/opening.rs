@@ -20,7 +20,7 @@ const LOGS: [&str; 2] = ["-wal", "-shm"];
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The file in `folder` to read and write. A damaged one is refused, and left as it is.
-pub(super) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
+pub(crate) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
     open_sound(folder).map_err(|fault| match fault {
         Fault::Failure(failure) => failure,
         Fault::Damaged => StoreFailure::new(format!(
@@ -34,7 +34,7 @@ pub(super) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
 
 /// The same, but a damaged file is put aside, and the rows that can be read are copied into a new one. Then a
 /// sentence says so.
-pub(super) fn open_or_salvage(folder: &Path) -> Result<(Connection, Option<String>), StoreFailure> {
+pub(crate) fn open_or_salvage(folder: &Path) -> Result<(Connection, Option<String>), StoreFailure> {
     match open_sound(folder) {
         Ok(connection) => Ok((connection, None)),
         Err(Fault::Failure(failure)) => Err(failure),
@@ -72,12 +72,12 @@ fn has_lost_its_content(file: &Path) -> bool {
 
 /// Copies the content of the write-ahead log into the file, and empties the log. What another process still
 /// reads remains in the log.
-pub(super) fn checkpoint(connection: &Connection) -> rusqlite::Result<()> {
+pub(crate) fn checkpoint(connection: &Connection) -> rusqlite::Result<()> {
     connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))
 }
 
 /// The file in `folder` to read, if it exists.
-pub(super) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFailure> {
+pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFailure> {
     let file = folder.join(FILE);
     if !file.exists() {
         return Ok(None);

@@ -9,7 +9,7 @@ use super::schema::TABLES;
 
 /// Copies the rows of a damaged file that can be read and obey the rules of their table, and returns their
 /// number. Each table is read from both ends, so that a damaged page hides what is on it and no more.
-pub(super) fn salvage(damaged: &Path, into: &mut Connection) -> Result<usize> {
+pub(crate) fn salvage(damaged: &Path, into: &mut Connection) -> Result<usize> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let Ok(from) = Connection::open_with_flags(damaged, flags) else { return Ok(0) };
     let transaction = into.transaction_with_behavior(TransactionBehavior::Immediate)?;

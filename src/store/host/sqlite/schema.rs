@@ -3,11 +3,11 @@
 use rusqlite::{Connection, Result, TransactionBehavior};
 
 /// The mark of the file in its header, "Cell".
-pub(super) const APPLICATION: i32 = 0x4365_6c6c;
+pub(crate) const APPLICATION: i32 = 0x4365_6c6c;
 /// The statements that lead from each version to the next one. They are only ever added to.
-pub(super) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD];
+pub(crate) const MIGRATIONS: &[&str] = &[FIRST, SECOND, THIRD];
 /// All tables with their columns, those first that others refer to.
-pub(super) const TABLES: [(&str, &str); 7] = [
+pub(crate) const TABLES: [(&str, &str); 7] = [
     ("accounts", "id, key, name, named_at, created_at, seen_at"),
     ("names", "key, account, held_until"),
     (
@@ -109,17 +109,17 @@ const THIRD: &str = "ALTER TABLE settings ADD COLUMN correction TEXT";
 
 /// The version of the file: the number of migrations that it has. In a file that no Cellcaster wrote, it
 /// may be negative.
-pub(super) fn version(connection: &Connection) -> Result<i64> {
+pub(crate) fn version(connection: &Connection) -> Result<i64> {
     connection.query_row("PRAGMA user_version", [], |row| row.get(0))
 }
 
 /// The version of a file that has all migrations.
-pub(super) fn newest() -> i64 {
+pub(crate) fn newest() -> i64 {
     MIGRATIONS.len() as i64
 }
 
 /// Brings a file to the newest version, all at once or not at all.
-pub(super) fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<()> {
+pub(crate) fn migrate(connection: &mut Connection, migrations: &[&str]) -> Result<()> {
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
     let done = usize::try_from(version(&transaction)?).unwrap_or(usize::MAX);
     for (number, migration) in (1..).zip(migrations).skip(done) {

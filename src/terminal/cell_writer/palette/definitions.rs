@@ -25,7 +25,7 @@ impl Palette {
     ///
     /// Returns the definitions, if there are any. The caller must give them back with
     /// [`Palette::keep`].
-    pub(in super::super) fn begin_frame(
+    pub(crate) fn begin_frame(
         &mut self,
         screen: &Screen,
         style: Option<Style>,
@@ -68,7 +68,7 @@ impl Palette {
     }
 
     /// Keeps the memory of definitions for the next ones.
-    pub(in super::super) fn keep(&mut self, definitions: Bytes) {
+    pub(crate) fn keep(&mut self, definitions: Bytes) {
         self.definitions = definitions;
     }
 
@@ -171,17 +171,17 @@ impl Palette {
 }
 
 /// Writes definitions of entries, several in each sequence.
-pub(super) struct Definitions<'a> {
+pub(crate) struct Definitions<'a> {
     bytes: &'a mut Bytes,
     count: usize,
 }
 
 impl<'a> Definitions<'a> {
-    pub(super) fn begin(bytes: &'a mut Bytes) -> Self {
+    pub(crate) fn begin(bytes: &'a mut Bytes) -> Self {
         Self { bytes, count: 0 }
     }
 
-    pub(super) fn push(&mut self, entry: u8, channels: [u8; 3]) {
+    pub(crate) fn push(&mut self, entry: u8, channels: [u8; 3]) {
         if self.count.is_multiple_of(AT_ONCE) {
             self.end_sequence();
             self.bytes.push_text(b"\x1b]4");
@@ -190,7 +190,7 @@ impl<'a> Definitions<'a> {
         push_definition(entry, channels, self.bytes);
     }
 
-    pub(super) fn end(mut self) {
+    pub(crate) fn end(mut self) {
         self.end_sequence();
     }
 

@@ -32,7 +32,7 @@ use clusters::{Clusters, Sample};
 
 /// The entries, and the colours that they stand for.
 #[derive(Debug)]
-pub(super) struct Quantizer {
+pub(crate) struct Quantizer {
     clusters: Clusters,
     /// The colour of each entry; [`Shade::NONE`] for undefined ones.
     shades: Vec<Shade>,
@@ -67,7 +67,7 @@ const SCENE: f32 = 0.03;
 const WAYS: usize = 4;
 
 impl Quantizer {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let nothing = Near { shade: Shade::NONE, place: 0, distance: 0.0 };
         Self {
             clusters: Clusters::new(PALETTE.count()),
@@ -82,7 +82,7 @@ impl Quantizer {
 
     /// Replaces the colours of all targets by those of entries. Definitions of entries, which the
     /// terminal must receive before the frame, are added to `bytes`.
-    pub(super) fn quantize(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
+    pub(crate) fn quantize(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
         self.frame += 1;
         let error = self.mean_error(screen);
         if self.must_choose(error) {
@@ -97,7 +97,7 @@ impl Quantizer {
 
     /// The colour of the entry that is shown for `shade`, and the entry; `None` for named colours and
     /// the terminal's own.
-    pub(super) fn told(&self, shade: Shade) -> Option<(Shade, u8)> {
+    pub(crate) fn told(&self, shade: Shade) -> Option<(Shade, u8)> {
         let channels = channels(shade)?;
         let place = match self.place_of(Shade::rgb(channels)) {
             Some(place) => place,
@@ -107,7 +107,7 @@ impl Quantizer {
     }
 
     /// The nearest entry in place of `wanted`, whose own parameters take this number of bytes.
-    pub(super) fn telling(&mut self, telling: &mut Telling, price: Price) {
+    pub(crate) fn telling(&mut self, telling: &mut Telling, price: Price) {
         let wanted = telling.ink;
         let Some((shade, entry)) = self.nearest(wanted.shade) else { return };
         telling.bytes = Shade::indexed(entry).bytes() as f32;

@@ -26,7 +26,7 @@ struct PixelState {
 impl Pen {
     /// Draws these columns of row `y`, and has `draw_other` draw those that cannot be drawn as pixels now.
     #[inline]
-    pub(in crate::terminal::cell_writer) fn draw_pixels(
+    pub(crate) fn draw_pixels(
         &mut self,
         y: u16,
         cells: impl Iterator<Item = (usize, PackedCell)>,

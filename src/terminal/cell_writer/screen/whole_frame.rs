@@ -13,7 +13,7 @@ thread_local! {
 
 impl Screen {
     /// Begins a whole frame, with blank targets.
-    pub(in super::super) fn begin_frame(&mut self) {
+    pub(crate) fn begin_frame(&mut self) {
         self.targets_before = thread_memory::take(&BEFORE);
         let (count, capacity) = (self.targets.len(), self.targets.capacity());
         if self.targets_before.capacity() != capacity {
@@ -25,7 +25,7 @@ impl Screen {
     }
 
     /// Ends a whole frame: rows whose targets differ from those before it have changed.
-    pub(in super::super) fn end_frame(&mut self) {
+    pub(crate) fn end_frame(&mut self) {
         let width = self.width.max(1);
         let rows = self.targets.chunks(width).zip(self.targets_before.chunks(width));
         for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {

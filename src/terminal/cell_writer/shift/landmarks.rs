@@ -11,7 +11,7 @@ use super::{Move, Shift, Way};
 
 /// The marks of a row's targets, now and before.
 #[derive(Debug, Default)]
-pub(super) struct Landmarks {
+pub(crate) struct Landmarks {
     hashes: Vec<u32>,
     now: Vec<Mark>,
     /// With [`FARTHEST`] empty marks on either side.
@@ -29,7 +29,7 @@ const CHANCE: u16 = 2;
 
 impl Landmarks {
     /// Finds the landmarks of a row with these targets and these previous marks.
-    pub(super) fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
+    pub(crate) fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
         self.hashes.clear();
         self.hashes.extend(targets.iter().map(|target| target.hash()));
         self.now.clear();
@@ -42,7 +42,7 @@ impl Landmarks {
     }
 
     /// The moves with the most votes.
-    pub(super) fn likely_moves(&self) -> impl Iterator<Item = Move> {
+    pub(crate) fn likely_moves(&self) -> impl Iterator<Item = Move> {
         let votes = self.votes();
         let mut likely = [None; MOST_TRIED];
         let mut most = [CHANCE; MOST_TRIED];
@@ -70,13 +70,13 @@ impl Landmarks {
     }
 
     /// Moves the previous marks, after a shift.
-    pub(super) fn shift(&mut self, shift: &Shift) {
+    pub(crate) fn shift(&mut self, shift: &Shift) {
         let row = &mut self.before[FARTHEST..][..self.now.len()];
         shift.apply(row, Mark::NONE.before());
     }
 
     /// The marks of the row's targets.
-    pub(super) fn marks(&self) -> &[Mark] {
+    pub(crate) fn marks(&self) -> &[Mark] {
         &self.now
     }
 }
@@ -128,11 +128,11 @@ fn widen(sums: &mut [u16; PLACES], votes: &[u8; PLACES]) {
 /// The mark of a landmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
-pub(in super::super) struct Mark(u8);
+pub(crate) struct Mark(u8);
 
 impl Mark {
     /// The mark of a cell that is equal to the one before it.
-    pub(in super::super) const NONE: Self = Self(0);
+    pub(crate) const NONE: Self = Self(0);
 
     /// The same as a previous mark. `NONE` has another value there, so that no mark is equal to it.
     fn before(self) -> Self {
@@ -140,7 +140,7 @@ impl Mark {
     }
 
     /// The marks of a row's cells, from the hashes of their packed cells.
-    pub(super) fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
+    pub(crate) fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
         let pairs = hashes.iter().zip(hashes.iter().skip(1));
         let marks = pairs.map(|(&last, &hash)| {
             let pair = last.rotate_left(5).wrapping_add(hash);

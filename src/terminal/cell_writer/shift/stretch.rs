@@ -9,7 +9,7 @@ use super::Loss;
 ///
 /// The search finds blocks first, and then moves the ends by cells. An exact search takes more time
 /// than its better result saves.
-pub(super) fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
+pub(crate) fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
     let width = now.len().min(moved.len());
     let (now, moved) = (&now[..width], &moved[..width]);
     let best = best_blocks(now, moved);

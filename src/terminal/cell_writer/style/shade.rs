@@ -11,11 +11,11 @@ use crate::color::Rgb;
 /// A colour in the form that SGR writes, of which ratatui has several names. It has few bits, since
 /// most operations on colours are comparisons.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in super::super) struct Shade(u32);
+pub(crate) struct Shade(u32);
 
 /// The kind of a [`Shade`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Kind {
+pub(crate) enum Kind {
     Default,
     Indexed(u8),
     Rgb([u8; 3]),
@@ -30,24 +30,24 @@ enum Ground {
 
 impl Shade {
     /// The terminal's default colour.
-    pub(in super::super) const DEFAULT: Self = Self(0);
+    pub(crate) const DEFAULT: Self = Self(0);
     /// A value that no colour has.
-    pub(in super::super) const NONE: Self = Self(u32::MAX);
+    pub(crate) const NONE: Self = Self(u32::MAX);
     /// The number of bits of a colour.
-    pub(in super::super) const BITS: u32 = 26;
+    pub(crate) const BITS: u32 = 26;
     const INDEXED: u32 = 1 << 24;
     const RGB: u32 = 2 << 24;
 
-    pub(in super::super) const fn indexed(index: u8) -> Self {
+    pub(crate) const fn indexed(index: u8) -> Self {
         Self(Self::INDEXED | index as u32)
     }
 
-    pub(in super::super) const fn rgb([red, green, blue]: [u8; 3]) -> Self {
+    pub(crate) const fn rgb([red, green, blue]: [u8; 3]) -> Self {
         Self(Self::RGB | u32::from_be_bytes([0, red, green, blue]))
     }
 
     #[inline]
-    pub(in super::super) fn of(color: Color) -> Self {
+    pub(crate) fn of(color: Color) -> Self {
         // Most colours are RGB: this branch is more predictable than a jump table of all kinds.
         if let Color::Rgb(red, green, blue) = color {
             Self::rgb([red, green, blue])
@@ -82,24 +82,24 @@ impl Shade {
     }
 
     #[inline]
-    pub(in super::super) fn of_pixel(pixel: Rgb) -> Self {
+    pub(crate) fn of_pixel(pixel: Rgb) -> Self {
         Self(Self::RGB | pixel.to_bits())
     }
 
     /// A number of [`Shade::BITS`] bits, unique to the colour.
     #[inline]
-    pub(in super::super) const fn in_bits(self) -> u32 {
+    pub(crate) const fn in_bits(self) -> u32 {
         self.0
     }
 
     /// The colour of the number in the lower bits of `bits`; the upper bits are ignored.
     #[inline]
-    pub(in super::super) const fn from_bits(bits: u32) -> Self {
+    pub(crate) const fn from_bits(bits: u32) -> Self {
         Self(bits & ((1 << Self::BITS) - 1))
     }
 
     #[inline]
-    pub(in super::super) fn kind(self) -> Kind {
+    pub(crate) fn kind(self) -> Kind {
         let [kind, red, green, blue] = self.0.to_be_bytes();
         if self.is_rgb() {
             return Kind::Rgb([red, green, blue]);
@@ -108,12 +108,12 @@ impl Shade {
     }
 
     #[inline]
-    pub(in super::super) fn is_rgb(self) -> bool {
+    pub(crate) fn is_rgb(self) -> bool {
         self.0 & Self::RGB != 0
     }
 
     /// The colour as ratatui names it.
-    pub(in super::super) fn color(self) -> Color {
+    pub(crate) fn color(self) -> Color {
         match self.kind() {
             Kind::Default => Color::Reset,
             Kind::Indexed(index) => Color::Indexed(index),
@@ -122,7 +122,7 @@ impl Shade {
     }
 
     /// The notation of the longest of several colours, from the union of their bits.
-    pub(in super::super) fn longest_of(bits: u32) -> Notation {
+    pub(crate) fn longest_of(bits: u32) -> Notation {
         /// Bits that no index of a named colour has.
         const ABOVE_NAMED: u32 = 0xF0;
         if bits & Self::RGB != 0 {
@@ -136,7 +136,7 @@ impl Shade {
 
     /// The approximate number of bytes of its parameters.
     #[inline]
-    pub(in super::super) fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self.kind() {
             Kind::Default | Kind::Indexed(..16) => 2,
             Kind::Indexed(index) => 5 + control::digits(index),
@@ -149,7 +149,7 @@ impl Shade {
     /// Adds the change of the text colour and the background from `current` to `new`, of which at least one
     /// differs; `told` maps colours to the ones to send.
     #[inline]
-    pub(in super::super) fn push_change(
+    pub(crate) fn push_change(
         new: [Self; 2],
         current: [Self; 2],
         told: impl Fn(Self) -> Self,

@@ -11,7 +11,7 @@ use super::survivors::{Survivors, Told, Turn};
 use super::{KEPT, Paths, StepKind, Store, Terms, Wanted};
 
 /// A cell to draw.
-pub(super) struct Branches<'a> {
+pub(crate) struct Branches<'a> {
     wanted: &'a Wanted,
     price: Price,
     /// The prices of errors in the upper half and in the lower, or in the dots and the rest.
@@ -43,7 +43,7 @@ const REPETITION: f32 = 0.5;
 
 impl<'a> Branches<'a> {
     #[inline]
-    pub(super) fn new(wanted: &'a Wanted, terms: Terms, paths: &'a Paths, x: u16) -> Self {
+    pub(crate) fn new(wanted: &'a Wanted, terms: Terms, paths: &'a Paths, x: u16) -> Self {
         let Terms { price, repeats, .. } = terms;
         let mut start = [0.0; KEPT];
         add_motions(paths, x, &mut start);
@@ -59,7 +59,7 @@ impl<'a> Branches<'a> {
     /// Draws in the terminal's present colours, in one new colour and in two. A cell that is
     /// already right is drawn again only if that is a shorter way to the next cell.
     #[inline]
-    pub(super) fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
+    pub(crate) fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
         let is_right = survivors.is_right();
         if is_right {
             for (start, &cursor) in self.start.iter_mut().zip(&self.paths.cursor) {

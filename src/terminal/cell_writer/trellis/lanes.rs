@@ -8,36 +8,36 @@ use super::super::ink::{Ink, Price};
 use super::{KEPT, Paths};
 
 /// A number for each path.
-pub(super) type Lanes = [f32; KEPT];
+pub(crate) type Lanes = [f32; KEPT];
 
 /// L*, a* and b* of a colour for each path.
-pub(super) type Labs = [Lanes; 3];
+pub(crate) type Labs = [Lanes; 3];
 
 /// The bytes of a glyph of one colour, and of two.
-pub(super) const SPACE: f32 = 1.0;
-pub(super) const HALF_BLOCK: f32 = 3.0;
+pub(crate) const SPACE: f32 = 1.0;
+pub(crate) const HALF_BLOCK: f32 = 3.0;
 
 /// The costs, path by path, of showing the text or the background colour in each half.
 #[derive(Default)]
-pub(super) struct Errors {
-    pub(super) text_above: Lanes,
-    pub(super) text_below: Lanes,
-    pub(super) ground_above: Lanes,
-    pub(super) ground_below: Lanes,
+pub(crate) struct Errors {
+    pub(crate) text_above: Lanes,
+    pub(crate) text_below: Lanes,
+    pub(crate) ground_above: Lanes,
+    pub(crate) ground_below: Lanes,
 }
 
 /// The costs, path by path, of drawing each block in the old colours.
 #[derive(Default)]
-pub(super) struct Blocks {
-    pub(super) space: Lanes,
-    pub(super) full: Lanes,
-    pub(super) upper: Lanes,
-    pub(super) lower: Lanes,
+pub(crate) struct Blocks {
+    pub(crate) space: Lanes,
+    pub(crate) full: Lanes,
+    pub(crate) upper: Lanes,
+    pub(crate) lower: Lanes,
 }
 
 /// The costs of the paths, plus the approximate bytes to move their cursors to column `x`.
 #[inline(never)]
-pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
+pub(crate) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
     let x = f32::from(x);
     let is_above = |distance: f32, least: f32| if distance > least { 1.0 } else { 0.0 };
     for (path, start) in start.iter_mut().enumerate() {
@@ -50,7 +50,7 @@ pub(super) fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
 /// Measures the errors of the paths' colours against the wanted ones, and the costs of the blocks
 /// in them. One function does both, so that no number is stored and loaded again.
 #[inline(never)]
-pub(super) fn measure(
+pub(crate) fn measure(
     labs: &[Labs; 2],
     wanted: &[Ink; 2],
     prices: &[Price; 2],
@@ -81,7 +81,7 @@ pub(super) fn measure(
 
 /// The cost of the cheapest block.
 #[inline(never)]
-pub(super) fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
+pub(crate) fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
     let Blocks { space, full, upper, lower } = blocks;
     for path in 0..KEPT {
         let (flat, split) = (min(space[path], full[path]), min(upper[path], lower[path]));
@@ -90,23 +90,23 @@ pub(super) fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
 }
 
 #[inline]
-pub(super) fn sum(one: &Lanes, other: &Lanes) -> Lanes {
+pub(crate) fn sum(one: &Lanes, other: &Lanes) -> Lanes {
     std::array::from_fn(|path| one[path] + other[path])
 }
 
 #[inline]
-pub(super) fn plus(one: &Lanes, other: f32) -> Lanes {
+pub(crate) fn plus(one: &Lanes, other: f32) -> Lanes {
     one.map(|one| one + other)
 }
 
 /// The least of all costs.
 #[inline]
-pub(super) fn least(costs: &Lanes) -> f32 {
+pub(crate) fn least(costs: &Lanes) -> f32 {
     min(min(costs[0], costs[1]), min(costs[2], costs[3]))
 }
 
 /// The lesser of two numbers, in one instruction; `f32::min` also tests for NaN.
 #[inline]
-pub(super) fn min(one: f32, other: f32) -> f32 {
+pub(crate) fn min(one: f32, other: f32) -> f32 {
     if one < other { one } else { other }
 }

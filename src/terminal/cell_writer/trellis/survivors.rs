@@ -5,13 +5,13 @@ use super::lanes::{Lanes, least, min};
 use super::{FRESH, KEPT, Paths, StepKind};
 
 /// The cheapest paths past a cell so far. No two lead to the same colours and cursor column.
-pub(super) struct Survivors {
-    pub(super) cost: Lanes,
-    pub(super) turns: [Turn; KEPT],
+pub(crate) struct Survivors {
+    pub(crate) cost: Lanes,
+    pub(crate) turns: [Turn; KEPT],
     /// The states that they lead to.
-    pub(super) keys: [u64; KEPT],
+    pub(crate) keys: [u64; KEPT],
     /// L*, a* and b* of the new colours.
-    pub(super) fresh: [[f32; 3]; FRESH],
+    pub(crate) fresh: [[f32; 3]; FRESH],
     /// The cost of keeping the cell.
     keep: f32,
     /// A path survives only if it costs less than this.
@@ -23,12 +23,12 @@ pub(super) struct Survivors {
 
 /// The action of a path on a cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
-    pub(super) kind: StepKind,
-    pub(super) before: u8,
+pub(crate) struct Turn {
+    pub(crate) kind: StepKind,
+    pub(crate) before: u8,
     /// The sources of the text and background colours: below [`KEPT`] the paths before, from there
     /// on the fresh colours.
-    pub(super) sources: [u8; 2],
+    pub(crate) sources: [u8; 2],
 }
 
 /// The turns of paths that all keep the cell.
@@ -45,7 +45,7 @@ const KEEP: [Turn; KEPT] = {
 
 impl Survivors {
     /// The paths themselves, before any cell.
-    pub(super) fn of(paths: &Paths) -> Self {
+    pub(crate) fn of(paths: &Paths) -> Self {
         Self {
             cost: paths.cost,
             turns: KEEP,
@@ -60,7 +60,7 @@ impl Survivors {
 
     /// Begins with all paths, which keep the cell at this cost in bytes.
     #[inline]
-    pub(super) fn begin(&mut self, paths: &Paths, keep: f32) {
+    pub(crate) fn begin(&mut self, paths: &Paths, keep: f32) {
         for (cost, before) in self.cost.iter_mut().zip(&paths.cost) {
             *cost = before + keep;
         }
@@ -73,25 +73,25 @@ impl Survivors {
 
     /// Whether the cell shows its target exactly.
     #[inline]
-    pub(super) fn is_right(&self) -> bool {
+    pub(crate) fn is_right(&self) -> bool {
         self.keep == 0.0
     }
 
     /// Whether a path of this cost would survive.
     #[inline]
-    pub(super) fn would_keep(&self, cost: f32) -> bool {
+    pub(crate) fn would_keep(&self, cost: f32) -> bool {
         cost < self.highest
     }
 
     /// Whether any path was added.
     #[inline]
-    pub(super) fn is_changed(&self) -> bool {
+    pub(crate) fn is_changed(&self) -> bool {
         self.is_changed
     }
 
     /// Adds a path that is cheaper than the most expensive survivor.
     #[inline]
-    pub(super) fn add(&mut self, cost: f32, key: u64, turn: Turn) {
+    pub(crate) fn add(&mut self, cost: f32, key: u64, turn: Turn) {
         let mut place = self.worst;
         for path in 0..KEPT {
             place = if self.keys[path] == key { path } else { place };
@@ -120,7 +120,7 @@ const BEAM: f32 = 24.0;
 
 /// The key of a state: the text and background colours, and the cursor column.
 #[inline]
-pub(super) fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
+pub(crate) fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
     u64::from(text.in_bits()) << TEXT
         | u64::from(ground.in_bits()) << GROUND
         | u64::from(cursor) & CURSOR
@@ -128,7 +128,7 @@ pub(super) fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
 
 /// The text and background colours of a key.
 #[inline]
-pub(super) fn colors_of(key: u64) -> [Shade; 2] {
+pub(crate) fn colors_of(key: u64) -> [Shade; 2] {
     [TEXT, GROUND].map(|place| Shade::from_bits((key >> place) as u32))
 }
 
@@ -140,7 +140,7 @@ const CURSOR: u64 = (1 << GROUND) - 1;
 /// The colours that a branch sets: the bits of a key that they change, and the indices of fresh
 /// colours.
 #[derive(Clone, Copy)]
-pub(super) struct Told {
+pub(crate) struct Told {
     kept: u64,
     set: u64,
     /// For text and background, the bits of a path's index to keep, and the bits to set.
@@ -149,18 +149,18 @@ pub(super) struct Told {
 }
 
 impl Told {
-    pub(super) const NOTHING: Self =
+    pub(crate) const NOTHING: Self =
         Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
 
     /// Adds this colour of the text.
     #[inline]
-    pub(super) fn text(self, shade: Shade, source: u8) -> Self {
+    pub(crate) fn text(self, shade: Shade, source: u8) -> Self {
         self.with(shade, TEXT, 0, source)
     }
 
     /// Adds this colour of the background.
     #[inline]
-    pub(super) fn ground(self, shade: Shade, source: u8) -> Self {
+    pub(crate) fn ground(self, shade: Shade, source: u8) -> Self {
         self.with(shade, GROUND, 1, source)
     }
 
@@ -176,13 +176,13 @@ impl Told {
 
     /// The key after `key`, with the cursor in this column.
     #[inline]
-    pub(super) fn key(self, key: u64, cursor: u16) -> u64 {
+    pub(crate) fn key(self, key: u64, cursor: u16) -> u64 {
         key & self.kept | self.set | u64::from(cursor) & CURSOR
     }
 
     /// The sources of the colours after `path`.
     #[inline]
-    pub(super) fn sources(self, path: usize) -> [u8; 2] {
+    pub(crate) fn sources(self, path: usize) -> [u8; 2] {
         let [text, ground] = self.kept_sources.map(|kept| kept & path as u8);
         [text | self.set_sources[0], ground | self.set_sources[1]]
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::terminal::Fidelity;
 
 /// Frames of a player in motion.
-pub(in super::super) trait FrameSource {
+pub(crate) trait FrameSource {
     /// The size of a frame that is drawn at `now`, in bytes. `draw` is a random number below 1.
     fn bytes(&mut self, now: Duration, fidelity: Fidelity, draw: f64) -> f64;
 
@@ -15,25 +15,23 @@ pub(in super::super) trait FrameSource {
 
 /// The distribution of frame sizes.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Frames {
+pub(crate) struct Frames {
     /// The mean size of exact frames, in bytes.
-    pub(in super::super) exact: f64,
+    pub(crate) exact: f64,
     /// The maximum deviation from the mean, as a share of it.
-    pub(in super::super) spread: f64,
+    pub(crate) spread: f64,
     /// The share of the bytes that is left after compression: of an exact frame, and of a coarse
     /// one.
-    pub(in super::super) compressed: [f64; 2],
+    pub(crate) compressed: [f64; 2],
 }
 
 impl Frames {
     /// The frames of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
-    pub(in super::super) const CITADEL: Self =
-        Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
+    pub(crate) const CITADEL: Self = Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
     /// The same frames with `ssh -C`.
-    pub(in super::super) const COMPRESSED: Self =
-        Self { compressed: [0.183, 0.225], ..Self::CITADEL };
+    pub(crate) const COMPRESSED: Self = Self { compressed: [0.183, 0.225], ..Self::CITADEL };
 
-    pub(in super::super) fn all_of(bytes: usize) -> Self {
+    pub(crate) fn all_of(bytes: usize) -> Self {
         Self { exact: bytes as f64, spread: 0.0, compressed: [1.0, 1.0] }
     }
 }
@@ -50,6 +48,6 @@ impl FrameSource for Frames {
 }
 
 /// The factor by which frames are smaller at `fidelity`.
-pub(in super::super) fn saving(fidelity: Fidelity) -> f64 {
+pub(crate) fn saving(fidelity: Fidelity) -> f64 {
     1.0 + f64::from(fidelity.tolerance()) * 0.3
 }

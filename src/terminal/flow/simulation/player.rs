@@ -6,56 +6,56 @@ use super::super::*;
 use super::FrameSource;
 
 /// A player in motion, and the flow control of the game.
-pub(in super::super) struct Player {
-    pub(in super::super) flow: Flow,
-    pub(in super::super) shown: Vec<Shown>,
+pub(crate) struct Player {
+    pub(crate) flow: Flow,
+    pub(crate) shown: Vec<Shown>,
     /// The times from a key press to the first frame that reflects it, in order of the presses.
-    pub(in super::super) latencies: Vec<Latency>,
-    pub(super) frames: Box<dyn FrameSource>,
-    pub(super) due: Duration,
-    pub(super) next_key: Duration,
+    pub(crate) latencies: Vec<Latency>,
+    pub(crate) frames: Box<dyn FrameSource>,
+    pub(crate) due: Duration,
+    pub(crate) next_key: Duration,
     /// Answers and keys on their way to the game, with their arrival times.
-    pub(super) upward: VecDeque<(Duration, Upward)>,
+    pub(crate) upward: VecDeque<(Duration, Upward)>,
     /// The arrival times of the latest packets, upward and downward.
-    pub(super) last: [Duration; 2],
+    pub(crate) last: [Duration; 2],
     /// The keys that the next frame reflects, by the times of their presses.
-    pub(super) pressed: Vec<Duration>,
+    pub(crate) pressed: Vec<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Upward {
+pub(crate) enum Upward {
     Answer(Request),
     Key(Duration),
 }
 
 /// A key press, and the time until a frame showed it.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Latency {
-    pub(in super::super) pressed_at: Duration,
-    pub(in super::super) taken: Duration,
+pub(crate) struct Latency {
+    pub(crate) pressed_at: Duration,
+    pub(crate) taken: Duration,
 }
 
 /// A sent frame.
 #[derive(Clone, Debug)]
-pub(in super::super) struct Shown {
-    pub(in super::super) sent_at: Duration,
+pub(crate) struct Shown {
+    pub(crate) sent_at: Duration,
     /// The time at which it is on the screen; `None` if it has not arrived.
-    pub(in super::super) at: Option<Duration>,
-    pub(in super::super) fidelity: Fidelity,
-    pub(in super::super) bytes: usize,
-    pub(super) keys: Vec<Duration>,
-    pub(super) request: Request,
+    pub(crate) at: Option<Duration>,
+    pub(crate) fidelity: Fidelity,
+    pub(crate) bytes: usize,
+    pub(crate) keys: Vec<Duration>,
+    pub(crate) request: Request,
 }
 
 impl Shown {
     /// The age of the frame when it is shown; the maximum if it never is.
-    pub(in super::super) fn age(&self) -> Duration {
+    pub(crate) fn age(&self) -> Duration {
         self.at.map_or(Duration::MAX, |at| at.saturating_sub(self.sent_at))
     }
 }
 
 impl Player {
-    pub(super) fn new(frames: Box<dyn FrameSource>) -> Self {
+    pub(crate) fn new(frames: Box<dyn FrameSource>) -> Self {
         Self {
             flow: Flow::new(true),
             shown: Vec::new(),
@@ -69,7 +69,7 @@ impl Player {
         }
     }
 
-    pub(super) fn receive(&mut self, now: Duration, upward: Upward) {
+    pub(crate) fn receive(&mut self, now: Duration, upward: Upward) {
         match upward {
             Upward::Answer(Request::Status) => self.flow.answered(now),
             Upward::Answer(Request::Fence) => self.flow.fence_answered(now),
@@ -82,12 +82,12 @@ impl Player {
     }
 
     /// The frames sent after `time`.
-    pub(in super::super) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
+    pub(crate) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
         self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
     }
 
     /// The longest time between two frames that arrive from `begin` until `end`.
-    pub(in super::super) fn longest_freeze(&self, begin: Duration, end: Duration) -> Duration {
+    pub(crate) fn longest_freeze(&self, begin: Duration, end: Duration) -> Duration {
         let frames = self.shown.iter().filter(|shown| shown.bytes > 0);
         let arrivals = frames.filter_map(|shown| shown.at);
         let within = arrivals.filter(|at| (begin..end).contains(at));
@@ -96,7 +96,7 @@ impl Player {
     }
 
     /// The maximum in flight at any time, in bytes before compression.
-    pub(in super::super) fn most_in_flight(&self, begin: Duration) -> usize {
+    pub(crate) fn most_in_flight(&self, begin: Duration) -> usize {
         let in_flight = |time| {
             let is_there =
                 |shown: &&Shown| shown.sent_at <= time && shown.at.is_none_or(|at| at > time);

@@ -3,16 +3,16 @@
 use super::*;
 
 /// A player at a keyboard that repeats. A step passes every 16 ms.
-pub(super) struct Typist {
-    pub(super) held: HeldKeys<char>,
+pub(crate) struct Typist {
+    pub(crate) held: HeldKeys<char>,
     keyboard: Keyboard<char>,
-    pub(super) now: u64,
+    pub(crate) now: u64,
     /// The steps in which a key was tapped.
-    pub(super) tapped: u32,
+    pub(crate) tapped: u32,
 }
 
 impl Typist {
-    pub(super) fn new((delay, per_second): (u64, u32)) -> Self {
+    pub(crate) fn new((delay, per_second): (u64, u32)) -> Self {
         Self {
             held: HeldKeys::default(),
             keyboard: Keyboard::new(at(delay), per_second),
@@ -21,17 +21,17 @@ impl Typist {
         }
     }
 
-    pub(super) fn press(&mut self, key: char) {
+    pub(crate) fn press(&mut self, key: char) {
         let key = self.keyboard.press(key, at(self.now));
         press(&mut self.held, key, self.now);
     }
 
-    pub(super) fn release(&mut self, key: char) {
+    pub(crate) fn release(&mut self, key: char) {
         self.keyboard.release(key);
     }
 
     /// Lets time pass, and returns for how many milliseconds each of `keys` was `Held`.
-    pub(super) fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
+    pub(crate) fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
         let mut held_for = [0; N];
         for _ in 0..milliseconds {
             self.now += 1;

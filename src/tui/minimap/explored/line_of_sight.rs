@@ -20,7 +20,7 @@ use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 const LEAST_CLEARNESS: f64 = 1.0 / 32.0;
 
 /// An eye in a world, which all rays of one position share.
-pub(super) struct Observer<'a> {
+pub(crate) struct Observer<'a> {
     world: &'a World,
     /// The height of the eye, in cells.
     eye: f64,
@@ -54,7 +54,7 @@ impl SlopeRange {
 
 impl<'a> Observer<'a> {
     /// The eye of `camera`.
-    pub(super) fn new(world: &'a World, camera: &Camera) -> Self {
+    pub(crate) fn new(world: &'a World, camera: &Camera) -> Self {
         let eye = camera.eye();
         let heights = world.tiles().iter().map(|tile| {
             let top_gap = tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
@@ -74,7 +74,7 @@ impl<'a> Observer<'a> {
 
 impl Observer<'_> {
     /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
-    pub(super) fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
+    pub(crate) fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
         let grid = self.world.grid();
         let walk = WalkFromInside::new(grid, ray);
         let position = walk.as_ref().map(|&(_, cell, tile)| (cell, tile));
@@ -215,7 +215,7 @@ fn is_opaque_inside(tile: &Tile) -> bool {
 }
 
 /// A line of sight as far as it has been followed.
-struct Line {
+pub(crate) struct Line {
     walk: RayWalk,
     /// The cell that it is in; `None` off the map.
     position: Option<(Cell, TileId)>,

@@ -9,7 +9,7 @@ use crate::world::{Cell, Light, TileId, TileKind};
 impl Plane<'_> {
     /// The tile of the cell with this north-west corner, and the light that lamps add to it; `None`
     /// off the map.
-    pub(super) fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
+    pub(crate) fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
         let world = self.scene.world;
         // Casts saturate, and convert NaN to 0.
         let is_a_place = corner.is_finite();
@@ -20,7 +20,7 @@ impl Plane<'_> {
 
     /// The same, where walls are blended over planes: the centre of a pixel at the foot of a wall may be inside
     /// the wall. The pixel that is nearer to the eye by a row then tells the ground.
-    pub(super) fn ground_before_walls(
+    pub(crate) fn ground_before_walls(
         &self,
         corner: DVec2,
         (row, x): (u32, usize),

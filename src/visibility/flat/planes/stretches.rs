@@ -7,19 +7,19 @@ use crate::visibility::{Column, DrawnPlane, PlaneSpan, Scene, SpanMapping};
 /// A row that shows the plane.
 #[derive(Clone, Debug)]
 pub(crate) struct PlaneRow {
-    pub(super) row: u32,
-    pub(super) mapping: SpanMapping,
+    pub(crate) row: u32,
+    pub(crate) mapping: SpanMapping,
     /// The first column of the span that has not ended yet.
     span_start: usize,
 }
 
 impl PlaneRow {
-    pub(super) fn new(scene: Scene<'_>, row: u32, span_start: usize) -> Self {
+    pub(crate) fn new(scene: Scene<'_>, row: u32, span_start: usize) -> Self {
         Self { row, mapping: scene.projection.mapping(row), span_start }
     }
 
     /// The span of `columns` that shows `plane`.
-    pub(super) fn span(&self, columns: Range<usize>, plane: DrawnPlane) -> PlaneSpan<'_> {
+    pub(crate) fn span(&self, columns: Range<usize>, plane: DrawnPlane) -> PlaneSpan<'_> {
         let DrawnPlane { pass, covering, light } = plane;
         PlaneSpan { pass, row: self.row, columns, covering, light, mapping: &self.mapping }
     }
@@ -27,7 +27,7 @@ impl PlaneRow {
 
 /// Calls `emit` for every stretch of `columns` that shows a row of a plane. A column shows the first
 /// `visible` rows, counted from the edge of the picture. `row_at` makes a row with its span's start.
-pub(super) fn for_each_stretch(
+pub(crate) fn for_each_stretch(
     columns: &[Column],
     visible: impl Fn(&Column) -> u32,
     memory: &mut Vec<PlaneRow>,

@@ -7,7 +7,7 @@
 //! dozens of them.
 
 mod picture;
-pub(super) mod skeleton;
+pub(crate) mod skeleton;
 mod solid;
 mod view;
 
@@ -16,32 +16,32 @@ use glam::{DAffine3, DVec3};
 use super::painted_by;
 use crate::world::Texture;
 use crate::world::sprite::Facings;
-pub(super) use picture::Size;
+pub(crate) use picture::Size;
 use picture::Studio;
-pub(super) use solid::{Paint, glowing, matt};
+pub(crate) use solid::{Paint, glowing, matt};
 use solid::{Shape, Solid};
 use view::View;
 
 /// Solids in the coordinates of a body: x forwards, y to its right, z upwards from the floor, in
 /// texels.
 #[derive(Default)]
-pub(super) struct Model {
+pub(crate) struct Model {
     solids: Vec<Solid>,
 }
 
 impl Model {
     /// Adds a limb: the hull of two balls.
-    pub(super) fn limb(&mut self, ends: [DVec3; 2], radii: [f64; 2], paint: Paint) {
+    pub(crate) fn limb(&mut self, ends: [DVec3; 2], radii: [f64; 2], paint: Paint) {
         self.solids.push(Solid { shape: Shape::Limb { ends, radii }, paint });
     }
 
     /// Adds a ball.
-    pub(super) fn ball(&mut self, center: DVec3, radius: f64, paint: Paint) {
+    pub(crate) fn ball(&mut self, center: DVec3, radius: f64, paint: Paint) {
         self.limb([center; 2], [radius; 2], paint);
     }
 
     /// Adds an ellipsoid around the point `center` of `frame`, with those half axes in it.
-    pub(super) fn ellipsoid(
+    pub(crate) fn ellipsoid(
         &mut self,
         frame: DAffine3,
         center: [f64; 3],
@@ -53,7 +53,7 @@ impl Model {
     }
 
     /// Adds a block around the point `center` of `frame`, with those half sides in it.
-    pub(super) fn block(
+    pub(crate) fn block(
         &mut self,
         frame: DAffine3,
         center: [f64; 3],
@@ -67,7 +67,7 @@ impl Model {
 
 /// The lines of sight that the pictures of those models need at most.
 #[cfg(test)]
-pub(super) fn lines_of_sight(frames: impl Iterator<Item = Model>, size: Size) -> usize {
+pub(crate) fn lines_of_sight(frames: impl Iterator<Item = Model>, size: Size) -> usize {
     let lines_of = |model: &Model, view: View| -> usize {
         let seen = model.solids.iter().map(|solid| solid.seen(view));
         seen.map(|seen| size.columns(&seen).len() * size.rows(&seen).len()).sum()
@@ -84,7 +84,7 @@ fn placed(frame: DAffine3, center: [f64; 3], half: [f64; 3]) -> DAffine3 {
 
 /// The pictures of the models of `frames`, frame by frame and within each frame facing by facing. A model is
 /// made again for each picture that is first shown: that takes a hundredth of the time of the picture.
-pub(super) fn pictures<F: Copy + Send + Sync + 'static>(
+pub(crate) fn pictures<F: Copy + Send + Sync + 'static>(
     frames: impl IntoIterator<Item = F>,
     model: fn(F) -> Model,
     size: Size,

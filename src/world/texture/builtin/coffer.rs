@@ -21,7 +21,7 @@ const ROSETTE: i32 = 17;
 const BUD: i32 = 6;
 
 /// A coffer as large as the texture; the beams are centred on its edges.
-pub(super) fn coffer(x: i32, y: i32) -> Rgb {
+pub(crate) fn coffer(x: i32, y: i32) -> Rgb {
     let block = Block::in_squares(SIDE, x, y);
     // The lower and the right side of a sunken panel face the light.
     let toward_light = -block.slope();

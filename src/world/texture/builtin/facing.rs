@@ -7,7 +7,7 @@ use super::{SIDE, wrapped};
 use crate::color::Rgb;
 
 /// A chequerboard of glazed tiles.
-pub(super) fn tile(x: i32, y: i32) -> Rgb {
+pub(crate) fn tile(x: i32, y: i32) -> Rgb {
     const TILE: i32 = 16;
     const SEA: Rgb = Rgb::new(0x1e, 0x72, 0x7e);
     const CREAM: Rgb = Rgb::new(0xde, 0xd6, 0xbe);
@@ -23,7 +23,7 @@ pub(super) fn tile(x: i32, y: i32) -> Rgb {
 }
 
 /// Limewashed plaster with a crack in it, between a skirting board and a picture rail.
-pub(super) fn plaster(x: i32, y: i32) -> Rgb {
+pub(crate) fn plaster(x: i32, y: i32) -> Rgb {
     const LIME: Rgb = Rgb::new(0xd2, 0xc2, 0xa2);
     const PAINT: Rgb = Rgb::new(0x6e, 0x4a, 0x3a);
     const RAIL: i32 = 4;
@@ -66,7 +66,7 @@ fn crack(x: i32, y: i32) -> i32 {
 }
 
 /// White slabs with grey veins, one slab for each wall.
-pub(super) fn marble(x: i32, y: i32) -> Rgb {
+pub(crate) fn marble(x: i32, y: i32) -> Rgb {
     const WHITE: Rgb = Rgb::new(0xd4, 0xd6, 0xda);
     const VEIN: Rgb = Rgb::new(0x5c, 0x66, 0x7a);
     const JOINT: Rgb = Rgb::new(0x8a, 0x8e, 0x98);

@@ -9,7 +9,7 @@ const IRON: Rgb = Rgb::new(0x86, 0x88, 0x8c);
 const RUST: Noise = Noise::new(17, 16, 8);
 
 /// Upright bars in a frame, with a band across.
-pub(super) fn grate(x: i32, y: i32) -> Option<Rgb> {
+pub(crate) fn grate(x: i32, y: i32) -> Option<Rgb> {
     const BAR: i32 = 16;
     const BAR_HALF: i32 = 3;
     const FRAME: i32 = 5;
@@ -37,7 +37,7 @@ fn round(from_middle: i32, half: i32) -> i32 {
 }
 
 /// An iron frame with an upright slot in the middle for the leaf of a door.
-pub(super) fn jamb(x: i32, y: i32) -> Rgb {
+pub(crate) fn jamb(x: i32, y: i32) -> Rgb {
     const SLOT_HALF: i32 = 6;
     const LIP: i32 = 4;
     const BRACE: i32 = 32;

@@ -6,7 +6,7 @@ use super::shade::shade;
 use crate::color::Rgb;
 
 /// Steel plates, a rivet in each corner.
-pub(super) fn metal(x: i32, y: i32) -> Rgb {
+pub(crate) fn metal(x: i32, y: i32) -> Rgb {
     const PLATE: i32 = 32;
     const STEEL: Rgb = Rgb::new(0x6c, 0x7a, 0x88);
     const SEAM: Rgb = Rgb::new(0x20, 0x26, 0x30);

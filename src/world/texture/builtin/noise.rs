@@ -3,7 +3,7 @@
 use super::SIDE;
 
 /// A random-looking number that depends only on `x`, `y` and `seed`.
-pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+pub(crate) fn hash(x: i32, y: i32, seed: u32) -> u32 {
     let mut bits = (x as u32)
         .wrapping_mul(0x9e37_79b1)
         .wrapping_add((y as u32).wrapping_mul(0x85eb_ca77))
@@ -20,7 +20,7 @@ pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
 ///
 /// The lattice wraps around at the texture's edges, and the noise with it.
 #[derive(Clone, Copy)]
-pub(super) struct Noise {
+pub(crate) struct Noise {
     seed: u32,
     across: Spacing,
     down: Spacing,
@@ -36,12 +36,12 @@ struct Spacing {
 impl Noise {
     /// Noise with lattice points `across` texels apart in a row and `down` texels in a column. Both
     /// divide the texture's side, which is a power of two.
-    pub(super) const fn new(seed: u32, across: i32, down: i32) -> Self {
+    pub(crate) const fn new(seed: u32, across: i32, down: i32) -> Self {
         Self { seed, across: Spacing::new(across), down: Spacing::new(down) }
     }
 
     /// The noise at a texel: from `-swing` to `swing`.
-    pub(super) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
+    pub(crate) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
         let (left, from_left) = self.across.split(x);
         let (top, from_top) = self.down.split(y);
         let upper = blend(self.point(left, top), self.point(left + 1, top), from_left);

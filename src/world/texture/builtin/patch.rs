@@ -5,20 +5,20 @@ use super::{SIDE, wrapped};
 
 /// The position of a texel in a patch.
 #[derive(Clone, Copy)]
-pub(super) struct Patch {
+pub(crate) struct Patch {
     /// Texels right of the patch's point.
-    pub(super) x: i32,
+    pub(crate) x: i32,
     /// Texels below the patch's point.
-    pub(super) y: i32,
+    pub(crate) y: i32,
     /// Sixteenths of a texel to the border of the next patch.
-    pub(super) rim: i32,
+    pub(crate) rim: i32,
     /// The index of the patch's point.
-    pub(super) id: i32,
+    pub(crate) id: i32,
 }
 
 impl Patch {
     /// The patch around one of `points` that contains `(x, y)`.
-    pub(super) fn around(points: impl Iterator<Item = (i32, i32)>, x: i32, y: i32) -> Self {
+    pub(crate) fn around(points: impl Iterator<Item = (i32, i32)>, x: i32, y: i32) -> Self {
         let mut nearest = FAR;
         let mut next = FAR;
         for (id, (point_x, point_y)) in (0..).zip(points) {

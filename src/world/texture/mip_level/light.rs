@@ -8,17 +8,17 @@
 use std::num::NonZeroU32;
 
 /// A picture in linear light: 16 bits for each of red, green and blue.
-pub(super) struct Light {
-    pub(super) width: NonZeroU32,
-    pub(super) height: NonZeroU32,
-    pub(super) texels: Vec<[u16; 3]>,
+pub(crate) struct Light {
+    pub(crate) width: NonZeroU32,
+    pub(crate) height: NonZeroU32,
+    pub(crate) texels: Vec<[u16; 3]>,
     /// As in a [`MipLevel`](super::MipLevel).
-    pub(super) alpha: Vec<u8>,
+    pub(crate) alpha: Vec<u8>,
 }
 
 impl Light {
     /// A picture of half the width and height.
-    pub(super) fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         let half = |side: NonZeroU32| NonZeroU32::new(side.get() / 2).unwrap_or(NonZeroU32::MIN);
         let (width, height) = (half(self.width), half(self.height));
         let is_even = |side: NonZeroU32| side.get().is_multiple_of(2);

@@ -8,7 +8,7 @@ use std::process::Command;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// A namespace, which is deleted when this is dropped.
-pub(super) struct Network {
+pub(crate) struct Network {
     namespace: String,
     /// The end of the link outside of the namespace.
     link: String,
@@ -17,7 +17,7 @@ pub(super) struct Network {
 }
 
 impl Network {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         static COUNT: AtomicU8 = AtomicU8::new(0);
         let (process, count) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let network = Self {
@@ -39,17 +39,17 @@ impl Network {
     }
 
     /// The name of the namespace.
-    pub(super) fn namespace(&self) -> &str {
+    pub(crate) fn namespace(&self) -> &str {
         &self.namespace
     }
 
     /// The address of what the hosts share.
-    pub(super) fn shared(&self) -> Ipv4Addr {
+    pub(crate) fn shared(&self) -> Ipv4Addr {
         self.address(1)
     }
 
     /// The address of the host.
-    pub(super) fn host(&self) -> Ipv4Addr {
+    pub(crate) fn host(&self) -> Ipv4Addr {
         self.address(2)
     }
 
@@ -59,12 +59,12 @@ impl Network {
     }
 
     /// Cuts the link.
-    pub(super) fn cut(&self) {
+    pub(crate) fn cut(&self) {
         ip(&format!("link set {} down", self.link));
     }
 
     /// Mends the link.
-    pub(super) fn mend(&self) {
+    pub(crate) fn mend(&self) {
         ip(&format!("link set {} up", self.link));
         ip(&format!("route add {}/32 dev {}", self.host(), self.link));
     }

@@ -7,22 +7,22 @@ use std::thread;
 use std::time::Duration;
 
 /// A proxy before a server, which cuts one connection.
-pub(super) struct Proxy {
+pub(crate) struct Proxy {
     port: u16,
     cut: Arc<Mutex<Option<Cut>>>,
 }
 
 /// Where a connection is cut.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+pub(crate) struct Cut {
     /// At the first packet from the client with this text.
-    pub(super) at: &'static str,
+    pub(crate) at: &'static str,
     /// Whether the server gets the packet, and does what it says. The client never has the answer.
-    pub(super) is_passed_on: bool,
+    pub(crate) is_passed_on: bool,
 }
 
 impl Proxy {
-    pub(super) fn before(server: u16) -> Self {
+    pub(crate) fn before(server: u16) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let cut = Arc::new(Mutex::new(None));
@@ -37,17 +37,17 @@ impl Proxy {
     }
 
     /// The address of the same database through the proxy.
-    pub(super) fn address(&self, address: &str, server: u16) -> String {
+    pub(crate) fn address(&self, address: &str, server: u16) -> String {
         address.replace(&format!(":{server}/"), &format!(":{}/", self.port))
     }
 
     /// Cuts the connection that comes to `cut` first.
-    pub(super) fn cut(&self, cut: Cut) {
+    pub(crate) fn cut(&self, cut: Cut) {
         *self.cut.lock().unwrap() = Some(cut);
     }
 
     /// Whether it has done so.
-    pub(super) fn has_cut(&self) -> bool {
+    pub(crate) fn has_cut(&self) -> bool {
         self.cut.lock().unwrap().is_none()
     }
 }

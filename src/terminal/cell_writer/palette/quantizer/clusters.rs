@@ -13,16 +13,16 @@ use super::super::super::style::Shade;
 
 /// A colour of a frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
-    pub(super) shade: Shade,
-    pub(super) lab: [f32; 3],
+pub(crate) struct Sample {
+    pub(crate) shade: Shade,
+    pub(crate) lab: [f32; 3],
     /// The number of half cells that have it.
-    pub(super) count: f32,
+    pub(crate) count: f32,
 }
 
 /// Clusters of colours, one for each entry.
 #[derive(Debug)]
-pub(super) struct Clusters {
+pub(crate) struct Clusters {
     /// Their centres in Oklab, component by component.
     centers: [Vec<f32>; 3],
     /// The number of the frame in which each was last in use.
@@ -51,17 +51,17 @@ const NEAR: f32 = 0.004;
 
 impl Clusters {
     /// Undefined clusters.
-    pub(super) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self { centers: [0, 1, 2].map(|_| vec![UNDEFINED; count]), used_at: vec![0; count] }
     }
 
     /// Records that an entry is in use.
-    pub(super) fn note_use(&mut self, place: u8, frame: u32) {
+    pub(crate) fn note_use(&mut self, place: u8, frame: u32) {
         self.used_at[usize::from(place)] = frame;
     }
 
     /// The cluster nearest to a colour, and the distance.
-    pub(super) fn nearest(&self, [l, a, b]: [f32; 3]) -> (u8, f32) {
+    pub(crate) fn nearest(&self, [l, a, b]: [f32; 3]) -> (u8, f32) {
         /// At least the number of entries.
         const MOST: usize = 256;
         let [ls, as_, bs] = &self.centers;
@@ -80,7 +80,7 @@ impl Clusters {
     }
 
     /// Fits the entries, which have the colours `shades`, to `samples`. Returns their new colours.
-    pub(super) fn fit(&mut self, samples: &[Sample], shades: &[Shade]) -> Vec<Shade> {
+    pub(crate) fn fit(&mut self, samples: &[Sample], shades: &[Shade]) -> Vec<Shade> {
         let before = self.centers.clone();
         for _ in 0..ROUNDS {
             let (sums, error) = self.sums(samples);

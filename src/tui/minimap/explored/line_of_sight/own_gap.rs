@@ -10,7 +10,7 @@ use crate::world::{Cell, TileId};
 
 /// What a tile is for a ray that has been in cells with the observer's own gap only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Passage {
+pub(crate) enum Passage {
     /// The same gap, in which nothing opaque stands: the ray sees the cell.
     Same,
     /// A block that ends the ray, which sees its face.
@@ -53,11 +53,11 @@ impl Certain {
 impl Observer<'_> {
     /// Has rays do the same in all cells.
     #[cfg(test)]
-    pub(in super::super) fn forget_passages(&mut self) {
+    pub(crate) fn forget_passages(&mut self) {
         self.passages.fill(Passage::Other);
     }
 
-    pub(super) fn find_passages(&mut self) {
+    pub(crate) fn find_passages(&mut self) {
         let Self { world, eye, top, own_gap, .. } = *self;
         let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
         if !is_inside {
@@ -78,7 +78,7 @@ impl Observer<'_> {
     /// Follows the walk of `ray` from `position`, where it begins, through cells with the observer's own
     /// gap. Returns the line in the last of them, or `None` if it ends there.
     #[inline]
-    pub(super) fn follow_through_own_gap(
+    pub(crate) fn follow_through_own_gap(
         &self,
         walk: WalkFromInside,
         ray: &Ray,
@@ -136,7 +136,7 @@ impl Observer<'_> {
     }
 
     #[inline]
-    pub(super) fn passage(&self, tile: TileId) -> Passage {
+    pub(crate) fn passage(&self, tile: TileId) -> Passage {
         self.passages[usize::from(tile.0)]
     }
 }

@@ -13,13 +13,13 @@ use crate::world::sprite::builtin::INK;
 /// The size of a picture, in texels. The body's axis is in the middle, and the floor is one texel
 /// above the lower edge, which leaves room for the outline.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Size {
-    pub(in super::super) width: u32,
-    pub(in super::super) height: u32,
+pub(crate) struct Size {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
 }
 
 /// The picture of a model in the making.
-pub(super) struct Studio {
+pub(crate) struct Studio {
     size: Size,
     /// Row by row from the top, with an empty margin of one texel on all sides.
     texels: Vec<Texel>,
@@ -40,12 +40,12 @@ const NOTHING: Texel = Texel { depth: f64::NEG_INFINITY, color: INK, glows: fals
 const EDGE: f64 = 2.2;
 
 impl Studio {
-    pub(super) fn new(size: Size) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
         Self { size, texels: vec![NOTHING; size.stride() * (size.height as usize + 2)] }
     }
 
     /// Draws `solids` in `view`.
-    pub(super) fn draw_all(&mut self, solids: &[Solid], view: View) {
+    pub(crate) fn draw_all(&mut self, solids: &[Solid], view: View) {
         // From the nearest on, so that most of what is hidden is refused by its depth.
         let mut seen: Vec<_> = solids.iter().map(|solid| (solid.seen(view), solid.paint)).collect();
         sort::by(&mut seen, |(one, _), (other, _)| other.nearest.total_cmp(&one.nearest));
@@ -74,7 +74,7 @@ impl Studio {
 
     /// The colour at `(x, y)` with outlines: around the figure, and where a part is well behind its
     /// neighbour.
-    pub(super) fn outlined(&self, x: usize, y: usize) -> Option<Rgb> {
+    pub(crate) fn outlined(&self, x: usize, y: usize) -> Option<Rgb> {
         let (place, stride) = (self.size.place(x, y), self.size.stride());
         let own = self.texels[place];
         let near = [place - 1, place + 1, place - stride, place + stride];
@@ -106,13 +106,13 @@ impl Size {
     }
 
     /// The columns whose middles a solid may cover.
-    pub(super) fn columns(self, seen: &Seen) -> Range<u32> {
+    pub(crate) fn columns(self, seen: &Seen) -> Range<u32> {
         let middle = f64::from(self.width) / 2.0;
         between(seen.low.x + middle, seen.high.x + middle, self.width)
     }
 
     /// The rows above the floor whose middles a solid may cover.
-    pub(super) fn rows(self, seen: &Seen) -> Range<u32> {
+    pub(crate) fn rows(self, seen: &Seen) -> Range<u32> {
         let floor = f64::from(self.height) - 1.0;
         between(floor - seen.high.y, floor - seen.low.y, self.height - 1)
     }

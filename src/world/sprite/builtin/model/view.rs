@@ -9,8 +9,8 @@ use crate::world::sprite::Facings;
 /// From the coordinates of a body to those of a picture: x to the right, y upwards, z towards the
 /// viewer.
 #[derive(Clone, Copy)]
-pub(super) struct View {
-    pub(super) matrix: DMat3,
+pub(crate) struct View {
+    pub(crate) matrix: DMat3,
 }
 
 /// How far above the horizon the viewer is, in radians: the top of what lies on the floor shows.
@@ -18,7 +18,7 @@ const ELEVATION: f64 = 0.17;
 
 impl View {
     /// The views of all facings, from the front on and clockwise around the body.
-    pub(super) fn all(facings: Facings) -> impl Iterator<Item = Self> {
+    pub(crate) fn all(facings: Facings) -> impl Iterator<Item = Self> {
         let turn = TAU / f64::from(facings.count());
         (0..facings.count()).map(move |facing| Self::from_angle(f64::from(facing) * turn))
     }
