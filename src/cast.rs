@@ -47,8 +47,7 @@ pub use exact::{Exact, ExactOrder};
 pub(crate) use hit::HitFace;
 #[cfg(feature = "tui")]
 pub(crate) use hit::distance_on_entry;
-#[cfg(feature = "lab")]
-pub(crate) use hit::texture_coordinate;
+pub use hit::texture_coordinate;
 pub use hit::{Hit, Side};
 pub(crate) use major_axis::MajorAxisTraversal;
 pub use ray::{Ray, RayError};
@@ -56,8 +55,7 @@ pub use rounded::RoundedOrder;
 pub(crate) use shape::Passage;
 #[cfg(feature = "tui")]
 pub(crate) use walk::WalkFromInside;
-#[cfg(feature = "lab")]
-pub(crate) use walk::first_line;
+pub use walk::first_line;
 pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Order, Walk};
 

@@ -6,10 +6,10 @@
 //! pictures must be the same, bit for bit, on every machine and with every version.
 
 pub mod lab;
-pub(crate) mod oklab;
+pub mod oklab;
 pub mod palette;
 mod rgb;
-pub(crate) mod srgb;
+pub mod srgb;
 
 use std::ops::{Add, Mul};
 

@@ -71,16 +71,12 @@ pub mod color;
 pub mod fault;
 pub mod game;
 pub mod generate;
-#[cfg(feature = "lab")]
-pub mod lab;
 pub mod map;
-mod numeric;
+pub mod numeric;
 mod raster;
 pub mod render;
 pub mod rng;
-#[cfg(feature = "serve")]
-pub mod server;
-mod sort;
+pub mod sort;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod store;
@@ -88,7 +84,7 @@ pub mod store;
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
-mod visibility;
+pub mod visibility;
 pub mod world;
 
 /// The examples of the README, compiled and run as tests.

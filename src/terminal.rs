@@ -29,7 +29,7 @@ mod recorder;
 mod sequence;
 mod session;
 mod size;
-pub(crate) mod thread_memory;
+pub mod thread_memory;
 mod tmux;
 #[cfg(unix)]
 mod unix;
@@ -53,7 +53,8 @@ pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
 pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
 pub use self::options::Options;
 #[cfg(feature = "cli")]
-pub(crate) use self::platform::{peak_memory, take_keys_from_terminal};
+pub use self::platform::peak_memory;
+pub(crate) use self::platform::take_keys_from_terminal;
 pub use self::protocol::Protocol;
 pub use self::recorder::Recorder;
 pub use self::session::Session;

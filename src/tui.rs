@@ -38,8 +38,7 @@ mod wanted;
 
 pub use correction::Correction;
 pub use first_person::{FirstPerson, View};
-#[cfg(feature = "serve")]
-pub(crate) use glyphs::color_at;
+pub use glyphs::color_at;
 pub use glyphs::{CellAspect, GlyphSet};
 pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
 pub use minimap::{Explored, MapMark, Minimap};

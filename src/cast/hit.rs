@@ -223,7 +223,7 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
 /// The texture coordinate of a point `along` cells from the north or west end of a face, for a
 /// viewer who looks along `direction`.
 #[inline]
-pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
+pub fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
     from_left(along, is_from_left(direction, side))
 }
 

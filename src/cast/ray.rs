@@ -46,7 +46,7 @@ impl Ray {
     /// The direction scaled by a power of two so that its larger component is between 1/2 and 1,
     /// and the exponent of the divisor. The smaller component underflows to 0 if it is too small
     /// relative to the larger one.
-    pub(crate) fn scaled_direction(&self) -> (DVec2, i32) {
+    pub fn scaled_direction(&self) -> (DVec2, i32) {
         let exponent = libm::ilogb(self.direction.abs().max_element()) + 1;
         let scale = |component| libm::scalbn(component, -exponent);
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
@@ -60,7 +60,7 @@ impl Ray {
     }
 
     /// The ray of the same line with another origin and another unit of `t`.
-    pub(crate) fn moved(origin: DVec2, direction: DVec2) -> Self {
+    pub fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }
     }
 }

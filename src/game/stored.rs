@@ -29,17 +29,17 @@ mod whole;
 
 use std::fmt;
 
-pub(crate) use self::codec::{Reader, Stored, StoredPart, Writer, check, check_on_map};
-pub(crate) use self::macros::stored;
-#[cfg(feature = "cluster")]
-pub(crate) use self::numbers::MOST_COUNT;
+pub use self::codec::{Reader, Stored, StoredPart, Writer, check, check_on_map};
+pub use self::numbers::MOST_COUNT;
+#[doc(hidden)]
+pub use crate::stored;
 
 /// The version of the rules. It grows with every change after which the same intents may give another
 /// game.
 pub const RULES_VERSION: u32 = 2;
 
 /// The most bytes that are read.
-pub(crate) const MOST_BYTES: usize = 1 << 20;
+pub const MOST_BYTES: usize = 1 << 20;
 
 /// Why bytes give no game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,13 +78,13 @@ impl fmt::Display for Unrestorable {
 impl std::error::Error for Unrestorable {}
 
 /// The first line of what is stored as `kind`.
-pub(crate) fn first_line(kind: &str) -> String {
+pub fn first_line(kind: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("cellcaster-{kind} 1 rules {RULES_VERSION} version {version}\n")
 }
 
 /// What follows the first line of what is stored as `kind`.
-pub(crate) fn after_first_line<'a>(kind: &str, bytes: &'a [u8]) -> Result<&'a [u8], Unrestorable> {
+pub fn after_first_line<'a>(kind: &str, bytes: &'a [u8]) -> Result<&'a [u8], Unrestorable> {
     if bytes.len() > MOST_BYTES {
         return Err(Unrestorable::TooLong);
     }

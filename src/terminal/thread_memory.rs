@@ -10,12 +10,12 @@ use std::thread::LocalKey;
 
 /// Takes the thread's memory out of its `place`. During a nested call, and at the end of the thread,
 /// it is new.
-pub(crate) fn take<T: Default>(place: &'static LocalKey<Cell<T>>) -> T {
+pub fn take<T: Default>(place: &'static LocalKey<Cell<T>>) -> T {
     place.try_with(Cell::take).unwrap_or_default()
 }
 
 /// Puts memory back for the next call.
-pub(crate) fn put_back<T>(place: &'static LocalKey<Cell<T>>, memory: T) {
+pub fn put_back<T>(place: &'static LocalKey<Cell<T>>, memory: T) {
     // At the end of the thread, it is dropped.
     _ = place.try_with(|place| place.set(memory));
 }

@@ -17,7 +17,7 @@ use rustix::termios::{
 };
 
 #[cfg(feature = "cli")]
-pub(crate) use self::memory::peak_memory;
+pub use self::memory::peak_memory;
 pub(crate) use self::signals::{Signal, Signals};
 use super::{Error, WindowSize};
 

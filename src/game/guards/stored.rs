@@ -65,7 +65,7 @@ impl StoredPart for Guards {
 
 impl Guards {
     /// Refuses a state in which a step could fail.
-    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World) -> Result<(), Unrestorable> {
         self.trails.iter().try_for_each(|trail| trail.check(self.steps))?;
         for guard in &self.list {
             guard.check(world)?;

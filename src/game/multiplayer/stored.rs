@@ -38,7 +38,7 @@ impl StoredPart for Members {
 
 impl Members {
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         self.each().try_for_each(|(_, member)| {
             let Member { player, walked, .. } = member;
             check(*walked >= 0.0, "how far a player has walked")?;

@@ -68,7 +68,7 @@ impl Hearing {
     }
 
     /// Refuses what cannot be heard.
-    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+    pub fn check(&self) -> Result<(), Unrestorable> {
         let is_audible = |heard: &Heard| {
             (1..=3).contains(&heard.strength) && (1..=DURATION).contains(&heard.left)
         };

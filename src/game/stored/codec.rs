@@ -17,7 +17,7 @@ use super::Unrestorable;
 use crate::world::World;
 
 /// A value that is stored as a whole.
-pub(crate) trait Stored: Sized {
+pub trait Stored: Sized {
     /// Appends the value.
     fn write(&self, out: &mut Writer);
 
@@ -26,7 +26,7 @@ pub(crate) trait Stored: Sized {
 }
 
 /// A value of which the level gives one part, and the other part is stored.
-pub(crate) trait StoredPart {
+pub trait StoredPart {
     /// Appends the part that is stored.
     fn write(&self, out: &mut Writer);
 
@@ -36,23 +36,23 @@ pub(crate) trait StoredPart {
 
 /// Bytes that grow.
 #[derive(Debug, Default)]
-pub(crate) struct Writer {
+pub struct Writer {
     bytes: Vec<u8>,
 }
 
 impl Writer {
     /// What was written.
-    pub(crate) fn into_bytes(self) -> Vec<u8> {
+    pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
 
     /// Appends bytes as they are.
-    pub(crate) fn raw(&mut self, bytes: &[u8]) {
+    pub fn raw(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
     /// Appends a whole number.
-    pub(crate) fn number(&mut self, mut number: u64) {
+    pub fn number(&mut self, mut number: u64) {
         while number >= 0x80 {
             self.bytes.push(number as u8 | 0x80);
             number >>= 7;
@@ -71,14 +71,14 @@ impl Writer {
 
 /// Bytes that are left to read, and the size of the map that they are about.
 #[derive(Debug)]
-pub(crate) struct Reader<'a> {
+pub struct Reader<'a> {
     bytes: &'a [u8],
     size: (u32, u32),
 }
 
 impl<'a> Reader<'a> {
     /// Reads `bytes`, in which all cells are on a map with that many columns and rows.
-    pub(crate) fn new(bytes: &'a [u8], size: (u32, u32)) -> Self {
+    pub fn new(bytes: &'a [u8], size: (u32, u32)) -> Self {
         Self { bytes, size }
     }
 
@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The bytes that are left.
-    pub(crate) fn rest(&self) -> &'a [u8] {
+    pub fn rest(&self) -> &'a [u8] {
         self.bytes
     }
 
@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a whole number in its shortest form.
-    pub(crate) fn number(&mut self) -> Result<u64, Unrestorable> {
+    pub fn number(&mut self) -> Result<u64, Unrestorable> {
         let mut number = 0;
         for shift in (0..u64::BITS).step_by(7) {
             let byte = self.raw(1)?[0];
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a whole number up to `most`.
-    pub(crate) fn number_to(&mut self, most: u64) -> Result<u64, Unrestorable> {
+    pub fn number_to(&mut self, most: u64) -> Result<u64, Unrestorable> {
         let number = self.number()?;
         (number <= most).then_some(number).ok_or(Unrestorable::Damaged("a number"))
     }
@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a list of at most `most` values.
-    pub(crate) fn list<T: Stored>(&mut self, most: usize) -> Result<Vec<T>, Unrestorable> {
+    pub fn list<T: Stored>(&mut self, most: usize) -> Result<Vec<T>, Unrestorable> {
         let length = self.length()?;
         check(length <= most, "the length of a list")?;
         (0..length).map(|_| T::read(self)).collect()
@@ -147,12 +147,12 @@ impl<'a> Reader<'a> {
 }
 
 /// An error that names `what`, unless it holds.
-pub(crate) fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
+pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
     if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
 }
 
 /// An error, unless a position is on the map of `world`.
-pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
+pub fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
     let end = DVec2::new(world.grid().width().into(), world.grid().height().into());
     let is_on_map = position.cmpge(DVec2::ZERO).all() && position.cmplt(end).all();
     check(is_on_map, "a position")

@@ -3,6 +3,8 @@
 /// Implements [`Stored`], for `struct Name { field, … }` and `enum Name { 0: Variant { field, … }, … }`, and
 /// [`StoredPart`], for `part of Name { field, … } level { field, … }`, whose last list names the fields that
 /// the level gives.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! stored {
     (struct $name:ident { $($field:ident),* $(,)? }) => {
         impl $crate::game::stored::Stored for $name {
@@ -63,4 +65,3 @@ macro_rules! stored {
         }
     };
 }
-pub(crate) use stored;

@@ -11,7 +11,7 @@ use crate::world::Cell;
 /// The largest real number that a game has anywhere: above twice the greatest height of a map.
 const MOST_REAL: f64 = 4e9;
 /// The largest time or count. Numbers below it can be added for millions of years.
-pub(crate) const MOST_COUNT: u64 = 1 << 53;
+pub const MOST_COUNT: u64 = 1 << 53;
 
 macro_rules! whole_numbers {
     ($($type:ident by $widened:expr, to $most:expr;)*) => {$(

@@ -2,7 +2,7 @@
 
 use super::Unrestorable;
 use super::codec::{Reader, Stored, Writer, check};
-use super::macros::stored;
+use super::stored;
 use crate::rng::SplitMix64;
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{

@@ -12,7 +12,6 @@ use super::glyph_table::GlyphTable;
 use super::packed_cell::{Form, PackedCell};
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
-#[cfg(feature = "lab")]
 use crate::canvas::Mosaic;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
@@ -210,7 +209,6 @@ impl Screen {
     }
 
     /// The mosaic that a shown cell is, if it is one.
-    #[cfg(feature = "lab")]
     pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;

@@ -3,7 +3,7 @@
 use std::fs;
 
 /// The peak memory of this process in bytes, on Linux; `None` on other systems.
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
