@@ -11,10 +11,10 @@ use super::stats::{Meter, Stats};
 use super::time::Time;
 use super::{App, Levels, Offers, Recording, Settings, TerminalLook};
 use crate::app::store::Store;
-use crate::canvas::Canvas;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, GlyphSet};
 
 /// What the program begins with.
