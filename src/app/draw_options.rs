@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::layout::Size;
 
 use super::hud;
-use crate::canvas::Canvas;
+use crate::tui::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};

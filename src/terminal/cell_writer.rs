@@ -51,7 +51,7 @@ use self::style::Shade;
 #[cfg(feature = "cli")]
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -204,7 +204,7 @@ impl<W: Write> CellWriter<W> {
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
-    /// use cellcaster::canvas::Canvas;
+    /// use cellcaster::tui::canvas::Canvas;
     /// use ratatui::backend::Backend;
     /// use ratatui::layout::Size;
     ///

@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use cellcaster::lab::speed::{self, Scene};
+use cellcaster_lab::speed::{self, Scene};
 
 /// The time for all measurements together.
 const TIME: Duration = Duration::from_secs(100);

@@ -8,7 +8,7 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Exact, Walk};
-use cellcaster::lab::speed::{Ground, SIDES, crossing_rays};
+use cellcaster_lab::speed::{Ground, SIDES, crossing_rays};
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;

@@ -6,7 +6,7 @@
 
 use std::hint::black_box;
 
-use cellcaster::lab::speed::{CROWDS, Vista};
+use cellcaster_lab::speed::{CROWDS, Vista};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

@@ -19,7 +19,7 @@ use cellcaster::app::Configuration;
 use cellcaster::game::PlayerColor;
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
-use cellcaster::store::Preferences;
+use cellcaster::app::store::Preferences;
 use crate::accounts::AccountSettings;
 use cellcaster::terminal::{Options, WindowSize};
 use cellcaster::world::Difficulty;

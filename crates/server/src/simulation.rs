@@ -8,9 +8,9 @@
 //! who is some milliseconds later.
 
 mod client;
-#[path = "../../tests/support/emulator.rs"]
+#[path = "../../../tests/support/emulator.rs"]
 pub(crate) mod emulator;
-#[path = "../../tests/support/looks.rs"]
+#[path = "../../../tests/support/looks.rs"]
 mod looks;
 mod replay;
 mod seeds;

@@ -12,7 +12,7 @@ use super::glyph_table::GlyphTable;
 use super::packed_cell::{Form, PackedCell};
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///

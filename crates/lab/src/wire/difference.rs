@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
-use cellcaster::canvas::Mosaic;
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::lab::Lab;
 use cellcaster::color::palette::of_256;

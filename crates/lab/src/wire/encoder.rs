@@ -9,7 +9,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
-use cellcaster::canvas::Mosaic;
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{CellWriter, Fidelity};
 

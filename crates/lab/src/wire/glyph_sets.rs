@@ -15,7 +15,7 @@ use ratatui::widgets::StatefulWidget;
 use super::encoder::{Encoder, Extensions, Writer};
 use super::seen::SeenPicture;
 use super::tour::walk;
-use cellcaster::canvas::Mosaic;
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Game;

@@ -15,7 +15,7 @@ use ratatui::widgets::StatefulWidget;
 
 use super::seen::blurred;
 use super::tour::walk;
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::Rgb;
 use cellcaster::color::oklab::Oklab;
 use cellcaster::color::palette::{ColorDepth, ShadeInk, nearest_of_16, nearest_of_256, of_256};

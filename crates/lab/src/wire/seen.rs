@@ -10,7 +10,7 @@ use std::num::NonZeroU32;
 
 use ratatui::layout::Size;
 
-use cellcaster::canvas::Mosaic;
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::oklab::Oklab;
 use cellcaster::color::srgb::linear;

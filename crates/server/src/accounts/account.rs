@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Name, StoreFailure, UnixTime};
-use cellcaster::store::Preferences;
+use cellcaster::app::store::Preferences;
 
 /// The number of an account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -12,7 +12,7 @@ pub struct AccountId(pub(crate) i64);
 /// The SHA-256 of the data of a public key: its fingerprint.
 ///
 /// ```
-/// use cellcaster::store::host::AccountKey;
+/// use cellcaster_server::accounts::AccountKey;
 ///
 /// let key = AccountKey::new([7; 32]);
 /// let shown = "SHA256:BwcHBwcHBwcHBwcHBwcHBwcHBwcHBwcHBwcHBwcHBwc";

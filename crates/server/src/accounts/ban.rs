@@ -45,7 +45,7 @@ pub struct Identity<'a> {
 /// The addresses that begin with the same bits, such as `203.0.113.0/24` or `2001:db8::/64`.
 ///
 /// ```
-/// use cellcaster::store::host::AddressPrefix;
+/// use cellcaster_server::accounts::AddressPrefix;
 ///
 /// let prefix = AddressPrefix::parse("203.0.113.7/24").unwrap();
 /// assert_eq!(prefix.to_string(), "203.0.113.0/24");

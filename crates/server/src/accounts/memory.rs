@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::score::with_run;
 use super::{Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyScore, DailyTry, Day, HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel};
-use cellcaster::store::{Best, Improved, Reached};
+use cellcaster::app::store::{Best, Improved, Reached};
 
 /// A store that ends with the program.
 ///
 /// ```
-/// use cellcaster::store::host::{AccountKey, HostStore, MemoryStore, Name, UnixTime};
+/// use cellcaster_server::accounts::{AccountKey, HostStore, MemoryStore, Name, UnixTime};
 ///
 /// let mut store = MemoryStore::default();
 /// let (key, now) = (AccountKey::new([1; 32]), UnixTime::new(0));

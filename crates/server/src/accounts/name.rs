@@ -31,7 +31,7 @@ pub use printable::printable;
 /// A name.
 ///
 /// ```
-/// use cellcaster::store::host::{Name, NameFault};
+/// use cellcaster_server::accounts::{Name, NameFault};
 ///
 /// let name = Name::new("Ada")?;
 /// assert!(name.looks_like(&Name::new("ADA")?));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{AccountId, Day, Name, UnixTime, VerifiedLevel};
 use cellcaster::game::{Rank, Tally};
 use cellcaster::map::builtin;
-use cellcaster::store::{Best, Improved, Reached, name_in_map_key};
+use cellcaster::app::store::{Best, Improved, Reached, name_in_map_key};
 use cellcaster::world::Difficulty;
 
 /// A board: a built-in level or a map of the host, at one difficulty.
@@ -52,7 +52,7 @@ pub struct DailyTry {
 }
 
 impl LevelBoard {
-    /// The board of `level`: the name of a built-in level, or the [key](cellcaster::store::map_key) of a map.
+    /// The board of `level`: the name of a built-in level, or the [key](cellcaster::app::store::map_key) of a map.
     /// `None` if it is neither.
     pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
         let is_level = place(level).is_some() || name_in_map_key(level).is_some();

@@ -6,7 +6,7 @@ mod lease;
 #[cfg(all(unix, feature = "system-tests"))]
 mod postgres;
 #[cfg(all(unix, feature = "system-tests"))]
-#[path = "../../../tests/support/postgres_server.rs"]
+#[path = "../../tests/support/postgres_server.rs"]
 mod postgres_server;
 mod presence;
 mod rate;
@@ -19,7 +19,7 @@ use std::{env, fs};
 
 use super::*;
 use cellcaster::game::{Rank, Rules, Share, Tally};
-use cellcaster::store::{Preferences, Reached};
+use cellcaster::app::store::{Preferences, Reached};
 use cellcaster::world::Difficulty;
 
 /// A folder that is removed at the end of a test.

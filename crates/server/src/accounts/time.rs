@@ -11,7 +11,7 @@ pub struct UnixTime(u64);
 /// A date.
 ///
 /// ```
-/// use cellcaster::store::host::Day;
+/// use cellcaster_server::accounts::Day;
 ///
 /// let day = Day::parse("2026-11-22").unwrap();
 /// assert_eq!((day.number(), day.to_string()), (20261122, "2026-11-22".to_owned()));

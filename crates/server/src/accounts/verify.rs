@@ -7,7 +7,7 @@ use cellcaster::fault::Faults;
 use cellcaster::game::{Game, Outcome, Rank, Rules, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::generate::descent;
 use cellcaster::map::builtin;
-use cellcaster::store::{DescentRun, Reached, replayed};
+use cellcaster::app::store::{DescentRun, Reached, replayed};
 use cellcaster::world::{Difficulty, World};
 
 /// The longest script that is verified, in steps: half an hour.
@@ -65,7 +65,7 @@ pub enum Unverified {
 /// [`MOST_SCRIPT_STEPS`] steps at most.
 ///
 /// ```
-/// use cellcaster::store::host::{Unverified, verify};
+/// use cellcaster_server::accounts::{Unverified, verify};
 ///
 /// assert!(matches!(verify("level cellar\n2 s forward\n"), Err(Unverified::NotWon)));
 /// ```
@@ -76,7 +76,7 @@ pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
     verify_with(script, |_| None)
 }
 
-/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](cellcaster::store::map_key).
+/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](cellcaster::app::store::map_key).
 ///
 /// # Errors
 /// Why the run does not count.
@@ -230,7 +230,7 @@ impl VerifiedDescent {
 mod tests {
     use super::*;
 
-    const WON: &str = include_str!("../../../maps/scripts/cellar.normal.script");
+    const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
     #[test]
     fn a_script_that_wins_is_a_run() {

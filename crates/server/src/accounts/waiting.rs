@@ -22,8 +22,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun, verify_with};
 use cellcaster::fault::printable_path;
-use cellcaster::store::disk::{Disk, Real};
-use cellcaster::store::private;
+use cellcaster::app::store::disk::{Disk, Real};
+use cellcaster::app::store::private;
 use cellcaster::world::World;
 
 /// The most results that wait.

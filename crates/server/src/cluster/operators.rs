@@ -21,7 +21,7 @@ use super::directory::SharedRooms;
 use super::shown_name;
 use crate::ops::admin::{AdminReply, AdminRequest, HostInfo};
 use crate::accounts::HostRow;
-use cellcaster::store::name_in_map_key;
+use cellcaster::app::store::name_in_map_key;
 
 /// The most time that other hosts have for their answers.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -246,7 +246,7 @@ fn bounded(reply: AdminReply, host: &str) -> AdminReply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cellcaster::store::map_key;
+    use cellcaster::app::store::map_key;
 
     fn told(own: &[(&str, &str)], theirs: &[(&str, &str)]) -> Option<String> {
         let keys = |maps: &[(&str, &str)]| -> Vec<String> {

@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 use cellcaster::fault::{Faults, printable_path};
 use cellcaster::map::{self, Folder, builtin};
-use cellcaster::store::map_key;
+use cellcaster::app::store::map_key;
 use cellcaster::world::World;
 
 /// The most maps of a host.

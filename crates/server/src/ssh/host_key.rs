@@ -10,7 +10,7 @@ use russh::keys::ssh_key::private::Ed25519Keypair;
 use russh::keys::{HashAlg, PrivateKey};
 
 use cellcaster::fault::printable_path;
-use cellcaster::store::private;
+use cellcaster::app::store::private;
 
 /// An ed25519 key of a server.
 #[derive(Clone)]

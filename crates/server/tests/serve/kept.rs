@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::{env, fs};
 
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
 };
 
@@ -17,7 +17,7 @@ pub(crate) fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-pub(crate) const WON: &str = include_str!("../../maps/scripts/cellar.normal.script");
+pub(crate) const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
 const NOW: UnixTime = UnixTime::new(1_795_300_000);
 /// The test of a killed process starts itself with this variable, which names the folder and the number of

@@ -2,19 +2,19 @@
 //! break the rules, and what is kept.
 #![cfg(unix)]
 
-#[path = "../support/emulator.rs"]
+#[path = "../../../../tests/support/emulator.rs"]
 mod emulator;
 mod kept;
-#[path = "../../examples/load/lamp.rs"]
+#[path = "../support/lamp.rs"]
 mod lamp;
-#[path = "../support/looks.rs"]
+#[path = "../../../../tests/support/looks.rs"]
 mod looks;
 #[cfg(feature = "system-tests")]
 #[path = "../support/nats_server.rs"]
 mod nats_server;
 mod ops;
 mod play;
-#[path = "../support/player.rs"]
+#[path = "../../../../tests/support/player.rs"]
 mod player;
 #[cfg(feature = "system-tests")]
 #[path = "../support/postgres_server.rs"]
@@ -22,7 +22,7 @@ mod postgres_server;
 mod scores;
 mod soak;
 #[cfg(all(target_os = "linux", feature = "system-tests"))]
-#[path = "../support/strace.rs"]
+#[path = "../../../../tests/support/strace.rs"]
 mod strace;
 #[path = "../support/mod.rs"]
 mod support;

@@ -3,16 +3,16 @@
 use std::path::Path;
 use std::process::Output;
 
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
 };
 use serde_json::Value;
 
 use crate::kept::{WON, scratch};
-use crate::support::cellcaster;
+use crate::support::server;
 
-const HARD: &str = include_str!("../../maps/scripts/cellar.hard.script");
-const MUSEUM: &str = include_str!("../../maps/scripts/museum.normal.script");
+const HARD: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.hard.script"));
+const MUSEUM: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
 
 /// A store in which two accounts have results. It stays open, as while a host runs.
 fn filled(folder: &Path) -> SqliteStore {
@@ -31,7 +31,7 @@ fn filled(folder: &Path) -> SqliteStore {
 
 fn scores(folder: &Path, arguments: &[&str]) -> Output {
     let words = [&["scores"], arguments].concat();
-    cellcaster(&words).env("CELLCASTER_DATA", folder).output().unwrap()
+    server(&words).env("CELLCASTER_DATA", folder).output().unwrap()
 }
 
 fn written(folder: &Path, arguments: &[&str]) -> String {
@@ -106,7 +106,7 @@ fn a_folder_can_be_named_as_the_store() {
     let elsewhere = scratch("unnamed");
     let table = written(&folder, &[]);
     assert_eq!(written(&elsewhere, &["--store", folder.to_str().unwrap()]), table);
-    let mut command = cellcaster(&["scores"]);
+    let mut command = server(&["scores"]);
     command.env("CELLCASTER_DATA", &elsewhere).env("CELLCASTER_STORE", &folder);
     assert_eq!(String::from_utf8(command.output().unwrap().stdout).unwrap(), table);
     let output = scores(&folder, &["--store", ""]);

@@ -11,10 +11,14 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster::server::{
-    Config, Counters, GameHost, HostKey, HostParts, Metrics, RoomRow, Server, Visitors,
-};
-use cellcaster::store::host::SqliteStore;
+use cellcaster_server::ops::config::Config;
+use cellcaster_server::ssh::{Counters, Server};
+use cellcaster_server::sessions::driver::{GameHost, HostParts};
+use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::ops::admin::RoomRow;
+use cellcaster_server::sessions::visitors::Visitors;
+use cellcaster_server::accounts::SqliteStore;
 use russh::Error;
 use russh::client::{self, Handler};
 use russh::keys::PublicKeyOrCertificate;
@@ -26,7 +30,7 @@ use tokio::time::{sleep, timeout};
 use self::wanderer::Leaving;
 use crate::transport::{PATIENCE, folder};
 
-#[path = "../../examples/load/wanderer.rs"]
+#[path = "../support/wanderer.rs"]
 mod wanderer;
 
 /// A server whose insides can be counted.

@@ -15,7 +15,7 @@ pub(crate) struct Host {
 
 /// One room, in the map that [`PLAY`](super::PLAY) plays behind sshd.
 const CONFIGURATION: &str = "[[room]]\nmode = \"roam\"\nlevel = \"walks\"\n";
-const MAP: &str = include_str!("../maps/citadel.toml");
+const MAP: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/citadel.toml"));
 
 impl Host {
     pub(crate) fn start() -> Self {
@@ -28,8 +28,8 @@ impl Host {
         fs::create_dir_all(&maps).unwrap();
         fs::write(maps.join("walks.toml"), MAP).unwrap();
         fs::write(folder.join("serve.toml"), CONFIGURATION).unwrap();
-        let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster"))
-            .args(["serve", "--listen", "127.0.0.1:0", "--config"])
+        let mut process = Command::new(env!("CARGO_BIN_EXE_cellcaster-server"))
+            .args(["--listen", "127.0.0.1:0", "--config"])
             .arg(folder.join("serve.toml"))
             .arg("--maps")
             .arg(maps)

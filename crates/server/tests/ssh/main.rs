@@ -5,10 +5,10 @@
 #![cfg(all(unix, feature = "system-tests"))]
 
 mod bystander;
-#[path = "../support/emulator.rs"]
+#[path = "../../../../tests/support/emulator.rs"]
 mod emulator;
 mod host;
-#[path = "../support/player.rs"]
+#[path = "../../../../tests/support/player.rs"]
 mod player;
 mod proxy;
 mod server;

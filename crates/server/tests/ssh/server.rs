@@ -122,7 +122,7 @@ fn configuration(folder: &Path, port: u16) -> String {
 
 /// Plays, and then reads what a shell would find typed.
 fn script(folder: &Path, game: &str) -> String {
-    let (folder, program) = (folder.display(), env!("CARGO_BIN_EXE_cellcaster"));
+    let (folder, program) = (folder.display(), env!("CARGO_BIN_EXE_cellcaster-server"));
     format!(
         "export HOME={folder}\n\
          sh -c 'echo $$ > {folder}/game; exec {program} {game}'; status=$?\n\

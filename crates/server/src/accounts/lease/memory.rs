@@ -11,7 +11,7 @@ use crate::accounts::StoreFailure;
 /// ```
 /// use std::time::Duration;
 ///
-/// use cellcaster::store::host::{Leases, MemoryLeases};
+/// use cellcaster_server::accounts::{Leases, MemoryLeases};
 ///
 /// let (mut leases, time) = (MemoryLeases::default(), Duration::from_secs(10));
 /// let lease = leases.acquire("cellar", "one", time, 0)?.unwrap();

@@ -12,7 +12,7 @@ use unicode_width::UnicodeWidthChar;
 /// terminals draw in different widths. Letters with accents are composed before, so that these stay.
 ///
 /// ```
-/// use cellcaster::store::host::printable;
+/// use cellcaster_server::accounts::printable;
 ///
 /// assert_eq!(printable(" a\tb\r\n\u{1b}[31mc\u{202e} e\u{301}", 80), "a b [31mc é");
 /// assert_eq!(printable("漢字漢字", 5), "漢字");

@@ -11,7 +11,7 @@ use crate::accounts::StoreFailure;
 /// ```
 /// use std::time::Duration;
 ///
-/// use cellcaster::store::host::{
+/// use cellcaster_server::accounts::{
 ///     AccountKey, HostNotice, MemoryPresence, Presence, VisitBegin, Visitor,
 /// };
 ///

@@ -3,10 +3,10 @@
 use std::num::NonZeroU32;
 
 use super::{Row, Statements, bans, values};
-use cellcaster::store::Preferences;
+use cellcaster::app::store::Preferences;
 use crate::accounts::rate::milliseconds;
 use crate::accounts::{Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban};
-use cellcaster::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
+use cellcaster::app::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use cellcaster::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";

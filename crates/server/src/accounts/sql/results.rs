@@ -4,7 +4,7 @@ use super::{Row, Statements, values};
 use cellcaster::game::{Rank, Share, Tally};
 use crate::accounts::score::with_run;
 use crate::accounts::{AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel};
-use cellcaster::store::{Best, Improved, Reached};
+use cellcaster::app::store::{Best, Improved, Reached};
 use cellcaster::world::Difficulty;
 
 /// The columns of a [`Best`].

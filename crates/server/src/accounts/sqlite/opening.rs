@@ -11,7 +11,7 @@ use super::salvage::salvage;
 use super::schema::{self, APPLICATION, MIGRATIONS};
 use cellcaster::fault::printable_path;
 use crate::accounts::StoreFailure;
-use cellcaster::store::private;
+use cellcaster::app::store::private;
 
 const FILE: &str = "host.db";
 /// What SQLite adds to the name for its log, and for the index of the log.

@@ -12,7 +12,7 @@ use cellcaster::cli::config::{LARGEST, configuration_file};
 use crate::ops::config::{Config, LiveConfig};
 use crate::rooms::maps::{HostMaps, MapsError};
 use crate::ops::logging::{Logging, events};
-use cellcaster::store::private;
+use cellcaster::app::store::private;
 
 /// Where the configuration comes from.
 pub(crate) struct Configuration {

@@ -14,12 +14,12 @@ const PROGRAM: &str = env!("CARGO_CRATE_NAME");
 /// The least level of events that are logged, and that of some topics.
 ///
 /// ```
-/// use cellcaster::server::LogFilter;
+/// use cellcaster_server::ops::logging::LogFilter;
 ///
 /// let filter: LogFilter = "info,connections=warn".parse()?;
 /// assert_eq!(filter.to_string(), "info,connections=warn");
 /// assert!("info,conections=warn".parse::<LogFilter>().is_err());
-/// # Ok::<(), cellcaster::server::UnknownLogFilter>(())
+/// # Ok::<(), cellcaster_server::ops::logging::UnknownLogFilter>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogFilter {

@@ -27,7 +27,7 @@ use crate::rooms::room::{Entry, Header, Log, Queue, Recorded};
 use crate::rooms::summary::RoomId;
 use crate::rooms::recorded::MOST_RECORDED_BYTES;
 use crate::lock::locked;
-use cellcaster::store::private;
+use cellcaster::app::store::private;
 
 /// Gives each room its log.
 pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);

@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::accounts::{Account, AccountKey, MemoryStore, Name, UnixTime, VerifiedRun, verify};
 
-    const WON: &str = include_str!("../../../maps/scripts/cellar.normal.script");
+    const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
     const CELLAR: (&str, Difficulty) = ("cellar", Difficulty::Normal);
 
     fn account(store: &mut MemoryStore, number: u8, name: &str) -> Account {

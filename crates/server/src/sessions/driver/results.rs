@@ -12,7 +12,7 @@ use crate::sessions::session::BoardRow;
 use crate::ops::metrics::Metrics;
 use crate::sessions::visitors::Visitors;
 use crate::lock::locked;
-use cellcaster::store::Improved;
+use cellcaster::app::store::Improved;
 use crate::accounts::{Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun, WaitingResult, WaitingResults, verify_with};
 use cellcaster::world::{Difficulty, World};
 

@@ -19,7 +19,7 @@ use super::page::Page;
 use super::stay::seconds_left;
 use super::visit::Visit;
 use cellcaster::app::parts::{DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message, picture_and_status, too_small, whole_seconds};
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use crate::sessions::line;
 use crate::rooms::room::{Phase, RoomView};

@@ -4,7 +4,7 @@ use super::messages::Identity;
 use cellcaster::app::parts::DrawOptions;
 use cellcaster::color::palette::{ColorDepth, ShadeInk};
 use cellcaster::render::Filter;
-use cellcaster::store::Preferences;
+use cellcaster::app::store::Preferences;
 use cellcaster::terminal::Protocol;
 use cellcaster::tui::{CellAspect, Correction, GlyphSet};
 use cellcaster::world::FieldOfView;

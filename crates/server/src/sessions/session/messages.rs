@@ -9,7 +9,7 @@ use crate::rooms::ghost::Ghost;
 use crate::sessions::line::Line;
 use crate::rooms::room::{Catalog, Command, MemberId};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use cellcaster::store::Preferences;
+use cellcaster::app::store::Preferences;
 use crate::accounts::AccountSettings;
 use cellcaster::world::Difficulty;
 

@@ -7,14 +7,14 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::Output;
 
-use cellcaster::store::host::{AccountKey, HostStore, Name, SqliteStore, UnixTime};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, SqliteStore, UnixTime};
 
 use super::running::Running;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::{PATIENCE, folder};
 
 fn admin(folder: &Path, arguments: &[&str]) -> Output {
-    cellcaster(&["admin"]).args(arguments).args(["--data"]).arg(folder).output().unwrap()
+    server(&["admin"]).args(arguments).args(["--data"]).arg(folder).output().unwrap()
 }
 
 /// What `admin` writes, which succeeds.
@@ -176,7 +176,7 @@ fn the_socket_is_private_and_its_requests_are_bounded() {
 #[test]
 fn one_server_uses_a_folder_and_a_killed_one_is_no_obstacle() {
     let mut running = Running::start("", "text");
-    let second = cellcaster(&["serve", "--listen", "127.0.0.1:0", "--data"])
+    let second = server(&["--listen", "127.0.0.1:0", "--data"])
         .arg(&running.folder)
         .output()
         .unwrap();

@@ -23,7 +23,7 @@ use crate::nats_server::NatsServer;
 use crate::play::{enter_room, see_each_other_walk};
 use crate::player::Player;
 use crate::postgres_server::PostgresServer;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::folder;
 
 /// The longest time in which a room goes on after its host was killed.
@@ -234,8 +234,8 @@ fn a_host_that_drains_leaves_its_rooms_to_the_others() {
 #[test]
 fn what_a_cluster_needs_is_told() {
     let serve = |options: &[&str]| -> Output {
-        let words = [&["serve", "--listen", "127.0.0.1:0"], options].concat();
-        cellcaster(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
+        let words = [&["--listen", "127.0.0.1:0"], options].concat();
+        server(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
     };
     let postgres = PostgresServer::shared().address();
     let nobody = "nats://ada:geheim@127.0.0.1:1";

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cellcaster::server::Config;
+use cellcaster_server::ops::config::Config;
 
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::folder;
 
 fn document(name: &str) -> String {
@@ -77,7 +77,7 @@ fn words(line: &str) -> Vec<String> {
 fn unit() -> Option<PathBuf> {
     let has_systemd = Command::new("systemd-analyze").arg("--version").output().is_ok();
     has_systemd.then(|| {
-        let program = env!("CARGO_BIN_EXE_cellcaster");
+        let program = env!("CARGO_BIN_EXE_cellcaster-server");
         let text = document("hosting/cellcaster.service");
         assert!(text.contains("/usr/local/bin/cellcaster"));
         let folder = folder();

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::thread;
 
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
 };
 use rustix::process::{Pid, Signal, kill_process};
@@ -98,10 +98,10 @@ fn copied(data: &Path) -> PathBuf {
 fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
     let log = data.join("log");
     let mut words = traced.map_or_else(Vec::new, Traced::words);
-    words.push(env!("CARGO_BIN_EXE_cellcaster"));
+    words.push(env!("CARGO_BIN_EXE_cellcaster-server"));
     let mut host = Command::new(words[0])
         .args(&words[1..])
-        .args(["serve", "--listen", "127.0.0.1:0"])
+        .args(["--listen", "127.0.0.1:0"])
         .env_clear()
         .env("PATH", "/usr/bin:/bin")
         .env("CELLCASTER_DATA", data)

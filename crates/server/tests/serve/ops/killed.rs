@@ -6,13 +6,13 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster::store::host::{HostStore, Name, SqliteStore};
+use cellcaster_server::accounts::{HostStore, Name, SqliteStore};
 use rustix::process::Signal;
 
 use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::folder;
 
 /// A host that records its rooms, and the folder of the recordings.
@@ -41,7 +41,7 @@ fn recording(folder: &Path) -> String {
     let path = folder.join("room-1.log");
     let text = fs::read_to_string(&path).unwrap();
     assert!(text.ends_with('\n'), "{text}");
-    let replayed = cellcaster(&["replay"]).arg(&path).output().unwrap();
+    let replayed = server(&["replay"]).arg(&path).output().unwrap();
     assert!(replayed.status.success(), "{replayed:?}\n{text}");
     assert!(String::from_utf8(replayed.stdout).unwrap().contains("round 1: Roam"));
     text
@@ -118,8 +118,8 @@ fn a_damaged_store_is_refused_until_the_operator_accepts_it() {
     let file = running.folder.join("host.db");
     let garbage = b"garbage".repeat(1000);
     fs::write(&file, &garbage).unwrap();
-    let serve = ["serve", "--listen", "127.0.0.1:0", "--data"];
-    let refused = cellcaster(&serve).arg(&running.folder).output().unwrap();
+    let serve = ["--listen", "127.0.0.1:0", "--data"];
+    let refused = server(&serve).arg(&running.folder).output().unwrap();
     let said = String::from_utf8(refused.stderr).unwrap();
     assert_eq!((refused.status.code(), said.lines().count()), (Some(2), 1), "{said}");
     let names = ["host.db is damaged", "--accept-empty", "host.db.damaged-1"];

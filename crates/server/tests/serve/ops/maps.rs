@@ -10,7 +10,7 @@ use super::killed::user_key;
 use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::{folder, wait_until};
 
 /// A hall whose exit is a few steps ahead.
@@ -37,8 +37,8 @@ pub(crate) fn maps(files: &[(&str, &str)]) -> PathBuf {
 }
 
 fn serve(arguments: &[&str]) -> Output {
-    let words = [&["serve", "--listen", "127.0.0.1:0"], arguments].concat();
-    cellcaster(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
+    let words = [&["--listen", "127.0.0.1:0"], arguments].concat();
+    server(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
 }
 
 /// Asserts status 2, and returns the message.
@@ -51,13 +51,13 @@ fn complaint(arguments: &[&str]) -> String {
 
 pub(crate) fn scores(data: &Path, arguments: &[&str]) -> String {
     let words = [&["scores"], arguments].concat();
-    let output = cellcaster(&words).env("CELLCASTER_DATA", data).output().unwrap();
+    let output = server(&words).env("CELLCASTER_DATA", data).output().unwrap();
     assert!(output.status.success(), "{output:?}");
     String::from_utf8(output.stdout).unwrap()
 }
 
 fn replay(arguments: &[&Path]) -> Output {
-    cellcaster(&["replay"]).args(arguments).output().unwrap()
+    server(&["replay"]).args(arguments).output().unwrap()
 }
 
 /// Presses a number in the lobby and takes what the next pages offer, with a name that is new.
@@ -78,7 +78,7 @@ fn faults_of_maps_are_those_of_check_and_end_the_start() {
     let error = complaint(&["--maps", maps.to_str().unwrap()]);
     for name in ["ragged.toml", "unknown.toml"] {
         let file = maps.join(name);
-        let check = cellcaster(&["check"]).arg(&file).output().unwrap();
+        let check = Command::new(game_program()).arg("check").arg(&file).output().unwrap();
         let check = String::from_utf8(check.stderr).unwrap();
         let report = check.trim().trim_start_matches("cellcaster: ");
         assert!(!report.is_empty() && error.contains(report), "{report}\nis not in\n{error}");

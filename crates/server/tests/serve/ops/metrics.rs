@@ -103,7 +103,7 @@ fn metrics_are_off_by_default_and_a_taken_port_is_one_sentence() {
     let folder = crate::transport::folder();
     let config = folder.join("serve.toml");
     std::fs::write(&config, format!("[metrics]\nlisten = \"127.0.0.1:{port}\"\n")).unwrap();
-    let output = crate::support::cellcaster(&["serve", "--listen", "127.0.0.1:0", "--config"])
+    let output = crate::support::server(&["--listen", "127.0.0.1:0", "--config"])
         .arg(&config)
         .env("CELLCASTER_DATA", &folder)
         .output()

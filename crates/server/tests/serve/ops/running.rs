@@ -8,12 +8,12 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster::store::host::SqliteStore;
+use cellcaster_server::accounts::SqliteStore;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::emulator::Speaks;
 use crate::player::Player;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::{PATIENCE, folder, wait_until};
 
 pub(crate) struct Running {
@@ -105,7 +105,7 @@ impl Running {
 
     pub(crate) fn admin(&self, arguments: &[&str]) -> Output {
         let words = [&["admin"], arguments].concat();
-        cellcaster(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
+        server(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
     }
 
     /// What `admin` writes, which succeeds.
@@ -152,10 +152,10 @@ fn spawn(
 ) -> (Child, String) {
     let log = File::create(folder.join("log")).unwrap();
     let mut words = within(namespace);
-    words.push(env!("CARGO_BIN_EXE_cellcaster"));
+    words.push(env!("CARGO_BIN_EXE_cellcaster-server"));
     let mut process = Command::new(words[0])
         .args(&words[1..])
-        .args(["serve", "--listen", "127.0.0.1:0", "--log", format, "--config"])
+        .args(["--listen", "127.0.0.1:0", "--log", format, "--config"])
         .arg(folder.join("serve.toml"))
         .args(options)
         .env_clear()

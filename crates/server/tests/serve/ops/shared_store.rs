@@ -8,12 +8,12 @@ use super::killed::user_key;
 use super::maps::choose;
 use super::running::Running;
 use crate::postgres_server::PostgresServer;
-use crate::support::cellcaster;
+use crate::support::server;
 use crate::transport::{folder, wait_until};
 
 /// The program with the arguments, and a store named by the environment.
 fn with_store(store: &str, arguments: &[&str]) -> Output {
-    let mut command: Command = cellcaster(arguments);
+    let mut command: Command = server(arguments);
     command.env("CELLCASTER_DATA", folder()).env("CELLCASTER_STORE", store).output().unwrap()
 }
 
@@ -80,7 +80,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
     let (server, stranger) = (PostgresServer::start_encrypted(), PostgresServer::start_encrypted());
     let store = server.address_over_tcp();
     let asked = |store: &str, trusted: &PostgresServer| {
-        let mut command = cellcaster(&["scores", "--store", store]);
+        let mut command = server(&["scores", "--store", store]);
         command.env("CELLCASTER_DATA", folder()).env("SSL_CERT_FILE", trusted.certificate());
         String::from_utf8(command.output().unwrap().stderr).unwrap()
     };
@@ -97,7 +97,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
 #[test]
 fn a_store_that_is_not_there_is_told_in_a_sentence_without_its_password() {
     let store = "postgres://ada:geheim@127.0.0.1:1/games";
-    for arguments in [&["serve"][..], &["scores"], &["admin", "bans"], &["admin", "ban", "ada"]] {
+    for arguments in [&[][..], &["scores"], &["admin", "bans"], &["admin", "ban", "ada"]] {
         let output = with_store(store, arguments);
         let error = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");

@@ -11,8 +11,8 @@ use rustix::process::{Pid, Signal, kill_process};
 use super::house::folder;
 
 fn serve(data: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster"));
-    command.arg("serve").args(arguments).env_clear().env("CELLCASTER_DATA", data);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster-server"));
+    command.args(arguments).env_clear().env("CELLCASTER_DATA", data);
     command
 }
 

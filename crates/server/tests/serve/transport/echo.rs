@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 use cellcaster::rng::SplitMix64;
-use cellcaster::server::{Arrival, Departure, Host, Link, Visitor};
+use cellcaster_server::ssh::{Arrival, Departure, Host, Link, Visitor};
 use cellcaster::terminal::{CellWriter, WindowSize};
 use ratatui::layout::Size;
 use ratatui::style::Color;

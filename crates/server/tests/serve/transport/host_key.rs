@@ -3,7 +3,7 @@
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 
-use cellcaster::server::HostKey;
+use cellcaster_server::ssh::host_key::HostKey;
 
 use super::house::folder;
 

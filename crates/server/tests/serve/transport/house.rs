@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use cellcaster::server::{Config, Counters, HostKey, Server};
+use cellcaster_server::ops::config::Config;
+use cellcaster_server::ssh::{Counters, Server};
+use cellcaster_server::ssh::host_key::HostKey;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::oneshot;
 

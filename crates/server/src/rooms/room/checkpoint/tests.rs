@@ -5,8 +5,6 @@ use std::time::Instant;
 use proptest::prelude::*;
 
 use super::*;
-use cellcaster::game::stored::tests::crowd::Crowd;
-use cellcaster::game::stored::tests::winning;
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
@@ -276,4 +274,13 @@ fn checkpoints_of_levels_are_small() {
         println!("{} {} B, {step:?} {save:?} {restore:?}", level.name, bytes.len());
         assert!(bytes.len() < 100_000, "{}: {} bytes", level.name, bytes.len());
     }
+}
+
+/// The intents of the script that wins a level, step by step.
+fn winning(level: &str, difficulty: Difficulty) -> Vec<Intents> {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let path = format!("{root}/../../maps/scripts/{level}.{}.script", difficulty.name());
+    let text = fs::read_to_string(path).unwrap();
+    let script = Script::parse(&text, level).unwrap_or_else(|faults| panic!("{faults}"));
+    script.iter().map(|(_, intents)| intents).collect()
 }

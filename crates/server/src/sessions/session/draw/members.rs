@@ -8,7 +8,7 @@ use unicode_width::UnicodeWidthStr;
 use super::overhead::style;
 use super::seconds_left;
 use cellcaster::app::parts::{message, time, whole_seconds};
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::STEP;
 use crate::rooms::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};

@@ -8,7 +8,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::ghost::Ghost;
 use cellcaster::app::parts::DrawOptions;
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::{OtherPlayer, PlayerColor, PlayerView};
 use cellcaster::render::FrameSize;

@@ -5,7 +5,7 @@ use std::fmt;
 use ratatui::layout::Rect;
 
 use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::game::{Outcome, PlayerView};
 use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};

@@ -5,7 +5,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::overhead::style;
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use crate::sessions::session::talk::Remark;
 use crate::sessions::session::visit::Visit;

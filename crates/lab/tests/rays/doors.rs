@@ -3,7 +3,7 @@
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::color::Rgb;
-use cellcaster::lab::accuracy;
+use cellcaster_lab::accuracy;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, Opening, World};

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use cellcaster::lab::accuracy::shimmer;
+use cellcaster_lab::accuracy::shimmer;
 use cellcaster::map;
 use cellcaster::render::{Filter, FrameSize};
 use cellcaster::world::{FieldOfView, World};

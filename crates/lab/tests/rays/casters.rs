@@ -2,8 +2,8 @@
 //! distance and at a position on its face.
 
 use cellcaster::cast::{Caster, Hit, Ray};
-use cellcaster::lab::accuracy::{self, Set, adversarial_ray};
-use cellcaster::lab::casters::{Method, Visitor};
+use cellcaster_lab::accuracy::{self, Set, adversarial_ray};
+use cellcaster_lab::casters::{Method, Visitor};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;

@@ -48,7 +48,8 @@ use std::path::Path;
 pub use best::{Best, Improved, Reached, Run};
 use change::Change;
 use home::{Home, LARGEST_SCRIPT};
-pub use names::{map_key, name_in_map_key};
+pub use names::map_key;
+pub use names::name_in_map_key;
 use progress::Progress;
 pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
 #[cfg(feature = "cli")]
@@ -59,7 +60,7 @@ use crate::world::Difficulty;
 /// What one player keeps: in a folder, or in memory.
 ///
 /// ```
-/// use cellcaster::store::{Preferences, Store};
+/// use cellcaster::app::store::{Preferences, Store};
 ///
 /// let mut store = Store::in_memory();
 /// store.set_preferences(Preferences { compass: true, ..store.preferences() });

@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
-use crate::support::{cellcaster, run_with_input};
+use crate::support::{lab, run_with_input};
 
 const MAP: &str = "tests/maps/cross.toml";
 
@@ -66,7 +66,7 @@ fn bytes_that_are_no_text_are_no_ray() {
 #[test]
 fn an_answer_comes_before_the_next_ray_is_asked_for() {
     let mut child =
-        cellcaster(&["cast", MAP]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        lab(&["cast", MAP]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut rays = child.stdin.take().unwrap();
     let mut hits = BufReader::new(child.stdout.take().unwrap());
     for _ in 0..3 {

@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
-use cellcaster::lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
+use cellcaster_lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use cellcaster::map;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::GlyphSet;

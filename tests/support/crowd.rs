@@ -1,7 +1,7 @@
 //! Players who want anything, and one who follows a script.
 
-use crate::game::{Game, Input, Intent, Intents, Look, PlayerColor, PlayerId};
-use crate::rng::SplitMix64;
+use cellcaster::game::{Game, Input, Intent, Intents, Look, PlayerColor, PlayerId};
+use cellcaster::rng::SplitMix64;
 
 /// What players want in the steps to come.
 pub(crate) struct Crowd {

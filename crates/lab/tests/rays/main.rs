@@ -4,6 +4,7 @@
 mod accuracy;
 mod cast;
 mod casters;
+mod doors;
 mod exact;
 mod filters;
 mod large_maps;

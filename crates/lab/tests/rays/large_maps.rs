@@ -7,7 +7,7 @@
 //! times as long; a few hundred of them are.
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
-use cellcaster::lab::accuracy::{self, adversarial_ray};
+use cellcaster_lab::accuracy::{self, adversarial_ray};
 use cellcaster::map;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Grid, World};

@@ -2,7 +2,7 @@
 //! within two units in its last place, and the texture coordinate is within 10⁻¹².
 
 use cellcaster::cast::{Caster, Exact, Ray};
-use cellcaster::lab::accuracy::{self, adversarial_ray, random_ray};
+use cellcaster_lab::accuracy::{self, adversarial_ray, random_ray};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
 use proptest::prelude::*;
