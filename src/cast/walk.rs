@@ -5,18 +5,17 @@
 //! method, its walk goes from a cell to a neighbour, never looks up a cell off the map, and ends
 //! after at most one step for each line of the map.
 //!
-//! A loop for each method was refused: each would have to guarantee all of that again.
+//! Rejected: a loop for each method. Each would have to guarantee all of that again.
 
 #[cfg(feature = "tui")]
 mod from_inside;
 mod mirrored;
 
+use super::{ExactOrder, Ray, Side};
+use crate::world::{Cell, Grid, TileId};
 #[cfg(feature = "tui")]
 pub(crate) use from_inside::WalkFromInside;
 pub(crate) use mirrored::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
-
-use super::{ExactOrder, Ray, Side};
-use crate::world::{Cell, Grid, TileId};
 
 /// A cell that a ray enters, and the kind of line that it crosses to enter it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

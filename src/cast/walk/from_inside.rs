@@ -4,8 +4,8 @@
 //! is on the map until it leaves for good, and crossing a line changes the state of both axes by sums
 //! without a branch on the side.
 
-use super::{Axis, Crossing};
-use crate::cast::{ExactOrder, Order, Ray, Side};
+use super::{Axis, Crossing, Order};
+use crate::cast::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 
 /// The cells that a ray enters after the one it begins in, with its distance from its origin to each.
