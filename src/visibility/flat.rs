@@ -14,7 +14,7 @@ mod wall;
 use glam::DVec2;
 
 use super::column::Column;
-use super::ray_counter::RayCounter;
+use super::stats::RayCounter;
 use super::{DrawList, Filter, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
 use crate::world::{Cell, Grid, TileId, TileKind, World};

@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use crate::cast::{Hit, Side};
-use crate::visibility::facing::cell_before;
+use crate::visibility::face_column::cell_before;
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallRun, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
 
