@@ -30,14 +30,15 @@
 //!
 //! Callers for which speed counts are generic over the [`Caster`], and compiled for few of them.
 
-mod any;
+mod dyn_caster;
 mod exact;
 mod major_axis;
 mod ray;
 mod through;
 mod walk;
 
-pub(crate) use any::AnyCaster;
+pub(crate) use dyn_caster::AnyCaster;
+pub use dyn_caster::DynCaster;
 pub(crate) use exact::{CommonOrder, ExactOnLevel};
 pub use exact::{Exact, ExactOrder, RoundedOrder};
 pub(crate) use major_axis::MajorAxisTraversal;

@@ -138,18 +138,18 @@ impl World {
 
     /// The heights of floor and ceiling in `cell`; outside the map, those of the map's own floor.
     pub fn room_in(&self, cell: Cell) -> Heights {
-        self.tile_at(cell).unwrap_or(self.ground()).heights
+        self.tile_in(cell).unwrap_or(&self.tiles[0]).heights
     }
 
     /// The height of the floor in `cell`, or of the top of a wall; 0 outside the map.
     pub fn floor_at(&self, cell: Cell) -> f64 {
-        self.tile_at(cell).map_or(0.0, |tile| tile.heights.floor())
+        self.tile_in(cell).map_or(0.0, |tile| tile.heights.floor())
     }
 
     /// The light in `cell`: that of its tile, and what lamps add. For a wall with a light of its
     /// own, that light.
     pub fn light_in(&self, cell: Cell) -> Light {
-        let own = self.tile_at(cell).unwrap_or(self.ground()).light;
+        let own = self.tile_in(cell).unwrap_or(&self.tiles[0]).light;
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
     }
 
@@ -231,9 +231,10 @@ impl World {
         &self.sprites
     }
 
-    fn tile_at(&self, cell: Cell) -> Option<Tile> {
-        let tile = self.grid.tile(i64::from(cell.column), i64::from(cell.row))?;
-        Some(self.tile(tile))
+    /// The tile in `cell`; `None` outside the map.
+    #[inline]
+    pub(crate) fn tile_in(&self, cell: Cell) -> Option<&Tile> {
+        self.grid.tile_in(cell).map(|id| &self.tiles[usize::from(id.0)])
     }
 
     /// Whether all floors are at 0, and all ceilings, walls and shapes reach 1, so that every ray

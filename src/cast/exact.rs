@@ -79,7 +79,7 @@ impl Caster for ExactOnLevel<'_> {
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
-        let tile_of = |cell: Cell| world.grid().tile(i64::from(cell.column), i64::from(cell.row));
+        let tile_of = |cell: Cell| world.grid().tile_in(cell);
         let mut walk = Walk::new(self.grid, ray);
         let start = walk.cell();
         let solid_cells = iter::from_fn(|| {

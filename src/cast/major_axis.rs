@@ -252,8 +252,7 @@ impl Path {
             Side::X => (along, band),
             Side::Y => (band, along),
         };
-        let tile = grid.tile(column, row)?;
-        Some((Cell { column: column as u32, row: row as u32 }, tile))
+        grid.cell(column, row)
     }
 }
 

@@ -76,8 +76,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
 
     /// The cell that contains the ray at present; `None` off the map.
     pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
-        let tile = self.grid.tile(self.x.index, self.y.index)?;
-        Some((Cell { column: self.x.index as u32, row: self.y.index as u32 }, tile))
+        self.grid.cell(self.x.index, self.y.index)
     }
 
     /// The next solid cell that the ray enters.
@@ -103,8 +102,7 @@ impl<O: Order> Iterator for Walk<'_, O> {
             if !axis.is_on_map() {
                 return None;
             }
-            if let Some(tile) = self.grid.tile(self.x.index, self.y.index) {
-                let cell = Cell { column: self.x.index as u32, row: self.y.index as u32 };
+            if let Some((cell, tile)) = self.cell() {
                 return Some(Crossing { cell, tile, side });
             }
         }

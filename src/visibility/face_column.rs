@@ -108,6 +108,5 @@ pub(crate) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
 /// That cell on the map and its tile; `None` off the map.
 pub(crate) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
     let [column, row] = cell_before(direction, hit);
-    let tile = grid.tile(column, row)?;
-    Some((Cell { column: column as u32, row: row as u32 }, tile))
+    grid.cell(column, row)
 }

@@ -194,8 +194,9 @@ impl Glow {
         while let Some(branch) = self.branches.get(index) {
             let column = i64::from(place.column) + i64::from(branch.offset.0);
             let row = i64::from(place.row) + i64::from(branch.offset.1);
-            if grid.tile(column, row).is_some_and(&is_clear) {
-                add(Cell { column: column as u32, row: row as u32 }, branch.light);
+            let next = grid.cell(column, row).filter(|&(_, tile)| is_clear(tile));
+            if let Some((cell, _)) = next {
+                add(cell, branch.light);
                 index += 1;
             } else {
                 index = branch.next_beside as usize;
@@ -336,7 +337,7 @@ impl World {
     /// longer does.
     pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
         let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
-        let before = self.grid.tile(i64::from(cell.column), i64::from(cell.row)).map(kind);
+        let before = self.grid.tile_in(cell).map(kind);
         let changes = |carrier: &Carrier| {
             !self.lamplight.is_dark()
                 && before.map(|kind| carrier.lets_through(kind))
@@ -478,7 +479,7 @@ fn shine(
     carrier: Carrier,
     change: Change,
 ) {
-    if lamplight.is_dark() || grid.tile(i64::from(cell.column), i64::from(cell.row)).is_none() {
+    if lamplight.is_dark() || grid.tile_in(cell).is_none() {
         return;
     }
     let glow = lamplight.glows.of(lamp);

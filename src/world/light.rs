@@ -162,16 +162,17 @@ impl World {
     /// `cell` has no light of its own.
     pub(crate) fn face_light(&self, cell: Cell, before: Cell) -> FaceLight {
         let middle = self.light_in(before);
-        let Some(tile) = self.tile_at(before).filter(|_| self.light_varies) else {
+        let Some(tile) = self.tile_in(before).filter(|_| self.light_varies) else {
             return FaceLight::even(middle);
         };
         // To the right for an observer who looks from `before` to `cell`, since y grows to the
         // south.
         let ahead = step(before, cell);
         let right = (-ahead.1, ahead.0);
-        let beside = [(-right.0, -right.1), right].map(|way| {
-            let next = moved(before, way).and_then(|cell| Some((cell, self.tile_at(cell)?)));
-            next.filter(|(_, next)| is_lit_from(&tile, next))
+        let beside = [(-right.0, -right.1), right].map(|(columns, rows)| {
+            let next =
+                before.moved(columns, rows).and_then(|cell| Some((cell, self.tile_in(cell)?)));
+            next.filter(|(_, next)| is_lit_from(tile, next))
                 .map_or(middle, |(cell, _)| self.light_in(cell))
         });
         FaceLight { middle, beside }
@@ -197,11 +198,6 @@ fn is_open_to(one: &Tile, other: &Tile) -> bool {
 /// The columns and rows from one cell to another.
 fn step(from: Cell, to: Cell) -> (i64, i64) {
     (i64::from(to.column) - i64::from(from.column), i64::from(to.row) - i64::from(from.row))
-}
-
-fn moved(cell: Cell, (columns, rows): (i64, i64)) -> Option<Cell> {
-    let along = |index: u32, by: i64| u32::try_from(i64::from(index) + by).ok();
-    Some(Cell { column: along(cell.column, columns)?, row: along(cell.row, rows)? })
 }
 
 #[cfg(test)]
@@ -257,7 +253,7 @@ mod tests {
         ) {
             let world = world(&cells);
             let is_open = |cell: Cell| {
-                let tile = world.tile_at(cell).unwrap();
+                let tile = world.tile_in(cell).unwrap();
                 matches!(tile.kind, TileKind::Open | TileKind::Glass(_))
             };
             for row in 1..SIDE {

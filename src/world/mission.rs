@@ -145,7 +145,7 @@ impl World {
 
     /// The effect of the tile of `cell` on those who stand there.
     pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
-        self.tile_at(cell)?.effect
+        self.tile_in(cell)?.effect
     }
 
     /// Sets the tile of `cell`, which must be a cell of a [`MovingTile`], to one of its states.

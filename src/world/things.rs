@@ -269,8 +269,7 @@ pub struct Figure {
 impl Figure {
     /// The cell that it is in; `None` west or north of the map, where there are no cells.
     pub fn cell(&self) -> Option<Cell> {
-        let DVec2 { x, y } = self.position;
-        (x >= 0.0 && y >= 0.0).then_some(Cell { column: x as u32, row: y as u32 })
+        Cell::containing(self.position)
     }
 }
 

@@ -41,7 +41,7 @@ impl<'grid> WalkFromInside<'grid> {
         let x = Position::new(&Axis::new(origin.x, direction.x, grid.width()))?;
         let y = Position::new(&Axis::new(origin.y, direction.y, grid.height()))?;
         let cell = Cell { column: x.index, row: y.index };
-        let tile = grid.tile(cell.column.into(), cell.row.into())?;
+        let tile = grid.tile_in(cell)?;
         let order = ExactOrder::of_camera(grid, ray);
         let (width, height) = (grid.width(), grid.height());
         let unit = (direction.x * direction.y).abs();

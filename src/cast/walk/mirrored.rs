@@ -127,9 +127,7 @@ impl Course {
     /// The cell that contains the rays; `None` off the map.
     #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
-        let (column, row) = (self.column.index, self.row.index);
-        let tile = grid.tile(column, row)?;
-        Some((Cell { column: column as u32, row: row as u32 }, tile))
+        grid.cell(self.column.index, self.row.index)
     }
 
     /// The coordinates of the x line and the y line ahead.
