@@ -49,7 +49,7 @@
 //! | [`generate`] | levels as a function of seed and place | |
 //! | `tui` | cells, and what can be drawn on; ratatui widgets, held keys | `tui` |
 //! | `terminal` | capabilities, bytes to events, cells to bytes, flow control | `terminal` |
-//! | `store` | what a player keeps: progress, best runs, preferences | `terminal` |
+//! | `app::store` | what a player keeps: progress, best runs, preferences | `terminal` |
 //! | `app` | the game as a program: screens, settings, keys to intents, the loop | `terminal` |
 //! | `lab` | measurements: casters compared, accuracy, speed, wire | `lab` |
 //! | `cli` | the command line | `cli` |
@@ -79,7 +79,7 @@ pub mod rng;
 pub mod server;
 mod sort;
 pub mod space;
-#[cfg(feature = "terminal")]
+#[cfg(feature = "serve")]
 pub mod store;
 #[cfg(feature = "terminal")]
 pub mod terminal;

@@ -8,9 +8,9 @@ use ratatui::style::Color;
 
 use super::map_panel::MapPanel;
 use super::{DrawOptions, hud, panels};
+use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
 use crate::game::{Game, PlayerId, PlayerView};
-use crate::store::Preferences;
 use crate::tui::canvas::Canvas;
 use crate::tui::{MapMark, View};
 

@@ -10,7 +10,7 @@ use super::interruption::Rendered;
 use super::stats::{Meter, Stats};
 use super::time::Time;
 use super::{App, Levels, Offers, Recording, Settings, TerminalLook};
-use crate::store::Store;
+use crate::app::store::Store;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
