@@ -64,7 +64,7 @@ proptest! {
     ) {
         prop_assume!((dx, dy) != (0.0, 0.0));
         let ray = Ray::new(DVec2::new(x, y), DVec2::new(dx, dy)).unwrap();
-        let (hit, expected) = (meet(&ray, CELL, Outline::Line(line)), expected(&ray, line));
+        let (hit, expected) = (meet_shape(&ray, CELL, Outline::Line(line)), expected(&ray, line));
         prop_assert_eq!(hit.is_some(), expected.is_some());
         if let (Some(hit), Some((t, along))) = (hit, expected) {
             if hit.t.is_finite() {
@@ -84,7 +84,7 @@ proptest! {
 #[test]
 fn a_thin_wall_is_hit_by_the_smallest_component() {
     let ray = Ray::new(DVec2::new(1.25, 1.0), DVec2::new(1.0, 5e-324)).unwrap();
-    let hit = meet(&ray, CELL, Outline::Line(Line::North)).unwrap();
+    let hit = meet_shape(&ray, CELL, Outline::Line(Line::North)).unwrap();
     assert_eq!((hit.t, hit.u), (0.0, 0.75));
 }
 

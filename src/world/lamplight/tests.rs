@@ -189,3 +189,70 @@ fn a_flame_that_is_out_neither_shines_nor_flickers() {
     world.set_flame(cell, true);
     assert!(draw(&world, 0.0) == burning);
 }
+
+mod lines {
+    use std::collections::BTreeMap;
+    use std::num::NonZeroU32;
+
+    use proptest::prelude::*;
+
+    use super::super::*;
+    use crate::cast::{Ray, Walk};
+
+    #[test]
+    fn a_reach_of_whole_cells_ends_before_the_last() {
+        let counts =
+            [1.0, 1.5, 2.0, 4.0, 32.0].map(|cells| Reach::new(cells).unwrap().cell_count());
+        assert_eq!(counts, [1, 9, 9, 45, 3205]);
+    }
+
+    #[test]
+    fn a_lamp_is_brightest_in_its_cell_and_ends_at_its_reach() {
+        let lamp = Lamp { light: Light::new(0.5).unwrap(), reach: Reach::default() };
+        let lights = [0.0, 1.0, 2.0, 3.0, 3.9, 4.0, 9.0].map(|cells| lamp.light_at(cells));
+        assert_eq!(lights[0], lamp.light);
+        assert!(lights.windows(2).all(|pair| pair[0].in_256ths() >= pair[1].in_256ths()));
+        assert_eq!(lights[5..], [Light::NONE; 2]);
+    }
+
+    /// Whether the line from the middle of one cell to that of another leads through open floor.
+    fn is_seen(grid: &Grid, from: Cell, to: Cell) -> bool {
+        let Ok(ray) = Ray::new(from.center(), to.center() - from.center()) else { return true };
+        let mut open = Walk::new(grid, &ray).take_while(|it| !grid.is_solid_tile(it.tile));
+        open.any(|crossing| crossing.cell == to)
+    }
+
+    proptest! {
+        #[test]
+        fn a_lamp_lights_what_a_straight_line_leads_to(
+            width in 1_u32..24,
+            solid in prop::collection::vec(prop::bool::weighted(0.2), 24 * 24),
+            height in 1_u32..24,
+            place in any::<prop::sample::Index>(),
+            reach in prop_oneof![1.0..=32.0, (1..=32_u32).prop_map(f64::from)],
+        ) {
+            let place = place.index((width * height) as usize) as u32;
+            let place = Cell { column: place % width, row: place / width };
+            let cells: Vec<TileId> = (0..height * width)
+                .map(|index| TileId(u8::from(solid[index as usize])))
+                .collect();
+            let sides = [width, height].map(|side| NonZeroU32::new(side).unwrap());
+            let grid = Grid::new(sides[0], sides[1], TileId(1), cells).unwrap();
+            let lamp = Lamp { light: Light::FULL, reach: Reach::new(reach).unwrap() };
+
+            let mut lit = BTreeMap::new();
+            let is_clear = |tile| !grid.is_solid_tile(tile);
+            Glow::of(&lamp).shine(&grid, place, is_clear, |cell, light| {
+                let before = lit.entry(cell).or_insert(Light::NONE);
+                *before = before.plus(light);
+            });
+            let every_cell = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
+            for cell in every_cell {
+                let distance = cell.center().distance(place.center());
+                let is_lit = distance < reach && is_seen(&grid, place, cell);
+                let expected = if is_lit { lamp.light_at(distance) } else { Light::NONE };
+                prop_assert_eq!(lit.get(&cell).copied().unwrap_or(Light::NONE), expected, "{:?}", cell);
+            }
+        }
+    }
+}

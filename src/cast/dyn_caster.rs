@@ -1,14 +1,13 @@
-//! A caster of any type.
+//! A caster whose type is erased.
 //!
 //! The drawing code is compiled twice: for [`Exact`], and for a caster whose pointer is followed for
-//! each ray. Compiling it for each caster was refused: six more copies, for casters that measurements
+//! each ray. Rejected: compiling it for each caster. Six more copies, for casters that measurements
 //! alone use, took a tenth of a megabyte, and a call takes some instructions of the hundreds of a ray.
 
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::{FramePlan, Picture, Threads};
-use crate::cast::{AnyCaster, Caster, Exact, Hit, Ray};
+use super::{Caster, Exact, Hit, Ray};
 use crate::world::{Grid, World};
 
 /// A caster whose type is erased: [`Exact`] by default.
@@ -29,11 +28,9 @@ impl DynCaster {
         Self { caster: Some(Arc::new(caster)) }
     }
 
-    pub(crate) fn draw(&self, picture: Picture<'_>) -> (FramePlan, Threads) {
-        match self.caster {
-            None => picture.draw(&Exact),
-            Some(_) => picture.draw(self),
-        }
+    /// Whether this is [`Exact`].
+    pub(crate) fn is_default(&self) -> bool {
+        self.caster.is_none()
     }
 
     fn any(&self) -> &dyn AnyCaster {
@@ -55,5 +52,41 @@ impl Caster for DynCaster {
 
     fn cast_through(&self, world: &World, ray: &Ray, mut passed: impl FnMut(Hit)) -> Option<Hit> {
         self.any().cast_through_any(world, ray, &mut passed)
+    }
+}
+
+/// The functions of [`Caster`], which are called by a pointer.
+pub(crate) trait AnyCaster {
+    /// [`Caster::cast`].
+    fn cast_any(&self, grid: &Grid, ray: &Ray) -> Option<Hit>;
+
+    /// [`Caster::is_exact`].
+    fn is_exact_any(&self) -> bool;
+
+    /// [`Caster::cast_through`].
+    fn cast_through_any(
+        &self,
+        world: &World,
+        ray: &Ray,
+        passed: &mut dyn FnMut(Hit),
+    ) -> Option<Hit>;
+}
+
+impl<C: Caster> AnyCaster for C {
+    fn cast_any(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        self.cast(grid, ray)
+    }
+
+    fn is_exact_any(&self) -> bool {
+        self.is_exact()
+    }
+
+    fn cast_through_any(
+        &self,
+        world: &World,
+        ray: &Ray,
+        passed: &mut dyn FnMut(Hit),
+    ) -> Option<Hit> {
+        self.cast_through(world, ray, passed)
     }
 }
