@@ -18,6 +18,7 @@ use self::ghost::Ghost;
 use super::page::Page;
 use super::stay::seconds_left;
 use super::visit::Visit;
+<<<<<<< HEAD:crates/server/src/sessions/session/draw.rs
 use cellcaster::app::parts::{DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message, picture_and_status, too_small, whole_seconds};
 use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
@@ -26,6 +27,18 @@ use crate::rooms::room::{Phase, RoomView};
 use cellcaster::terminal::thread_memory;
 use cellcaster::tui::View;
 use cellcaster::world::{Figure, World};
+=======
+use crate::app::parts::{
+    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
+    picture_and_status, too_small, whole_seconds,
+};
+use crate::color::palette::ColorDepth;
+use crate::server::line;
+use crate::server::room::{Phase, RoomView};
+use crate::tui::View;
+use crate::tui::canvas::Canvas;
+use crate::world::{Figure, World};
+>>>>>>> integration:src/server/session/draw.rs
 
 /// The keys in a room that bindings do not change.
 const ROOM_KEYS: [&str; 2] = [
@@ -132,7 +145,7 @@ impl Visit {
             let ghosts: Vec<Ghost> =
                 stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
             let world = with_ghosts(game.world(), &ghosts);
-            let mut view = thread_memory::take(&VIEW).unwrap_or_default();
+            let mut view = VIEW.take().unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
             stay.next_change = view.next_change();
             if let Some((_, player)) = seen_through {
@@ -143,7 +156,7 @@ impl Visit {
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }
-            thread_memory::put_back(&VIEW, Some(view));
+            VIEW.set(Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
             members::draw_standings(canvas, area, room, look.depth);
