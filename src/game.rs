@@ -9,7 +9,6 @@
 //! it, the player has no tools, and it costs nothing that a mission would cost.
 
 mod checkpoint;
-mod checksum;
 mod collision;
 mod crowding;
 mod doors;

@@ -12,8 +12,8 @@ mod place;
 mod sweep;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use crate::game::stored::stored;
 use crate::world::{Cell, Outline};
 pub(crate) use place::{Place, Stature};
 use sweep::{Path, first_contact};
@@ -64,13 +64,11 @@ pub(crate) trait Obstacles {
 }
 
 /// The position of a body, in cells, and its velocity, in cells per second.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Body {
     pub(crate) position: DVec2,
     pub(crate) velocity: DVec2,
 }
-
-stored! { struct Body { position, velocity } }
 
 /// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
 /// of its velocity that points into what it touches.

@@ -10,7 +10,11 @@
 //! clear those of the last one.
 
 mod buckets;
-mod stored;
+
+use std::array;
+
+use serde::ser::SerializeSeq;
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::world::Cell;
 use buckets::Buckets;
@@ -51,7 +55,8 @@ pub(crate) trait Costs {
 
 /// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
 /// the searches before.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(try_from = "StoredFlood")]
 pub(crate) struct Flood {
     /// The north-west cell, and the columns and rows.
     first: (u32, u32),
@@ -66,15 +71,9 @@ pub(crate) struct Flood {
 
 impl Flood {
     /// Begins a search from `start`, in a map with that many columns and rows.
-    pub(crate) fn begin(&mut self, start: Cell, (columns, rows): (u32, u32)) {
-        let along = |place: u32, count: u32| {
-            let first = place.saturating_sub(REACH);
-            (first, (place + REACH + 1).min(count).saturating_sub(first))
-        };
-        let (left, width) = along(start.column, columns);
-        let (top, height) = along(start.row, rows);
-        (self.first, self.size) = ((left, top), (width, height));
-        let count = width as usize * height as usize;
+    pub(crate) fn begin(&mut self, start: Cell, map: (u32, u32)) {
+        (self.first, self.size) = window(start, map);
+        let count = self.size.0 as usize * self.size.1 as usize;
         self.search = self.search.wrapping_add(1);
         if self.search == 0 || self.cells.len() != count {
             self.cells.clear();
@@ -84,6 +83,11 @@ impl Flood {
         self.buckets.clear();
         self.distance = 0;
         self.offer(start, 0);
+    }
+
+    /// Whether it searches around `start`, in a map with that many columns and rows.
+    pub(crate) fn is_around(&self, start: Cell, map: (u32, u32)) -> bool {
+        (self.first, self.size) == window(start, map)
     }
 
     /// Whether all cells that can be reached have been.
@@ -151,6 +155,15 @@ impl Flood {
         self.known_at(self.place(cell)?)
     }
 
+    /// What is known of the cell at a place of the list.
+    fn known_at(&self, place: usize) -> Option<u16> {
+        self.distance_in(self.cells[place])
+    }
+
+    fn distance_in(&self, entry: u32) -> Option<u16> {
+        (entry >> 16 == u32::from(self.search)).then_some(entry as u16)
+    }
+
     fn neighbor(&self, cell: Cell, side: usize) -> Option<Cell> {
         neighbor(cell, side).filter(|&cell| self.place(cell).is_some())
     }
@@ -161,6 +174,115 @@ impl Flood {
         let is_inside = column < self.size.0 && row < self.size.1;
         is_inside.then(|| row as usize * self.size.0 as usize + column as usize)
     }
+}
+
+impl PartialEq for Flood {
+    fn eq(&self, other: &Self) -> bool {
+        let knows_the_same = || {
+            let mut places = 0..self.cells.len();
+            places.all(|place| self.known_at(place) == other.known_at(place))
+        };
+        (self.first, self.size, self.distance) == (other.first, other.size, other.distance)
+            && self.buckets == other.buckets
+            && self.cells.len() == other.cells.len()
+            && ((self.search, &self.cells) == (other.search, &other.cells) || knows_the_same())
+    }
+}
+
+/// A search as it is stored.
+#[derive(Deserialize)]
+struct StoredFlood {
+    first: (u32, u32),
+    size: (u32, u32),
+    distance: u16,
+    /// Row by row, twice the number of neighbouring cells that are not known, or twice the difference to the last
+    /// known distance, mapped to 0, −1, 1, −2, …, plus 1.
+    changes: Vec<u32>,
+    /// The cells in each bucket, from the one that is taken out first.
+    waiting: [Vec<Cell>; BUCKETS],
+}
+
+impl Serialize for Flood {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let Self { first, size, cells, search: _, buckets, distance } = self;
+        let are_unknown = |&one: &u32, &next: &u32| {
+            self.distance_in(one).is_none() && self.distance_in(next).is_none()
+        };
+        let changes = cells.chunk_by(are_unknown).scan(0, |last, cells| {
+            let Some(known) = self.distance_in(cells[0]) else {
+                return Some((cells.len() as u32) << 1);
+            };
+            let change = i32::from(known) - *last;
+            *last = known.into();
+            Some(((change << 1 ^ change >> 31) as u32) << 1 | 1)
+        });
+        let waiting: [_; BUCKETS] = array::from_fn(|bucket| List(buckets.cells(bucket)));
+        (first, size, distance, List(changes), waiting).serialize(to)
+    }
+}
+
+impl TryFrom<StoredFlood> for Flood {
+    type Error = &'static str;
+
+    fn try_from(stored: StoredFlood) -> Result<Self, &'static str> {
+        let StoredFlood { first, size, distance, changes, waiting } = stored;
+        let most = u64::from(2 * REACH + 1).pow(2);
+        let count = u64::from(size.0).checked_mul(size.1.into()).filter(|&count| count <= most);
+        let count = count.ok_or("the size of a search")? as usize;
+        let mut cells = Vec::with_capacity(count);
+        let mut last = 0;
+        for change in changes {
+            let (is_known, change) = (change & 1 == 1, change >> 1);
+            if !is_known && change as usize <= count - cells.len() {
+                cells.resize(cells.len() + change as usize, 0);
+                continue;
+            }
+            last += (change >> 1) as i32 ^ -((change & 1) as i32);
+            let is_possible = is_known && (0..i32::from(u16::MAX)).contains(&last);
+            if !is_possible || cells.len() == count {
+                return Err("a distance of a search");
+            }
+            cells.push(1 << 16 | last as u32);
+        }
+        if cells.len() != count {
+            return Err("the cells of a search");
+        }
+        let mut flood =
+            Self { first, size, cells, search: 1, buckets: Buckets::default(), distance };
+        flood.buckets.clear();
+        let next = usize::from(distance);
+        for (bucket, waiting) in waiting.into_iter().enumerate() {
+            let distance = next + (bucket + BUCKETS - next % BUCKETS) % BUCKETS;
+            let is_possible = waiting.is_empty() || distance < usize::from(u16::MAX);
+            if !is_possible || !waiting.iter().all(|&cell| flood.place(cell).is_some()) {
+                return Err("a cell of a search");
+            }
+            waiting.into_iter().rev().for_each(|cell| flood.buckets.push(bucket, cell));
+        }
+        Ok(flood)
+    }
+}
+
+/// Values that are written as a list.
+struct List<I>(I);
+
+impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut list = to.serialize_seq(Some(self.0.clone().count()))?;
+        self.0.clone().try_for_each(|value| list.serialize_element(&value))?;
+        list.end()
+    }
+}
+
+/// The first cell of a search from `start` in a map with that many columns and rows, and its own columns and rows.
+fn window(start: Cell, (columns, rows): (u32, u32)) -> ((u32, u32), (u32, u32)) {
+    let along = |place: u32, count: u32| {
+        let first = place.saturating_sub(REACH);
+        (first, (place + REACH + 1).min(count).saturating_sub(first))
+    };
+    let (left, width) = along(start.column, columns);
+    let (top, height) = along(start.row, rows);
+    ((left, top), (width, height))
 }
 
 /// The neighbour of `cell` at that place of [`NEIGHBORS`]; `None` where a coordinate is negative.

@@ -26,16 +26,18 @@ mod shifted;
 mod sight;
 mod sprites;
 mod state;
-mod stored;
 mod terrain;
 mod trail;
 mod view;
 mod ways;
 
+use serde::{Deserialize, Serialize};
+
+use super::multiplayer::MOST_PLAYERS;
 use super::rules::Rules;
 use super::scratch::Scratch;
 use super::sound::{Sound, SoundField, Source};
-use crate::rng::hash;
+use super::stored::{OfLevel, Unrestorable, at_most, check};
 use crate::world::{GuardKind, SpriteId, World};
 use awake::Awake;
 use context::{Context, Other};
@@ -61,25 +63,35 @@ const FALLEN_EACH: u64 = 30;
 const MOST_AIR_CELLS: usize = 16_384;
 
 /// All guards of a level.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Guards {
+    #[serde(skip)]
     rules: Rules,
     list: Vec<Guard>,
+    #[serde(skip)]
     awake: Awake,
     /// By the order of [`GuardKind::ALL`].
+    #[serde(skip)]
     sprites: [Option<SpriteId>; GuardKind::ALL.len()],
+    #[serde(skip)]
     terrain: Terrain,
     ways: Ways,
     air: SoundField,
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
     trails: Vec<Trail>,
+    #[serde(skip)]
     others: Scratch<Vec<Other>>,
     /// The cells over which sounds have spread in this step.
+    #[serde(skip)]
     air_cells: Scratch<usize>,
     /// The guards, sounds and cells that the last step has looked at.
+    #[serde(skip)]
     work: Scratch<u64>,
     acts: Vec<Act>,
     /// The sounds that guards have made in the last step.
     spoken: Vec<Sound>,
+    /// Empty between steps.
+    #[serde(skip)]
     woken: Vec<usize>,
     steps: u64,
     alarm: Alarm,
@@ -281,9 +293,23 @@ impl Guards {
         self.alarm = alarm;
     }
 
-    /// A number that depends on the whole state.
-    pub(crate) fn checksum(&self) -> u64 {
-        hash(self.steps, self.list.iter().flat_map(Guard::words))
+    /// Refuses a state in which a step could fail.
+    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        let map = (world.grid().width(), world.grid().height());
+        self.ways.check(map)?;
+        check(self.air.is_possible(map), "the search of a sound")?;
+        self.trails.iter().try_for_each(|trail| trail.check(self.steps))?;
+        self.list.iter().try_for_each(|guard| guard.check(world, self.list.len()))
+    }
+}
+
+impl OfLevel for Guards {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { rules, sprites, terrain, .. } = start;
+        let list = self.list.of_level(start.list)?;
+        let mut guards = Self { rules, list, sprites, terrain, ..self };
+        guards.find_awake();
+        Ok(guards)
     }
 }
 

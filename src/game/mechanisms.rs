@@ -12,15 +12,16 @@
 
 mod handles;
 mod moving_cell;
-mod stored;
+
+use serde::{Deserialize, Serialize};
 
 use super::Game;
 use super::multiplayer::{MOST_PLAYERS, playing_mut};
 use super::noise::reach;
 use super::player::Motion;
 use super::sound::SoundKind;
+use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;
-use crate::game::stored::stored;
 use crate::sort;
 use crate::world::{
     Cell, Driver, MovingTile, SwitchId, ThingKind, TileEffect, TileId, TileKind, World,
@@ -28,53 +29,97 @@ use crate::world::{
 use moving_cell::{MovingCell, Step};
 
 /// The state of all mechanisms of a level.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Mechanisms {
     /// For each switch.
     switches: Vec<Switch>,
     /// All plates, row by row.
     plates: Vec<Plate>,
     /// The plates that are down, from the lowest index to the highest.
+    #[serde(skip)]
     down: Vec<usize>,
     /// The cells of moving tiles, row by row.
     moving: Vec<MovingCell>,
     /// Those of them that do not rest, from the lowest index to the highest.
+    #[serde(skip)]
     active: Vec<usize>,
     /// For each moving tile, its first cell.
+    #[serde(skip)]
     first_cells: Vec<Option<Cell>>,
     /// The doors that switches open.
+    #[serde(skip)]
     doors: Vec<(Cell, SwitchId)>,
     /// Whether there are levers, flames or secret walls.
+    #[serde(skip)]
     has_handles: bool,
     /// Whether there are floors that crumble.
+    #[serde(skip)]
     has_crumbling: bool,
+    #[serde(skip)]
     secrets: Share,
 }
 
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 struct Switch {
     /// Whether its levers are turned on.
     is_turned: bool,
     /// Whether its doors and tiles have been told that it is on.
     is_on: bool,
     /// The number of its plates that are down.
+    #[serde(skip)]
     plates_down: u32,
     /// The moving cells that it drives, by their indices.
+    #[serde(skip)]
     cells: Vec<usize>,
 }
 
-stored! { part of Switch { is_turned, is_on } level { plates_down, cells } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Plate {
+    #[serde(skip)]
     cell: Cell,
+    #[serde(skip)]
     switch: SwitchId,
     is_down: bool,
 }
 
-stored! { part of Plate { is_down } level { cell, switch } }
+impl OfLevel for Mechanisms {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let switches = self.switches.of_level(start.switches)?;
+        let plates = self.plates.of_level(start.plates)?;
+        let moving = self.moving.of_level(start.moving)?;
+        Ok(Self { switches, plates, moving, ..start })
+    }
+}
+
+impl OfLevel for Switch {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { is_turned: self.is_turned, is_on: self.is_on, ..start })
+    }
+}
+
+impl OfLevel for Plate {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { is_down: self.is_down, ..start })
+    }
+}
 
 impl Mechanisms {
+    /// Shows moving tiles in `world`, where they rest, as they are.
+    ///
+    /// # Errors
+    /// If one is beyond its last state.
+    pub(crate) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
+        for moving in &self.moving {
+            check(moving.is_possible(world), "a moving tile")?;
+            let (cell, shown) = (moving.cell(), moving.shown(world));
+            if world.grid().tile(cell.column.into(), cell.row.into()) != Some(shown) {
+                world.set_state(cell, shown);
+            }
+        }
+        self.recollect(world);
+        Ok(())
+    }
+
     /// The mechanisms of `world`, at rest.
     pub(crate) fn new(world: &World) -> Self {
         let tiles = world.grid().rows().zip(0..).flat_map(|(line, row)| {
@@ -184,15 +229,6 @@ impl Mechanisms {
             Driver::Switch(switch) => self.switches[usize::from(switch.0)].is_on,
             Driver::Hand | Driver::Weight => cell.is_driven(),
         }
-    }
-
-    /// The position of each plate, the position of each moving cell, and the state of each switch,
-    /// as numbers.
-    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
-        let switches =
-            self.switches.iter().map(|it| u64::from(it.is_turned) << 1 | u64::from(it.is_on));
-        let plates = self.plates.iter().map(|plate| u64::from(plate.is_down));
-        switches.chain(plates).chain(self.moving.iter().map(MovingCell::word))
     }
 
     fn is_on(&self, switch: SwitchId) -> bool {

@@ -7,14 +7,15 @@
 mod field;
 mod hearing;
 
-use crate::game::stored::stored;
+use serde::{Deserialize, Serialize};
+
 use crate::world::Cell;
 pub(crate) use field::{SoundField, half_cells};
 pub use hearing::Heard;
 pub(crate) use hearing::Hearing;
 
 /// A sound of one step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sound {
     /// The kind of sound.
     pub kind: SoundKind,
@@ -26,15 +27,13 @@ pub struct Sound {
     pub by: Source,
 }
 
-stored! { struct Sound { kind, cell, reach, by } }
-
 impl Sound {
     /// The largest reach that has an effect, in cells.
     pub const FARTHEST: u8 = 24;
 }
 
 /// What makes a sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// The player with that index.
     Player(usize),
@@ -44,10 +43,8 @@ pub enum Source {
     Object,
 }
 
-stored! { enum Source { 0: Player(index), 1: Guard(index), 2: Object } }
-
 /// A kind of sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SoundKind {
     /// Steps of walking.
     Walking,
@@ -91,12 +88,4 @@ pub enum SoundKind {
     Shot,
     /// A blow that meets nothing.
     Swing,
-}
-
-stored! {
-    enum SoundKind {
-        0: Walking, 1: Running, 2: Landing, 3: Splash, 4: Door, 5: Mechanism, 6: Spikes, 7: Knock,
-        8: Crash, 9: Blow, 10: Cry, 11: Fall, 12: Wonder, 13: GiveUp, 14: Shout, 15: Bell, 16: Bark,
-        17: Windup, 18: Draw, 19: Shot, 20: Swing,
-    }
 }

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, Pitch};
 
@@ -13,7 +14,8 @@ use super::{Cell, Pitch};
 /// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
 /// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
 /// each step was refused, since its length drifts.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "(u8, f64)")]
 pub struct Heading {
     quarter_turns: u8,
     /// Radians, within ±π/4 but for rounding.
@@ -54,17 +56,6 @@ impl Heading {
         }
     }
 
-    /// The quarter turns, and the radians beside them.
-    pub(crate) fn parts(self) -> (u8, f64) {
-        (self.quarter_turns, self.beside)
-    }
-
-    /// The heading with these [`parts`](Self::parts); `None` if no heading has them.
-    pub(crate) fn from_parts(quarter_turns: u8, beside: f64) -> Option<Self> {
-        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
-        is_one.then_some(Self { quarter_turns, beside })
-    }
-
     /// The unit vector in this direction.
     pub fn direction(self) -> DVec2 {
         let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));
@@ -74,6 +65,16 @@ impl Heading {
             2 => DVec2::new(-cos, -sin),
             _ => DVec2::new(sin, -cos),
         }
+    }
+}
+
+/// A heading from the quarter turns and the radians beside them.
+impl TryFrom<(u8, f64)> for Heading {
+    type Error = &'static str;
+
+    fn try_from((quarter_turns, beside): (u8, f64)) -> Result<Self, &'static str> {
+        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
+        is_one.then_some(Self { quarter_turns, beside }).ok_or("a heading")
     }
 }
 

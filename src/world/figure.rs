@@ -13,11 +13,12 @@
 //!   [next change](crate::render::Renderer::next_change).
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, Heading, Light, Sprite, SpriteId, World};
 
 /// A sprite at any place.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// Its sprite, among those of the world; a figure with any other is not drawn.
     pub sprite: SpriteId,

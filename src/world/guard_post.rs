@@ -2,6 +2,8 @@
 //!
 //! A post is data of the map. The guard itself, which moves, is part of the game.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Cell, Heading};
 
 /// A guard as the map draws it.
@@ -20,7 +22,7 @@ pub struct GuardPost {
 }
 
 /// A kind of guard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum GuardKind {
     /// Slow and armoured; hits hard.
     Warden,
@@ -63,9 +65,10 @@ impl GuardKind {
 }
 
 /// What a guard does while nothing disturbs them.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Duty {
     /// Stands at the post and looks around.
+    #[default]
     Stand,
     /// Sleeps at the post, until a noise wakes them.
     Sleep,

@@ -4,10 +4,14 @@
 //! cell by the next state, so that drawing, collision and light need not know that it moves. A
 //! height for each cell was refused: every stage would read it in its innermost loop.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Cell, TileId, World};
 
 /// A switch: an index into the world's list of their names. Levers and plates set it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct SwitchId(pub u8);
 
 /// A tile whose cells change their height.

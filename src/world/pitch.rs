@@ -6,8 +6,10 @@
 //! shifted, as in architectural photography. It looks distorted at large angles, so it is limited
 //! to [`Pitch::MOST_DEGREES`].
 
+use serde::{Deserialize, Serialize};
 /// How far the camera looks up or down: within ±30°.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
 pub struct Pitch {
     slope: f64,
 }
@@ -45,6 +47,16 @@ impl Pitch {
         }
         // Adding zero removes the sign of a negative zero.
         Self { slope: (self.slope + slope).clamp(-STEEPEST, STEEPEST) + 0.0 }
+    }
+}
+
+/// A pitch from its slope.
+impl TryFrom<f64> for Pitch {
+    type Error = &'static str;
+
+    fn try_from(slope: f64) -> Result<Self, &'static str> {
+        let pitch = Self::LEVEL.tilted(slope);
+        if pitch.slope.to_bits() == slope.to_bits() { Ok(pitch) } else { Err("a pitch") }
     }
 }
 

@@ -45,14 +45,8 @@ impl<const COUNT: usize> Buckets<COUNT> {
         self.count == 0
     }
 
-    /// The cells in a bucket, in the order in which they were put in.
-    pub(crate) fn cells(&self, bucket: usize) -> Vec<Cell> {
-        let mut cells: Vec<Cell> = self.downwards(bucket).collect();
-        cells.reverse();
-        cells
-    }
-
-    fn downwards(&self, bucket: usize) -> impl Iterator<Item = Cell> {
+    /// The cells in a bucket, from the one that is taken out first.
+    pub(crate) fn cells(&self, bucket: usize) -> impl Iterator<Item = Cell> + Clone {
         let entry = |place: u32| self.entries.get(place as usize);
         let entries = successors(entry(self.tops[bucket]), move |above| entry(above.below));
         entries.map(|entry| entry.cell)
@@ -88,7 +82,7 @@ impl<const COUNT: usize> Buckets<COUNT> {
 impl<const COUNT: usize> PartialEq for Buckets<COUNT> {
     fn eq(&self, other: &Self) -> bool {
         self.count == other.count
-            && (0..COUNT).all(|bucket| self.downwards(bucket).eq(other.downwards(bucket)))
+            && (0..COUNT).all(|bucket| self.cells(bucket).eq(other.cells(bucket)))
     }
 }
 

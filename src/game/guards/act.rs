@@ -1,9 +1,9 @@
 //! What guards perceive of players, and what they do to them.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::game::sound::Sound;
-use crate::game::stored::stored;
 use crate::world::Cell;
 
 /// What guards can perceive of a player.
@@ -37,7 +37,7 @@ impl Target {
 }
 
 /// Smoke: a disc that nobody sees through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cloud {
     /// The middle, in cells.
     pub(crate) position: DVec2,
@@ -46,7 +46,7 @@ pub(crate) struct Cloud {
 }
 
 /// What a guard does to the rest of the game in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Act {
     /// Hits the player with index `target`; the blow comes from `from`.
     Hurt { target: usize, by: usize, from: DVec2, points: u8 },
@@ -59,14 +59,4 @@ pub(crate) enum Act {
     Bolt { by: usize, from: DVec2, height: f64, direction: DVec2, slope: f64, points: u8 },
     /// Begins to follow a player while nobody did: one more alarm.
     Raised,
-}
-
-stored! {
-    enum Act {
-        0: Hurt { target, by, from, points },
-        1: Open(cell),
-        2: Sound(sound),
-        3: Bolt { by, from, height, direction, slope, points },
-        4: Raised,
-    }
 }

@@ -1,6 +1,7 @@
 //! A guard: the state, and the order of what happens in a step.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::context::{Context, Other};
 use super::kind::{Abilities, abilities};
@@ -10,7 +11,7 @@ use super::state::{Phase, Quarry, State};
 use super::terrain::Gait;
 use super::view::GuardView;
 use crate::game::sound::SoundKind;
-use crate::game::stored::stored;
+use crate::game::stored::{OfLevel, Unrestorable, check, check_on_map};
 use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Duty, GuardKind, GuardPost, Heading, World};
 
@@ -24,12 +25,19 @@ const PACE: f64 = 0.55;
 const STAGGER: u16 = 30;
 /// The speed of a guard who is pushed, in cells per second.
 const PUSH: f64 = 4.0;
+/// More steps than any guard is baffled.
+const MOST_BAFFLED: u16 = 1000;
+/// The number of paces after which they are counted from 0 again.
+const MOST_PACES: f64 = 1024.0;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Guard {
     pub(crate) kind: GuardKind,
+    #[serde(skip)]
     pub(crate) post: Cell,
+    #[serde(skip)]
     pub(crate) post_heading: Heading,
+    #[serde(skip)]
     pub(crate) duty: Duty,
     pub(crate) mover: Mover,
     pub(crate) state: State,
@@ -62,14 +70,6 @@ pub(crate) struct Guard {
     /// The distance walked, in paces.
     paces: f64,
     pub(crate) random: SplitMix64,
-}
-
-stored! {
-    part of Guard {
-        mover, state, awareness, quarry, is_wary, stop, errand, pause, glance, rest, stagger, blind,
-        baffled, is_unsettled, route, wanted, look, paces, random,
-    }
-    level { kind, post, post_heading, duty }
 }
 
 impl Guard {
@@ -158,7 +158,7 @@ impl Guard {
         if paces.floor() > self.paces.floor() && self.stagger == 0 {
             context.sound(SoundKind::Walking, self.mover.cell(), self.abilities().tread);
         }
-        self.paces = paces % 1024.0;
+        self.paces = paces % MOST_PACES;
     }
 
     /// A guard who looks elsewhere than they walk turns first.
@@ -245,20 +245,37 @@ impl Guard {
         }
     }
 
-    /// Whether the distance walked, in paces, is at least 0 and below `most`.
-    pub(crate) fn has_paces_below(&self, most: f64) -> bool {
-        (0.0..most).contains(&self.paces)
+    /// Refuses a state in which a step of `count` guards could fail.
+    pub(crate) fn check(&self, world: &World, count: usize) -> Result<(), Unrestorable> {
+        check_on_map(world, self.mover.position())?;
+        if let Some(quarry) = self.quarry {
+            check_on_map(world, quarry.position)?;
+        }
+        let stops = match &self.duty {
+            Duty::Patrol(stops) => stops.len(),
+            Duty::Stand | Duty::Sleep | Duty::Wander(_) => 1,
+        };
+        let wakes_nobody_else = match self.state {
+            State::Wondering { wakes, .. } => wakes.is_none_or(|index| index < count),
+            _ => true,
+        };
+        check(wakes_nobody_else, "whom a guard wakes")?;
+        let counts = self.awareness <= ALARMED
+            && self.stop < stops.max(1)
+            && self.baffled <= MOST_BAFFLED
+            && self.route.is_possible()
+            && (0.0..MOST_PACES).contains(&self.paces)
+            && self.state != (State::Down { left: 0 });
+        check(counts, "a count of a guard")
     }
+}
 
-    /// Numbers that together are the state.
-    pub(crate) fn words(&self) -> impl Iterator<Item = u64> + use<> {
-        let Mover { body, feet, heading, .. } = self.mover;
-        let reals = [body.position.x, body.position.y, body.velocity.x, body.velocity.y, feet];
-        let reals = reals.into_iter().chain([heading.degrees(), self.paces]);
-        let counts = [self.rest, self.stagger, self.blind, self.baffled, self.pause];
-        let counts = counts.map(u64::from);
-        let mood = self.state.mood() as u64;
-        let own = [mood, u64::from(self.awareness), self.stop as u64];
-        reals.map(f64::to_bits).chain(counts).chain(own).chain([self.random.clone().bits()])
+impl OfLevel for Guard {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { kind, post, post_heading, duty, .. } = start;
+        if self.kind != kind {
+            return Err(Unrestorable::OtherLevel);
+        }
+        Ok(Self { post, post_heading, duty, mover: self.mover.facing_ahead(), ..self })
     }
 }

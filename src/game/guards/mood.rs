@@ -1,6 +1,6 @@
 //! What guards are doing, as others see it.
 
-use crate::game::stored::stored;
+use serde::{Deserialize, Serialize};
 
 /// What a guard is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -24,7 +24,9 @@ pub enum Mood {
 }
 
 /// How much the guards of a level know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub enum Alarm {
     /// Nobody has noticed anything.
     #[default]
@@ -34,8 +36,6 @@ pub enum Alarm {
     /// Somebody follows the player.
     Raised,
 }
-
-stored! { enum Alarm { 0: Calm, 1: Wary, 2: Raised } }
 
 impl Mood {
     /// The alarm of a level in which a guard has this mood, and all others are on duty.

@@ -5,12 +5,12 @@
 //! to cell, exactly through the middles, which always is possible.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::act::Act;
 use super::context::Context;
 use super::guard::Guard;
 use super::ways::Way;
-use crate::game::stored::stored;
 use crate::world::{Cell, TileKind};
 
 /// Nearer than this to the middle of a cell, a guard is there, in cells.
@@ -30,7 +30,7 @@ const CARE: u16 = 120;
 const APART: f64 = 0.6;
 
 /// The way of a guard.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Route {
     goal: Option<Cell>,
     /// The point to which they walk at present.
@@ -43,8 +43,6 @@ pub(crate) struct Route {
     still: u16,
     care: u16,
 }
-
-stored! { struct Route { goal, point, from, fresh, still, care } }
 
 /// How a walk goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

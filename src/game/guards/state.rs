@@ -1,13 +1,13 @@
 //! What a guard is doing, and what they know.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::Mood;
-use crate::game::stored::stored;
 use crate::world::Cell;
 
 /// What a guard is doing. Times are in steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum State {
     Asleep,
     OnDuty,
@@ -45,22 +45,8 @@ pub(crate) enum State {
     Returning,
 }
 
-stored! {
-    enum State {
-        0: Asleep,
-        1: OnDuty,
-        2: Wondering { about, looks, goes, hurries, wakes },
-        3: Searching { around, next, left },
-        4: Tracking { target, mark, lost },
-        5: Chasing { fright },
-        6: Attacking { phase, left },
-        7: Down { left },
-        8: Returning,
-    }
-}
-
 /// The parts of a blow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// The warning.
     Windup,
@@ -70,10 +56,8 @@ pub(crate) enum Phase {
     Recovery,
 }
 
-stored! { enum Phase { 0: Windup, 1: Strike { has_hit }, 2: Recovery } }
-
 /// What a guard knows about the player whom they look for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Quarry {
     /// The index of the player.
     pub(crate) target: usize,
@@ -82,8 +66,6 @@ pub(crate) struct Quarry {
     /// The steps since then.
     pub(crate) unseen: u16,
 }
-
-stored! { struct Quarry { target, position, unseen } }
 
 impl State {
     pub(crate) fn mood(self) -> Mood {

@@ -5,9 +5,10 @@
 //! floors that crumble; a guard who is in one of these, because they were pushed or because the
 //! floor has moved, may leave it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::game::flood::{Costs, DIAGONAL, STRAIGHT};
 use crate::game::player::STEP_HEIGHT;
-use crate::game::stored::stored;
 use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
 
 /// The highest step down, in cells.
@@ -16,7 +17,7 @@ pub(crate) const DROP: f64 = 1.0;
 const DOOR: u16 = 6;
 
 /// What guards know about the tiles and the things of a world.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Terrain {
     /// For each tile of the world.
     footings: Vec<Footing>,
@@ -45,13 +46,11 @@ enum FootingKind {
 }
 
 /// The way in which a kind of guard walks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Gait {
     pub(crate) opens_doors: bool,
     pub(crate) height: f64,
 }
-
-stored! { struct Gait { opens_doors, height } }
 
 impl Terrain {
     pub(crate) fn new(world: &World) -> Self {

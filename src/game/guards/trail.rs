@@ -2,8 +2,10 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use super::Target;
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, TileEffect, World};
 
 /// The steps for which a cell smells: 20 seconds.
@@ -12,22 +14,18 @@ const LASTS: u64 = 1200;
 const MOST: usize = 128;
 
 /// The cells in which a player has been, the oldest first. Water keeps no smell.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Trail {
     marks: VecDeque<Mark>,
     /// The number of the oldest mark: marks are counted from the first of the game.
     first: u64,
 }
 
-stored! { struct Trail { marks, first } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Mark {
     cell: Cell,
     left_at: u64,
 }
-
-stored! { struct Mark { cell, left_at } }
 
 impl Trail {
     /// Records where a player is in the step `now`.

@@ -9,9 +9,11 @@
 //! Doors and moving floors change ways. A step that is not possible any more begins the search
 //! anew, and so does a search that has become old.
 
+use serde::{Deserialize, Serialize};
+
 use super::terrain::{Backwards, Gait, Terrain, cost_between};
 use crate::game::flood::{Flood, neighbor};
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check};
+use crate::game::stored::{Unrestorable, at_most, check};
 use crate::world::{Cell, World};
 
 /// The number of cells that all searches together find in one step.
@@ -24,55 +26,22 @@ const OLD: u64 = 1200;
 const OLD_IN_VAIN: u64 = 150;
 
 /// The distances from some goals.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Ways {
+    #[serde(deserialize_with = "at_most::<MOST_FIELDS, _, _>")]
     fields: Vec<Field>,
     /// The number of the present step.
     now: u64,
     cells_left: usize,
 }
 
-impl Stored for Ways {
-    fn write(&self, out: &mut Writer) {
-        let Self { fields, now, cells_left } = self;
-        now.write(out);
-        cells_left.write(out);
-        fields.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let (now, cells_left) = (Stored::read(input)?, Stored::read(input)?);
-        let fields: Vec<Field> = input.list(MOST_FIELDS)?;
-        check(fields.iter().all(|it| it.begun <= now && it.used <= now), "the time of a search")?;
-        Ok(Self { fields, now, cells_left })
-    }
-}
-
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Field {
     goal: Cell,
     gait: Gait,
     flood: Flood,
     begun: u64,
     used: u64,
-}
-
-impl Stored for Field {
-    fn write(&self, out: &mut Writer) {
-        let Self { goal, gait, flood, begun, used } = self;
-        goal.write(out);
-        gait.write(out);
-        begun.write(out);
-        used.write(out);
-        flood.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let goal = Stored::read(input)?;
-        let (gait, begun, used) =
-            (Stored::read(input)?, Stored::read(input)?, Stored::read(input)?);
-        Ok(Self { goal, gait, begun, used, flood: Flood::read(goal, input)? })
-    }
 }
 
 /// The answer to the question for a way.
@@ -89,6 +58,14 @@ pub(crate) enum Way {
 }
 
 impl Ways {
+    /// Refuses searches from the future, and such that do not fit a map with that many columns and rows.
+    pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), Unrestorable> {
+        let is_possible = |it: &Field| {
+            it.begun <= self.now && it.used <= self.now && it.flood.is_around(it.goal, map)
+        };
+        check(self.fields.iter().all(is_possible), "a search")
+    }
+
     /// Begins a step of the game.
     pub(crate) fn begin_step(&mut self) {
         self.now += 1;

@@ -2,9 +2,11 @@
 //!
 //! What they do depends on the number of steps since the start alone.
 
+use serde::{Deserialize, Serialize};
+
 use crate::game::noise::reach;
 use crate::game::sound::{Sound, SoundKind, Source};
-use crate::game::stored::{Reader, StoredPart, Unrestorable, Writer, stored};
+use crate::game::stored::{OfLevel, Unrestorable};
 use crate::world::sprite::builtin::SpikesFrame;
 use crate::world::{Cell, Rhythm, ThingKind, World};
 
@@ -15,24 +17,19 @@ const OUT: u64 = 24;
 pub(crate) const HEIGHT: f64 = 0.4;
 
 /// All spikes of a level.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Spikes {
     /// In the order of the world's things.
     each: Vec<Spike>,
 }
 
-impl StoredPart for Spikes {
-    fn write(&self, out: &mut Writer) {
-        let Self { each } = self;
-        out.parts(each);
-    }
-
-    fn read_over(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
-        input.parts(&mut self.each)
+impl OfLevel for Spikes {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { each: self.each.of_level(start.each)? })
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Spike {
     cell: Cell,
     rhythm: Rhythm,
@@ -40,17 +37,19 @@ struct Spike {
     phase: Phase,
 }
 
-stored! { part of Spike { phase } level { cell, rhythm } }
+impl OfLevel for Spike {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { phase: self.phase, ..start })
+    }
+}
 
 /// The position of spikes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Phase {
     In,
     Rising,
     Out,
 }
-
-stored! { enum Phase { 0: In, 1: Rising, 2: Out } }
 
 impl Spikes {
     /// The spikes of `world`, which show that they are in.

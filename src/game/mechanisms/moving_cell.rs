@@ -1,7 +1,9 @@
 //! A cell whose tile moves: how far it is, and what comes next.
 
+use serde::{Deserialize, Serialize};
+
 use crate::game::STEPS_PER_SECOND;
-use crate::game::stored::stored;
+use crate::game::stored::{OfLevel, Unrestorable};
 use crate::world::{Cell, Driver, MovingTile, TileId, World};
 
 /// The steps before a floor falls on which somebody has stepped, and those in which it falls.
@@ -9,10 +11,12 @@ const CRACKS: u16 = 30;
 const FALLS: u16 = 20;
 
 /// A cell of a [`MovingTile`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MovingCell {
+    #[serde(skip)]
     cell: Cell,
     /// The index of its moving tile.
+    #[serde(skip)]
     tile: u16,
     /// The steps from the first state, without those in which it cracks.
     progress: u16,
@@ -24,14 +28,18 @@ pub(crate) struct MovingCell {
     is_blocked: bool,
 }
 
-stored! { part of MovingCell { progress, cracks, is_driven, is_blocked } level { cell, tile } }
-
 /// What a moving cell does in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
     pub(crate) after: MovingCell,
     /// The tile that it shows then, if that changes.
     pub(crate) state: Option<TileId>,
+}
+
+impl OfLevel for MovingCell {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { cell: start.cell, tile: start.tile, ..self })
+    }
 }
 
 impl MovingCell {
@@ -119,12 +127,6 @@ impl MovingCell {
     /// Whether it has not gone beyond its last state.
     pub(crate) fn is_possible(&self, world: &World) -> bool {
         self.cracks <= CRACKS && self.progress <= steps(self.moving_tile(world), world)
-    }
-
-    /// Its state as a number.
-    pub(crate) fn word(&self) -> u64 {
-        let bits = u64::from(self.cracks) << 1 | u64::from(self.is_driven);
-        u64::from(self.is_blocked) << 33 | u64::from(self.progress) << 17 | bits
     }
 
     fn moving_tile<'a>(&self, world: &'a World) -> &'a MovingTile {

@@ -3,9 +3,10 @@
 //! Sound goes around corners, over low walls, and through the holes of masks. Solid walls stop it.
 //! A closed door or glass is as far as [`DAMPING`] more cells.
 
+use serde::{Deserialize, Serialize};
+
 use super::Sound;
 use crate::game::flood::{Costs, Flood, STRAIGHT};
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
 use crate::world::{Cell, Tile, TileId, TileKind, World};
 
 /// The additional cost of a closed door or of glass, in half cells.
@@ -16,7 +17,7 @@ const LOW_WALL: f64 = 0.75;
 const OLD: u64 = 30;
 
 /// How far sounds have to go from one cell to those around it.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct SoundField {
     center: Option<Cell>,
     flood: Flood,
@@ -46,27 +47,14 @@ impl SoundField {
         self.flood.distance(cell)
     }
 
+    /// Whether the search fits a map with that many columns and rows.
+    pub(crate) fn is_possible(&self, map: (u32, u32)) -> bool {
+        self.center.is_none_or(|center| self.flood.is_around(center, map))
+    }
+
     /// Forgets the distances.
     pub(crate) fn forget(&mut self) {
         self.center = None;
-    }
-}
-
-impl Stored for SoundField {
-    fn write(&self, out: &mut Writer) {
-        let Self { center, flood, begun } = self;
-        center.write(out);
-        // Without a centre, nothing is known.
-        if center.is_some() {
-            begun.write(out);
-            flood.write(out);
-        }
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let Some(center) = Stored::read(input)? else { return Ok(Self::default()) };
-        let begun = Stored::read(input)?;
-        Ok(Self { center: Some(center), begun, flood: Flood::read(center, input)? })
     }
 }
 

@@ -1,10 +1,11 @@
 //! What a player hears.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::field::half_cells;
 use super::{Sound, SoundField, SoundKind, Source};
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, Heading, World};
 
 /// The steps for which a sound is shown.
@@ -13,7 +14,7 @@ const DURATION: u16 = 45;
 const MOST: usize = 8;
 
 /// A sound as a player hears it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heard {
     /// The direction on the map from which it comes.
     pub bearing: Heading,
@@ -25,10 +26,8 @@ pub struct Heard {
     pub left: u16,
 }
 
-stored! { struct Heard { bearing, strength, kind, left } }
-
 /// The ears of a player: what was heard in the last steps.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Hearing {
     field: SoundField,
     heard: Vec<Heard>,
@@ -36,8 +35,6 @@ pub(crate) struct Hearing {
     sounds: Vec<Sound>,
     steps: u64,
 }
-
-stored! { struct Hearing { field, heard, sounds, steps } }
 
 impl Hearing {
     /// The sounds that were heard in the last steps, the newest last.
@@ -68,7 +65,9 @@ impl Hearing {
     }
 
     /// Refuses what cannot be heard.
-    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        let map = (world.grid().width(), world.grid().height());
+        check(self.field.is_possible(map), "the search of a sound")?;
         let is_audible = |heard: &Heard| {
             (1..=3).contains(&heard.strength) && (1..=DURATION).contains(&heard.left)
         };
