@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{MOST_LAG, PlayerId};
 use crate::game::Game;
-use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, RADIUS};
+use crate::game::sight::{Point, is_in_sight};
 use crate::world::World;
 
 /// The number of positions that are remembered: those of this step and of the last ones.

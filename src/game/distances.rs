@@ -9,15 +9,13 @@
 //! Distances carry the number of the search that has found them, so that a new search need not
 //! clear those of the last one.
 
-mod buckets;
-
 use std::array;
+use std::iter::successors;
 
 use serde::ser::SerializeSeq;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::world::Cell;
-use buckets::Buckets;
 
 /// The cost of a step to the north, east, south or west, in half cells.
 pub(crate) const STRAIGHT: u16 = 2;
@@ -56,8 +54,8 @@ pub(crate) trait Costs {
 /// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
 /// the searches before.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(try_from = "StoredFlood")]
-pub(crate) struct Flood {
+#[serde(try_from = "StoredDistances")]
+pub(crate) struct Distances {
     /// The north-west cell, and the columns and rows.
     first: (u32, u32),
     size: (u32, u32),
@@ -69,7 +67,7 @@ pub(crate) struct Flood {
     distance: u16,
 }
 
-impl Flood {
+impl Distances {
     /// Begins a search from `start`, in a map with that many columns and rows.
     pub(crate) fn begin(&mut self, start: Cell, map: (u32, u32)) {
         (self.first, self.size) = window(start, map);
@@ -176,7 +174,7 @@ impl Flood {
     }
 }
 
-impl PartialEq for Flood {
+impl PartialEq for Distances {
     fn eq(&self, other: &Self) -> bool {
         let knows_the_same = || {
             let mut places = 0..self.cells.len();
@@ -191,7 +189,7 @@ impl PartialEq for Flood {
 
 /// A search as it is stored.
 #[derive(Deserialize)]
-struct StoredFlood {
+struct StoredDistances {
     first: (u32, u32),
     size: (u32, u32),
     distance: u16,
@@ -202,7 +200,7 @@ struct StoredFlood {
     waiting: [Vec<Cell>; BUCKETS],
 }
 
-impl Serialize for Flood {
+impl Serialize for Distances {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let Self { first, size, cells, search: _, buckets, distance } = self;
         let are_unknown = |&one: &u32, &next: &u32| {
@@ -221,11 +219,11 @@ impl Serialize for Flood {
     }
 }
 
-impl TryFrom<StoredFlood> for Flood {
+impl TryFrom<StoredDistances> for Distances {
     type Error = &'static str;
 
-    fn try_from(stored: StoredFlood) -> Result<Self, &'static str> {
-        let StoredFlood { first, size, distance, changes, waiting } = stored;
+    fn try_from(stored: StoredDistances) -> Result<Self, &'static str> {
+        let StoredDistances { first, size, distance, changes, waiting } = stored;
         let most = u64::from(2 * REACH + 1).pow(2);
         let count = u64::from(size.0).checked_mul(size.1.into()).filter(|&count| count <= most);
         let count = count.ok_or("the size of a search")? as usize;
@@ -247,19 +245,19 @@ impl TryFrom<StoredFlood> for Flood {
         if cells.len() != count {
             return Err("the cells of a search");
         }
-        let mut flood =
+        let mut search =
             Self { first, size, cells, search: 1, buckets: Buckets::default(), distance };
-        flood.buckets.clear();
+        search.buckets.clear();
         let next = usize::from(distance);
         for (bucket, waiting) in waiting.into_iter().enumerate() {
             let distance = next + (bucket + BUCKETS - next % BUCKETS) % BUCKETS;
             let is_possible = waiting.is_empty() || distance < usize::from(u16::MAX);
-            if !is_possible || !waiting.iter().all(|&cell| flood.place(cell).is_some()) {
+            if !is_possible || !waiting.iter().all(|&cell| search.place(cell).is_some()) {
                 return Err("a cell of a search");
             }
-            waiting.into_iter().rev().for_each(|cell| flood.buckets.push(bucket, cell));
+            waiting.into_iter().rev().for_each(|cell| search.buckets.push(bucket, cell));
         }
-        Ok(flood)
+        Ok(search)
     }
 }
 
@@ -290,6 +288,95 @@ pub(crate) fn neighbor(cell: Cell, side: usize) -> Option<Cell> {
     let (columns, rows) = NEIGHBORS[side];
     let column = cell.column.checked_add_signed(columns)?;
     Some(Cell { column, row: cell.row.checked_add_signed(rows)? })
+}
+
+/// The cells for which a search reserves memory when it first begins.
+const RESERVED: usize = 512;
+/// The end of a list.
+const NONE: u32 = u32::MAX;
+
+/// That many buckets of cells: in each, the last cell that was put in is the first to be taken out. Those with
+/// the same cells in the same order are equal.
+///
+/// All buckets are linked lists in one vector, which grows to the most cells that ever waited at
+/// once. A vector for each bucket was refused: every one of them grows for itself, so that guards
+/// who had walked for a minute still allocated memory.
+#[derive(Clone, Debug)]
+struct Buckets<const COUNT: usize> {
+    entries: Vec<Entry>,
+    /// The last entry of each bucket.
+    tops: [u32; COUNT],
+    /// The first of the entries that are in no bucket.
+    free: u32,
+    /// The number of cells in all buckets.
+    count: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    cell: Cell,
+    /// The entry below it in its bucket.
+    below: u32,
+}
+
+impl<const COUNT: usize> Buckets<COUNT> {
+    /// Takes all cells out.
+    fn clear(&mut self) {
+        self.entries.clear();
+        self.entries.reserve(RESERVED);
+        (self.tops, self.free, self.count) = ([NONE; COUNT], NONE, 0);
+    }
+
+    /// Whether all buckets are empty.
+    fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The cells in a bucket, from the one that is taken out first.
+    fn cells(&self, bucket: usize) -> impl Iterator<Item = Cell> + Clone {
+        let entry = |place: u32| self.entries.get(place as usize);
+        let entries = successors(entry(self.tops[bucket]), move |above| entry(above.below));
+        entries.map(|entry| entry.cell)
+    }
+
+    /// Puts a cell into a bucket.
+    fn push(&mut self, bucket: usize, cell: Cell) {
+        let entry = Entry { cell, below: self.tops[bucket] };
+        let place = if let Some(free) = self.entries.get_mut(self.free as usize) {
+            let place = self.free;
+            self.free = free.below;
+            *free = entry;
+            place
+        } else {
+            self.entries.push(entry);
+            self.entries.len() as u32 - 1
+        };
+        self.tops[bucket] = place;
+        self.count += 1;
+    }
+
+    /// Takes a cell out of a bucket.
+    fn pop(&mut self, bucket: usize) -> Option<Cell> {
+        let top = self.tops[bucket];
+        let entry = self.entries.get_mut(top as usize)?;
+        self.tops[bucket] = entry.below;
+        (entry.below, self.free) = (self.free, top);
+        self.count -= 1;
+        Some(entry.cell)
+    }
+}
+
+impl<const COUNT: usize> PartialEq for Buckets<COUNT> {
+    fn eq(&self, other: &Self) -> bool {
+        self.count == other.count
+            && (0..COUNT).all(|bucket| self.cells(bucket).eq(other.cells(bucket)))
+    }
+}
+
+impl<const COUNT: usize> Default for Buckets<COUNT> {
+    fn default() -> Self {
+        Self { entries: Vec::new(), tops: [NONE; COUNT], free: NONE, count: 0 }
+    }
 }
 
 #[cfg(test)]
@@ -360,23 +447,41 @@ mod tests {
             starts in prop::collection::vec((0..SIDE, 0..SIDE), 1..4),
         ) {
             let open = Open(open);
-            let mut flood = Flood::default();
+            let mut search = Distances::default();
             for (column, row) in starts {
                 let start = Cell { column, row };
                 let expected = by_relaxation(&open, start);
-                flood.begin(start, (SIDE, SIDE));
+                search.begin(start, (SIDE, SIDE));
                 loop {
                     for (place, &expected) in expected.iter().enumerate() {
                         let (row, column) = (place as u32 / SIDE, place as u32 % SIDE);
-                        let found = flood.distance(Cell { column, row });
-                        let is_near = expected.is_some_and(|it| it < flood.radius());
+                        let found = search.distance(Cell { column, row });
+                        let is_near = expected.is_some_and(|it| it < search.radius());
                         prop_assert_eq!(found, expected.filter(|_| is_near));
                     }
-                    if !flood.advance(&open) {
+                    if !search.advance(&open) {
                         break;
                     }
                 }
-                prop_assert!(flood.is_over());
+                prop_assert!(search.is_over());
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn each_bucket_is_a_stack(changes: Vec<(bool, bool, u32)>) {
+            let mut buckets = Buckets::<2>::default();
+            let mut stacks = [Vec::new(), Vec::new()];
+            for (puts, second, column) in changes {
+                let (bucket, cell) = (usize::from(second), Cell { column, row: 0 });
+                if puts {
+                    buckets.push(bucket, cell);
+                    stacks[bucket].push(cell);
+                } else {
+                    prop_assert_eq!(buckets.pop(bucket), stacks[bucket].pop());
+                }
+                prop_assert_eq!(buckets.is_empty(), stacks.iter().all(Vec::is_empty));
             }
         }
     }

@@ -7,9 +7,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::terrain::{DROP, Footing, Gait, Terrain};
+use super::ways::{DROP, Footing, Gait, Terrain};
 use crate::game::STEP;
-use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, slide};
+use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, is_clear, slide};
 use crate::game::fall::Flight;
 use crate::game::player::STEP_HEIGHT;
 use crate::world::{Cell, Heading, Outline, World};
@@ -262,7 +262,7 @@ struct Careful<'a> {
 
 impl Careful<'_> {
     fn is_clear(&self, center: DVec2) -> bool {
-        crate::game::collision::is_clear(self, center, RADIUS)
+        is_clear(self, center, RADIUS)
     }
 
     fn is_avoided(&self, cell: Cell) -> bool {
