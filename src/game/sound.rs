@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::distances::{Costs, Distances, STRAIGHT};
 use super::stored::{Unrestorable, check};
-use crate::world::{Cell, Heading, Tile, TileId, TileKind, World};
+use crate::world::{Cell, Heading, Tile, TileKind, World};
 
 /// A sound of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -151,8 +151,7 @@ struct Air<'a> {
 
 impl Air<'_> {
     fn tile(&self, cell: Cell) -> Option<&Tile> {
-        let TileId(id) = self.world.grid().tile(i64::from(cell.column), i64::from(cell.row))?;
-        self.world.tiles().get(usize::from(id))
+        self.world.tile_in(cell)
     }
 
     /// Whether sound passes between two neighbours.
@@ -299,7 +298,7 @@ impl Hearing {
         if from.distance(position) > f64::from(sound.reach) * 1.1 + 1.5 {
             return None;
         }
-        let cell = Cell { column: position.x as u32, row: position.y as u32 };
+        let cell = Cell::at(position);
         self.field.reach_out(world, cell, reach, self.steps);
         let distance = self.field.distance(sound.cell).filter(|&distance| distance <= reach)?;
         Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)

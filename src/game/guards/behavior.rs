@@ -237,7 +237,7 @@ impl Guard {
             }
             return;
         }
-        let Some(cell) = cell_at(about) else { return self.give_up(context) };
+        let Some(cell) = Cell::containing(about) else { return self.give_up(context) };
         let abilities = self.abilities();
         let speed = if hurries { abilities.chase } else { abilities.walk * 1.15 };
         match self.go(context, cell, about, speed) {
@@ -375,7 +375,7 @@ impl Guard {
 
     /// Walks to where the player is, or was.
     fn close_in(&mut self, context: &mut Context, quarry: Quarry) {
-        let Some(cell) = cell_at(quarry.position) else { return self.give_up(context) };
+        let Some(cell) = Cell::containing(quarry.position) else { return self.give_up(context) };
         let speed = self.abilities().chase;
         let progress = self.go(context, cell, quarry.position, speed);
         let is_seen = quarry.unseen <= GUESSES;
@@ -413,7 +413,7 @@ impl Guard {
         let mark = trail.and_then(|trail| trail.newest(|cell| is_near(cell.center())));
         if let Some(mark) = mark.filter(|_| self.blind == 0) {
             self.state = State::Tracking { target: quarry.target, mark, lost: 0 };
-        } else if let Some(cell) = cell_at(quarry.position) {
+        } else if let Some(cell) = Cell::containing(quarry.position) {
             let left = self.random.whole(600, 900) as u16;
             self.begin_to_search(cell, left);
         }
@@ -584,9 +584,4 @@ impl Guard {
         context.acts.push(Act::Bolt { by, from, height, direction, slope, points });
         context.sound(SoundKind::Shot, self.mover.cell(), 8);
     }
-}
-
-/// The cell at a position; `None` west or north of the map.
-pub(crate) fn cell_at(DVec2 { x, y }: DVec2) -> Option<Cell> {
-    (x >= 0.0 && y >= 0.0).then_some(Cell { column: x as u32, row: y as u32 })
 }
