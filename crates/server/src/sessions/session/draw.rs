@@ -18,27 +18,13 @@ use self::ghost::Ghost;
 use super::page::Page;
 use super::stay::seconds_left;
 use super::visit::Visit;
-<<<<<<< HEAD:crates/server/src/sessions/session/draw.rs
 use cellcaster::app::parts::{DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message, picture_and_status, too_small, whole_seconds};
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use crate::sessions::line;
 use crate::rooms::room::{Phase, RoomView};
-use cellcaster::terminal::thread_memory;
 use cellcaster::tui::View;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::world::{Figure, World};
-=======
-use crate::app::parts::{
-    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
-    picture_and_status, too_small, whole_seconds,
-};
-use crate::color::palette::ColorDepth;
-use crate::server::line;
-use crate::server::room::{Phase, RoomView};
-use crate::tui::View;
-use crate::tui::canvas::Canvas;
-use crate::world::{Figure, World};
->>>>>>> integration:src/server/session/draw.rs
 
 /// The keys in a room that bindings do not change.
 const ROOM_KEYS: [&str; 2] = [

@@ -5,6 +5,9 @@ use std::time::Instant;
 use proptest::prelude::*;
 
 use super::*;
+use cellcaster::game::stored::first_line;
+use cellcaster::game::stored::tests::crowd::Crowd;
+use cellcaster::game::stored::tests::winning;
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
