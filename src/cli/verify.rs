@@ -26,7 +26,7 @@ pub(crate) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
 }
 
 /// A number of steps as minutes and seconds with one digit.
-pub(crate) fn clock(steps: u64) -> String {
+pub fn clock(steps: u64) -> String {
     let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

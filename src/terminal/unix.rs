@@ -160,7 +160,7 @@ impl Device {
 /// of standard output. Rejected:
 /// "/dev/tty", which cannot be polled on every system.
 #[cfg(feature = "cli")]
-pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
+pub fn take_keys_from_terminal() -> io::Result<()> {
     let output = rustix::stdio::stdout();
     let name = ttyname(output, Vec::new())?;
     let terminal = rustix::fs::open(name, OFlags::RDONLY | OFlags::NOCTTY, Mode::empty());
@@ -197,7 +197,7 @@ pub(crate) fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Res
 }
 
 /// The peak memory of this process in bytes, on Linux; `None` on other systems.
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;

@@ -43,7 +43,7 @@ pub fn peak_memory() -> Option<u64> {
 
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
-pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
+pub fn take_keys_from_terminal() -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 

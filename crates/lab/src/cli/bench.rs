@@ -1,4 +1,4 @@
-//! `cellcaster bench`: the speed on this machine.
+//! `cellcaster-lab bench`: the speed on this machine.
 
 mod footprint;
 mod json;
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use ratatui::layout::Size;
 
-use cellcaster::cli::arguments::{Bench, BenchFormat};
+use super::arguments::{Bench, BenchFormat};
 use cellcaster::cli::output_file::OutputFile;
 use cellcaster::cli::script::SHOWCASE;
 use cellcaster::cli::{Error, level};

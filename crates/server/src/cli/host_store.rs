@@ -6,7 +6,7 @@
 use std::env;
 
 use cellcaster::cli::Error;
-use cellcaster::cli::arguments::Database;
+use crate::cli::database::Database;
 use crate::accounts::PostgresStore;
 use crate::accounts::{HostStore, SqliteStore, StoreFailure};
 

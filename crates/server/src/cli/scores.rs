@@ -1,11 +1,12 @@
-//! `cellcaster scores`: the leaderboards of a host.
+//! `cellcaster-server scores`: the leaderboards of a host.
 
 use std::io::{self, Write};
 
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use cellcaster::cli::arguments::{Database, Scores, ScoresFormat};
+use super::arguments::{Scores, ScoresFormat};
+use super::database::Database;
 use cellcaster::cli::data_folder::data_folder;
 use crate::cli::host_store::{self, failed};
 use cellcaster::cli::{Error, verify};
@@ -24,7 +25,7 @@ enum Boards {
 /// Writes the boards that `options` request.
 pub(crate) fn run(options: &Scores) -> Result<(), Error> {
     let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
-    let database = host_store::named(options.store.clone()).or_else(folder).ok_or_else(|| {
+    let database = host_store::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
     let boards = find(&database, options)?;

@@ -18,7 +18,7 @@ pub(crate) struct PendingCluster {
 
 /// The cluster that `options` name. The store is that of all hosts.
 pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
-    let Some(address) = &options.cluster else { return Ok(None) };
+    let Some(address) = options.cluster() else { return Ok(None) };
     let Database::Address(store) = store else {
         return Err(Error::mistake(
             "a cluster needs a database that all hosts share: name it, as in \
@@ -29,7 +29,7 @@ pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<Pendin
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
     let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
-    Ok(Some(PendingCluster { address: address.0.clone(), leases: open()?, presence: open()? }))
+    Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
 }
 
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use super::signals::Hangups;
 use cellcaster::cli::Error;
-use cellcaster::cli::arguments::Serve;
+use crate::cli::arguments::Serve;
 use cellcaster::cli::config::{LARGEST, configuration_file};
 use crate::ops::config::{Config, LiveConfig};
 use crate::rooms::maps::{HostMaps, MapsError};
