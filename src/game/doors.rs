@@ -115,14 +115,9 @@ impl Doors {
         });
     }
 
-    /// The number of steps in which no door moves; `None` if none ever will.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        let waiting = self.moving.iter().filter(|door| !door.is_kept_open());
-        let quiet = waiting.map(|door| match door.phase {
-            Phase::Open(steps) => u64::from(steps),
-            Phase::Opening(_) | Phase::Closing(_) => 0,
-        });
-        quiet.min()
+    /// Whether no door moves until it is opened or a switch lets it go.
+    pub(crate) fn are_at_rest(&self) -> bool {
+        self.moving.iter().all(MovingDoor::is_kept_open)
     }
 
     /// Opens the doors of `world`, in which all are closed, as far as they are open.
@@ -140,15 +135,6 @@ impl Doors {
             world.set_opening(door.cell, door.phase.opening());
         }
         Ok(())
-    }
-
-    /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
-    pub(crate) fn wait(&mut self, steps: u64) {
-        for door in self.moving.iter_mut().filter(|door| !door.is_kept_open()) {
-            if let Phase::Open(left) = &mut door.phase {
-                *left = left.saturating_sub(u32::try_from(steps).unwrap_or(u32::MAX));
-            }
-        }
     }
 }
 

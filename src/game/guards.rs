@@ -355,23 +355,18 @@ impl Guards {
         self.acts.get(index).copied()
     }
 
-    /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
-    /// is awake, `None` if all sleep.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+    /// Whether no guard does anything until they perceive something: all sleep.
+    pub(crate) fn are_at_rest(&self) -> bool {
         // Only a step fills what guards remember of each other and of the players.
         let has_begun = self.steps > 0 || self.list.is_empty();
-        if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
-            return Some(0);
-        }
-        let quiet = self.awake().filter_map(|guard| match guard.state {
-            State::Asleep if guard.stagger == 0 => None,
-            State::Down { left } => Some(u64::from(left) - 1),
-            _ => Some(0),
-        });
-        quiet.min()
+        has_begun
+            && !self.has_changed
+            && self.acts.is_empty()
+            && self.spoken.is_empty()
+            && self.awake().all(Guard::is_asleep)
     }
 
-    /// Advances the clocks by `steps`, at most [`Guards::quiet_steps`].
+    /// Advances the clocks by `steps` in which all guards are at rest.
     pub(crate) fn wait(&mut self, steps: u64) {
         if self.list.is_empty() {
             return;
@@ -380,11 +375,6 @@ impl Guards {
         self.steps += steps;
         self.ways.wait(steps);
         self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
-        for guard in &mut self.list {
-            if let State::Down { left } = &mut guard.state {
-                *left = left.saturating_sub(u16::try_from(steps).unwrap_or(u16::MAX)).max(1);
-            }
-        }
     }
 
     /// Whether anything that a picture shows of guards has changed in the last step.

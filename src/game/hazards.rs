@@ -81,13 +81,6 @@ impl Game {
         }
     }
 
-    /// The number of steps in water in which it does not hurt; `None` outside water.
-    pub(crate) fn quiet_steps_in_water(&self) -> Option<u64> {
-        let steps = self.player.in_water;
-        let next = COLD * 2.max(steps / COLD + 1);
-        (self.is_mission && self.is_in_water()).then(|| u64::from(next - steps - 1))
-    }
-
     fn step_on_spikes(&mut self) {
         *self.work += self.spikes.count() as u64;
         let Self { spikes, world, sounds, steps, .. } = self;
@@ -241,15 +234,6 @@ impl Spikes {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
         (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
     }
-
-    /// The number of steps from `now` in which no spikes change; `None` if there are none.
-    pub(crate) fn quiet_steps(&self, now: u64) -> Option<u64> {
-        let quiet = self.each.iter().map(|spike| {
-            let is_shown = spike.phase == spike.rhythm.phase(now);
-            if is_shown { spike.rhythm.steps_left(now) } else { 0 }
-        });
-        quiet.min()
-    }
 }
 
 impl Spike {
@@ -286,16 +270,6 @@ impl Rhythm {
             _ => Phase::In,
         }
     }
-
-    /// The number of steps from `now` in which the phase stays the same; at least one.
-    fn steps_left(self, now: u64) -> u64 {
-        let (age, period) = (self.age(now), u64::from(self.period));
-        match self.phase(now) {
-            Phase::Out => OUT - age,
-            Phase::In => period - WARNING - age,
-            Phase::Rising => period - age,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -306,20 +280,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn spikes_warn_before_they_come_out_and_say_how_long_they_rest(
+        fn spikes_warn_before_they_come_out(
             period in 60..=3600_u16,
             delay in 0..3600_u16,
             now in 3600..9000_u64,
         ) {
             let rhythm = Rhythm { period, delay: delay % period };
-            let phase = rhythm.phase(now);
-            let left = rhythm.steps_left(now);
-            prop_assert!((0..left).all(|step| rhythm.phase(now + step) == phase));
-            prop_assert!(rhythm.phase(now + left) != phase);
-            if phase == Phase::Out {
-                let thrust = now - rhythm.age(now);
-                prop_assert!((1..=24).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
-            }
+            let thrust = now + u64::from(period) - rhythm.age(now);
+            prop_assert!((1..=WARNING).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
+            prop_assert!(rhythm.phase(thrust - WARNING - 1) != Phase::Rising);
+            prop_assert!((0..OUT).all(|step| rhythm.phase(thrust + step) == Phase::Out));
+            prop_assert!(rhythm.phase(thrust + OUT) != Phase::Out);
         }
 
         #[test]
