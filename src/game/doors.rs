@@ -2,12 +2,12 @@
 //!
 //! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
 //! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
-//! closing door that is opened turns back. A door with a switch stays open while the switch is on. Its position is computed from the number of steps, not
-//! from its last position.
+//! closing door that is opened turns back. A door with a switch stays open while the switch is on. The
+//! position is computed from the number of steps, not from the last position.
 //!
 //! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
-//! not begin to close while anybody touches the cell. A door that pushes players away was refused:
-//! there may be no room for them.
+//! not begin to close while anybody touches the cell. Rejected: a door that pushes players away.
+//! There may be no room for them.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -123,7 +123,7 @@ impl Doors {
     /// Opens the doors of `world`, in which all are closed, as far as they are open.
     ///
     /// # Errors
-    /// If that are no doors of `world`.
+    /// If they are not doors of `world`.
     pub(crate) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);

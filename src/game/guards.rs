@@ -1,11 +1,11 @@
 //! Guards: they stand, patrol, notice, search, chase, strike, give up and fall.
 //!
-//! A step of all guards depends on the world, on what can be perceived of the players, on the
-//! sounds of the step, and on nothing else. Guards share what they know about ways, and call each
-//! other by sounds that spread as all others do.
+//! A step of all guards depends only on the world, on what can be perceived of the players, and on the
+//! sounds of the step. Guards share their knowledge of ways, and call each other by sounds that spread
+//! like any other.
 //!
-//! Guards far from all players take [`FAR_STRIDE`] steps at once. Simulating only those who are in
-//! view was refused: a patrol would stop whenever the player looks away.
+//! Guards far from all players take [`FAR_STRIDE`] steps at once. Rejected: to simulate only guards in
+//! view. A patrol would stop whenever the player looks away.
 
 mod behavior;
 mod context;
@@ -204,7 +204,7 @@ impl Guards {
         self.has_changed |= (guard.mover, guard.frame()) != before;
     }
 
-    /// The number of steps that a guard takes at once now: 0 for those who wait for their turn.
+    /// The number of steps that a guard takes at once now: 0 while they wait for their turn.
     fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
@@ -226,7 +226,7 @@ impl Guards {
         }
     }
 
-    /// Lets all guards hear `sound` whom it reaches.
+    /// Lets all guards within reach hear `sound`.
     fn spread(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], sound: &Sound) {
         let told = match sound.by {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
@@ -343,14 +343,14 @@ impl Guards {
     }
 }
 
-/// What the rest of the game asks of guards, and does to them.
+/// Queries and effects for the rest of the game.
 impl Guards {
     /// Whether there are none.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// What guards have done in the last step, by its place in their order.
+    /// The act of the last step at this place in the order of acts.
     pub(crate) fn act(&self, index: usize) -> Option<Act> {
         self.acts.get(index).copied()
     }

@@ -6,8 +6,8 @@
 //!   second time on.
 //! - Spikes are heard half a second before they come out, and hurt once for each time.
 //! - A blow from outside the view does not kill before it has [warned](super::warnings). The view
-//!   is that of the default field of view, whatever the player has chosen: a game does not depend on
-//!   how it is shown.
+//!   has the default field of view, whatever the player has chosen: a game does not depend on how it
+//!   is shown.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ const SPIKES: u8 = 2;
 const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
-    /// What the floor does to the player in this step, which began at `before`.
+    /// The effects of the floor on the player in this step, which began at `before`.
     pub(crate) fn meet_hazards(&mut self, before: &Motion) {
         self.fall();
         if self.is_mission {
@@ -170,7 +170,7 @@ impl OfLevel for Spikes {
 struct Spike {
     cell: Cell,
     rhythm: Rhythm,
-    /// What they show.
+    /// The phase that they show.
     phase: Phase,
 }
 

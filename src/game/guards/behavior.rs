@@ -24,7 +24,7 @@ const LOST: u16 = 150;
 const BAFFLED: u16 = 300;
 /// The steps after which guards search who do not see a player any more.
 const FORGOTTEN: u16 = 600;
-/// The steps for which they overlook a player whom they could not reach.
+/// The steps for which they overlook a player out of their reach.
 const OVERLOOKS: u16 = 240;
 /// The distances that guards keep who do not strike, in cells.
 const KEEPS: (f64, f64) = (4.0, 9.0);

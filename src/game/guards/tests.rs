@@ -131,7 +131,7 @@ fn on(difficulty: Difficulty) -> Rules {
     Rules { difficulty, seed: 0 }
 }
 
-// What guards see.
+// Seeing.
 
 /// A corridor of sixteen cells, with a warden at its west end.
 fn corridor(heading: u32) -> Scene {
@@ -259,7 +259,7 @@ fn who_is_stunned_gets_up_alone() {
     assert_eq!(scene.mood(0), Mood::Searching);
 }
 
-// What guards hear, and what they tell each other.
+// Hearing, and telling each other.
 
 const GUARDS: &str = r#"
 "W" = { guard = "warden", heading = 180 }
@@ -393,7 +393,7 @@ fn what_a_player_hears_of_guards_is_weaker_behind_doors() {
     }
 }
 
-// Where guards walk.
+// Walking.
 
 #[test]
 fn a_patrol_goes_round_and_returns_to_it() {
@@ -591,7 +591,7 @@ proptest! {
     }
 }
 
-// Guards who follow and strike.
+// Chasing and striking.
 
 const WARDEN: &str = r#""W" = { guard = "warden", heading = 0 }"#;
 
