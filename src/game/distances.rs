@@ -22,7 +22,7 @@ pub(crate) const STRAIGHT: u16 = 2;
 /// The cost of a step to a diagonal neighbour, in half cells.
 pub(crate) const DIAGONAL: u16 = 3;
 /// The largest cost of one step.
-pub(crate) const MOST_COST: u16 = 15;
+const MOST_COST: u16 = 15;
 
 /// One bucket for each distance that may still be open.
 const BUCKETS: usize = MOST_COST as usize + 1;
@@ -31,7 +31,7 @@ const REACH: u32 = 160;
 
 /// The columns and rows from a cell to its neighbours, clockwise from the north: straight ones at
 /// even places.
-pub(crate) const NEIGHBORS: [(i32, i32); 8] =
+const NEIGHBORS: [(i32, i32); 8] =
     [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
 
 /// The costs of steps in a search.

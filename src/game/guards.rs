@@ -96,13 +96,13 @@ pub(crate) struct Guards {
 /// Guards who have woken never sleep again. The list is therefore found anew where somebody wakes or
 /// the level changes, and not in each step.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Awake {
+struct Awake {
     /// The guards who do not sleep, from the lowest index to the highest.
-    pub(crate) indices: Vec<usize>,
+    indices: Vec<usize>,
     /// Whether there are hounds, awake or asleep.
-    pub(crate) has_hounds: bool,
+    has_hounds: bool,
     /// The number of guards who have a sprite.
-    pub(crate) figures: usize,
+    figures: usize,
 }
 
 impl Guards {
@@ -315,7 +315,7 @@ impl Guards {
 
 impl Guards {
     /// Finds the guards who are awake.
-    pub(crate) fn find_awake(&mut self) {
+    fn find_awake(&mut self) {
         let guards = self.list.iter().enumerate();
         let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
         let indices = &mut self.awake.indices;
@@ -331,7 +331,7 @@ impl Guards {
     }
 
     /// Records where all guards are. Those who sleep have not moved since the last step.
-    pub(crate) fn look_at_others(&mut self) {
+    fn look_at_others(&mut self) {
         if self.others.len() != self.list.len() {
             self.others.clear();
             self.others.extend(self.list.iter().map(Guard::as_other));

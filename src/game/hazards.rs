@@ -89,7 +89,7 @@ impl Game {
         }
         let motion = self.player.motion;
         let thrust = self.spikes.thrust_in(motion.cell(), self.steps);
-        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + HEIGHT;
+        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + SPIKES_HEIGHT;
         if thrust.is_some() && is_touched && thrust != self.player.last_thrust {
             self.player.last_thrust = thrust;
             self.hurt(Harm { points: SPIKES, bearing: None, spares: false, cause: Cause::Spikes });
@@ -151,7 +151,7 @@ fn is_cold_after(steps: u32) -> bool {
 const WARNING: u64 = 30;
 const OUT: u64 = 24;
 /// How high they come out, in cells.
-pub(crate) const HEIGHT: f64 = 0.4;
+const SPIKES_HEIGHT: f64 = 0.4;
 
 /// All spikes of a level.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -230,7 +230,7 @@ impl Spikes {
 
     /// The step in which the spikes in `cell` came out that are out in the step `now`; `None` if
     /// there are none.
-    pub(crate) fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
+    fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
         (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
     }

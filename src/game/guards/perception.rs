@@ -15,7 +15,7 @@ use crate::game::sound::{Sound, SoundKind, Source, half_cells};
 use crate::world::{Cell, Difficulty, GuardKind};
 
 /// A guard looks around in every fourth step.
-pub(crate) const LOOK_EACH: u64 = 4;
+const LOOK_EACH: u64 = 4;
 /// The most that one look adds to awareness.
 const MOST_GAIN: u32 = 80;
 /// The loss of awareness in a look that finds nobody.
@@ -124,7 +124,7 @@ impl Guard {
     }
 
     /// Wonders, or is alarmed.
-    pub(crate) fn react(&mut self, context: &mut Context) {
+    fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
             State::Asleep

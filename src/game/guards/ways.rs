@@ -268,7 +268,7 @@ fn tile(world: &World, cell: Cell) -> Option<TileId> {
 }
 
 /// The cost of the step between two neighbours, in half cells.
-pub(crate) fn cost_between(one: Cell, other: Cell) -> u16 {
+fn cost_between(one: Cell, other: Cell) -> u16 {
     if one.column == other.column || one.row == other.row { STRAIGHT } else { DIAGONAL }
 }
 
