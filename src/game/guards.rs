@@ -33,7 +33,7 @@ mod ways;
 
 use serde::{Deserialize, Serialize};
 
-use super::multiplayer::MOST_PLAYERS;
+use super::rules::MOST_PLAYERS;
 use super::rules::Rules;
 use super::scratch::Scratch;
 use super::sound::{Sound, SoundField, Source};

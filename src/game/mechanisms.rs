@@ -16,9 +16,10 @@ mod moving_cell;
 use serde::{Deserialize, Serialize};
 
 use super::Game;
-use super::multiplayer::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
+use super::rules::MOST_PLAYERS;
 use super::sound::SoundKind;
 use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;

@@ -6,8 +6,9 @@ mod properties;
 use glam::DVec2;
 
 use super::*;
+use crate::game::{MOST_LAG, Sees, Strikes};
 use crate::game::player::RADIUS;
-use crate::game::{Game, Intent, Outcome, PlayerColor, Rules};
+use crate::game::{Outcome};
 use crate::map;
 use crate::world::{Cell, Difficulty, World};
 
