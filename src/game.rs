@@ -10,11 +10,11 @@
 
 mod checkpoint;
 mod collision;
+mod distances;
 mod doors;
 mod exits;
 mod fall;
 mod flight;
-mod flood;
 mod guards;
 mod hazards;
 mod health;
@@ -31,6 +31,7 @@ mod rules;
 mod scratch;
 mod script;
 mod show;
+mod sight;
 mod sound;
 mod stance;
 mod state;

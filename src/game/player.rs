@@ -200,4 +200,26 @@ impl Notice {
 }
 
 #[cfg(test)]
-mod tests {}
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nobody_carries_more_than_nine_or_less_than_nothing(
+            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
+        ) {
+            let mut supplies = Supplies::AT_START;
+            for (supply, more) in changes {
+                let before = supplies.count(supply);
+                if let Some(more) = more {
+                    supplies.add(supply, more);
+                } else {
+                    prop_assert_eq!(supplies.take(supply), before > 0);
+                }
+                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
+            }
+        }
+    }
+}

@@ -76,7 +76,15 @@ impl Script {
     /// # Errors
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
-        parse::parse(text, name)
+        let mut reader =
+            Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let end = line.find('#').unwrap_or(line.len());
+            reader.read_line(trimmed(text, start..start + end));
+            start += line.len();
+        }
+        reader.end(name)
     }
 
     /// As [`parse`](Self::parse), from the content of a file.
@@ -173,8 +181,11 @@ impl Intents {
 
     /// The set that words of a script name; `None` if they name none.
     #[cfg(feature = "serve")]
-    pub(crate) fn from_words(words: &str) -> Option<Self> {
-        parse::intents(words)
+    pub(crate) fn from_words(text: &str) -> Option<Self> {
+        let header = Header::default();
+        let reader = Reader { text, header, sections: Vec::new(), faults: Vec::new() };
+        let words = words(text, 0..text.len());
+        if words.is_empty() { None } else { reader.intents(&words).ok() }
     }
 }
 
@@ -410,18 +421,6 @@ impl<W: Write> Drop for Recorder<W> {
     }
 }
 
-pub(crate) fn parse(text: &str, name: &str) -> Result<Script, Faults> {
-    let mut reader =
-        Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let end = line.find('#').unwrap_or(line.len());
-        reader.read_line(trimmed(text, start..start + end));
-        start += line.len();
-    }
-    reader.end(name)
-}
-
 /// What has been read so far.
 struct Reader<'t> {
     text: &'t str,
@@ -592,19 +591,6 @@ impl Reader<'_> {
     }
 }
 
-/// The intents that words name, as a line of a script does after its duration.
-#[cfg(feature = "serve")]
-pub(crate) fn intents(words_of_line: &str) -> Option<Intents> {
-    let reader = Reader {
-        text: words_of_line,
-        header: Header::default(),
-        sections: Vec::new(),
-        faults: Vec::new(),
-    };
-    let words = words(words_of_line, 0..words_of_line.len());
-    if words.is_empty() { None } else { reader.intents(&words).ok() }
-}
-
 /// `intents` with the turn or tilt of `word`, such as `turn:-1.5`.
 fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
     let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
@@ -644,7 +630,7 @@ fn unknown(word: &str, place: Range<usize>) -> Fault {
 }
 
 /// The words in a part of `text`.
-pub(crate) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
+fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
     let mut words = Vec::new();
     let mut start = part.start;
     for piece in text[part].split_inclusive(char::is_whitespace) {
@@ -658,7 +644,7 @@ pub(crate) fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
 }
 
 /// A part of `text` without surrounding blanks.
-pub(crate) fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
+fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
     let whole = &text[part.clone()];
     let start = part.start + (whole.len() - whole.trim_start().len());
     start..(part.start + whole.trim_end().len()).max(start)

@@ -56,7 +56,37 @@ impl Game {
     pub fn checksum(&self) -> u64 {
         let rows = self.world.grid().rows();
         let tiles = rows.map(|row| hash(0, row.iter().map(|tile| u64::from(tile.0))));
-        hash(checksum(&State(self)), tiles)
+        hash(checksum(&self.rules_state()) ^ self.level_hash(), tiles)
+    }
+
+    /// The part of the state on which rules depend.
+    fn rules_state(&self) -> impl Serialize {
+        let Self {
+            rules: _,
+            world,
+            is_mission: _,
+            window: _,
+            player,
+            members,
+            doors,
+            mechanisms,
+            spikes,
+            missiles,
+            smoke,
+            guards,
+            // Empty between steps.
+            sounds: _,
+            steps,
+            // Counted in each step.
+            work: _,
+            // Not part of the rules, or copies of the past.
+            sprites: _,
+            checkpoint: _,
+            revision: _,
+            figure_revision: _,
+        } = self;
+        let things = world.changes().things;
+        (things, steps, doors, mechanisms, spikes, missiles, smoke, guards, player, members)
     }
 
     /// Reads a game, of which this is the start, and the game at the checkpoint of its player, if it may
@@ -66,13 +96,13 @@ impl Game {
         if input.read::<[u8; 8]>()? != self.level_hash().to_le_bytes() {
             return Err(Unrestorable::OtherLevel);
         }
-        (self.steps, self.revision, self.figure_revision) = input.read()?;
-        if input.read()? {
+        let (revision, figure_revision, has_player, is_lamplit) = input.read()?;
+        if has_player {
             self.sprites.add_player(&mut self.world);
         }
-        let is_lamplit = input.read()?;
-        let things = input.read()?;
         let figures: Vec<_> = input.read()?;
+        let things = input.read()?;
+        self.steps = input.read()?;
         self.doors = input.read()?;
         self.mechanisms = input.read_with(self.mechanisms)?;
         self.spikes = input.read_with(self.spikes)?;
@@ -88,6 +118,7 @@ impl Game {
         self.check()?;
         self.show_changes(things, is_lamplit)?;
         self.world.set_figures(figures.into_iter());
+        (self.revision, self.figure_revision) = (revision, figure_revision);
         let cell: Option<Cell> = input.read()?;
         let saved = if input.read()? {
             let start = start.ok_or(Unrestorable::Damaged("a checkpoint"))?;
@@ -147,37 +178,13 @@ struct State<'a>(&'a Game);
 
 impl Serialize for State<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Game {
-            rules: _,
-            world,
-            is_mission: _,
-            window: _,
-            player,
-            members,
-            doors,
-            mechanisms,
-            spikes,
-            missiles,
-            smoke,
-            guards,
-            sprites,
-            // Empty between steps.
-            sounds: _,
-            checkpoint,
-            steps,
-            revision,
-            figure_revision,
-            // Counted in each step.
-            work: _,
-        } = self.0;
-        let Changes { things, figures, is_lamplit } = world.changes();
-        let level = self.0.level_hash().to_le_bytes();
-        let world = (sprites.has_player(), is_lamplit, things, figures);
-        let moving = (doors, mechanisms, spikes, missiles, smoke, guards);
-        let cell = checkpoint.cell();
+        let Self(game) = self;
+        let level = game.level_hash().to_le_bytes();
+        let Changes { things: _, figures, is_lamplit } = game.world.changes();
+        let shown = (game.revision, game.figure_revision, game.sprites.has_player(), is_lamplit);
+        let cell = game.checkpoint.cell();
         // Without a cell it is the start, which is known.
-        let saved = checkpoint.game().filter(|_| cell.is_some()).map(State);
-        let revisions = (steps, revision, figure_revision);
-        (level, revisions, world, moving, player, members, cell, saved).serialize(to)
+        let saved = game.checkpoint.game().filter(|_| cell.is_some()).map(State);
+        (level, shown, figures, game.rules_state(), cell, saved).serialize(to)
     }
 }

@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::Target;
 use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, TileEffect, World};
 
@@ -29,9 +28,8 @@ struct Mark {
 
 impl Trail {
     /// Records where a player is in the step `now`.
-    pub(crate) fn record(&mut self, world: &World, target: &Target, now: u64) {
+    pub(crate) fn record(&mut self, world: &World, cell: Cell, now: u64) {
         self.fade(now);
-        let cell = target.cell();
         match self.marks.back_mut() {
             Some(mark) if mark.cell == cell => mark.left_at = now,
             _ if world.effect_in(cell) == Some(TileEffect::Water) => {}

@@ -4,10 +4,10 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::game::Game;
-use crate::game::guards::{Point, is_in_sight};
 use crate::game::health::Flash;
 use crate::game::player::{Motion, RADIUS};
 use crate::game::rules::{MOST_LAG, PlayerId, Strikes};
+use crate::game::sight::{Point, is_in_sight};
 use crate::world::{Heading, World};
 
 /// The number of positions that are remembered: those of this step and of the last ones.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::guards::Cloud;
+use crate::game::sight::Cloud;
 use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 
