@@ -36,7 +36,7 @@ mod sound;
 mod stance;
 mod state;
 mod step;
-pub(crate) mod stored;
+pub mod stored;
 mod tally;
 mod tools;
 mod turning;
@@ -61,7 +61,7 @@ pub use guards::{Alarm, GuardView, Mood};
 pub use health::{Flash, FlashKind, Health};
 pub use intent::{Intent, Intents, Look};
 pub use multiplayer::view::{OtherPlayer, PlayerView};
-pub(crate) use player::FRICTION;
+pub use player::FRICTION;
 pub use report::Outcome;
 pub use rules::{Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules, Sees, Strikes};
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
@@ -72,7 +72,7 @@ pub use tally::{Rank, Share, Tally};
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
-pub(crate) const STEPS_PER_SECOND: u32 = 60;
+pub const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.
 ///

@@ -563,6 +563,20 @@ impl Game {
             members.in_the_way = in_the_way;
         }
     }
+
+    /// The frame of a figure of the player of a game for one, who has walked so many cells.
+    pub fn frame_of_figure(&self, walked: f64) -> u8 {
+        let frame = match self.player.killed_by {
+            Some(_) => PlayerFrame::Down,
+            None => walking_frame(&self.player.motion, walked),
+        };
+        frame.index()
+    }
+
+    /// The sprite of the players of that colour; `None` in a game for one.
+    pub fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
+        self.members.as_ref()?.sprites[color as usize]
+    }
 }
 
 /// [`Game::playing`], of the parts of a game.
@@ -588,23 +602,6 @@ pub(crate) fn playing_mut<'a>(
     let several = members.into_iter().flat_map(Members::each_mut);
     let several = several.filter(|(_, member)| member.is_playing);
     alone.into_iter().chain(several.map(|(index, member)| (index, &mut member.player)))
-}
-
-#[cfg(feature = "serve")]
-impl Game {
-    /// The frame of a figure of the player of a game for one, who has walked so many cells.
-    pub(crate) fn frame_of_figure(&self, walked: f64) -> u8 {
-        let frame = match self.player.killed_by {
-            Some(_) => PlayerFrame::Down,
-            None => walking_frame(&self.player.motion, walked),
-        };
-        frame.index()
-    }
-
-    /// The sprite of the players of that colour; `None` in a game for one.
-    pub(crate) fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
-        self.members.as_ref()?.sprites[color as usize]
-    }
 }
 
 /// The frame of somebody who stands or walks, and has walked so many cells.

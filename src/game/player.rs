@@ -4,7 +4,8 @@ mod motion;
 
 use std::collections::BTreeSet;
 
-pub(crate) use motion::{FRICTION, JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+pub use motion::FRICTION;
+pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 use serde::{Deserialize, Serialize};
 
 use super::health::{Cause, Flash, Health, Warnings};
@@ -75,7 +76,7 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
         check(self.health.is_possible(), "the health")?;

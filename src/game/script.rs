@@ -173,15 +173,14 @@ impl fmt::Display for Stretch {
 
 impl Intents {
     /// The words of a script for the set.
-    pub(crate) fn words(self) -> String {
+    pub fn words(self) -> String {
         let names = self.iter().map(|intent| intent.name().to_owned());
         let wanted: Vec<String> = names.chain(self.look().words()).collect();
         if wanted.is_empty() { STAND.to_owned() } else { wanted.join(" ") }
     }
 
     /// The set that words of a script name; `None` if they name none.
-    #[cfg(feature = "serve")]
-    pub(crate) fn from_words(text: &str) -> Option<Self> {
+    pub fn from_words(text: &str) -> Option<Self> {
         let header = Header::default();
         let reader = Reader { text, header, sections: Vec::new(), faults: Vec::new() };
         let words = words(text, 0..text.len());
