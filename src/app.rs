@@ -46,6 +46,7 @@ mod settings_screen;
 mod stats;
 mod status;
 mod steps;
+pub mod store;
 mod summary;
 mod time;
 mod tmux_offer;
@@ -74,9 +75,9 @@ use run_log::RunLog;
 use screen::{Screen, Shelved};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 
+use crate::app::store::{Reached, Store};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::STEP;
-use crate::store::{Reached, Store};
 use crate::tui::{CellAspect, GlyphSet, View};
 use crate::world::{Difficulty, FieldOfView, Figure};
 use clock::Clock;

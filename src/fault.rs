@@ -1,4 +1,4 @@
-//! Faults in a text: what is wrong, where, and what to write instead.
+//! Faults in a text, each with its place and a remedy.
 //!
 //! A reader collects every fault that it finds and continues, so that one run reports all of them;
 //! [`Faults`] is its error. One cause makes one fault: consequences of an earlier fault are not
@@ -47,7 +47,7 @@ pub(crate) struct Fault {
     message: String,
     /// A few words under the underlined place; may be empty.
     label: String,
-    /// What to write instead; may be empty.
+    /// The remedy; may be empty.
     help: String,
 }
 
@@ -168,7 +168,7 @@ impl Fault {
         Self { label: label.into(), ..self }
     }
 
-    /// The fault with what to write instead.
+    /// The fault with a remedy.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
@@ -207,7 +207,7 @@ pub(crate) fn printable_lines(text: &str) -> String {
     text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
-/// Whether `c` is neither a control character nor one that changes the direction of the characters
+/// Returns whether `c` is neither a control character nor changes the direction of the characters
 /// after it ("Trojan Source: Invisible Vulnerabilities", Boucher and Anderson, 2021).
 fn does_print(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

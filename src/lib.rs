@@ -47,10 +47,9 @@
 //! | [`space`] | bodies and camera to pixels, a ray for each pixel | |
 //! | [`game`] | rules in fixed steps: player, collision, doors, goals | |
 //! | [`generate`] | levels as a function of seed and place | |
-//! | `canvas` | cells, and the trait of everything that is drawn on | `tui` |
-//! | `tui` | ratatui widgets, held keys | `tui` |
+//! | `tui` | cells, and what can be drawn on; ratatui widgets, held keys | `tui` |
 //! | `terminal` | capabilities, bytes to events, cells to bytes, flow control | `terminal` |
-//! | `store` | what a player keeps: progress, best runs, preferences | `terminal` |
+//! | `app::store` | what a player keeps: progress, best runs, preferences | `terminal` |
 //! | `app` | the game as a program: screens, settings, keys to intents, the loop | `terminal` |
 //! | `lab` | measurements: casters compared, accuracy, speed, wire | `lab` |
 //! | `cli` | the command line | `cli` |
@@ -62,8 +61,6 @@
 
 #[cfg(feature = "terminal")]
 pub mod app;
-#[cfg(feature = "tui")]
-pub mod canvas;
 pub mod cast;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -82,7 +79,7 @@ pub mod rng;
 pub mod server;
 mod sort;
 pub mod space;
-#[cfg(feature = "terminal")]
+#[cfg(feature = "serve")]
 pub mod store;
 #[cfg(feature = "terminal")]
 pub mod terminal;

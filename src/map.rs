@@ -22,7 +22,7 @@
 //! the grid uses. Each stage adds its faults to one list. A stage uses what the earlier ones could
 //! read, and reports nothing that follows from an earlier fault.
 //!
-//! Rows of unequal length are a fault. Padding short rows was refused: a lost character would
+//! Rows of unequal length are a fault. Rejected: padding short rows, since a lost character would
 //! silently move half a wall.
 
 pub mod builtin;
@@ -48,7 +48,7 @@ use std::path::Path;
 use crate::color::Rgb;
 use crate::fault::document::FaultList;
 use crate::fault::{Fault, Faults, document};
-use crate::space::Scene;
+use crate::world::scene::Scene;
 use crate::world::{
     Ceiling, Covering, Grid, Heights, Mission, Paint, Parts, Sky, Start, Tile, TileId, TileKind,
     World,
@@ -65,7 +65,10 @@ use textures::{Surface, Textures};
 use things::ThingList;
 use tiles::{Common, Faces, TileList};
 
-/// What a map describes.
+const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
+const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
+
+/// The level that a map describes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Level {
     /// A grid of tiles.
@@ -204,8 +207,15 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         return None;
     }
     let mut textures = Textures::new(faults, files);
-    let floor = definitions.floor.covering(&mut textures);
-    let ceiling = definitions.ceiling.ceiling(&mut textures);
+    let plain = |color| Some(Covering::from(Paint::Color(color)));
+    let floor = match &definitions.floor {
+        Some(floor) => floor.covering(&mut textures),
+        None => plain(DEFAULT_FLOOR),
+    };
+    let ceiling = match &definitions.ceiling {
+        Some(ceiling) => ceiling.ceiling(&mut textures),
+        None => plain(DEFAULT_CEILING).map(Ceiling::Covered),
+    };
     let sky = match &definitions.sky {
         Some(sky) => sky.sky(&mut textures),
         None => Some(Sky::default()),
@@ -216,11 +226,11 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
     };
     let drawing = Drawing::read(grid, text)?;
     // After a fault in one of the two, tiles would only cause further faults.
-    let plain = Covering::from(Paint::Color(Rgb::BLACK));
-    let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
+    let black = Covering::from(Paint::Color(Rgb::BLACK));
+    let (floor, ceiling) = (floor.unwrap_or(black), ceiling.unwrap_or(Ceiling::Covered(black)));
     let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?);
     let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
-    let map_ceiling = definitions.ceiling_height;
+    let map_ceiling = definitions.ceiling_height.unwrap_or(Heights::LEVEL.ceiling());
     let ground = Tile {
         character: '.',
         kind: TileKind::Open,

@@ -27,6 +27,7 @@
 
 mod ascii;
 pub(crate) mod blocks;
+pub mod canvas;
 mod correction;
 mod first_person;
 mod glyphs;

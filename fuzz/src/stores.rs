@@ -9,7 +9,7 @@ use cellcaster::store::host::{
     HostStore, LevelBoard, MemoryStore, Name, SqliteStore, UnixTime, VerifiedDescent,
     VerifiedLevel,
 };
-use cellcaster::store::{Preferences, Reached};
+use cellcaster::app::store::{Preferences, Reached};
 use cellcaster::world::Difficulty;
 
 use crate::bytes::Bytes;

@@ -8,9 +8,9 @@ use ratatui::style::{Color, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::tui::GlyphSet;
+use crate::tui::canvas::Canvas;
 
 const NAME: &str = "CELLCASTER";
 /// The rows of each letter that the name needs, with a bit for each point, the left one first.

@@ -12,8 +12,8 @@ use super::menus::Choice;
 use super::panels::whole_seconds;
 use super::saved::save_of_descent;
 use super::{App, Levels, STEP, Screen};
+use crate::app::store::{Descent, Reached};
 use crate::game::Rules;
-use crate::store::{Descent, Reached};
 use crate::world::Difficulty;
 
 /// What is said about a daily run that does not count.

@@ -6,8 +6,8 @@ use super::overlay::Overlay;
 use super::status::{StatusValues, hint};
 use super::vitals::HealthSigns;
 use super::{App, Bindings, DrawOptions, Ghost, Screen, banner, panels};
-use crate::canvas::Canvas;
 use crate::game::{Game, PlayerId};
+use crate::tui::canvas::Canvas;
 
 impl App {
     /// Draws the screen.

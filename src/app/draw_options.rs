@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use ratatui::layout::Size;
 
 use super::hud;
-#[cfg(feature = "serve")]
-use crate::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
+#[cfg(feature = "serve")]
+use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, View};
 use crate::world::{FieldOfView, Heading};
 

@@ -11,9 +11,9 @@ use super::App;
 use super::panels::{BORDERS, PADDING, framed, key_names};
 use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings, MapChange};
-use crate::canvas::Canvas;
 use crate::game::Intent;
 use crate::terminal::Key;
+use crate::tui::canvas::Canvas;
 
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]

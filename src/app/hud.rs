@@ -14,9 +14,9 @@ use ratatui::widgets::{Block, Padding, Paragraph};
 
 use super::panels::{BORDERS, PADDING, framed};
 use super::wrap::wrapped;
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::render::Frame;
+use crate::tui::canvas::Canvas;
 pub(crate) use compass::draw as draw_compass;
 pub(crate) use edge::{draw as draw_edge, tint};
 pub(crate) use sounds::draw as draw_sounds;

@@ -14,9 +14,9 @@ use ratatui::widgets::{Block, Padding, Paragraph};
 use super::panels::{BORDERS, PADDING, framed};
 use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings};
-use crate::canvas::Canvas;
 use crate::game::Intent;
 use crate::terminal::Key;
+use crate::tui::canvas::Canvas;
 
 /// A list of entries with choices of the type `C`.
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@ use super::panels::{key_names, time, whole_seconds};
 use super::settings_screen::Setting;
 use super::{App, Levels, STEP, Screen};
 use crate::app::bindings::Action;
+use crate::app::store::{Preferences, SaveId};
 use crate::map::builtin;
-use crate::store::{Preferences, SaveId};
 use crate::world::Difficulty;
 
 /// What an entry of a menu does.

@@ -8,10 +8,10 @@ use ratatui::style::Color;
 
 use super::map_panel::MapPanel;
 use super::{DrawOptions, hud, panels};
-use crate::canvas::Canvas;
+use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
 use crate::game::{Game, PlayerId, PlayerView};
-use crate::store::Preferences;
+use crate::tui::canvas::Canvas;
 use crate::tui::{MapMark, View};
 
 /// A player of a game, and how their picture is drawn.

@@ -8,9 +8,9 @@ use ratatui::text::{Span, Text};
 use ratatui::widgets::{Block, Padding, Paragraph, Wrap};
 
 use crate::app::bindings::{Action, Bindings};
-use crate::canvas::Canvas;
 use crate::terminal::Key;
 use crate::tui::Minimap;
+use crate::tui::canvas::Canvas;
 
 /// The smallest window to play in.
 const LEAST_COLUMNS: u16 = 20;

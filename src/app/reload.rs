@@ -11,9 +11,9 @@ use ratatui::text::{Line, Text};
 
 use super::wrap::wrapped;
 use super::{App, Goal, Screen, panels};
-use crate::canvas::Canvas;
 use crate::fault::Faults;
 use crate::map::Level;
+use crate::tui::canvas::Canvas;
 
 /// The time between two checks.
 const INTERVAL: Duration = Duration::from_millis(200);

@@ -7,8 +7,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use super::{App, Levels, Screen, Settings};
-use crate::canvas::Canvas;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
+use crate::tui::canvas::Canvas;
 
 /// A game without a terminal, one step at a time. It draws the picture, minimap and status line
 /// that a player with the same intents would see.

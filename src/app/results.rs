@@ -5,9 +5,9 @@ use super::levels::Stage;
 use super::panels::whole_seconds;
 use super::run_log::RunLog;
 use super::script_cursor::ScriptCursor;
+use crate::app::store::{Improved, Run};
 use crate::game::{Game, Header, LevelName, Rank, Script, Tally};
 use crate::map::builtin;
-use crate::store::{Improved, Run};
 
 /// The result of a level that was won.
 #[derive(Clone, Copy, Debug)]

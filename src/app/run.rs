@@ -10,11 +10,11 @@ use super::interruption::Rendered;
 use super::stats::{Meter, Stats};
 use super::time::Time;
 use super::{App, Levels, Offers, Recording, Settings, TerminalLook};
-use crate::canvas::Canvas;
-use crate::store::Store;
+use crate::app::store::Store;
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, GlyphSet};
 
 /// What the program begins with.

@@ -17,9 +17,9 @@ use super::results::{builtin_named, shown_name};
 use super::run_log::RunLog;
 use super::watch::Watch;
 use super::{App, Levels, STEP, Screen};
+use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};
 use crate::map::builtin;
-use crate::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::world::Difficulty;
 
 /// What leaving does with the game.

@@ -7,7 +7,7 @@
 use super::App;
 use super::menu::Menu;
 use super::menus::Choice;
-use crate::store::SaveId;
+use crate::app::store::SaveId;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

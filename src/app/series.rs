@@ -10,8 +10,8 @@ use super::reload::Reload;
 use super::run_log::RunLog;
 use super::watch::Watch;
 use super::{App, Goal, Levels, Screen};
+use crate::app::store::Reached;
 use crate::game::{Intent, Intents};
-use crate::store::Reached;
 
 impl App {
     /// Begins the first of `levels`; asks first if a game in it is saved.

@@ -27,9 +27,9 @@ use super::bindings::Bindings;
 use super::bindings::PRESETS;
 #[cfg(feature = "serve")]
 use super::settings_screen::after;
+use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
 use crate::render::{DynCaster, Filter};
-use crate::store::Preferences;
 use crate::terminal::Fidelity;
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};

@@ -10,8 +10,8 @@ use std::time::Duration;
 use super::menu::Menu;
 use super::menus::Choice;
 use super::{App, Given, MapDisplay, Origin};
+use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
-use crate::store::Preferences;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 

@@ -21,9 +21,9 @@ use std::time::Duration;
 use glam::DVec2;
 
 use super::*;
+use crate::app::store::Store;
 use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
-use crate::store::Store;
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
 use crate::tui::held::keyboard::Keyboard;
 use crate::world::World;

@@ -8,8 +8,8 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 use super::Error;
 use super::arguments::Config;
 use crate::app::Configuration;
+use crate::app::store::private;
 use crate::fault::printable;
-use crate::store::private;
 
 /// The largest configuration, in bytes.
 pub(crate) const LARGEST: u64 = 1 << 20;

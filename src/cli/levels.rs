@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 use super::arguments::{Levels, LevelsFormat};
 use super::data_folder::data_folder;
 use super::{Error, verify};
+use crate::app::store::{Best, Store};
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
 use crate::sort;
-use crate::store::{Best, Store};
 use crate::world::{Difficulty, World};
 
 /// A built-in level with its best results.

@@ -4,10 +4,10 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::app::store::map_key;
 use crate::app::{OwnLevel, OwnMap};
 use crate::map::{self, Level};
 use crate::sort;
-use crate::store::map_key;
 
 /// The map files in `folders`, sorted by name. Folders that cannot be read have none.
 pub(crate) fn find(folders: &[PathBuf]) -> Vec<OwnMap> {

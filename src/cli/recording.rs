@@ -12,7 +12,7 @@ use ratatui::layout::Size;
 use super::Error;
 use super::asciicast::Asciicast;
 use super::output_file::unwritable;
-use crate::store::private;
+use crate::app::store::private;
 use crate::{app, game, terminal};
 
 /// The content of a file, by its extension.

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 
 use super::arguments::Replay;
 use super::{Error, level};
+use crate::app::store::{DescentRun, replayed};
 use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
-use crate::store::{DescentRun, replayed};
 use crate::world::World;
 
 /// Writes what `script` achieves in the level that `options` or its header name.

@@ -9,6 +9,7 @@ use super::plan::{Names, Plan};
 use super::reach::Reach;
 use super::values::Name;
 use crate::fault::{Fault, nearest, quoted};
+use crate::sort;
 use crate::world::{
     Cell, Grid, GuardPost, MovingTile, Sprite, Start, Thing, ThingKind, Tile, TileId, TileKind,
 };
@@ -109,7 +110,7 @@ fn wrong_start(plan: Plan<'_>) -> Option<Fault> {
     let defined = starts.peek().map(|&(&character, symbol)| (character, symbol.place.clone()));
     let mut drawn: Vec<Range<usize>> =
         starts.flat_map(|(&character, _)| drawing.first_places(character)).collect();
-    drawn.sort_unstable_by_key(|place| place.start);
+    sort::by_key(&mut drawn, |place| place.start);
     match (&drawn[..], defined) {
         ([_], _) => None,
         ([_, second, ..], _) => Some(
@@ -146,8 +147,7 @@ fn wrong_supports(plan: Plan<'_>) -> impl Iterator<Item = Fault> {
     })
 }
 
-/// The faults of patrols without their waypoints; of waypoints without a patrol; and of those that are drawn more
-/// than once.
+/// The faults of patrols with a missing waypoint, and of waypoints without a patrol or drawn twice.
 fn wrong_patrols(plan: Plan<'_>) -> Vec<Fault> {
     let is_waypoint = |it| plan.means(it, |meaning| matches!(meaning, Meaning::Waypoint));
     let mut faults = Vec::new();
@@ -221,8 +221,10 @@ fn nearest_switch(switch: &Name<'_>, known: &Names<'_>, index: usize) -> Option<
     const MAX_COMPARED: usize = 32;
     const MAX_FAULTS: usize = 100;
     let Names(known) = known;
-    let near = nearest(switch.text, known).filter(|_| index < MAX_FAULTS)?;
-    (known.len() <= MAX_COMPARED).then(|| format!("the nearest switch is {}", quoted(near)))
+    if known.len() > MAX_COMPARED || index >= MAX_FAULTS {
+        return None;
+    }
+    nearest(switch.text, known).map(|near| format!("the nearest switch is {}", quoted(near)))
 }
 
 /// The cells of a level, with their tiles and things.
@@ -242,10 +244,9 @@ impl<'l> Cells<'l> {
         Some((id, &self.tiles[usize::from(id.0)]))
     }
 
-    /// The tile of a cell of the map.
-    fn tile_of(self, cell: Cell) -> &'l Tile {
-        &self.tiles
-            [usize::from(self.grid.tile(cell.column.into(), cell.row.into()).map_or(0, |id| id.0))]
+    /// The tile of a cell; `None` outside the map.
+    fn at(self, cell: Cell) -> Option<&'l Tile> {
+        Some(self.tile(cell.column.into(), cell.row.into())?.1)
     }
 
     /// The tiles to the west and east, and to the north and south of `cell`.
@@ -256,7 +257,7 @@ impl<'l> Cells<'l> {
         pairs.map(|pair| pair.map(|(column, row)| self.tile(column, row)))
     }
 
-    /// Whether `id` is drawn for a tile that moves.
+    /// Returns whether `id` is the first state of a moving tile.
     fn moves(self, id: TileId) -> bool {
         self.moving.iter().any(|moving| moving.states[0] == id)
     }
@@ -284,7 +285,7 @@ pub(crate) fn faults_of_cells(
 
 /// The fault that the player has no room to stand at the start.
 fn low_start(drawing: &Drawing<'_>, cells: Cells<'_>, start: Start) -> Option<Fault> {
-    let room = cells.tile_of(start.cell).gaps().next()?.height();
+    let room = cells.at(start.cell)?.gaps().next()?.height();
     (room < LEAST_HEADROOM).then(|| {
         let message = "the player has no room to stand where they start";
         Fault::new(drawing.place_of(start.cell), message)
@@ -311,10 +312,10 @@ pub(crate) fn missing_treasure(
     })
 }
 
-/// The faults of guards for whom the ceiling is too low.
+/// The faults of guards under a ceiling that is too low.
 fn cramped_guards(drawing: &Drawing<'_>, cells: Cells<'_>, posts: &[GuardPost]) -> Vec<Fault> {
     let cramped = posts.iter().filter_map(|post| {
-        let room = cells.tile_of(post.cell).gaps().next()?.height();
+        let room = cells.at(post.cell)?.gaps().next()?.height();
         let (name, height) = (post.kind.name(), post.kind.height());
         (room < height).then(|| {
             let message = format!("the {name} has no room to stand here");
@@ -347,7 +348,7 @@ fn blind_secrets(plan: Plan<'_>, cells: Cells<'_>) -> Vec<Fault> {
 
 /// The number of sides from which a player may enter the cell of a secret wall once it has sunk.
 fn ways_into(cells: Cells<'_>, cell: Cell) -> usize {
-    let top = cells.tile_of(cell).heights.floor();
+    let top = cells.at(cell).map_or(0.0, |tile| tile.heights.floor());
     let is_way = |&(id, tile): &(TileId, &Tile)| match tile.kind {
         TileKind::Wall(_) | TileKind::Mirror(_) => cells.moves(id) || tile.heights.floor() < top,
         TileKind::Mask(_) | TileKind::Glass(_) => false,
@@ -434,9 +435,11 @@ fn low_things(cells: Cells<'_>) -> impl Iterator<Item = Cell> {
     const DUCKING: f64 = 0.5;
     let is_low = move |thing: &&Thing| {
         let sprite = &cells.sprites[usize::from(thing.sprite.0)];
-        let tile = cells.tile_of(thing.cell);
-        let top = sprite.base(tile.heights) + sprite.height.cells();
-        sprite.blocks && tile.gaps().any(|gap| gap.holds(top) && gap.top - top >= DUCKING)
+        let has_room = |tile: &Tile| {
+            let top = sprite.base(tile.heights) + sprite.height.cells();
+            tile.gaps().any(|gap| gap.holds(top) && gap.top - top >= DUCKING)
+        };
+        sprite.blocks && cells.at(thing.cell).is_some_and(has_room)
     };
     cells.things.iter().filter(is_low).map(|thing| thing.cell)
 }

@@ -10,18 +10,16 @@ use super::legend::Legend;
 use super::surfaces::{self, CeilingText, CoveringText, SkyText};
 use super::textures::Surface;
 use super::values::{HEIGHT, LIGHT, whole};
-use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
-use crate::world::{Fog, Heights, Light};
+use crate::world::{Fog, Light};
 
 /// The longest goal, in characters.
 const MAX_GOAL: usize = 40;
 /// The longest par time, in seconds: a day.
 const MAX_PAR: u32 = 86_400;
-const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
-const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
 /// All that a map defines besides its grid.
+#[derive(Default)]
 pub(crate) struct Definitions<'a, 't> {
     pub(crate) title: String,
     pub(crate) goal: Option<String>,
@@ -29,10 +27,10 @@ pub(crate) struct Definitions<'a, 't> {
     pub(crate) par: Option<u32>,
     /// The treasure without which exits do not let anybody out, with its place in the map.
     pub(crate) treasure_needed: Option<(u32, Range<usize>)>,
-    pub(crate) ceiling: CeilingText<'a>,
+    pub(crate) ceiling: Option<CeilingText<'a>>,
     /// The height of the ceiling and of walls.
-    pub(crate) ceiling_height: f64,
-    pub(crate) floor: CoveringText<'a>,
+    pub(crate) ceiling_height: Option<f64>,
+    pub(crate) floor: Option<CoveringText<'a>>,
     /// The sides of raised floors, for tiles without their own.
     pub(crate) riser: Option<Surface<'a>>,
     /// The sides of what is above lowered ceilings, for tiles without their own.
@@ -46,26 +44,9 @@ pub(crate) struct Definitions<'a, 't> {
 }
 
 impl<'a, 't> Definitions<'a, 't> {
-    /// Reads the definitions in `document`. Faults are reported, and their definitions
-    /// replaced by defaults.
+    /// Reads the definitions in `document`. Those with a fault are reported and missing.
     pub(crate) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
-        let plain = |color| CoveringText::plain(Surface::plain(color));
-        let mut definitions = Self {
-            title: String::new(),
-            goal: None,
-            par: None,
-            treasure_needed: None,
-            ceiling: CeilingText::Covered(plain(DEFAULT_CEILING)),
-            ceiling_height: Heights::LEVEL.ceiling(),
-            floor: plain(DEFAULT_FLOOR),
-            riser: None,
-            lintel: None,
-            sky: None,
-            fog: None,
-            light: None,
-            grid: None,
-            legend: Legend::new(),
-        };
+        let mut definitions = Self::default();
         for entry in entries(document, faults) {
             definitions.read_entry(entry);
         }
@@ -81,21 +62,9 @@ impl<'a, 't> Definitions<'a, 't> {
                 let worth = whole(&entry, 1..=1_000_000);
                 self.treasure_needed = worth.map(|worth| (worth, entry.value_place));
             }
-            "ceiling" => {
-                if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##) {
-                    self.ceiling = ceiling;
-                }
-            }
-            "ceiling_height" => {
-                if let Some(height) = ceiling_height(&entry) {
-                    self.ceiling_height = height;
-                }
-            }
-            "floor" => {
-                if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#) {
-                    self.floor = floor;
-                }
-            }
+            "ceiling" => self.ceiling = CeilingText::read(&entry, r##"ceiling = "#202028""##),
+            "ceiling_height" => self.ceiling_height = ceiling_height(&entry),
+            "floor" => self.floor = CoveringText::read(&entry, r#"floor = "stone""#),
             "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#),
             "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#),
             "sky" => self.sky = SkyText::read(&entry),

@@ -129,12 +129,12 @@ impl From<io::Error> for TextureFileError {
     }
 }
 
-/// Whether the name is that of a PNG file.
+/// Returns whether `name` ends as a PNG file does.
 pub(crate) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-/// Whether `name` is a file below a folder, and the same one on every system.
+/// Returns whether `name` stays below its folder, and is the same file on every system.
 pub(crate) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
 }

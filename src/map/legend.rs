@@ -1,4 +1,4 @@
-//! The legend: what each character of the grid means, from the tables `[tiles]` and `[things]`.
+//! The legend: the meaning of each character of the grid, from the tables `[tiles]` and `[things]`.
 
 pub(crate) mod things;
 pub(crate) mod tiles;
@@ -17,14 +17,16 @@ use crate::world::{Glass, Heading, ThingKind};
 use things::{GuardText, SpriteText};
 use tiles::{DoorText, ShapeText, Surroundings, WallText};
 
+const ANOTHER: &str = "draw it with another character";
+
 /// The meanings of the characters that the grid may use.
 pub(crate) struct Legend<'a> {
     pub(crate) symbols: BTreeMap<char, Symbol<'a>>,
-    /// Whether `symbols` has all definitions: not those without a valid character.
+    /// `false` if a definition is missing from `symbols` because its character is not valid.
     pub(crate) is_complete: bool,
 }
 
-/// What a character means.
+/// The definition of a character.
 pub(crate) struct Symbol<'a> {
     /// The place of its definition.
     pub(crate) place: Range<usize>,
@@ -34,7 +36,7 @@ pub(crate) struct Symbol<'a> {
     pub(crate) support: Option<(char, Range<usize>)>,
 }
 
-/// What a character means in the grid.
+/// The meaning of a character in the grid.
 pub(crate) enum Meaning<'a> {
     Open,
     /// Open floor with surroundings of its own.
@@ -80,16 +82,18 @@ impl<'a> Symbol<'a> {
     }
 }
 
-impl<'a> Legend<'a> {
+impl Default for Legend<'_> {
     /// The characters with the same meaning in every map.
-    pub(crate) fn new() -> Self {
+    fn default() -> Self {
         let open = |character| {
             let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
             (character, Symbol { place: 0..0, meaning, surroundings, support: None })
         };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
+}
 
+impl<'a> Legend<'a> {
     /// Whether no definition has a fault.
     pub(crate) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
@@ -103,13 +107,9 @@ impl<'a> Legend<'a> {
             return;
         };
         for entry in entry.entries(table) {
-            let character = match character(section, &entry) {
-                Ok(character) => character,
-                Err(fault) => {
-                    entry.faults.push(fault);
-                    self.is_complete = false;
-                    continue;
-                }
+            let Some(character) = character(section, &entry) else {
+                self.is_complete = false;
+                continue;
             };
             let (mut meaning, surroundings) = meaning(section, &entry);
             if self.symbols.contains_key(&character) {
@@ -144,28 +144,28 @@ fn support(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<(char, Range<us
 }
 
 /// Reads the character that `entry` defines.
-fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
-    const ANOTHER: &str = "draw it with another character";
-    let fault = |message: String| Fault::new(entry.key_place.clone(), message);
+fn character(section: Section, entry: &Entry<'_, '_>) -> Option<char> {
     let mut characters = entry.key.chars();
-    match (characters.next(), characters.next()) {
+    let (message, help) = match (characters.next(), characters.next()) {
         (Some(open @ ('.' | ' ')), None) => {
-            Err(fault(format!("{open:?} is open floor and cannot be defined")).help(ANOTHER))
+            (format!("{open:?} is open floor and cannot be defined"), ANOTHER.to_owned())
         }
         (Some(control), None) if control.is_control() => {
-            Err(fault(format!("the control character {control:?} cannot be drawn")).help(ANOTHER))
+            (format!("the control character {control:?} cannot be drawn"), ANOTHER.to_owned())
         }
-        (Some(character), None) => Ok(character),
+        (Some(character), None) => return Some(character),
         _ => {
             let (noun, key) = (section.noun(), quoted(entry.key));
-            let fault = fault(format!("{noun} is drawn with one character, not {key}"));
-            Err(if keys::MAP.contains(&entry.key) {
-                fault.help(format!("move {} above {}", entry.key, section.name()))
+            let help = if keys::MAP.contains(&entry.key) {
+                format!("move {} above {}", entry.key, section.name())
             } else {
-                fault.help(format!("write, for example, {}", section.example()))
-            })
+                format!("write, for example, {}", section.example())
+            };
+            (format!("{noun} is drawn with one character, not {key}"), help)
         }
-    }
+    };
+    entry.faults.push(Fault::new(entry.key_place.clone(), message).help(help));
+    None
 }
 
 /// Reads the meaning and the surroundings in `entry`.

@@ -85,7 +85,7 @@ impl fmt::Display for PictureError {
 }
 
 impl PictureError {
-    /// What to do about it. The map uses the picture as a `use_of_file`.
+    /// The remedy. The map uses the picture as a `use_of_file`.
     pub(crate) fn help(&self, use_of_file: &str) -> String {
         let size = "64×64 texels are plenty in a terminal";
         match self {

@@ -21,7 +21,7 @@ impl<'l> Plan<'l> {
         self.legend.symbols.get(&character)
     }
 
-    /// Whether `character` has a meaning that `is_such`.
+    /// Returns whether the meaning of `character` `is_such`.
     pub(crate) fn means(self, character: char, is_such: impl Fn(&Meaning<'_>) -> bool) -> bool {
         self.symbol(character).is_some_and(|symbol| is_such(&symbol.meaning))
     }
@@ -32,8 +32,8 @@ impl<'l> Plan<'l> {
         drawn.filter_map(move |character| Some((character, self.symbol(character)?)))
     }
 
-    /// The number of cells whose definitions are `such`, with those of them that are drawn most and their
-    /// number; `None` if there is none.
+    /// Counts the cells whose definition `is_such`: all of them, and those of the definition that is drawn
+    /// most. `None` if there is none.
     pub(crate) fn count(
         self,
         is_such: impl Fn(&Symbol<'_>) -> bool,

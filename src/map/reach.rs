@@ -8,15 +8,14 @@
 //! with a pillar in each of a million cells took 1.3 s, most of it in the sets.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::mem;
 use std::num::NonZeroU32;
 
 use super::legend::{Meaning, Symbol};
 use super::plan::Plan;
 use crate::sort;
-use crate::world::{Cell, Grid};
+use crate::world::{Cell, Flood, Grid};
 
-/// What opens a door.
+/// A key or a switch that opens doors.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Opener<'a> {
     /// The key of that name.
@@ -25,9 +24,8 @@ enum Opener<'a> {
     Switch(&'a str),
 }
 
-/// An opener by its number, from 1.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct OpenerId(NonZeroU32);
+/// The number of an opener, from 1.
+type OpenerId = NonZeroU32;
 
 /// A value for each cell of a grid, the default at first.
 struct PerCell<T> {
@@ -41,9 +39,8 @@ impl<T: Copy + Default> PerCell<T> {
         Self { width, values: vec![T::default(); width * height] }
     }
 
-    /// Sets the value of `cell`, and returns the one before.
-    fn replace(&mut self, cell: Cell, value: T) -> T {
-        mem::replace(&mut self.values[cell.row as usize * self.width + cell.column as usize], value)
+    fn set(&mut self, cell: Cell, value: T) {
+        self.values[cell.row as usize * self.width + cell.column as usize] = value;
     }
 
     fn get(&self, cell: Cell) -> T {
@@ -58,9 +55,9 @@ pub(crate) struct Reach<'l> {
     /// Solid cells that can be passed: doors; walls that sink; shapes, which may leave room beside
     /// them; and things that the player may jump over.
     passable: PerCell<bool>,
-    /// What opens the door in a cell, if it is locked.
+    /// The opener of the door in a cell, if it is locked.
     locks: PerCell<Option<OpenerId>>,
-    /// What the player finds in a cell.
+    /// The key or the plate in a cell.
     found: PerCell<Option<OpenerId>>,
     /// The switches of levers, for each cell from which the player can reach them.
     levers: BTreeMap<Cell, Vec<OpenerId>>,
@@ -85,7 +82,7 @@ impl<'l> Reach<'l> {
             given: BTreeSet::new(),
         };
         for cell in low_cells {
-            reach.passable.replace(cell, true);
+            reach.passable.set(cell, true);
         }
         let is_guard = |(_, it): (char, &Symbol<'_>)| matches!(it.meaning, Meaning::Guard(_));
         let has_guards = plan.symbols().any(is_guard);
@@ -103,12 +100,12 @@ impl<'l> Reach<'l> {
                     let switch = door.switch.as_ref().map(|switch| Opener::Switch(switch.text));
                     let lock = door.key.as_ref().map(|key| Opener::Key(key.text)).or(switch);
                     let lock = lock.map(|opener| reach.id(opener));
-                    reach.passable.replace(cell, true);
-                    reach.locks.replace(cell, lock);
+                    reach.passable.set(cell, true);
+                    reach.locks.set(cell, lock);
                 }
                 Meaning::Key(key) => {
                     let key = reach.id(Opener::Key(key.text));
-                    reach.found.replace(cell, Some(key));
+                    reach.found.set(cell, Some(key));
                 }
                 Meaning::Lever(switch) => {
                     let opener = reach.id(Opener::Switch(switch.text));
@@ -119,10 +116,10 @@ impl<'l> Reach<'l> {
                 _ => match symbol.sets() {
                     Some(plate) => {
                         let opener = reach.id(Opener::Switch(plate.text));
-                        reach.found.replace(cell, Some(opener));
+                        reach.found.set(cell, Some(opener));
                         reach.given.extend(has_guards.then_some(opener));
                     }
-                    None => _ = reach.passable.replace(cell, true),
+                    None => reach.passable.set(cell, true),
                 },
             }
         }
@@ -132,30 +129,28 @@ impl<'l> Reach<'l> {
     /// The number of `opener`, which is new if it has none yet. There are fewer openers than characters.
     fn id(&mut self, opener: Opener<'l>) -> OpenerId {
         let new = NonZeroU32::MIN.saturating_add(self.openers.len() as u32);
-        *self.openers.entry(opener).or_insert(OpenerId(new))
+        *self.openers.entry(opener).or_insert(new)
     }
 
     /// The keys that the player can reach from `start`.
     pub(crate) fn keys_from(&self, start: Cell) -> BTreeSet<&'l str> {
         let mut taken = self.given.clone();
         let mut waiting = BTreeMap::<OpenerId, Vec<Cell>>::new();
-        let mut seen = PerCell::<bool>::new(self.grid);
-        seen.replace(start, true);
-        let mut next = vec![start];
-        while let Some(cell) = next.pop() {
-            if let Some(opener) = self.locks.get(cell)
-                && !taken.contains(&opener)
-            {
+        let mut flood = Flood::new((self.grid.width(), self.grid.height()), start);
+        while let Some((cell, _)) = flood.next(|cell| {
+            let missing = self.locks.get(cell).filter(|opener| !taken.contains(opener));
+            if let Some(opener) = missing {
                 waiting.entry(opener).or_default().push(cell);
-                continue;
             }
+            missing.is_none() && self.can_enter(cell)
+        }) {
             let at_levers = self.levers.get(&cell).into_iter().flatten().copied();
             for opener in self.found.get(cell).into_iter().chain(at_levers) {
                 if taken.insert(opener) {
-                    next.extend(waiting.remove(&opener).unwrap_or_default());
+                    let doors = waiting.remove(&opener).unwrap_or_default();
+                    doors.into_iter().for_each(|door| flood.enter(door));
                 }
             }
-            next.extend(self.neighbors(cell).filter(|&it| !seen.replace(it, true)));
         }
         sort::gathered(self.openers.iter().filter_map(|(opener, id)| match opener {
             Opener::Key(name) if taken.contains(id) => Some(*name),
@@ -163,16 +158,10 @@ impl<'l> Reach<'l> {
         }))
     }
 
-    /// The neighbours of `cell` that the player can enter.
-    fn neighbors(&self, cell: Cell) -> impl Iterator<Item = Cell> {
-        let sides = [(-1, 0), (1, 0), (0, -1), (0, 1)];
-        sides.into_iter().filter_map(move |(columns, rows)| {
-            let (column, row) = (i64::from(cell.column) + columns, i64::from(cell.row) + rows);
-            let tile = self.grid.tile(column, row)?;
-            let is_barred = self.grid.is_solid_tile(tile) || self.grid.is_occupied(column, row);
-            let cell = Cell { column: column as u32, row: row as u32 };
-            (!is_barred || self.passable.get(cell)).then_some(cell)
-        })
+    fn can_enter(&self, cell: Cell) -> bool {
+        let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+        let is_barred = self.grid.is_solid(column, row) || self.grid.is_occupied(column, row);
+        !is_barred || self.passable.get(cell)
     }
 }
 

@@ -16,7 +16,7 @@ use super::values::{Quantity, color};
 use crate::color::Rgb;
 use crate::fault::document::{Entry, FaultList, entries};
 use crate::fault::{Fault, quoted};
-use crate::space::{
+use crate::world::scene::{
     Block, Body, EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Plane, Scene, Shape, SolidTexture,
     Sphere, Start, Sun,
 };
@@ -165,16 +165,18 @@ fn sky(entry: &Entry<'_, '_>) -> Option<SkyGradient> {
 
 fn light(entry: &Entry<'_, '_>) -> Option<Sun> {
     let table = entry.table(LIGHT_EXAMPLE)?;
-    let Sun { mut ambient, .. } = Sun::default();
-    let mut toward = Sun::default().toward();
+    let mut sun = Sun::default();
     for entry in entry.entries(table) {
         match entry.key {
-            "toward" => toward = direction(&entry, "toward = [-1, -1, 2]").unwrap_or(toward),
-            "ambient" => ambient = AMBIENT.read(&entry).unwrap_or(ambient),
+            "toward" => {
+                let toward = direction(&entry, "toward = [-1, -1, 2]");
+                sun = toward.and_then(|toward| Sun::new(toward, sun.ambient)).unwrap_or(sun);
+            }
+            "ambient" => sun.ambient = AMBIENT.read(&entry).unwrap_or(sun.ambient),
             _ => entry.faults.push(entry.unknown_key("a light", &["toward", "ambient"])),
         }
     }
-    Sun::new(toward, ambient)
+    Some(sun)
 }
 
 fn read_start(entry: &Entry<'_, '_>, scene: &Scene) -> Option<Start> {

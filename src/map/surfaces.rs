@@ -44,16 +44,19 @@ impl<'a> Surface<'a> {
         Some(Self { source, place: entry.value_place.clone() })
     }
 
+    /// Reads the panorama in `entry`, as [`Surface::read`].
     fn read_panorama(entry: &Entry<'a, '_>) -> Option<Self> {
-        let text = entry.string(r#"panorama = "hills""#)?;
-        let is_built_in = builtin::PANORAMAS.contains(&text);
-        if !is_built_in && !is_png(text) {
+        let example = r#"panorama = "hills""#;
+        let text = entry.string(example)?;
+        if is_png(text) {
+            return Self::read(entry, example);
+        }
+        if !builtin::PANORAMAS.contains(&text) {
             let known = builtin::PANORAMAS.join(", ");
             let help = format!("write the name of a PNG beside the map, or one of {known}");
             return entry.reject(format!("there is no panorama {}", quoted(text)), "", help);
         }
-        let name = if is_built_in { text } else { file_name(entry, text)? };
-        Some(Self { source: Source::Texture(name), place: entry.value_place.clone() })
+        Some(Self { source: Source::Texture(text), place: entry.value_place.clone() })
     }
 }
 
@@ -227,7 +230,7 @@ impl<'a> SkyText<'a> {
     }
 }
 
-/// Reads two colours, such as those of `example`.
+/// Reads two colours, such as `example`.
 pub(crate) fn colors(entry: &Entry<'_, '_>, example: [&str; 2]) -> Option<[Rgb; 2]> {
     let example = format!("{} = {example:?}", entry.key);
     let [first, second] = entry.pair(&example)?.map(|entry| color(&entry, "", &example));

@@ -1,4 +1,4 @@
-//! The kinds of tile in a plan, with the states of those that move.
+//! The kinds of tile in a plan, and the states of moving tiles.
 //!
 //! A tile that moves becomes a list of tiles, its states, at most [`STEP`] apart in height. The
 //! grid draws the first of them only.
@@ -72,9 +72,9 @@ pub(crate) struct Common<'l> {
 impl TileList {
     /// The tiles of `plan`. Reports their faults.
     pub(crate) fn of(plan: Plan<'_>, common: &Common<'_>, textures: &mut Textures<'_>) -> Self {
-        let open = vec![common.ground];
-        let (solid, drawn, moving) = (Vec::new(), Vec::new(), Vec::new());
-        let mut builder = Builder { common, textures, open, solid, drawn, moving };
+        let (drawn, moving) = (Vec::new(), Vec::new());
+        let tiles = vec![common.ground];
+        let mut builder = Builder { common, textures, tiles, drawn, moving };
         let stood_on = plan.symbols().filter_map(|(_, symbol)| symbol.support.as_ref());
         let used = plan.drawing.characters().chain(stood_on.map(|&(tile, _)| tile));
         for character in sort::gathered::<char, BTreeSet<char>>(used) {
@@ -82,7 +82,7 @@ impl TileList {
             if let Some(slot) = builder.add(character, symbol) {
                 builder.drawn.push((character, slot));
             }
-            if builder.open.len() + builder.solid.len() > MAX_TILES {
+            if builder.tiles.len() > MAX_TILES {
                 builder.textures.faults.push(builder.one_too_many(symbol));
                 break;
             }
@@ -91,19 +91,14 @@ impl TileList {
     }
 }
 
-/// The place of a tile before the number of open tiles is known.
-#[derive(Clone, Copy)]
-enum Slot {
-    Open(usize),
-    Solid(usize),
-}
+/// The index of a tile in a [`Builder`].
+type Slot = usize;
 
-/// Collects tiles, open and solid ones apart.
+/// Collects tiles in the order of their characters.
 struct Builder<'l, 'm> {
     common: &'l Common<'l>,
     textures: &'l mut Textures<'m>,
-    open: Vec<Tile>,
-    solid: Vec<Tile>,
+    tiles: Vec<Tile>,
     drawn: Vec<(char, Slot)>,
     moving: Vec<(Vec<Slot>, Driver)>,
 }
@@ -234,13 +229,8 @@ impl Builder<'_, '_> {
     }
 
     fn push(&mut self, tile: Tile) -> Slot {
-        if matches!(tile.kind, TileKind::Open | TileKind::Doorway(_)) {
-            self.open.push(tile);
-            Slot::Open(self.open.len() - 1)
-        } else {
-            self.solid.push(tile);
-            Slot::Solid(self.solid.len() - 1)
-        }
+        self.tiles.push(tile);
+        self.tiles.len() - 1
     }
 
     fn switch(&self, name: Option<&Name<'_>>) -> Option<SwitchId> {
@@ -262,19 +252,26 @@ impl Builder<'_, '_> {
     }
 
     fn into_list(self) -> TileList {
-        let Self { open, solid, drawn, moving, .. } = self;
+        let Self { tiles, drawn, moving, .. } = self;
+        let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let (open, solid): (Vec<Slot>, Vec<Slot>) =
+            (0..tiles.len()).partition(|&slot| is_open(&tiles[slot]));
         let first_solid = TileId(open.len() as u8);
-        let id = |slot: Slot| match slot {
-            Slot::Open(index) => TileId(index as u8),
-            Slot::Solid(index) => TileId((open.len() + index) as u8),
-        };
+        let order = [open, solid].concat();
+        let mut ids = vec![0; tiles.len()];
+        for (&slot, id) in order.iter().zip(0..=u8::MAX) {
+            ids[slot] = id;
+        }
         let moving = moving.into_iter().map(|(states, driver)| {
-            let states = states.into_iter().map(id).collect();
+            let states = states.into_iter().map(|slot| TileId(ids[slot])).collect();
             MovingTile { states, driver }
         });
-        let (moving, drawn) =
-            (moving.collect(), drawn.into_iter().map(|(it, slot)| (it, id(slot).0)).collect());
-        TileList { tiles: [open, solid].concat(), first_solid, moving, drawn }
+        TileList {
+            moving: moving.collect(),
+            tiles: order.iter().map(|&slot| tiles[slot]).collect(),
+            first_solid,
+            drawn: drawn.into_iter().map(|(character, slot)| (character, ids[slot])).collect(),
+        }
     }
 }
 

@@ -19,10 +19,10 @@ use super::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionE
 use super::summary::{RoomId, RoomSummary};
 pub use super::transport::fuzzing::serve;
 use crate::app::Configuration;
+use crate::app::store::Preferences;
 use crate::game::PlayerColor;
 use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
-use crate::store::Preferences;
 use crate::store::host::AccountSettings;
 use crate::terminal::{Options, WindowSize};
 use crate::world::Difficulty;

@@ -9,8 +9,8 @@ use russh::keys::ssh_key::LineEnding;
 use russh::keys::ssh_key::private::Ed25519Keypair;
 use russh::keys::{HashAlg, PrivateKey};
 
+use crate::app::store::private;
 use crate::fault::printable_path;
-use crate::store::private;
 
 /// An ed25519 key of a server.
 #[derive(Clone)]

@@ -21,9 +21,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::app::store::map_key;
 use crate::fault::{Faults, printable_path};
 use crate::map::{self, Folder, builtin};
-use crate::store::map_key;
 use crate::world::World;
 
 /// The most maps of a host.

@@ -61,7 +61,7 @@ pub use verify::{
 };
 pub use waiting::{Late, WaitingResult, WaitingResults};
 
-use super::{Best, Improved};
+use crate::app::store::{Best, Improved};
 
 /// The seconds from the choice of a name to the next one.
 pub const RENAME_WAIT: u64 = 7 * 24 * 60 * 60;

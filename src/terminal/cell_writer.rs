@@ -52,7 +52,7 @@ use self::style::Shade;
 pub(crate) use self::style::Style;
 use super::fidelity::Fidelity;
 #[cfg(feature = "lab")]
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -206,7 +206,7 @@ impl<W: Write> CellWriter<W> {
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
-    /// use cellcaster::canvas::Canvas;
+    /// use cellcaster::tui::canvas::Canvas;
     /// use ratatui::backend::Backend;
     /// use ratatui::layout::Size;
     ///

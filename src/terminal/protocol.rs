@@ -40,7 +40,7 @@ use crate::tui::GlyphSet;
 /// ```
 /// use std::time::Duration;
 ///
-/// use cellcaster::canvas::Canvas;
+/// use cellcaster::tui::canvas::Canvas;
 /// use cellcaster::terminal::{Event, Key, Options, Protocol, WindowSize};
 /// use ratatui::style::Color;
 ///

@@ -11,10 +11,10 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::glyphs::color_at;
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;
+use crate::tui::canvas::Canvas;
 
 /// Draws one pixel in each cell of `area`. `pixel(x, y)` counts from its top left corner.
 pub(crate) fn draw(

@@ -18,10 +18,10 @@ use ratatui::layout::Rect;
 use self::split::{Split, Splits};
 use super::GlyphSet;
 use super::glyphs::color_at;
-use crate::canvas::{Canvas, Mosaic};
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{Frame, Surface};
+use crate::tui::canvas::{Canvas, Mosaic};
 
 /// Draws the pixels of `frame` on `area`. The first `above` rows of pixels are above its top edge.
 /// `surface` is needed without colours only.

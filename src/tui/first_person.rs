@@ -8,11 +8,11 @@ use ratatui::widgets::StatefulWidget;
 
 use super::outline::{Edge, outline};
 use super::{CellAspect, Correction, GlyphSet, ascii, blocks, ramp};
-use crate::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
     Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
 };
+use crate::tui::canvas::Canvas;
 use crate::world::World;
 #[cfg(feature = "terminal")]
 use crate::world::{Camera, Figure};

@@ -2,10 +2,10 @@
 
 use ratatui::style::Color;
 
-use crate::canvas::true_color;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
+use crate::tui::canvas::true_color;
 
 /// The characters that pixels are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]

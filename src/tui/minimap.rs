@@ -19,10 +19,10 @@ use ratatui::widgets::Widget;
 
 use super::glyphs::color_at;
 use super::{GlyphSet, ascii, blocks};
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::Column;
+use crate::tui::canvas::Canvas;
 use crate::world::{Camera, Heading, World};
 pub use explored::Explored;
 use map_point::MapPoint;

@@ -22,6 +22,15 @@ impl Cell {
     pub fn center(self) -> DVec2 {
         DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
     }
+
+    /// The neighbours in the west, east, north and south, without those at negative coordinates.
+    pub(crate) fn beside(self) -> impl Iterator<Item = Self> {
+        let west = self.column.checked_sub(1).map(|column| Self { column, ..self });
+        let east = self.column.checked_add(1).map(|column| Self { column, ..self });
+        let north = self.row.checked_sub(1).map(|row| Self { row, ..self });
+        let south = self.row.checked_add(1).map(|row| Self { row, ..self });
+        [west, east, north, south].into_iter().flatten()
+    }
 }
 
 /// A kind of tile: an index into the world's list of tiles.

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::Line;
 
-use crate::canvas::Canvas;
+use crate::tui::canvas::Canvas;
 use crate::world::Heading;
 
 /// The names of the directions, clockwise from the east, where a heading is 0.

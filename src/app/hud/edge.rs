@@ -7,10 +7,10 @@
 use ratatui::layout::Rect;
 use ratatui::style::Color;
 
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::game::{Flash, FlashKind};
 use crate::render::Frame;
+use crate::tui::canvas::Canvas;
 use crate::world::Heading;
 
 /// The colours of a flash.

@@ -10,10 +10,10 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::Line;
 
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::{Heard, SoundKind};
 use crate::sort;
+use crate::tui::canvas::Canvas;
 use crate::world::Heading;
 
 /// The most marks that are shown.

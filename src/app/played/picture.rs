@@ -4,7 +4,7 @@ use ratatui::layout::{Rect, Size};
 
 use super::{Played, Views};
 use crate::app::DrawOptions;
-use crate::canvas::Canvas;
+use crate::tui::canvas::Canvas;
 
 impl Played {
     /// Renders the player's view for an area of this size; may stop once `go_on` returns `false`.

@@ -10,9 +10,9 @@ use super::missions::{DANGER, offering, playing_own, text, won};
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
+use crate::app::store::{Run, map_key};
 use crate::game::{Intents, LevelName, Script};
 use crate::map::builtin;
-use crate::store::{Run, map_key};
 
 /// A folder that is removed at the end of a test.
 struct Folder(PathBuf);

@@ -6,9 +6,9 @@ use ratatui::layout::Rect;
 use super::titles::titled;
 use super::*;
 use crate::app::run_log::RunLog;
+use crate::app::store::{Run, map_key};
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
-use crate::store::{Run, map_key};
 use crate::tui::GlyphSet;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.

@@ -9,8 +9,8 @@ use super::titles::titled;
 use super::*;
 use crate::app::Offers;
 use crate::app::panels::{framed, leaving, message};
-use crate::canvas::Canvas;
 use crate::tui::GlyphSet;
+use crate::tui::canvas::Canvas;
 
 /// All screens, each with the game behind it.
 fn screens() -> Vec<(&'static str, Rig)> {

@@ -6,11 +6,11 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use super::signals::Hangups;
+use crate::app::store::private;
 use crate::cli::Error;
 use crate::cli::arguments::Serve;
 use crate::cli::config::{LARGEST, configuration_file};
 use crate::server::{Config, HostMaps, LiveConfig, Logging, MapsError, events};
-use crate::store::private;
 
 /// Where the configuration comes from.
 pub(crate) struct Configuration {

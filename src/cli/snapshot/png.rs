@@ -8,9 +8,9 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 
 use super::rgb;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::tui::CellAspect;
+use crate::tui::canvas::Mosaic;
 
 /// The width and height of a glyph in pixels, before it is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;

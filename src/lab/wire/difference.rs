@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::color::lab::Lab;
 use crate::color::palette::of_256;
+use crate::tui::canvas::Mosaic;
 
 /// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]

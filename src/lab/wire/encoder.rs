@@ -9,9 +9,9 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
-use crate::canvas::Mosaic;
 use crate::color::palette::ColorDepth;
 use crate::terminal::{CellWriter, Fidelity};
+use crate::tui::canvas::Mosaic;
 
 /// The changed cells of a frame, in the form of ratatui's backends.
 pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];

@@ -15,12 +15,12 @@ use ratatui::widgets::StatefulWidget;
 use super::encoder::{Encoder, Extensions, Writer};
 use super::seen::SeenPicture;
 use super::tour::walk;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::game::Game;
 use crate::render::Filter;
 use crate::terminal::Fidelity;
+use crate::tui::canvas::Mosaic;
 use crate::tui::{FirstPerson, GlyphSet, View};
 use crate::world::{FieldOfView, World};
 

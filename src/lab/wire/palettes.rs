@@ -15,7 +15,6 @@ use ratatui::widgets::StatefulWidget;
 
 use super::seen::blurred;
 use super::tour::walk;
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 use crate::color::palette::{ColorDepth, ShadeInk, nearest_of_16, nearest_of_256, of_256};
@@ -23,6 +22,7 @@ use crate::color::srgb::linear;
 use crate::game::Game;
 use crate::render::{Frame, FrameSize, PixelAspect, Renderer};
 use crate::terminal::CellWriter;
+use crate::tui::canvas::Canvas;
 use crate::tui::{FirstPerson, View};
 use crate::world::{FieldOfView, World};
 

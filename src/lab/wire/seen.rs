@@ -10,11 +10,11 @@ use std::num::NonZeroU32;
 
 use ratatui::layout::Size;
 
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 use crate::color::srgb::linear;
 use crate::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use crate::tui::canvas::Mosaic;
 use crate::world::{Camera, World};
 
 /// The columns and rows of points in each cell.

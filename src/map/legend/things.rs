@@ -81,6 +81,7 @@ pub(crate) fn note<'a>(entry: &Entry<'a, '_>) -> Option<&'a str> {
 }
 
 /// A sprite.
+#[derive(Default)]
 pub(crate) struct SpriteText<'a> {
     name: &'a str,
     place: Range<usize>,
@@ -101,20 +102,7 @@ pub(crate) struct SpriteText<'a> {
 impl<'a> SpriteText<'a> {
     pub(crate) fn read(entry: &Entry<'a, '_>, table: &'a DeTable<'_>) -> Option<Self> {
         let name = entry.string(r#"{ sprite = "plant" }"#)?;
-        let mut text = Self {
-            name,
-            place: entry.value_place.clone(),
-            anchor: None,
-            blocks: None,
-            is_doused: false,
-            height: None,
-            heading: None,
-            light: None,
-            reach: None,
-            frame_time: None,
-            frames: None,
-            facings: None,
-        };
+        let mut text = Self { name, place: entry.value_place.clone(), ..Self::default() };
         for entry in entry.entries(table) {
             text.take(&entry);
         }

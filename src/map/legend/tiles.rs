@@ -192,7 +192,7 @@ impl Height {
     }
 }
 
-/// What a tile has of its own; the rest is the map's.
+/// A tile's own surfaces, heights and mechanism. The map has the others.
 #[derive(Default)]
 pub(crate) struct Surroundings<'a> {
     pub(crate) floor: Option<CoveringText<'a>>,

@@ -19,9 +19,9 @@ use tokio::time::{Instant, sleep, timeout, timeout_at};
 
 use super::directory::SharedRooms;
 use super::shown_name;
+use crate::app::store::name_in_map_key;
 use crate::server::{AdminReply, AdminRequest, HostInfo};
 use crate::store::host::HostRow;
-use crate::store::name_in_map_key;
 
 /// The most time that other hosts have for their answers.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -246,7 +246,7 @@ fn bounded(reply: AdminReply, host: &str) -> AdminReply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::map_key;
+    use crate::app::store::map_key;
 
     fn told(own: &[(&str, &str)], theirs: &[(&str, &str)]) -> Option<String> {
         let keys = |maps: &[(&str, &str)]| -> Vec<String> {

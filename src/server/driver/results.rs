@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use super::unix_time;
+use crate::app::store::Improved;
 use crate::game::STEPS_PER_SECOND;
 use crate::server::line::Line;
 use crate::server::logging::events;
@@ -10,7 +11,6 @@ use crate::server::room::{Catalog, NAME_COLUMNS};
 use crate::server::sequencer::FinishedRun;
 use crate::server::session::BoardRow;
 use crate::server::{Metrics, Visitors, locked};
-use crate::store::Improved;
 use crate::store::host::{
     Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun,
     WaitingResult, WaitingResults, verify_with,

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Mode;
+use crate::app::store::name_in_map_key;
 use crate::map::builtin;
 use crate::server::HostMaps;
-use crate::store::name_in_map_key;
 use crate::world::World;
 
 /// Levels by name, in their order. The name of a map of the host is its key, which differs between two

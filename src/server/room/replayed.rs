@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::entry::Entry;
 use super::log::parse;
 use super::{Catalog, Header, Mode, Room};
-use crate::store::name_in_map_key;
+use crate::app::store::name_in_map_key;
 
 /// What came out of a round.
 #[derive(Clone, Debug, PartialEq, Eq)]

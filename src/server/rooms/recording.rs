@@ -23,10 +23,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
+use crate::app::store::private;
 use crate::server::room::{Entry, Header, Log, Queue, Recorded};
 use crate::server::summary::RoomId;
 use crate::server::{MOST_RECORDED_BYTES, locked};
-use crate::store::private;
 
 /// Gives each room its log.
 pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);

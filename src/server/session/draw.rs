@@ -22,12 +22,12 @@ use crate::app::parts::{
     DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
     picture_and_status, too_small, whole_seconds,
 };
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::server::line;
 use crate::server::room::{Phase, RoomView};
 use crate::terminal::thread_memory;
 use crate::tui::View;
+use crate::tui::canvas::Canvas;
 use crate::world::{Figure, World};
 
 /// The keys in a room that bindings do not change.

@@ -2,9 +2,9 @@
 
 use super::messages::Identity;
 use crate::app::parts::DrawOptions;
+use crate::app::store::Preferences;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::Filter;
-use crate::store::Preferences;
 use crate::terminal::Protocol;
 use crate::tui::{CellAspect, Correction, GlyphSet};
 use crate::world::FieldOfView;

@@ -4,12 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::Configuration;
+use crate::app::store::Preferences;
 use crate::game::Rank;
 use crate::server::ghost::Ghost;
 use crate::server::line::Line;
 use crate::server::room::{Catalog, Command, MemberId};
 use crate::server::summary::{RoomId, RoomSummary, RoomWish};
-use crate::store::Preferences;
 use crate::store::host::AccountSettings;
 use crate::world::Difficulty;
 

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Name, StoreFailure, UnixTime};
-use crate::store::Preferences;
+use crate::app::store::Preferences;
 
 /// The number of an account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

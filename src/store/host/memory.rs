@@ -9,7 +9,7 @@ use super::{
     DailyTry, Day, HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin,
     RENAME_WAIT, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel,
 };
-use crate::store::{Best, Improved, Reached};
+use crate::app::store::{Best, Improved, Reached};
 
 /// A store that ends with the program.
 ///

@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::{AccountId, Day, Name, UnixTime, VerifiedLevel};
+use crate::app::store::{Best, Improved, Reached, name_in_map_key};
 use crate::game::{Rank, Tally};
 use crate::map::builtin;
-use crate::store::{Best, Improved, Reached, name_in_map_key};
 use crate::world::Difficulty;
 
 /// A board: a built-in level or a map of the host, at one difficulty.
@@ -52,7 +52,7 @@ pub struct DailyTry {
 }
 
 impl LevelBoard {
-    /// The board of `level`: the name of a built-in level, or the [key](crate::store::map_key) of a map.
+    /// The board of `level`: the name of a built-in level, or the [key](crate::app::store::map_key) of a map.
     /// `None` if it is neither.
     pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
         let is_level = place(level).is_some() || name_in_map_key(level).is_some();

@@ -26,7 +26,7 @@ use super::{
     HostStore, LevelBoard, LevelScore, Name, Origin, Refusal, StoreFailure, UnixTime,
     VerifiedDescent, VerifiedLevel,
 };
-use crate::store::{Best, Improved};
+use crate::app::store::{Best, Improved};
 
 /// What runs statements, in a transaction or outside of one.
 pub trait Statements {

@@ -18,8 +18,8 @@ use std::time::Duration;
 use std::{env, fs};
 
 use super::*;
+use crate::app::store::{Preferences, Reached};
 use crate::game::{Rank, Rules, Share, Tally};
-use crate::store::{Preferences, Reached};
 use crate::world::Difficulty;
 
 /// A folder that is removed at the end of a test.

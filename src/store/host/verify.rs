@@ -3,11 +3,11 @@
 use std::fmt;
 
 use super::{Day, LevelBoard};
+use crate::app::store::{DescentRun, Reached, replayed};
 use crate::fault::Faults;
 use crate::game::{Game, Outcome, Rank, Rules, STEPS_PER_SECOND, Script, Tally};
 use crate::generate::descent;
 use crate::map::builtin;
-use crate::store::{DescentRun, Reached, replayed};
 use crate::world::{Difficulty, World};
 
 /// The longest script that is verified, in steps: half an hour.
@@ -76,7 +76,7 @@ pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
     verify_with(script, |_| None)
 }
 
-/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](crate::store::map_key).
+/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](crate::app::store::map_key).
 ///
 /// # Errors
 /// Why the run does not count.

@@ -24,9 +24,9 @@ use super::{
     Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun,
     verify_with,
 };
+use crate::app::store::disk::{Disk, Real};
+use crate::app::store::private;
 use crate::fault::printable_path;
-use crate::store::disk::{Disk, Real};
-use crate::store::private;
 use crate::world::World;
 
 /// The most results that wait.

@@ -10,8 +10,8 @@ use super::glyph_table::{Glyph, GlyphId, GlyphTable};
 use super::shape::Shape;
 use super::style::{Shade, Style};
 use super::symbol::Symbol;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
+use crate::tui::canvas::Mosaic;
 
 /// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

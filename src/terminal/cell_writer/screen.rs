@@ -13,7 +13,7 @@ use super::packed_cell::{Form, PackedCell};
 use super::shift::{Mark, Shift};
 use super::style::{Shade, Style};
 #[cfg(feature = "lab")]
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///

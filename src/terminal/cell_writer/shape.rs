@@ -8,7 +8,7 @@
 //! that moves by a dot within one wall then leaves the cells whose colours are near.
 
 use super::block_element::BlockElement;
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A mosaic without the last dot. There are fewer than [`Shape::COUNT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use self::support::{
     terminal,
 };
 use super::*;
-use crate::canvas::Canvas;
+use crate::tui::canvas::Canvas;
 
 #[test]
 fn a_block_that_spares_a_colour_is_taken() {

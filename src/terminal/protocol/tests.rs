@@ -1,6 +1,6 @@
 use super::*;
-use crate::canvas::Canvas;
 use crate::terminal::{Key, KeyEvent};
+use crate::tui::canvas::Canvas;
 use ratatui::style::Color;
 
 const ENTERED: &str = "\x1b[?1049h";

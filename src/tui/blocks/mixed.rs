@@ -10,11 +10,11 @@ use ratatui::style::Color;
 
 use super::split::{Split, Splits};
 use super::{mosaic, pixels_per_cell};
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::mixture::{Look, Mixer, WHOLE};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::Frame;
+use crate::tui::canvas::Canvas;
 use crate::tui::correction::{local_contrast, raised};
 
 /// The shades of one, two and three quarters.

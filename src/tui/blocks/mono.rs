@@ -15,8 +15,8 @@ use ratatui::style::Color;
 
 use super::mixed::SHADES;
 use super::{mask, mosaic, pixels_per_cell};
-use crate::canvas::Canvas;
 use crate::render::{Frame, Surface};
+use crate::tui::canvas::Canvas;
 use crate::tui::correction::local_contrast;
 use crate::tui::outline::{Edge, outline};
 

@@ -8,10 +8,10 @@ use unicode_width::UnicodeWidthStr;
 use super::overhead::style;
 use super::seconds_left;
 use crate::app::parts::{message, time, whole_seconds};
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::STEP;
 use crate::server::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
+use crate::tui::canvas::Canvas;
 
 /// Draws who is in the room, and their points.
 pub(crate) fn draw_members(

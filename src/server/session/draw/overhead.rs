@@ -8,11 +8,11 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::ghost::Ghost;
 use crate::app::parts::DrawOptions;
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::game::{OtherPlayer, PlayerColor, PlayerView};
 use crate::render::FrameSize;
 use crate::server::room::{MemberView, Mode, Role, RoomView};
+use crate::tui::canvas::Canvas;
 use crate::tui::color_at;
 use crate::visibility::Projection;
 use crate::world::Figure;

@@ -5,11 +5,11 @@ use std::fmt;
 use ratatui::layout::Rect;
 
 use crate::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
-use crate::canvas::Canvas;
 use crate::game::{Outcome, PlayerView};
 use crate::server::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::server::session::stay::{Stay, run_seconds, seconds_left};
 use crate::server::session::visit::Visit;
+use crate::tui::canvas::Canvas;
 
 impl Visit {
     /// Draws the mode, the time, what the player is and has, and who is watched.

@@ -5,10 +5,10 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::overhead::style;
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::server::session::talk::Remark;
 use crate::server::session::visit::Visit;
+use crate::tui::canvas::Canvas;
 
 /// The rows of a picture that are left to others.
 const ROWS_ABOVE: u16 = 3;

@@ -3,13 +3,13 @@
 use std::num::NonZeroU32;
 
 use super::{Row, Statements, bans, values};
-use crate::store::Preferences;
+use crate::app::store::Preferences;
+use crate::app::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use crate::store::host::rate::milliseconds;
 use crate::store::host::{
     Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin,
     RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban,
 };
-use crate::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use crate::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";

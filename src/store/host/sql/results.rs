@@ -1,13 +1,13 @@
 //! Results in a database.
 
 use super::{Row, Statements, values};
+use crate::app::store::{Best, Improved, Reached};
 use crate::game::{Rank, Share, Tally};
 use crate::store::host::score::with_run;
 use crate::store::host::{
     AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, StoreFailure, UnixTime,
     VerifiedDescent, VerifiedLevel,
 };
-use crate::store::{Best, Improved, Reached};
 use crate::world::Difficulty;
 
 /// The columns of a [`Best`].

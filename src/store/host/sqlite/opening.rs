@@ -9,9 +9,9 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::salvage::salvage;
 use super::schema::{self, APPLICATION, MIGRATIONS};
+use crate::app::store::private;
 use crate::fault::printable_path;
 use crate::store::host::StoreFailure;
-use crate::store::private;
 
 const FILE: &str = "host.db";
 /// What SQLite adds to the name for its log, and for the index of the log.

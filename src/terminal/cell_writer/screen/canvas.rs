@@ -9,9 +9,9 @@ use ratatui::widgets::Widget;
 
 use super::super::packed_cell::PackedCell;
 use super::Screen;
-use crate::canvas::{Canvas, Mosaic};
 use crate::color::Rgb;
 use crate::terminal::thread_memory;
+use crate::tui::canvas::{Canvas, Mosaic};
 
 thread_local! {
     /// The buffer into which widgets are drawn first.

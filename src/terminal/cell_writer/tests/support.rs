@@ -12,7 +12,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier};
 
 use super::super::CellWriter;
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A terminal's screen that counts the writes to it.
 #[derive(Clone)]

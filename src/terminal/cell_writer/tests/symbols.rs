@@ -9,7 +9,7 @@ use ratatui::widgets::Widget;
 
 use super::super::CellWriter;
 use super::support::{self, assert_shown, colored, terminal, tidy_wide_symbols};
-use crate::canvas::Canvas;
+use crate::tui::canvas::Canvas;
 
 /// A widget that is a picture.
 struct Picture<'a>(&'a Buffer);
