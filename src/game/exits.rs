@@ -179,7 +179,7 @@ impl<'a> Reach<'a> {
 
     /// The gaps of a cell that are high enough to duck in.
     fn gaps(&self, cell: Cell) -> Ways {
-        let Some(id) = self.world.grid().tile(cell.column.into(), cell.row.into()) else {
+        let Some(id) = self.world.grid().tile_in(cell) else {
             return Ways::default();
         };
         let moves = || self.world.moving_tiles().iter().any(|moving| moving.states[0] == id);
