@@ -246,7 +246,7 @@ impl<'l> Cells<'l> {
 
     /// The tile of a cell; `None` outside the map.
     fn at(self, cell: Cell) -> Option<&'l Tile> {
-        Some(self.tile(cell.column.into(), cell.row.into())?.1)
+        Some(&self.tiles[usize::from(self.grid.tile_in(cell)?.0)])
     }
 
     /// The tiles to the west and east, and to the north and south of `cell`.
