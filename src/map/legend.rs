@@ -187,7 +187,7 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     let fault = |message: String| Fault::new(entry.key_place.clone(), message);
     let key = entry.key;
     let fault = match (meanings.pop(), meanings.is_empty()) {
-        (Some(meaning), true) => match surroundings.unsuitable_for(&meaning, entry, table) {
+        (Some(meaning), true) => match unsuitable(&surroundings, &meaning, entry, table) {
             None => return (meaning, surroundings),
             Some(fault) => fault,
         },
@@ -201,6 +201,33 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
     };
     entry.faults.push(fault);
     (Meaning::Unclear, surroundings)
+}
+
+/// The fault of a tile, defined in `entry` by `table`, whose `meaning` cannot have these surroundings.
+fn unsuitable(
+    surroundings: &Surroundings<'_>,
+    meaning: &Meaning<'_>,
+    entry: &Entry<'_, '_>,
+    table: &DeTable<'_>,
+) -> Option<Fault> {
+    if let Some(place) = surroundings.mechanism.clone() {
+        let message = "only a floor can be water, a plate, or move to another height";
+        let fault = Fault::new(place, message).label("this tile is no floor");
+        return Some(fault.help("draw the two with characters of their own"));
+    }
+    match meaning {
+        Meaning::Wall(_) | Meaning::Mirror(..) if surroundings.has_extent() => {
+            Some(several_at_once(entry))
+        }
+        Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) if surroundings.light.is_some() => {
+            let light = entry.beside(table, "light")?.key_place;
+            let message = "a door, a mask or glass has no light of its own";
+            let fault = Fault::new(light, message);
+            let fault = fault.label("open floor, walls and shapes have one");
+            Some(fault.help("leave it out, and give the floor beside it a light"))
+        }
+        _ => None,
+    }
 }
 
 fn several_at_once(entry: &Entry<'_, '_>) -> Fault {

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::{Meaning, several_at_once};
 use crate::color::Rgb;
 use crate::fault::document::Entry;
 use crate::fault::{Fault, nearest_or_all, quoted};
@@ -212,7 +211,7 @@ pub(crate) struct Surroundings<'a> {
     /// The switch that moves the floor.
     pub(crate) switch: Option<Name<'a>>,
     /// The place of the first key of a mechanism, from `water` to `switch`.
-    mechanism: Option<Range<usize>>,
+    pub(crate) mechanism: Option<Range<usize>>,
 }
 
 impl<'a> Surroundings<'a> {
@@ -247,8 +246,8 @@ impl<'a> Surroundings<'a> {
         !self.has_extent() && self.light.is_none() && self.mechanism.is_none()
     }
 
-    /// Whether it has a covering or a height.
-    fn has_extent(&self) -> bool {
+    /// Returns whether it has a covering or a height.
+    pub(crate) fn has_extent(&self) -> bool {
         let Self { floor_height, ceiling_height, roof_height, .. } = self;
         let heights = [floor_height, ceiling_height, roof_height];
         self.floor.is_some()
@@ -256,33 +255,6 @@ impl<'a> Surroundings<'a> {
             || heights.into_iter().any(Option::is_some)
             || self.riser.is_some()
             || self.lintel.is_some()
-    }
-
-    /// The fault of a tile with that `meaning`, defined in `entry` by `table`, that cannot have these.
-    pub(crate) fn unsuitable_for(
-        &self,
-        meaning: &Meaning<'_>,
-        entry: &Entry<'_, '_>,
-        table: &DeTable<'_>,
-    ) -> Option<Fault> {
-        if let Some(place) = self.mechanism.clone() {
-            let message = "only a floor can be water, a plate, or move to another height";
-            let fault = Fault::new(place, message).label("this tile is no floor");
-            return Some(fault.help("draw the two with characters of their own"));
-        }
-        match meaning {
-            Meaning::Wall(_) | Meaning::Mirror(..) if self.has_extent() => {
-                Some(several_at_once(entry))
-            }
-            Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) if self.light.is_some() => {
-                let light = entry.beside(table, "light")?.key_place;
-                let message = "a door, a mask or glass has no light of its own";
-                let fault = Fault::new(light, message);
-                let fault = fault.label("open floor, walls and shapes have one");
-                Some(fault.help("leave it out, and give the floor beside it a light"))
-            }
-            _ => None,
-        }
     }
 
     /// The fault of a floor whose mechanism contradicts itself, if it does.
