@@ -8,7 +8,7 @@
 //! Names of files and values of options may hold any character. All text on standard error goes
 //! through [`printable`] and its like, which show what a terminal would obey as an escape.
 
-pub(crate) mod document;
+pub mod document;
 
 use std::fmt;
 use std::ops::Range;
@@ -40,7 +40,7 @@ pub struct Faults {
 }
 
 /// A fault in a text.
-pub(crate) struct Fault {
+pub struct Fault {
     /// Bytes of the text; `None` if the whole file is at fault.
     place: Option<Range<usize>>,
     /// A sentence.
@@ -53,7 +53,7 @@ pub(crate) struct Fault {
 
 impl Faults {
     /// The faults of the file `name` with the contents `text`. `faults` is not empty.
-    pub(crate) fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+    pub fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
         sort::by_key(&mut faults, |fault| {
             fault.place.as_ref().map(|place| (place.start, place.end))
@@ -72,7 +72,7 @@ impl Faults {
     ///
     /// # Errors
     /// A fault that names the first line that is not UTF-8.
-    pub(crate) fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
+    pub fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
             let line = 1 + line_breaks(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
             let message = format!(
@@ -158,7 +158,7 @@ impl std::error::Error for Faults {}
 
 impl Fault {
     /// A fault at `place`, a range of bytes of the text.
-    pub(crate) fn new(place: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn new(place: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { place: Some(place), message, label: String::new(), help: String::new() }
     }
@@ -169,7 +169,7 @@ impl Fault {
     }
 
     /// The fault with a remedy.
-    pub(crate) fn help(self, help: impl Into<String>) -> Self {
+    pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
 
@@ -197,7 +197,7 @@ pub(crate) fn printable(text: &str) -> String {
 
 /// A path in a sentence, on one line and with escapes as in [`printable`].
 #[cfg(feature = "terminal")]
-pub(crate) fn printable_path(path: &Path) -> String {
+pub fn printable_path(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 
@@ -215,7 +215,7 @@ fn does_print(c: char) -> bool {
 
 /// The most similar of `known` to `word`, if any is similar: with at most one edit for every three
 /// letters.
-pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > MAX_NAME {
         return None;
     }
@@ -234,7 +234,7 @@ pub(crate) fn nearest_or_all(word: &str, known: &[&str], meant: &str, otherwise:
 }
 
 /// `word` in double quotes, with non-printing characters escaped, shortened if it is long.
-pub(crate) fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     match word.char_indices().nth(MAX_NAME) {
         Some((end, _)) => format!("{:?}…", &word[..end]),
         None => format!("{word:?}"),
