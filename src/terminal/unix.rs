@@ -12,6 +12,7 @@ use rustix::termios::{
     ttyname,
 };
 
+use super::error::Kind;
 use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
@@ -43,7 +44,7 @@ impl Device {
         let (input, output) = (rustix::stdio::stdin(), rustix::stdio::stdout());
         for (stream, name) in [(input, "standard input"), (output, "standard output")] {
             if !isatty(stream) {
-                return Err(Error::not_a_terminal(name));
+                return Err(Kind::NotATerminal { stream: name }.into());
             }
         }
         Self::of_terminals(input, output).map_err(Error::while_doing("opening the terminal"))
