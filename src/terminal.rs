@@ -7,8 +7,8 @@
 //!
 //! This module reads the bytes and divides them into units itself.
 //!
-//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys, or
-//! keep a reading thread that competes with the answers to queries.
+//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys,
+//! or keep a reading thread that competes with the answers to queries.
 
 mod cell_writer;
 mod error;
