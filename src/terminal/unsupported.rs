@@ -36,12 +36,6 @@ pub(crate) enum Signal {
     Quit(QuitReason),
 }
 
-/// The peak memory is unknown.
-#[cfg(feature = "cli")]
-pub fn peak_memory() -> Option<u64> {
-    None
-}
-
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
