@@ -162,10 +162,7 @@ pub fn entries<'a, 't>(
 
 impl<'a, 't> Entry<'a, 't> {
     /// The entries of a table of the same document, in the order of their keys.
-    pub fn entries(
-        &self,
-        table: &'a DeTable<'t>,
-    ) -> impl Iterator<Item = Self> + use<'a, 't> {
+    pub fn entries(&self, table: &'a DeTable<'t>) -> impl Iterator<Item = Self> + use<'a, 't> {
         entries(table, self.faults)
     }
 
