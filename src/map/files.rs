@@ -1,8 +1,14 @@
-//! Files: where the pictures of a map come from.
+//! Files: where the text and the pictures of a map come from.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 
+use crate::fault::Faults;
+
+/// The largest map file, in bytes: room for the largest grid in characters of three bytes.
+pub const MAX_BYTES: usize = 64 << 20;
 /// The largest PNG file, in bytes.
 const MAX_FILE_BYTES: usize = 16 << 20;
 
@@ -104,7 +110,9 @@ impl Folder {
 
 impl TextureFiles for Folder {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
-        let bytes = crate::map::input::read_up_to(&self.real_path(name)?, MAX_FILE_BYTES + 1)?;
+        let mut bytes = Vec::new();
+        let file = File::open(self.real_path(name)?)?;
+        file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
         if bytes.len() > MAX_FILE_BYTES {
             return Err(TextureFileError::TooLarge);
         }
@@ -121,12 +129,54 @@ impl From<io::Error> for TextureFileError {
     }
 }
 
-/// Whether the name is that of a PNG file.
+/// Returns whether `name` ends as a PNG file does.
 pub(crate) fn is_png(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
-/// Whether `name` is a file below a folder, and the same one on every system.
+/// Returns whether `name` stays below its folder, and is the same file on every system.
 pub(crate) fn stays_inside(name: &str) -> bool {
     !name.contains(['\\', ':']) && name.split('/').all(|part| !matches!(part, "" | "." | ".."))
+}
+
+/// Reads the text of a map, at most [`MAX_BYTES`] of it.
+pub(crate) fn read_text(input: impl Read, name: &str) -> Result<String, Faults> {
+    let mut bytes = Vec::new();
+    let read = input.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(name, &error))?;
+    if bytes.len() > MAX_BYTES {
+        return Err(too_large(name));
+    }
+    Faults::text_of(bytes, name, "map")
+}
+
+/// Opens the map file at `path`, which faults call `name`.
+///
+/// Only a regular file is opened: opening a pipe would wait for its other end, and a device may
+/// have no end.
+pub(crate) fn open(path: &Path, name: &str) -> Result<File, Faults> {
+    let metadata = fs::metadata(path).map_err(|error| unreadable(name, &error))?;
+    if metadata.is_dir() {
+        let message = format!("{name} is a folder, not a map");
+        return Err(Faults::of_whole_file(name, &message, "name a map file in it"));
+    }
+    if !metadata.is_file() {
+        let message = format!("{name} is a pipe or a device, not a map");
+        return Err(Faults::of_whole_file(name, &message, "a map on standard input is called -"));
+    }
+    File::open(path).map_err(|error| unreadable(name, &error))
+}
+
+pub(crate) fn too_large(name: &str) -> Faults {
+    let limit = MAX_BYTES >> 20;
+    let message = format!("{name} is larger than {limit} MiB, the most that a map may have");
+    Faults::of_whole_file(name, &message, "")
+}
+
+fn unreadable(name: &str, error: &io::Error) -> Faults {
+    let message = match error.kind() {
+        io::ErrorKind::NotFound => format!("there is no file {name}"),
+        kind => format!("{name} cannot be read: {kind}"),
+    };
+    Faults::of_whole_file(name, &message, "")
 }

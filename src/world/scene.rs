@@ -1,15 +1,59 @@
-//! Bodies, of which a scene consists. All of them are convex.
+//! Scenes: levels made of bodies instead of a grid. All bodies are convex.
+
+use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
 
-use super::checker;
+use super::{Fog, Heading, Scale, SkyGradient};
 use crate::color::Rgb;
-use crate::world::Scale;
 
 /// The largest absolute value of a coordinate along each axis, and the largest radius, in cells.
 pub const FARTHEST: f64 = 1e9;
 /// The smallest radius, and the shortest edge of a block, in cells.
 pub const SMALLEST: f64 = 1e-9;
+
+/// The distance that the player's eye keeps from all bodies, in cells.
+pub const EYE_CLEARANCE: f64 = 0.25;
+
+/// A level made of bodies. Each body is valid by construction, and bodies may overlap.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The level's name; empty if the map has none.
+    pub title: String,
+    /// The bodies in the order of the map. Where a ray hits two at once, the first is visible.
+    pub bodies: Vec<Body>,
+    /// The directional light.
+    pub sun: Sun,
+    /// The background.
+    pub sky: SkyGradient,
+    /// The fog, if there is any.
+    pub fog: Option<Fog>,
+    /// The player's start.
+    pub start: Start,
+}
+
+/// The position and direction in which the player starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// The position of the eye, within the limits of a camera.
+    position: DVec3,
+    /// The compass direction.
+    pub heading: Heading,
+    /// The angle above or below the horizon.
+    pub elevation: Elevation,
+}
+
+impl Start {
+    /// A start at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`].
+    pub fn new(position: DVec3, heading: Heading, elevation: Elevation) -> Option<Self> {
+        is_near(position).then_some(Self { position, heading, elevation })
+    }
+
+    /// The position of the eye.
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+}
 
 /// A visible object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,23 +228,103 @@ impl Block {
     }
 }
 
-impl SolidTexture {
-    /// The colour at `point`.
-    pub fn color_at(&self, point: DVec3) -> Rgb {
-        match *self {
-            Self::Plain(color) => color,
-            Self::Checker([first, second], scale) => {
-                if checker::is_first(point / scale.cells()) {
-                    first
-                } else {
-                    second
-                }
-            }
-        }
+/// A fraction from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fraction(f64);
+
+impl Fraction {
+    /// The fraction, if it is from 0 to 1.
+    pub fn new(fraction: f64) -> Option<Self> {
+        (0.0..=1.0).contains(&fraction).then_some(Self(fraction))
+    }
+
+    /// The fraction, from 0 to 1.
+    pub fn get(self) -> f64 {
+        self.0
     }
 }
 
-fn is_near(point: DVec3) -> bool {
+/// The directional light of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sun {
+    toward: DVec3,
+    /// The brightness of a surface that the sun does not reach.
+    pub ambient: Fraction,
+}
+
+impl Sun {
+    /// A sun in the direction `toward`, of any length. `None` if the direction is zero or not
+    /// finite.
+    pub fn new(toward: DVec3, ambient: Fraction) -> Option<Self> {
+        let largest = toward.abs().max_element();
+        let has_direction = toward.is_finite() && largest > 0.0;
+        has_direction.then(|| Self { toward: (toward / largest).normalize(), ambient })
+    }
+
+    /// The unit vector towards the sun.
+    pub fn toward(&self) -> DVec3 {
+        self.toward
+    }
+
+    /// The brightness of a surface with this unit normal, from the ambient fraction to 1. It is
+    /// Lambert's cosine law ("Photometria", 1760): proportional to the cosine of the angle to the
+    /// sun.
+    pub fn brightness(&self, normal: DVec3) -> f64 {
+        let Fraction(ambient) = self.ambient;
+        ambient + (1.0 - ambient) * self.toward.dot(normal).clamp(0.0, 1.0)
+    }
+}
+
+impl Default for Sun {
+    /// A sun high in the north-west.
+    fn default() -> Self {
+        const TOWARD: DVec3 = DVec3::new(-2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0);
+        Self { toward: TOWARD, ambient: Fraction(0.2) }
+    }
+}
+
+/// The angle by which a camera looks up or down, between straight down and straight up.
+///
+/// Beyond these limits the picture would be upside down, and left and right would be swapped.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Elevation {
+    radians: f64,
+}
+
+impl Elevation {
+    /// Neither up nor down.
+    pub const LEVEL: Self = Self { radians: 0.0 };
+
+    /// An elevation in degrees, from −90 (straight down) to 90 (straight up). `None` outside that
+    /// range.
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        let is_within = (-90.0..=90.0).contains(&degrees);
+        is_within.then(|| Self::LEVEL.raised(degrees.to_radians()))
+    }
+
+    /// The elevation in degrees; positive is up.
+    pub fn degrees(self) -> f64 {
+        self.radians.to_degrees()
+    }
+
+    /// The elevation in radians; positive is up.
+    pub fn radians(self) -> f64 {
+        self.radians
+    }
+
+    /// The elevation changed by `radians`, clamped to the limits; negative values lower it. A NaN
+    /// changes nothing.
+    #[must_use]
+    pub fn raised(self, radians: f64) -> Self {
+        if radians.is_nan() {
+            return self;
+        }
+        Self { radians: (self.radians + radians).clamp(-FRAC_PI_2, FRAC_PI_2) }
+    }
+}
+
+/// Whether a position is within the limits of bodies and cameras.
+pub(crate) fn is_near(point: DVec3) -> bool {
     point.is_finite() && point.abs().max_element() <= FARTHEST
 }
 
@@ -255,5 +379,23 @@ mod tests {
         assert!(!sphere.overlaps(&block(0.0, 2.0)) && !block(0.0, 2.0).overlaps(&sphere));
         assert!(plane(DVec3::X).overlaps(&plane(DVec3::Z)));
         assert!(!plane(DVec3::X).overlaps(&sphere));
+    }
+
+    #[test]
+    fn surfaces_towards_the_sun_are_bright_and_others_ambient() {
+        let sun = Sun::new(DVec3::new(0.0, 0.0, 1e-200), Fraction(0.25)).unwrap();
+        assert_eq!(sun.brightness(DVec3::Z), 1.0);
+        assert_eq!(sun.brightness(DVec3::X), 0.25);
+        assert_eq!(sun.brightness(-DVec3::Z), 0.25);
+        assert_eq!(Sun::new(DVec3::ZERO, Fraction(0.0)), None);
+    }
+
+    #[test]
+    fn elevation_ends_at_straight_up() {
+        let up = Elevation::from_degrees(90.0).unwrap();
+        assert_eq!(Elevation::LEVEL.raised(f64::INFINITY), up);
+        assert_eq!(up.raised(f64::NAN), up);
+        assert_eq!(Elevation::from_degrees(90.5), None);
+        assert_eq!(Elevation::from_degrees(f64::NAN), None);
     }
 }
