@@ -219,7 +219,7 @@ impl RoundedOrder {
 
     /// The order for rays from `origin` along `direction`, which is also `scaled`.
     #[inline]
-    pub(crate) fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
+    fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
         let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
         let weight = DVec2::new(weight(direction.x, scaled.y), weight(direction.y, scaled.x));
         Self { origin, weight }

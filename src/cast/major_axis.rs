@@ -287,7 +287,7 @@ pub(crate) struct Axis {
     pub(crate) direction: f64,
     /// The strides of cells and of blocks in the distance field.
     pub(crate) stride: i64,
-    pub(crate) block_stride: i64,
+    block_stride: i64,
 }
 
 /// The most lines for which units are fine enough.
@@ -335,7 +335,7 @@ pub(crate) fn units(position: f64) -> i64 {
 impl Path {
     /// As [`Path::leap`], and across everything that a beam says is clear.
     #[inline]
-    pub(crate) fn leap_along_beams(
+    fn leap_along_beams(
         self,
         distance_field: &DistanceField,
         [along_rows, along_columns]: &[BeamTable; 2],

@@ -185,7 +185,7 @@ impl Passage {
 
 /// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
 /// it misses.
-pub(crate) fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
     Passage::new(ray, cell, outline).hit
 }
 

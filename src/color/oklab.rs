@@ -36,7 +36,7 @@ pub(crate) fn cones(light: [f64; 3]) -> [f64; 3] {
 }
 
 /// The matrix from the cube roots of cone responses to Oklab.
-pub(crate) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
+const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
     [0.210_454_26, 0.793_617_8, -0.004_072_05],
     [1.977_998_5, -2.428_592_2, 0.450_593_7],
     [0.025_904_04, 0.782_771_77, -0.808_675_77],

@@ -262,7 +262,7 @@ pub(crate) const LANES: usize = 8;
 
 /// A queued column of pixels.
 #[derive(Clone, Debug)]
-pub(crate) struct QueuedColumn {
+struct QueuedColumn {
     pub(crate) x: u32,
     pub(crate) rows: Range<u32>,
     /// The address of the texel of the first row, and the step from each row to the next.

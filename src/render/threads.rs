@@ -68,7 +68,7 @@ impl Threads {
 
     /// The number of rows of a band, for a frame of this height: all rows for one thread, else few
     /// enough that a thread which finishes early takes bands from another.
-    pub(crate) fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
+    fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
         match self {
             Self::One(_) => height,
             Self::Bands(count) => {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::lanes::rounded;
 use crate::color::Rgb;
+use crate::numeric::rounding::rounded_short;
 use crate::world::SkyGradient;
 
 /// A fraction from 0 to 1.
@@ -78,7 +78,7 @@ pub(crate) fn sky_share(direction: DVec3) -> u32 {
     // Straight up or down, the horizontal distance is zero.
     let vertical = if z > 0.0 { 1.0 } else { 0.0 };
     let share = if away > 0.0 { height / away } else { vertical };
-    rounded(share * 255.0)
+    rounded_short(share * 255.0)
 }
 
 #[cfg(test)]

@@ -19,7 +19,6 @@ mod met;
 mod ray_segments;
 mod spans;
 mod start;
-mod surroundings;
 mod tile_gaps;
 mod walk;
 
@@ -28,10 +27,10 @@ use std::ops::Range;
 use super::runs::{IMAGES_AT_ONCE, ImageId};
 use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
 use crate::world::World;
+use bundle::Surroundings;
 use layers::{Finder, LayerMemory};
 pub(crate) use spans::for_each_span;
 pub(crate) use start::PortalStart;
-use surroundings::Surroundings;
 use tile_gaps::TileGaps;
 use walk::{BundleWalk, WalkMemory};
 

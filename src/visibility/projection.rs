@@ -10,8 +10,9 @@ use std::ops::{Range, RangeInclusive};
 use glam::DVec2;
 
 use super::SpanMapping;
-use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels, ceil, ceil_within};
+use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels};
 use crate::cast::{HitFace, Ray, Side};
+use crate::numeric::rounding::{ceil, ceil_within};
 use crate::world::{Camera, Heights};
 
 /// The mapping from the world to the pixels of one frame.

@@ -5,13 +5,10 @@
 //! so that no error accumulates and a step is one addition. Counting in doubles was refused: a
 //! conversion and a floor for each pixel took half the time of a whole frame.
 
-mod rounding;
-
 use std::iter;
 use std::ops::Range;
 
-pub(crate) use rounding::{ceil, ceil_within};
-use rounding::{floor, rounded};
+use crate::numeric::rounding::{ceil, floor, rounded};
 
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]

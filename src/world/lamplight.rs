@@ -136,7 +136,7 @@ impl Lamplight {
 
 /// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
-pub(crate) struct Glow {
+struct Glow {
     /// What it adds in its own cell.
     light: Light,
     /// The cells as a tree: each comes before those behind it.
@@ -266,7 +266,7 @@ enum Carrier {
 
 /// The glow of each kind of lamp that was needed so far. Worlds that differ in it are equal.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Glows {
+struct Glows {
     list: Vec<(Lamp, Arc<Glow>)>,
 }
 

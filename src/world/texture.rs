@@ -231,7 +231,7 @@ impl Source {
         }
     }
 
-    pub(crate) fn is_made(&self) -> bool {
+    fn is_made(&self) -> bool {
         match self {
             Self::Made(_) => true,
             Self::OnDemand { made, .. } => made.get().is_some(),

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::bundle::{Bundle, Clip};
+use super::bundle::{Bundle, Clip, MOST_BOUNCES};
 use super::met::Met;
-use super::surroundings::{MOST_BOUNCES, Place};
-use super::tile_gaps::{BOTTOMLESS, Holds, VisibleGap};
+use super::tile_gaps::{BOTTOMLESS, Holds, Place, VisibleGap};
 use super::walk::{BundleWalk, WalkMemory};
 use crate::cast::{Crossed, CrossedFace, Hit, Side};
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};

@@ -6,11 +6,13 @@
 
 use std::ops::Range;
 
-use super::surroundings::Place;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
-use crate::world::{Gap, Heights, Tile, TileKind, World};
+use crate::world::{Cell, Gap, Heights, Tile, TileId, TileKind, World};
+
+/// The location of a ray: in a cell, or off the map.
+pub(crate) type Place = Option<(Cell, TileId)>;
 
 /// The gaps of all tiles.
 #[derive(Clone, Debug, Default)]

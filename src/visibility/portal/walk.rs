@@ -13,10 +13,9 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::bundle::{Bundle, Clip};
+use super::bundle::{Bundle, Clip, Surroundings};
 use super::layers::{Passed, RayPart};
 use super::ray_segments::RaySegment;
-use super::surroundings::Surroundings;
 use super::tile_gaps::{Holds, VisibleGap};
 use crate::cast::{Crossed, Ray, Side};
 use crate::visibility::runs::{Chains, FlatSurface, ImageId, Part, Shown};
