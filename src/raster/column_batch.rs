@@ -258,22 +258,22 @@ impl BatchMemory {
 }
 
 /// The number of columns whose loop variables fit in registers.
-pub(crate) const LANES: usize = 8;
+const LANES: usize = 8;
 
 /// A queued column of pixels.
 #[derive(Clone, Debug)]
 struct QueuedColumn {
-    pub(crate) x: u32,
-    pub(crate) rows: Range<u32>,
+    x: u32,
+    rows: Range<u32>,
     /// The address of the texel of the first row, and the step from each row to the next.
-    pub(crate) address: TexelAddress,
-    pub(crate) step: u64,
+    address: TexelAddress,
+    step: u64,
 }
 
 impl QueuedColumn {
     /// Draws the part of the column in `rows`.
     #[inline]
-    pub(crate) fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let mut address = self.address_in(rows.start);
         for pixel in band.column_mut(self.x, rows) {
             *pixel = shaded.at(address);
@@ -289,9 +289,9 @@ impl QueuedColumn {
 
 /// Neighbouring columns, in the rows that all of them have.
 #[derive(Clone, Debug)]
-pub(crate) struct Lanes {
+struct Lanes {
     x: u32,
-    pub(crate) rows: Range<u32>,
+    rows: Range<u32>,
     /// The address of each column's texel in the next row to be drawn.
     addresses: [TexelAddress; LANES],
     /// The step of each column from one row to the next.
@@ -301,7 +301,7 @@ pub(crate) struct Lanes {
 impl Lanes {
     /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
     #[inline]
-    pub(crate) fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
+    fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
         let [QueuedColumn { x, .. }, .., last] = columns;
         let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
         // No two columns have the same `x`.
@@ -316,7 +316,7 @@ impl Lanes {
 
     /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
     #[inline]
-    pub(crate) fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { x, mut addresses, steps, .. } = *self;
         band.for_each_in_block(x, common(rows, self.rows.clone()), |pixels: &mut [Rgb; LANES]| {
             for lane in 0..LANES {

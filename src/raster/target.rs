@@ -186,7 +186,7 @@ impl SurfaceBuffer {
 
 /// The surfaces of the pixels of some rows.
 #[derive(Debug)]
-struct SurfaceRows<'a> {
+pub(crate) struct SurfaceRows<'a> {
     width: usize,
     /// The first row.
     first: u32,

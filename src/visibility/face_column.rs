@@ -10,7 +10,7 @@ use crate::world::{Cell, Glass, Grid, Light, Outline, Paint, TextureId, TileId};
 
 /// The visible part of an upright face that is as wide as a pixel, with a material of this kind.
 #[derive(Clone, Debug)]
-struct FaceColumn<M> {
+pub(crate) struct FaceColumn<M> {
     pub(crate) column: u32,
     pub(crate) rows: Range<u32>,
     pub(crate) facing: Facing,
