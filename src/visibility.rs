@@ -16,8 +16,8 @@
 //!   no error accumulates. A band of rows is identical to those rows of the whole frame.
 //! - A list allocates nothing once it has grown to the size of the frame.
 //!
-//! Drawing each column while its ray is followed was refused: a row of floor shares its distance,
-//! its light and its mip level, which a span finds once for many pixels.
+//! Rejected: drawing each column while its ray is followed. A row of floor shares its distance, its
+//! light and its mip level, which a span finds once for many pixels.
 
 mod billboard;
 mod column;

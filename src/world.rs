@@ -72,7 +72,7 @@ pub struct World {
     title: String,
     goal: Option<String>,
     grid: Grid,
-    /// The same as rays see it that end at what is not level, where anything is not.
+    /// The grid as seen by rays that stop at uneven cells (only if the map has any).
     level_grid: Option<Grid>,
     tiles: Vec<Tile>,
     textures: Arc<[Texture]>,
@@ -117,8 +117,8 @@ impl World {
         &self.grid
     }
 
-    /// The grid as rays see it that end at what is not level: that is solid in it. `None` where everything
-    /// is level.
+    /// The grid as seen by rays that stop at uneven cells, which are solid in it. `None` if all tiles are
+    /// level.
     pub(crate) fn level_grid(&self) -> Option<&Grid> {
         self.level_grid.as_ref()
     }
@@ -153,7 +153,7 @@ impl World {
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
     }
 
-    /// What lamps add to the light in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
     pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
         self.lamplight.at(cell)
@@ -401,14 +401,14 @@ impl World {
 /// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
 fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
     let first_solid = grid.first_solid();
-    let changing = that_may_become(tiles.len(), moving, |state| state >= first_solid);
+    let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
     // A level grid has a tile of its own for what is not level.
     let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
     grid.clear(|id| is_doorway(id) || may_change(id));
 }
 
-/// `grid` as rays see it that end at what is not level; `None` where everything is.
+/// `grid` as seen by rays that stop at uneven cells; `None` if all tiles are level.
 fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
     let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
     if tiles.iter().all(Tile::is_level) {
@@ -416,29 +416,29 @@ fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid
     }
     let first_solid = grid.first_solid();
     let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
-    let changing = that_may_become(tiles.len(), moving, ends_rays);
+    let changing = may_become(tiles.len(), moving, ends_rays);
     let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
     let mut level = grid.ending_at_others(is_level);
     level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
     Some(level)
 }
 
-/// For each tile, whether it is among the states of a moving tile any of whose states `is_it`.
-fn that_may_become(
+/// For each tile, whether it is a state of a moving tile that has a state for which `is_it` is true.
+fn may_become(
     tile_count: usize,
     moving: &[MovingTile],
     is_it: impl Fn(TileId) -> bool,
 ) -> Vec<bool> {
-    let mut may_become = vec![false; tile_count];
+    let mut marked = vec![false; tile_count];
     let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
     for &TileId(index) in moving.flat_map(|moving| &moving.states) {
-        may_become[usize::from(index)] = true;
+        marked[usize::from(index)] = true;
     }
-    may_become
+    marked
 }
 
-/// What a game changes in its world, but for the tiles and openings that its doors and mechanisms know, and
-/// the light of lamps.
+/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
+/// lamps.
 pub(crate) struct Changes<'a> {
     pub(crate) things: &'a [Thing],
     pub(crate) figures: &'a [Figure],
@@ -447,12 +447,12 @@ pub(crate) struct Changes<'a> {
 }
 
 impl World {
-    /// What a game has changed.
+    /// The changes of a game so far.
     pub(crate) fn changes(&self) -> Changes<'_> {
         let Self {
             title: _,
             goal: _,
-            // Doors and mechanisms give the tiles that have changed.
+            // The tiles that have changed follow from doors and mechanisms.
             grid: _,
             level_grid: _,
             tiles: _,
@@ -471,14 +471,14 @@ impl World {
             light_varies: _,
             keys: _,
             mission: _,
-            // Doors give it.
+            // It follows from doors.
             ajar: _,
         } = self;
         Changes { things: things.all(), figures, is_lamplit: !lamplight.is_dark() }
     }
 
-    /// Replaces the things by those that are left of them, which may show other frames, and computes all
-    /// lamplight anew, without lamps that move. Returns `false`, and changes nothing, if the things are not
+    /// Replaces the things by those of them that are `left`, which may show other frames, and computes all
+    /// lamplight again, without moving lamps. Returns `false`, and changes nothing, if the things are not
     /// in their order, were not all there, or have sprites without such a frame.
     pub(crate) fn leave_things(&mut self, left: Vec<Thing>) -> bool {
         let place = |cell: Cell| (cell.row, cell.column);

@@ -61,8 +61,7 @@ impl Caster for Exact {
     }
 }
 
-/// Casts as [`Exact`] does, and ends where a ray enters what is not level: in `grid`, which has that for
-/// solid.
+/// Casts as [`Exact`] does, and also hits uneven cells, which are solid in `grid`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExactOnLevel<'a> {
     pub(crate) grid: &'a Grid,

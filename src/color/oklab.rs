@@ -1,9 +1,9 @@
 //! Oklab, a colour space in which distance is perceived difference.
 //!
 //! Source: Björn Ottosson, "A perceptual color space for image processing" (2020),
-//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more. CIE
-//! L\*a\*b\* was refused for choosing among few colours: its blues turn purple when they are mixed
-//! with grey.
+//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more.
+//! Rejected for choosing among few colours: CIE L\*a\*b\*, whose blues turn purple when they are
+//! mixed with grey.
 
 use super::srgb::linear;
 use super::{Rgb, product};

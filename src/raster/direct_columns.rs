@@ -1,9 +1,9 @@
 //! Direct columns: the wall columns of small pictures, drawn without a batch.
 //!
-//! A small picture is in the cache as a whole, so that pixels far apart cost no more than neighbours,
-//! and a batch would take longer to prepare than to draw. Each column is drawn straight from its texture,
-//! four rows at a time, which take 6.5 instructions a pixel. Four columns at a time were refused: they
-//! take 7, and where the columns differ in height, the rest has to be drawn column by column.
+//! A small picture is in the cache as a whole, so that pixels far apart cost no more than neighbours, and
+//! a batch would take longer to prepare than to draw. Each column is drawn straight from its texture,
+//! four rows at a time, which take 6.5 instructions a pixel. Rejected: four columns at a time. They take
+//! 7, and if the columns differ in height, the rest has to be drawn column by column.
 
 use std::mem;
 use std::ops::Range;

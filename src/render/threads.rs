@@ -1,7 +1,7 @@
 //! Threads: how many draw a frame, and how they share it.
 //!
 //! Each frame that is large enough starts its own threads. Starting one takes tens of microseconds,
-//! and drawing such a frame takes milliseconds. A thread pool was refused: it would need a shutdown
+//! and drawing such a frame takes milliseconds. Rejected: a thread pool. It would need a shutdown
 //! and sharing between renderers, and save little.
 
 use std::num::{NonZero, NonZeroU32};

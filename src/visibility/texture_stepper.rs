@@ -2,7 +2,7 @@
 //!
 //! Texels are counted from eye height, so that, however near a face is, the rows above the horizon
 //! show the part of it above the eye. They are counted in fixed point and by the row's own index,
-//! so that no error accumulates and a step is one addition. Counting in doubles was refused: a
+//! so that no error accumulates and a step is one addition. Rejected: counting in doubles. A
 //! conversion and a floor for each pixel took half the time of a whole frame.
 
 use std::iter;

@@ -4,8 +4,8 @@
 //! and the interval of each row that it crosses is extended to contain it. The time depends on the
 //! size of the area and not on the size of the map.
 //!
-//! The bounding rectangle was refused: for a diagonal corridor it contains everything on both
-//! sides. A list of the cells that rays enter was refused, too: to list each once needs a mark for
+//! Rejected: the bounding rectangle, which contains everything on both sides of a diagonal
+//! corridor; and a list of the cells that rays enter, since listing each once needs a mark for
 //! every cell of the map.
 
 use std::ops::Range;

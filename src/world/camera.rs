@@ -16,8 +16,8 @@ use super::Cell;
 ///
 /// It is stored as a number of quarter turns and an angle of at most an eighth of a turn. Therefore
 /// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
-/// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
-/// each step was refused, since its length drifts.
+/// error in length: sine and cosine are computed from that angle. Rejected: a unit vector that is
+/// rotated in each step, since its length drifts.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Heading {
     quarter_turns: u8,

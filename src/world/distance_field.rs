@@ -15,8 +15,8 @@
 //! ahead is clear.
 //!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
-//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Skipping only empty
-//! blocks, and blocks of blocks, was refused: a ray would stop at the edge of each block, and one
+//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Rejected: skipping
+//! only empty blocks, and blocks of blocks. A ray would stop at the edge of each block, and one
 //! pillar fills all blocks that contain it.
 
 use std::fmt;

@@ -4,8 +4,8 @@
 //! [`Door`](super::TileKind::Door), which is solid, while any part of it is in the way, and
 //! [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, when it is fully
 //! open. So an open door costs no more than floor, a closed one no more than a wall, and collision
-//! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
-//! the leaf would be inside it when it closes.
+//! need not know of doors. Rejected: a door that is solid only at its leaf. A player beside the
+//! leaf would be inside it when it closes.
 
 use super::{Cell, Paint, SwitchId, Tile, TileId, TileKind, World};
 

@@ -183,9 +183,7 @@ impl Grid {
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
 
-    /// The same cells, where those are solid as well whose tile is not among `level`.
-    ///
-    /// The tiles of these cells are not known from it.
+    /// The same cells, of which those with uneven tiles are solid, too. Their tiles are not stored.
     pub(crate) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
         let tile = |&tile: &TileId| if is_level(tile) { tile } else { TileId(u8::MAX) };
         Self { cells: self.cells.iter().map(tile).collect(), ..self.clone() }

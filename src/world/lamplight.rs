@@ -6,7 +6,7 @@
 //! for a small difference. A lamp that moves shines through doors that are fully open, because the
 //! player carries one.
 //!
-//! The sum of all lamps is stored for each cell, without a limit. What one lamp adds is therefore
+//! The sum of all lamps is stored for each cell, without a limit. The share of one lamp is therefore
 //! taken away exactly when it moves, goes out, or has a wall moved before it, and the other lamps
 //! are not computed again. Maps in which lamps change nothing store nothing.
 //!
@@ -31,7 +31,7 @@ use crate::sort;
 /// The light of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// What it adds in its own cell.
+    /// The light that it adds in its own cell.
     pub light: Light,
     /// How far its light reaches.
     pub reach: Reach,
@@ -73,7 +73,7 @@ impl Default for Reach {
 }
 
 impl Lamp {
-    /// What it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
+    /// The light that it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
     /// reach)²)²`, which ends smoothly at the reach.
     pub(crate) fn light_at(&self, distance: f64) -> Light {
         let part = (distance / self.reach.0).min(1.0);
@@ -82,7 +82,7 @@ impl Lamp {
     }
 }
 
-/// What lamps add in each cell.
+/// The light that lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Lamplight {
     width: usize,
@@ -102,7 +102,7 @@ impl Lamplight {
         self.sums.is_empty()
     }
 
-    /// What lamps add in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
     pub(crate) fn at(&self, cell: Cell) -> Light {
         let is_on_map = (cell.column as usize) < self.width;
@@ -137,7 +137,7 @@ impl Lamplight {
 /// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
 struct Glow {
-    /// What it adds in its own cell.
+    /// The light that it adds in its own cell.
     light: Light,
     /// The cells as a tree: each comes before those behind it.
     branches: Vec<Branch>,
@@ -149,7 +149,7 @@ struct Glow {
 struct Branch {
     /// Columns to the east of the lamp, and rows to the south, each at most the longest reach.
     offset: (i8, i8),
-    /// What the lamp adds there; nothing, if its light only passes through.
+    /// The light that the lamp adds there; none if its light only passes through.
     light: Light,
     /// The index of the first cell whose line does not lead through this one.
     next_beside: u32,
@@ -256,7 +256,7 @@ pub(crate) enum Change {
     TakeAway,
 }
 
-/// What carries a lamp: it decides which tiles the light passes.
+/// The carrier of a lamp, which decides the tiles that the light passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Carrier {
     Thing,
@@ -264,7 +264,7 @@ enum Carrier {
     Mover,
 }
 
-/// The glow of each kind of lamp that was needed so far. Worlds that differ in it are equal.
+/// The glow of each kind of lamp that has been needed. Worlds that differ in it are equal.
 #[derive(Clone, Debug, Default)]
 struct Glows {
     list: Vec<(Lamp, Arc<Glow>)>,

@@ -99,11 +99,11 @@ pub struct MovingTile {
     /// The tiles that a cell shows in turn, from rest to the end; there are at least two. The first
     /// one is drawn in the map, and is among the states of no other moving tile.
     pub states: Vec<TileId>,
-    /// What moves it.
+    /// The cause of its movement.
     pub driver: Driver,
 }
 
-/// What moves a tile.
+/// A cause of a tile's movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driver {
     /// A switch: all its cells move to the end while it is on, and back while it is off.
@@ -115,10 +115,10 @@ pub enum Driver {
     Weight,
 }
 
-/// What happens to those who stand on a tile.
+/// The effect of a tile on anyone who stands on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TileEffect {
-    /// Cold water: it slows, splashes, puts out lamps, and hurts those who stay.
+    /// Cold water: it slows, splashes, puts out lamps, and hurts anyone who stays.
     Water,
     /// A plate: its switch is on while somebody stands on it.
     Plate(SwitchId),
@@ -143,7 +143,7 @@ impl World {
         self.mission.switches.len()
     }
 
-    /// The effect of the tile of `cell` on those who stand there.
+    /// The effect of the tile of `cell` on anyone who stands there.
     pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
         self.tile_in(cell)?.effect
     }
@@ -167,7 +167,7 @@ pub struct GuardPost {
     pub cell: Cell,
     /// The direction in which the guard looks at first.
     pub heading: Heading,
-    /// What the guard does while nothing disturbs them.
+    /// The behaviour of the guard while nothing disturbs them.
     pub duty: Duty,
     /// The easiest difficulty at which the guard is there.
     pub from: Difficulty,
@@ -216,7 +216,7 @@ impl GuardKind {
     }
 }
 
-/// What a guard does while nothing disturbs them.
+/// The behaviour of a guard while nothing disturbs them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Duty {
     /// Stands at the post and looks around.

@@ -32,7 +32,7 @@ pub struct Thing {
     pub cell: Cell,
     /// Its sprite.
     pub sprite: SpriteId,
-    /// The frame of the sprite that it shows; `None` for that of the time.
+    /// The frame of the sprite that it shows; `None` if time selects it.
     pub frame: Option<u8>,
 }
 
@@ -68,7 +68,7 @@ pub enum ThingKind {
 pub enum Supply {
     /// Thrown, to make a noise elsewhere.
     Pebbles,
-    /// Shot; a guard whom one hits is stunned.
+    /// Shot; a guard who is hit is stunned.
     Darts,
     /// Thrown; makes smoke.
     Flasks,

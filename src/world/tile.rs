@@ -38,7 +38,7 @@ pub struct Tile {
     /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
     /// roof.
     pub lintel: Paint,
-    /// What happens to those who stand on it.
+    /// The effect on anyone who stands on it.
     pub effect: Option<TileEffect>,
 }
 

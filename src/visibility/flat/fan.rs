@@ -1,9 +1,9 @@
 //! The fan: the rays of a picture, for which every solid tile is a wall.
 //!
-//! Few of them are cast. Between two rays that hit the same face, all rays hit that face: a solid cell
-//! between them would be at least as wide as the face and nearer, and one of the two would hit it. So rays are cast
-//! where a face ends: at the first column beyond it, then at its last one. Halving the picture, and each
-//! half, was refused: at 80×48 pixels it casts 33 rays where this casts 15.
+//! Few of them are cast. Between two rays that hit the same face, all rays hit that face: a solid cell between them
+//! would be at least as wide as the face and nearer, and one of the two would hit it. So rays are cast where a face
+//! ends: at the first column beyond it, then at its last one. Rejected: halving the picture, and each half. At
+//! 80×48 pixels it casts 33 rays where this casts 15.
 //!
 //! Two rays may also hit neighbouring faces of one wall, each a cell wide. Then the rays between them hit
 //! these two faces, if no cell fits between the two rays: a cell nearer than the wall is at least one cell

@@ -7,7 +7,7 @@
 //! as a grate, is painted before the first thing that is nearer. Rejected: a depth for each pixel. One for each
 //! column is equivalent.
 //!
-//! Colours are mixed as sRGB values, as in the frame. Mixing linear light was refused: it needs a
+//! Colours are mixed as sRGB values, as in the frame. Rejected: mixing linear light. It needs a
 //! table in each direction for every pixel, and tints looked no more like glass.
 
 use std::cmp::Ordering;
@@ -48,7 +48,7 @@ pub(crate) struct FlatMemory {
 /// The hits that all rays of a frame passed: column by column from the left, and in each from near
 /// to far.
 ///
-/// In reverse they are in the order of painting. A list for each column was refused: each list
+/// In reverse they are in the order of painting. Rejected: a list for each column, each of which
 /// would be an allocation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PassedHits {

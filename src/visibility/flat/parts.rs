@@ -5,9 +5,9 @@
 //! straight lines in the picture. A column that a border divides is drawn from both walls. Where a wall covers
 //! a pixel in part, floor or ceiling is drawn behind it first.
 //!
-//! More samples in each pixel were refused: eight times the samples along both axes take sixty times as long.
-//! Walls so narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders
-//! of pixels, as they are for other filters.
+//! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long. Walls so
+//! narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders of
+//! pixels, as they are for other filters.
 
 use std::ops::Range;
 

@@ -1,8 +1,7 @@
 //! Tile gaps: the values of a tile that a ray needs in every cell.
 //!
-//! They are made once a frame, for the height of the eye. Reading the tile itself in each cell was
-//! refused: it is a large value of many cases, and a ray mostly needs only the positions of its
-//! gaps.
+//! They are made once a frame, for the height of the eye. Rejected: reading the tile itself in each
+//! cell. It is a large value of many cases, and a ray mostly needs only the positions of its gaps.
 
 use std::ops::Range;
 

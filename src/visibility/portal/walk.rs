@@ -6,7 +6,7 @@
 //! different kinds, it is divided: all rays have one origin, so that those which pass a corner on one side
 //! are neighbours.
 //!
-//! A walk for each column was refused: it looks up every cell and every gap once for each column.
+//! Rejected: a walk for each column, which looks up every cell and every gap once for each column.
 
 use std::mem;
 use std::ops::Range;

@@ -5,8 +5,8 @@
 //! centred at points a fraction of a box apart. So a pixel that reads one texel of a level has the mean over
 //! nearly its own box, at the cost of any other lookup. A level is made when it is first read.
 //!
-//! A summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984) gives the mean over any box, and was
-//! refused: it takes four lookups in 64 bits, three divisions and three roots for each pixel.
+//! Rejected: a summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984), which gives the mean over
+//! any box. It takes four lookups in 64 bits, three divisions and three roots for each pixel.
 
 use std::f64::consts::SQRT_2;
 use std::num::NonZeroU32;
@@ -22,7 +22,7 @@ pub(crate) struct AreaLod {
     down: u8,
 }
 
-/// What is beyond the edges of a texture.
+/// The continuation of a texture beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Repeat {
     /// The texture again on the left and the right; above and below it a wall ends.
