@@ -4,15 +4,9 @@
 //! The link carries packets one after another, at a rate that a scenario may change. Each direction
 //! has a delay and jitter, drawn for each packet; as in TCP, no packet overtakes another.
 
-mod frames;
-mod player;
-
 use std::collections::VecDeque;
 
-pub(crate) use self::frames::{FrameSource, Frames, saving};
-use self::player::Upward;
-pub(crate) use self::player::{Latency, Player, Shown};
-use super::*;
+use super::super::*;
 use crate::rng::SplitMix64;
 
 const TICK: Duration = Duration::from_millis(1);
@@ -187,4 +181,153 @@ impl Simulation {
         *last = (at + delay + jitter.mul_f64(self.random.unit())).max(*last);
         *last
     }
+}
+
+/// A player in motion, and the flow control of the game.
+pub(crate) struct Player {
+    pub(crate) flow: Flow,
+    pub(crate) shown: Vec<Shown>,
+    /// The times from a key press to the first frame that reflects it, in order of the presses.
+    pub(crate) latencies: Vec<Latency>,
+    pub(crate) frames: Box<dyn FrameSource>,
+    pub(crate) due: Duration,
+    pub(crate) next_key: Duration,
+    /// Answers and keys on their way to the game, with their arrival times.
+    pub(crate) upward: VecDeque<(Duration, Upward)>,
+    /// The arrival times of the latest packets, upward and downward.
+    pub(crate) last: [Duration; 2],
+    /// The keys that the next frame reflects, by the times of their presses.
+    pub(crate) pressed: Vec<Duration>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Upward {
+    Answer(Request),
+    Key(Duration),
+}
+
+/// A key press, and the time until a frame showed it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Latency {
+    pub(crate) pressed_at: Duration,
+    pub(crate) taken: Duration,
+}
+
+/// A sent frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Shown {
+    pub(crate) sent_at: Duration,
+    /// The time at which it is on the screen; `None` if it has not arrived.
+    pub(crate) at: Option<Duration>,
+    pub(crate) fidelity: Fidelity,
+    pub(crate) bytes: usize,
+    pub(crate) keys: Vec<Duration>,
+    pub(crate) request: Request,
+}
+
+impl Shown {
+    /// The age of the frame when it is shown; the maximum if it never is.
+    pub(crate) fn age(&self) -> Duration {
+        self.at.map_or(Duration::MAX, |at| at.saturating_sub(self.sent_at))
+    }
+}
+
+impl Player {
+    pub(crate) fn new(frames: Box<dyn FrameSource>) -> Self {
+        Self {
+            flow: Flow::new(true),
+            shown: Vec::new(),
+            latencies: Vec::new(),
+            frames,
+            due: Duration::ZERO,
+            next_key: Duration::ZERO,
+            upward: VecDeque::new(),
+            last: [Duration::ZERO; 2],
+            pressed: Vec::new(),
+        }
+    }
+
+    pub(crate) fn receive(&mut self, now: Duration, upward: Upward) {
+        match upward {
+            Upward::Answer(Request::Status) => self.flow.answered(now),
+            Upward::Answer(Request::Fence) => self.flow.fence_answered(now),
+            Upward::Answer(Request::Nothing) => {}
+            Upward::Key(pressed_at) => {
+                self.flow.received_input();
+                self.pressed.push(pressed_at);
+            }
+        }
+    }
+
+    /// The frames sent after `time`.
+    pub(crate) fn shown_since(&self, time: Duration) -> Vec<&Shown> {
+        self.shown.iter().filter(|shown| shown.bytes > 0 && shown.sent_at >= time).collect()
+    }
+
+    /// The longest time between two frames that arrive from `begin` until `end`.
+    pub(crate) fn longest_freeze(&self, begin: Duration, end: Duration) -> Duration {
+        let frames = self.shown.iter().filter(|shown| shown.bytes > 0);
+        let arrivals = frames.filter_map(|shown| shown.at);
+        let within = arrivals.filter(|at| (begin..end).contains(at));
+        let times: Vec<_> = [begin].into_iter().chain(within).chain([end]).collect();
+        times.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max().unwrap_or_default()
+    }
+
+    /// The maximum in flight at any time, in bytes before compression.
+    pub(crate) fn most_in_flight(&self, begin: Duration) -> usize {
+        let in_flight = |time| {
+            let is_there =
+                |shown: &&Shown| shown.sent_at <= time && shown.at.is_none_or(|at| at > time);
+            self.shown.iter().filter(is_there).map(|shown| shown.bytes).sum()
+        };
+        self.shown_since(begin).iter().map(|shown| in_flight(shown.sent_at)).max().unwrap_or(0)
+    }
+}
+
+/// Frames of a player in motion.
+pub(crate) trait FrameSource {
+    /// The size of a frame that is drawn at `now`, in bytes. `draw` is a random number below 1.
+    fn bytes(&mut self, now: Duration, fidelity: Fidelity, draw: f64) -> f64;
+
+    /// The share of a frame's bytes that is left after compression.
+    fn carried(&self, fidelity: Fidelity) -> f64;
+}
+
+/// The distribution of frame sizes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frames {
+    /// The mean size of exact frames, in bytes.
+    pub(crate) exact: f64,
+    /// The maximum deviation from the mean, as a share of it.
+    pub(crate) spread: f64,
+    /// The share of the bytes that is left after compression: of an exact frame, and of a coarse
+    /// one.
+    pub(crate) compressed: [f64; 2],
+}
+
+impl Frames {
+    /// The frames of a walk through the citadel at 120×40, as `cellcaster wire` measures them.
+    pub(crate) const CITADEL: Self = Self { exact: 27_000.0, spread: 0.6, compressed: [1.0, 1.0] };
+    /// The same frames with `ssh -C`.
+    pub(crate) const COMPRESSED: Self = Self { compressed: [0.183, 0.225], ..Self::CITADEL };
+
+    pub(crate) fn all_of(bytes: usize) -> Self {
+        Self { exact: bytes as f64, spread: 0.0, compressed: [1.0, 1.0] }
+    }
+}
+
+impl FrameSource for Frames {
+    fn bytes(&mut self, _: Duration, fidelity: Fidelity, draw: f64) -> f64 {
+        self.exact * (1.0 + self.spread * (2.0 * draw - 1.0)) / saving(fidelity)
+    }
+
+    fn carried(&self, fidelity: Fidelity) -> f64 {
+        let [exact, coarse] = self.compressed;
+        if fidelity == Fidelity::EXACT { exact } else { coarse }
+    }
+}
+
+/// The factor by which frames are smaller at `fidelity`.
+pub(crate) fn saving(fidelity: Fidelity) -> f64 {
+    1.0 + f64::from(fidelity.tolerance()) * 0.3
 }

@@ -15,20 +15,15 @@
 //! Rejected: defining only entries that no cell shows, as the palette for shorter frames does. Most
 //! entries are shown all the time, so that a level kept the colours of the one before it.
 
-mod clusters;
-
-use super::super::bytes::Bytes;
-use super::super::ink::{Ink, Price};
-use super::super::packed_cell::PackedCell;
-use super::super::screen::Screen;
-use super::super::style::{Kind, Shade};
-use super::definitions::Definitions;
-use super::{Telling, place, standard};
+use super::bytes::{Bytes, Definitions};
+use super::ink::{self, Ink, Price, Telling};
+use super::packed_cell::PackedCell;
+use super::screen::Screen;
+use super::style::{Kind, Shade};
 use crate::color::Rgb;
-use crate::color::lab::PackedLab;
 use crate::color::oklab::Oklab;
+use crate::color::palette;
 use crate::terminal::sequence::PALETTE;
-use clusters::{Clusters, Sample};
 
 /// The entries, and the colours that they stand for.
 #[derive(Debug)]
@@ -63,7 +58,8 @@ const GROWTH: f32 = 1.4;
 const PATIENCE: u32 = 15;
 /// A mean error that only a change of scene causes.
 const SCENE: f32 = 0.03;
-/// The places of recent colours: four for each place of the palette's other data.
+/// The recent colours are in a cache of this many ways and of 2^[`PLACE_BITS`] places each.
+const PLACE_BITS: u32 = 11;
 const WAYS: usize = 4;
 
 impl Quantizer {
@@ -73,7 +69,7 @@ impl Quantizer {
             clusters: Clusters::new(PALETTE.count()),
             shades: vec![Shade::NONE; PALETTE.count()],
             by_shade: Vec::new(),
-            known: vec![nothing; WAYS << super::PLACE_BITS],
+            known: vec![nothing; WAYS << PLACE_BITS],
             frame: 0,
             chosen_at: 0,
             error_then: 0.0,
@@ -111,8 +107,8 @@ impl Quantizer {
         let wanted = telling.ink;
         let Some((shade, entry)) = self.nearest(wanted.shade) else { return };
         telling.bytes = Shade::indexed(entry).bytes() as f32;
-        if let (true, Kind::Rgb(channels)) = (shade != wanted.shade, shade.kind()) {
-            telling.ink = Ink { lab: PackedLab::of(channels).components(), shade };
+        if shade != wanted.shade {
+            telling.ink = Ink::new(shade);
             telling.error = price.of(telling.ink, wanted);
         }
     }
@@ -126,7 +122,7 @@ impl Quantizer {
     fn near(&mut self, shade: Shade) -> Option<Near> {
         let channels = channels(shade)?;
         let way = (shade.in_bits() & (WAYS as u32 - 1)) as usize;
-        let known = place(shade) * WAYS + way;
+        let known = shade.hash(PLACE_BITS) * WAYS + way;
         if self.known[known].shade != shade {
             let (place, distance) = self.clusters.nearest(lab(channels));
             self.known[known] = Near { shade, place, distance };
@@ -237,11 +233,170 @@ fn samples(screen: &Screen) -> Vec<Sample> {
 fn channels(shade: Shade) -> Option<[u8; 3]> {
     match shade.kind() {
         Kind::Rgb(channels) => Some(channels),
-        Kind::Indexed(index @ 16..) => Some(standard(index)),
+        Kind::Indexed(index @ 16..) => Some(palette::of_256(index).channels()),
         Kind::Indexed(_) | Kind::Default => None,
     }
 }
 
 fn lab([red, green, blue]: [u8; 3]) -> [f32; 3] {
     Oklab::from(Rgb::new(red, green, blue)).0.map(|component| component as f32)
+}
+
+/// A colour of a frame.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    shade: Shade,
+    lab: [f32; 3],
+    /// The number of half cells that have it.
+    count: f32,
+}
+
+/// Clusters of colours, one for each entry, found by k-means in Oklab.
+///
+/// The search begins with the present entries. In each round, colours go to their nearest entries and entries move to
+/// the means of their colours. Entries without colours go to where the error is largest, the longest unused ones
+/// first (Linde, Buzo and Gray, 1980). An entry takes the colour of the frame that is nearest to its mean, so that
+/// large areas of one colour, such as black, are exact.
+///
+/// Rejected: a median cut, which begins from nothing. An entry that keeps its place needs no new definition, and cells
+/// that show it need not be sent again.
+#[derive(Debug)]
+struct Clusters {
+    /// Their centres in Oklab, component by component.
+    centers: [Vec<f32>; 3],
+    /// The number of the frame in which each was last in use.
+    used_at: Vec<u32>,
+}
+
+/// The sums of a cluster's colours.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f32,
+    lab: [f32; 3],
+    /// The squares of the distances.
+    error: f32,
+    /// The sample with the largest error, and that error.
+    worst: (usize, f32),
+}
+
+/// The centre of an entry that is undefined.
+const UNDEFINED: f32 = 1e9;
+/// The largest number of rounds. Eight are needed to find all entries from nothing.
+const ROUNDS: u32 = 12;
+/// The mean error that needs no further entries.
+const ENOUGH: f32 = 0.002;
+/// An entry within this distance of its mean keeps its colour.
+const NEAR: f32 = 0.004;
+
+impl Clusters {
+    /// Undefined clusters.
+    fn new(count: usize) -> Self {
+        Self { centers: [0, 1, 2].map(|_| vec![UNDEFINED; count]), used_at: vec![0; count] }
+    }
+
+    /// Records that an entry is in use.
+    fn note_use(&mut self, place: u8, frame: u32) {
+        self.used_at[usize::from(place)] = frame;
+    }
+
+    /// The cluster nearest to a colour, and the distance.
+    fn nearest(&self, lab: [f32; 3]) -> (u8, f32) {
+        let (place, square) = ink::nearest(&self.centers, lab);
+        (place, square.sqrt())
+    }
+
+    /// Fits the entries, which have the colours `shades`, to `samples`. Returns their new colours.
+    fn fit(&mut self, samples: &[Sample], shades: &[Shade]) -> Vec<Shade> {
+        let before = self.centers.clone();
+        for _ in 0..ROUNDS {
+            let (sums, error) = self.sums(samples);
+            for (place, sums) in sums.iter().enumerate().filter(|(_, sums)| sums.count > 0.0) {
+                self.move_to(place, sums.lab.map(|sum| sum / sums.count));
+            }
+            if error <= ENOUGH || !self.split(&sums, samples) {
+                break;
+            }
+        }
+        self.settle(samples, shades, &before)
+    }
+
+    /// The sums of each cluster, and the mean distance of all samples.
+    fn sums(&self, samples: &[Sample]) -> (Vec<Sums>, f32) {
+        let mut all = vec![Sums::default(); self.used_at.len()];
+        let (mut distances, mut count) = (0.0, 0.0);
+        for (index, sample) in samples.iter().enumerate() {
+            let (place, distance) = self.nearest(sample.lab);
+            let sums = &mut all[usize::from(place)];
+            let error = sample.count * distance * distance;
+            sums.count += sample.count;
+            sums.error += error;
+            for (sum, component) in sums.lab.iter_mut().zip(sample.lab) {
+                *sum += sample.count * component;
+            }
+            if error > sums.worst.1 {
+                sums.worst = (index, error);
+            }
+            distances += sample.count * distance;
+            count += sample.count;
+        }
+        (all, distances / count)
+    }
+
+    /// Moves entries without colours to where the error is largest. Returns whether there are any.
+    fn split(&mut self, sums: &[Sums], samples: &[Sample]) -> bool {
+        let mut spare: Vec<usize> =
+            (0..sums.len()).filter(|&place| sums[place].count == 0.0).collect();
+        spare.sort_by_key(|&place| self.used_at[place]);
+        let mut worst: Vec<Sums> = sums.iter().copied().filter(|sums| sums.worst.1 > 0.0).collect();
+        worst.sort_by(|one, other| other.error.total_cmp(&one.error));
+        for (&place, sums) in spare.iter().zip(&worst) {
+            self.move_to(place, samples[sums.worst.0].lab);
+        }
+        !spare.is_empty() && !worst.is_empty()
+    }
+
+    /// Moves each centre to a colour of its own cluster, or back if it is near enough to where it was
+    /// `before`. Returns the colours.
+    fn settle(
+        &mut self,
+        samples: &[Sample],
+        shades: &[Shade],
+        before: &[Vec<f32>; 3],
+    ) -> Vec<Shade> {
+        let mut nearest = vec![(f32::INFINITY, 0); shades.len()];
+        for (index, sample) in samples.iter().enumerate() {
+            let (place, distance) = self.nearest(sample.lab);
+            let known = &mut nearest[usize::from(place)];
+            if distance < known.0 {
+                *known = (distance, index);
+            }
+        }
+        let mut settled: Vec<Shade> = Vec::with_capacity(shades.len());
+        for (place, (&shade, &(distance, index))) in shades.iter().zip(&nearest).enumerate() {
+            let old = before.each_ref().map(|components| components[place]);
+            let has_colors = distance.is_finite();
+            let is_kept = !has_colors || self.distance(place, old) <= NEAR.max(distance);
+            let (lab, chosen) =
+                if is_kept { (old, shade) } else { (samples[index].lab, samples[index].shade) };
+            // Two entries of one colour could not be told apart.
+            let is_new = chosen != Shade::NONE && !settled.contains(&chosen);
+            self.move_to(place, if is_new { lab } else { [UNDEFINED; 3] });
+            settled.push(if is_new { chosen } else { Shade::NONE });
+        }
+        settled
+    }
+
+    fn move_to(&mut self, place: usize, lab: [f32; 3]) {
+        for (centers, component) in self.centers.iter_mut().zip(lab) {
+            centers[place] = component;
+        }
+    }
+
+    fn distance(&self, place: usize, lab: [f32; 3]) -> f32 {
+        let squares = self.centers.iter().zip(lab).map(|(centers, component)| {
+            let difference = centers[place] - component;
+            difference * difference
+        });
+        squares.sum::<f32>().sqrt()
+    }
 }

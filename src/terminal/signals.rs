@@ -3,8 +3,10 @@
 //!
 //! On a signal that asks the program to end, the program may still keep what was played. On every
 //! other signal that would end it, the thread gives the terminal back and lets the signal have its
-//! own effect. Doing so for signals that report a fault of the program, which are SIGILL, SIGFPE, SIGSEGV
-//! and SIGBUS, was refused: the faulty instruction would run again and again before the thread is done.
+//! own effect.
+//!
+//! Rejected: doing so for signals that report a fault of the program, which are SIGILL, SIGFPE, SIGSEGV and SIGBUS. The
+//! faulty instruction would run again and again before the thread is done.
 
 use std::io::{self, Read, Write};
 use std::mem;
@@ -26,9 +28,9 @@ use signal_hook::iterator::exfiltrator::WithRawSiginfo;
 use signal_hook::iterator::{Handle, SignalsInfo};
 use signal_hook::low_level::{emulate_default_handler, exit};
 
-use super::super::QuitReason;
-use super::super::guard::Guard;
-use super::wait;
+use super::QuitReason;
+use super::guard::Guard;
+use super::unix::wait;
 
 /// The time from a signal that should end the program until the program is ended by force.
 const GRACE: Duration = Duration::from_secs(1);

@@ -1,27 +1,108 @@
-//! Draws a row within a tolerance, for fewer bytes.
+//! Makes a row look like its targets: exactly, or within a tolerance for fewer bytes.
 //!
-//! Two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both
-//! blocks or both the same character without modifiers. A shade (░▒▓) is compared as a block of its
-//! mean colour. All other cells are drawn exactly. Rejected: another character in place of the wanted
-//! one, such as its neighbour on a ramp of brightness, because in ascii mode the character also
-//! identifies the surface, and most of the bytes are colours.
+//! Within a tolerance, two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both blocks
+//! or both the same character without modifiers. A shade (░▒▓) is compared as a block of its mean colour. All other
+//! cells are drawn exactly.
+//!
+//! Rejected: another character in place of the wanted one, such as its neighbour on a ramp of brightness. In ascii mode
+//! the character also identifies the surface, and most of the bytes are colours.
 
 use std::cell::Cell;
 
+use ratatui::buffer::CellWidth;
 use ratatui::layout::Position;
 
-use super::block_element::BlockElement;
-use super::exact;
-use super::glyph_table::{GlyphId, GlyphTable};
-use super::ink::{self, Ink, Inks, Notation, Price};
-use super::packed_cell::{Form, PackedCell};
+use super::block::{BlockElement, Shape};
+use super::ink::{self, Ink, Inks, Price};
+use super::packed_cell::{Form, GlyphId, GlyphTable, PackedCell};
 use super::pen::Pen;
 use super::screen::Row;
-use super::shape::Shape;
 use super::shift::{BYTE, CELL, Loss, Shift, Shifts};
-use super::style::{Shade, Style};
+use super::style::{Notation, Shade, Style};
 use super::trellis::{Action, Store, Terms, Trellis, Wanted};
-use crate::terminal::{Fidelity, thread_memory};
+use crate::terminal::Fidelity;
+use crate::tui::canvas::SHADES;
+
+/// Makes a row look like its target.
+pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
+    if *row.intricate {
+        draw_intricate_row(pen, &mut row);
+    } else {
+        shift(pen, shifts, &mut row);
+        let cells = row.targets.iter().copied().enumerate().zip(shifts.losses());
+        let wrong = cells.filter(|&(_, &loss)| loss > 0).map(|(cell, _)| cell);
+        pen.draw_pixels(row.y, wrong, |pen, column, target| draw_target(pen, &row, column, target));
+        row.shown.copy_from_slice(row.targets);
+    }
+    *row.exact = true;
+}
+
+/// Draws a row whose characters may cover more than their cells.
+fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
+    let mut covered = 0;
+    for column in 0..row.width() {
+        if covered > 0 {
+            // The second half of a wide character.
+            covered -= 1;
+            row.shown[column] = PackedCell::UNKNOWN;
+            continue;
+        }
+        if !row.shown[column].is(row.targets[column]) {
+            draw_cell(pen, row, column);
+        }
+        if row.targets[column].is_intricate() {
+            covered = row.wanted[column].cell_width().saturating_sub(1);
+        }
+    }
+    *row.intricate = row.shown.iter().chain(row.targets).any(|target| target.is_intricate());
+}
+
+/// Draws one cell of a row.
+#[inline(never)]
+pub(crate) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
+    let target = row.targets[column];
+    draw_target(pen, row, column, target);
+    row.shown[column] = target;
+}
+
+/// Draws the target of a cell of a row.
+#[inline(never)]
+fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
+    let position = Position { x: column as u16, y: row.y };
+    if let Some((shape, colors)) = target.block() {
+        let (element, style) = BlockElement::cheapest(colors, pen.style());
+        pen.draw_block(position, (shape, element), style);
+    } else {
+        draw_text(pen, row, position, target);
+    }
+}
+
+/// Draws a cell that is not a block.
+#[inline(never)]
+fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
+    let mut character = [0; 4];
+    let (text, style) = if let Some((text, style)) = target.text(row.glyph_table) {
+        (&*text.encode_utf8(&mut character), style)
+    } else {
+        let cell = &row.wanted[usize::from(position.x)];
+        (cell.symbol(), Style::of(cell))
+    };
+    pen.draw_text(position, text, style);
+}
+
+/// Moves the stretches of a row that have moved sideways.
+fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
+    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
+        let targets = row.shown[from..].iter().zip(&row.targets[to..]);
+        losses.extend(targets.map(|(shown, target)| if shown == target { 0 } else { CELL }));
+    };
+    shifts.begin(row.targets, row.marks, |from, to, losses| lose(row, from, to, losses));
+    while let Some(shift) = shifts.next(|from, to, losses| lose(row, from, to, losses)) {
+        pen.shift_row(&shift, row.y);
+        shift.apply(row.shown, PackedCell::UNKNOWN);
+    }
+    shifts.end(row.marks);
+}
 
 /// Draws rows inexactly; keeps its memory between rows, one for each thread.
 #[derive(Debug, Default)]
@@ -61,18 +142,18 @@ impl RowEncoder {
         rows: impl Iterator<Item = Row<'a>>,
         fidelity: Fidelity,
     ) {
-        let mut encoder = thread_memory::take(&ENCODER).unwrap_or_default();
+        let mut encoder = ENCODER.take().unwrap_or_default();
         rows.for_each(|row| encoder.draw_row(pen, shifts, row, fidelity));
-        thread_memory::put_back(&ENCODER, Some(encoder));
+        ENCODER.set(Some(encoder));
     }
 
     /// Makes a row look like its target within `fidelity`.
     fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: Row, fidelity: Fidelity) {
         if *row.intricate {
             // The extent of an intricate character is unknown.
-            return exact::draw_row(pen, shifts, row);
+            return draw_row(pen, shifts, row);
         }
-        let notation = Notation::of(row.targets, pen.palette().is_on());
+        let notation = notation(row.targets, pen.palette().is_on());
         let price = Price::at(fidelity, notation);
         self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
         self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
@@ -85,8 +166,8 @@ impl RowEncoder {
         let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
         for &(column, action) in actions {
             match action {
-                Action::DrawExactly => exact::draw_cell(pen, &mut row, usize::from(column)),
-                Action::Draw(element, style) => draw_cell(pen, &mut row, column, element, style),
+                Action::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
+                Action::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
             }
         }
         *row.exact = row.shown == row.targets;
@@ -99,15 +180,28 @@ impl RowEncoder {
             shown.costs(wanted, places, price, moved);
             losses.extend(moved.iter().map(|[one, other]| loss(one + other)));
         };
-        shifts.begin(row, |from, to, losses| lose(&self.shown, [from, to], losses));
+        let shown = &self.shown;
+        shifts.begin(row.targets, row.marks, |from, to, losses| lose(shown, [from, to], losses));
         while let Some(shift) =
             shifts.next(|from, to, losses| lose(&self.shown, [from, to], losses))
         {
             pen.shift_row(&shift, row.y);
-            row.shift(&shift);
+            shift.apply(row.shown, PackedCell::UNKNOWN);
             self.shown.shift(&shift);
         }
-        shifts.end(row);
+        shifts.end(row.marks);
+    }
+}
+
+/// The notation of the longest colour in a row of cells, on a terminal with or without a palette that may be defined.
+fn notation(targets: &[PackedCell], has_palette: bool) -> Notation {
+    let all = targets.iter().fold([0; 2], |all, target| {
+        let colors = target.colors().map(Shade::in_bits);
+        [all[0] | colors[0], all[1] | colors[1]]
+    });
+    match Shade::longest_of(all[0] | all[1]) {
+        Notation::Rgb if has_palette => Notation::Entry,
+        notation => notation,
     }
 }
 
@@ -149,15 +243,11 @@ fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[
 
 /// The share of the text colour in a shade; `None` for any other character.
 fn share_of_text(character: char) -> Option<f32> {
-    match character {
-        '░' => Some(0.25),
-        '▒' => Some(0.5),
-        '▓' => Some(0.75),
-        _ => None,
-    }
+    let quarters = 1 + SHADES.iter().position(|&shade| shade == character)?;
+    Some(quarters as f32 / 4.0)
 }
 
-/// What a shade looks like: a block of one colour.
+/// The colour of a shade, which is compared as a block of one colour.
 fn mixed([text, ground]: [Ink; 2], share: f32) -> Ink {
     let lab = [0, 1, 2].map(|at| ground.lab[at] + share * (text.lab[at] - ground.lab[at]));
     Ink { lab, ..text }
@@ -176,7 +266,7 @@ fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Opti
 
 /// Draws a cell in these colours, as a block or as its own character.
 #[inline]
-fn draw_cell(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
+fn draw_near(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
     let position = Position { x: column, y: row.y };
     let column = usize::from(column);
     let target = row.targets[column];
