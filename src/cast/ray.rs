@@ -143,7 +143,7 @@ impl Hit {
     #[inline]
     pub(crate) fn face(&self, origin: DVec2) -> HitFace {
         let &Self { cell, side, .. } = self;
-        let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
+        let corner = cell.corner();
         // From the west or the north, the ray enters at the start of the cell, which is ahead.
         let (is_ahead, to_far_side) = match side {
             Side::X => (corner.x >= origin.x, DVec2::X),
@@ -241,7 +241,7 @@ pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
     // Both, because a division of two numbers takes less time than a branch on the side.
     let direction = ray.direction();
     let to_far_side = DVec2::select(direction.cmplt(DVec2::ZERO), DVec2::ONE, DVec2::ZERO);
-    let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row)) + to_far_side;
+    let corner = cell.corner() + to_far_side;
     let along = (corner - ray.origin()) / direction;
     match side {
         Side::X => along.x.abs(),

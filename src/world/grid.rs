@@ -18,9 +18,15 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The corner in the north-west.
+    #[inline]
+    pub(crate) fn corner(self) -> DVec2 {
+        DVec2::new(f64::from(self.column), f64::from(self.row))
+    }
+
     /// The middle of the cell.
     pub fn center(self) -> DVec2 {
-        DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
+        self.corner() + 0.5
     }
 
     /// The cell that contains `point`; `None` in the west or north of the map.
@@ -159,6 +165,12 @@ impl Grid {
     /// The number of rows.
     pub fn height(&self) -> u32 {
         self.height.get()
+    }
+
+    /// The number of columns and of rows: the corner of the map in the south-east.
+    #[inline]
+    pub(crate) fn extent(&self) -> DVec2 {
+        DVec2::new(f64::from(self.width()), f64::from(self.height()))
     }
 
     /// The tile at a column and a row; `None` outside the map.

@@ -397,7 +397,7 @@ impl Line {
             Self::EastWest => DVec2::new(0.0, 0.5),
             Self::NorthSouth => DVec2::new(0.5, 0.0),
         };
-        DVec2::new(f64::from(cell.column), f64::from(cell.row)) + within
+        cell.corner() + within
     }
 
     /// The vector from its start to its end, with components of −1, 0 or 1.
