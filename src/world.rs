@@ -335,45 +335,29 @@ impl World {
     /// - Switches and notes are in their lists. Guards and their waypoints are on open floor.
     ///
     /// The map reader establishes all of that, and tests verify it.
-    pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts {
-            title,
-            goal,
-            mut grid,
-            tiles,
-            textures,
-            floor,
-            ceiling,
-            sky,
-            fog,
-            start,
-            sprites,
-            things,
-            keys,
-            mission,
-        } = parts;
-        let moving = &mission.moving_tiles;
-        clear(&mut grid, &tiles, moving);
-        let level_grid = level_grid(&grid, &tiles, moving);
+    pub(crate) fn from_parts(mut parts: Parts) -> Self {
+        let moving = &parts.mission.moving_tiles;
+        clear(&mut parts.grid, &parts.tiles, moving);
+        let level_grid = level_grid(&parts.grid, &parts.tiles, moving);
         let mut world = Self {
-            title,
-            goal,
-            grid,
+            title: parts.title,
+            goal: parts.goal,
+            grid: parts.grid,
             level_grid,
-            tiles,
-            textures: textures.into(),
-            floor,
-            ceiling,
-            sky,
-            fog,
-            start,
-            sprites: sprites.into(),
-            things: Things::new(things),
+            tiles: parts.tiles,
+            textures: parts.textures.into(),
+            floor: parts.floor,
+            ceiling: parts.ceiling,
+            sky: parts.sky,
+            fog: parts.fog,
+            start: parts.start,
+            sprites: parts.sprites.into(),
+            things: Things::new(parts.things),
             figures: Vec::new(),
             lamplight: Lamplight::default(),
             light_varies: false,
-            keys,
-            mission,
+            keys: parts.keys,
+            mission: parts.mission,
             ajar: Ajar::default(),
         };
         world.light_up();

@@ -305,6 +305,17 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
     }
 }
 
+/// The column and the row of the cell that a ray along `direction` leaves where it enters `cell` by a line
+/// of kind `side`.
+pub(crate) fn cell_before(direction: DVec2, cell: Cell, side: Side) -> [i64; 2] {
+    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+    let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+    match side {
+        Side::X => [column + back(direction.x), row],
+        Side::Y => [column, row + back(direction.y)],
+    }
+}
+
 /// The texture coordinate of a point `along` cells from the north or west end of a face, for a
 /// viewer who looks along `direction`.
 #[inline]

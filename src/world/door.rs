@@ -84,10 +84,6 @@ impl World {
         };
         if let Some(id) = id {
             self.set_tile(cell, id);
-            let is_level = self.tile(id).is_level();
-            if let Some(grid) = self.level_grid.as_mut().filter(|_| is_level) {
-                grid.set(cell, id);
-            }
             self.ajar.set(cell, opening);
         }
     }

@@ -333,8 +333,8 @@ impl World {
         }
     }
 
-    /// Sets the tile of `cell`, which must be on the map. Lamplight passes it from now on, or no
-    /// longer does.
+    /// Sets the tile of `cell` to a state of the door or of the moving tile that is there. Lamplight passes
+    /// it from now on, or no longer does.
     pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
         let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
         let before = self.grid.tile_in(cell).map(kind);
@@ -348,6 +348,10 @@ impl World {
             self.shine_around(cell, carrier, Change::TakeAway);
         }
         self.grid.set(cell, tile);
+        let is_level = self.tile(tile).is_level();
+        if let Some(grid) = &mut self.level_grid {
+            grid.set(cell, if is_level { tile } else { TileId(u8::MAX) });
+        }
         for &carrier in changed.iter().flatten() {
             self.shine_around(cell, carrier, Change::Add);
         }

@@ -147,15 +147,6 @@ impl World {
     pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
         self.tile_in(cell)?.effect
     }
-
-    /// Sets the tile of `cell`, which must be a cell of a [`MovingTile`], to one of its states.
-    pub(crate) fn set_state(&mut self, cell: Cell, state: TileId) {
-        self.set_tile(cell, state);
-        let is_level = self.tile(state).is_level();
-        if let Some(grid) = &mut self.level_grid {
-            grid.set(cell, if is_level { state } else { TileId(u8::MAX) });
-        }
-    }
 }
 
 /// A guard as the map draws it.

@@ -56,7 +56,7 @@ impl Mechanisms {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell(), moving.shown(world));
             if world.grid().tile_in(cell) != Some(shown) {
-                world.set_state(cell, shown);
+                world.set_tile(cell, shown);
             }
         }
         self.recollect(world);
