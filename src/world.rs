@@ -101,6 +101,33 @@ pub struct Start {
     pub heading: Heading,
 }
 
+/// The pieces of a world, before they are known to fit together.
+pub(crate) struct Parts {
+    pub(crate) title: String,
+    pub(crate) goal: Option<String>,
+    pub(crate) grid: Grid,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) floor: Covering,
+    pub(crate) ceiling: Ceiling,
+    pub(crate) sky: Sky,
+    pub(crate) fog: Option<Fog>,
+    pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) keys: Vec<String>,
+    pub(crate) mission: Mission,
+}
+
+/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
+/// lamps.
+pub(crate) struct Changes<'a> {
+    pub(crate) things: &'a [Thing],
+    pub(crate) figures: &'a [Figure],
+    /// Whether lamps have ever added light.
+    pub(crate) is_lamplit: bool,
+}
+
 impl World {
     /// The name of the level; empty if the map has none.
     pub fn title(&self) -> &str {
@@ -302,27 +329,7 @@ impl World {
         let sprite = self.sprite(thing.sprite);
         sprite.base(self.room_in(thing.cell)) + sprite.height.cells() > height
     }
-}
 
-/// The pieces of a world, before they are known to fit together.
-pub(crate) struct Parts {
-    pub(crate) title: String,
-    pub(crate) goal: Option<String>,
-    pub(crate) grid: Grid,
-    pub(crate) tiles: Vec<Tile>,
-    pub(crate) textures: Vec<Texture>,
-    pub(crate) floor: Covering,
-    pub(crate) ceiling: Ceiling,
-    pub(crate) sky: Sky,
-    pub(crate) fog: Option<Fog>,
-    pub(crate) start: Start,
-    pub(crate) sprites: Vec<Sprite>,
-    pub(crate) things: Vec<Thing>,
-    pub(crate) keys: Vec<String>,
-    pub(crate) mission: Mission,
-}
-
-impl World {
     /// A world of `parts` that fit together:
     ///
     /// - Every tile of the grid and every texture is in its list.
@@ -380,57 +387,7 @@ impl World {
         self.light_up();
         self.ajar = Ajar::default();
     }
-}
 
-/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
-fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
-    let first_solid = grid.first_solid();
-    let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
-    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    // A level grid has a tile of its own for what is not level.
-    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
-    grid.clear(|id| is_doorway(id) || may_change(id));
-}
-
-/// `grid` as seen by rays that stop at uneven cells; `None` if all tiles are level.
-fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
-    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
-    if tiles.iter().all(Tile::is_level) {
-        return None;
-    }
-    let first_solid = grid.first_solid();
-    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
-    let changing = may_become(tiles.len(), moving, ends_rays);
-    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    let mut level = grid.ending_at_others(is_level);
-    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
-    Some(level)
-}
-
-/// For each tile, whether it is a state of a moving tile that has a state for which `is_it` is true.
-fn may_become(
-    tile_count: usize,
-    moving: &[MovingTile],
-    is_it: impl Fn(TileId) -> bool,
-) -> Vec<bool> {
-    let mut marked = vec![false; tile_count];
-    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
-    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
-        marked[usize::from(index)] = true;
-    }
-    marked
-}
-
-/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
-/// lamps.
-pub(crate) struct Changes<'a> {
-    pub(crate) things: &'a [Thing],
-    pub(crate) figures: &'a [Figure],
-    /// Whether lamps have ever added light.
-    pub(crate) is_lamplit: bool,
-}
-
-impl World {
     /// The changes of a game so far.
     pub(crate) fn changes(&self) -> Changes<'_> {
         let Self {
@@ -489,4 +446,43 @@ impl World {
     pub(crate) fn key_count(&self) -> usize {
         self.keys.len()
     }
+}
+
+/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
+fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
+    let first_solid = grid.first_solid();
+    let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    // A level grid has a tile of its own for what is not level.
+    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
+    grid.clear(|id| is_doorway(id) || may_change(id));
+}
+
+/// `grid` as seen by rays that stop at uneven cells; `None` if all tiles are level.
+fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
+    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
+    if tiles.iter().all(Tile::is_level) {
+        return None;
+    }
+    let first_solid = grid.first_solid();
+    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
+    let changing = may_become(tiles.len(), moving, ends_rays);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    let mut level = grid.ending_at_others(is_level);
+    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
+    Some(level)
+}
+
+/// For each tile, whether it is a state of a moving tile that has a state for which `is_it` is true.
+fn may_become(
+    tile_count: usize,
+    moving: &[MovingTile],
+    is_it: impl Fn(TileId) -> bool,
+) -> Vec<bool> {
+    let mut marked = vec![false; tile_count];
+    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
+    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
+        marked[usize::from(index)] = true;
+    }
+    marked
 }

@@ -70,7 +70,7 @@ impl<'a> HeightsText<'a> {
         let floor = cells(&self.floor).unwrap_or(0.0);
         let ceiling = match overhead {
             Ceiling::Covered(_) => cells(&self.ceiling).unwrap_or(map_ceiling),
-            Ceiling::Sky => (floor + map_ceiling).min(Heights::MOST),
+            Ceiling::Sky => (floor + map_ceiling).min(Heights::MAX),
         };
         let roof = cells(&self.roof).unwrap_or(map_ceiling.max(ceiling));
         if let Some(fault) = self.contradiction(overhead, floor, ceiling) {
@@ -128,9 +128,9 @@ impl Faces {
 impl Height {
     /// Reads the height in `entry`; reports a fault where there is none.
     pub(crate) fn read(entry: &Entry<'_, '_>) -> Option<Self> {
-        let cells = entry.number().filter(|height| height.abs() <= Heights::MOST);
+        let cells = entry.number().filter(|height| height.abs() <= Heights::MAX);
         if cells.is_none() {
-            let most = Heights::MOST;
+            let most = Heights::MAX;
             let message = format!("a height must be a number of cells from -{most} to {most}");
             entry.faults.push(
                 Fault::new(entry.value_place.clone(), message)

@@ -130,7 +130,7 @@ pub(crate) fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
         // Under the sky, what stands on the floor moves with it.
         let ceiling = match tile.ceiling {
             Ceiling::Covered(_) => tile.heights.ceiling(),
-            Ceiling::Sky => (floor + over).min(Heights::MOST),
+            Ceiling::Sky => (floor + over).min(Heights::MAX),
         };
         let roof = tile.heights.roof().max(ceiling);
         Some(Tile { heights: Heights::new(floor, ceiling, roof)?, ..tile })

@@ -89,7 +89,7 @@ fn read_radius(entry: &Entry<'_, '_>) -> Option<PillarRadius> {
 fn read_height(entry: &Entry<'_, '_>) -> Option<ShapeHeight> {
     let height = entry.number().and_then(ShapeHeight::new);
     if height.is_none() {
-        let most = Heights::MOST;
+        let most = Heights::MAX;
         let message = format!("the height of a shape is above 0 and at most {most} cells");
         entry.faults.push(Fault::new(entry.value_place.clone(), message).label("this is not"));
     }

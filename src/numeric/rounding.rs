@@ -13,11 +13,11 @@ const SIGNED: f64 = 1.5 * INTEGERS;
 /// The nearest integer, away from 0 for ties; values beyond 64 bits wrap around.
 #[inline]
 pub(crate) fn rounded(number: f64) -> i64 {
-    const MOST: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 2)) as f64;
+    const MAX: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 2)) as f64;
     let sum = number + SIGNED;
     let rest = number - (sum - SIGNED);
     // The addition rounds ties to even.
-    if number.abs() < MOST && rest.abs() < 0.5 {
+    if number.abs() < MAX && rest.abs() < 0.5 {
         sum.to_bits().wrapping_sub(SIGNED.to_bits()) as i64
     } else {
         rounded_tie_or_large(number)
@@ -40,8 +40,8 @@ fn rounded_tie_or_large(number: f64) -> i64 {
 /// The largest integer not above `number`, for numbers in the middle half of 64 bits.
 #[inline]
 pub(crate) fn floor(number: f64) -> i64 {
-    const MOST: f64 = (1_u64 << 62) as f64;
-    let whole = number.clamp(-MOST, MOST) as i64;
+    const MAX: f64 = (1_u64 << 62) as f64;
+    let whole = number.clamp(-MAX, MAX) as i64;
     whole - i64::from(whole as f64 > number)
 }
 

@@ -18,7 +18,7 @@ use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// The most columns that are drawn together.
-const MOST_COLUMNS: usize = 15 * LANES;
+const MAX_COLUMNS: usize = 15 * LANES;
 /// The number of rows of some columns that are drawn before those of the columns beside them.
 const ROWS_AT_ONCE: u32 = 8;
 
@@ -51,8 +51,8 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
         batch.clear();
         // Enough for any later view of a wall.
-        batch.memory.columns.reserve(MOST_COLUMNS);
-        batch.memory.lanes.reserve(MOST_COLUMNS / LANES);
+        batch.memory.columns.reserve(MAX_COLUMNS);
+        batch.memory.lanes.reserve(MAX_COLUMNS / LANES);
         batch
     }
 
@@ -130,7 +130,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MOST {
+        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MAX {
             self.draw_at_once(x, rows, texels, stepper, lighting);
             return;
         }
@@ -157,7 +157,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        let most = ShadedTexels::MOST.min(2 * rows.len()) as i64;
+        let most = ShadedTexels::MAX.min(2 * rows.len()) as i64;
         let places = stepper.places(&rows).filter(|places| places.end - places.start <= most);
         let Some(places) = places else {
             self.draw_at_once(x, rows, texels, stepper, lighting);
@@ -200,7 +200,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     #[inline]
     fn make_room_for(&mut self, x: u32, texels: usize) {
         let BatchMemory { shaded, columns, .. } = &self.memory;
-        let is_full = columns.len() == MOST_COLUMNS || !shaded.have_room_for(texels);
+        let is_full = columns.len() == MAX_COLUMNS || !shaded.have_room_for(texels);
         if is_full || x < self.next {
             self.draw();
         }

@@ -201,10 +201,10 @@ impl Visibility {
 /// rounding puts no ray into another cell.
 fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
     /// Far more than the rounding error, in cells.
-    const HAIR: f64 = 1e-6;
+    const EPSILON: f64 = 1e-6;
     let (place, eye) = (camera.position(), camera.eye());
     let inside = place - place.floor();
-    let is_inside = inside.min_element() > HAIR && inside.max_element() < 1.0 - HAIR;
+    let is_inside = inside.min_element() > EPSILON && inside.max_element() < 1.0 - EPSILON;
     let is_between = Projection::is_between_floor_and_ceiling(eye);
     let tile = world.grid().tile(place.x.floor() as i64, place.y.floor() as i64);
     let is_level_floor =

@@ -64,7 +64,7 @@ pub struct TileId(pub u8);
 impl TileId {
     /// The largest number of tiles in a world.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
-    pub(crate) const MOST: usize = 1 << u8::BITS;
+    pub(crate) const MAX: usize = 1 << u8::BITS;
 }
 
 /// The tile of each cell, and which tiles are solid.

@@ -43,11 +43,11 @@ pub struct Reach(f64);
 
 impl Reach {
     /// The longest reach, in cells.
-    const MOST: f64 = 32.0;
+    const MAX: f64 = 32.0;
 
     /// A reach from 1 to 32 cells. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
-        (1.0..=Self::MOST).contains(&cells).then_some(Self(cells))
+        (1.0..=Self::MAX).contains(&cells).then_some(Self(cells))
     }
 
     /// The reach in cells.
@@ -396,7 +396,7 @@ impl World {
         };
         match carrier {
             Carrier::Thing => {
-                let most = Reach::MOST as u32;
+                let most = Reach::MAX as u32;
                 let around = |index: u32| index.saturating_sub(most)..=index.saturating_add(most);
                 let (rows, columns) = (around(cell.row), around(cell.column));
                 let things =

@@ -25,70 +25,6 @@ pub(crate) struct Mission {
     pub(crate) guards: Vec<GuardPost>,
 }
 
-impl World {
-    /// Whether there is anything but walls, doors, keys and exits: guards, mechanisms, hazards or
-    /// finds. A level without them is only walked through.
-    pub fn is_mission(&self) -> bool {
-        let Mission { par, treasure_needed, moving_tiles, guards, switches, .. } = &self.mission;
-        let is_plain =
-            |kind| matches!(kind, ThingKind::Exit | ThingKind::Key(_) | ThingKind::Ornament);
-        par.is_some()
-            || *treasure_needed > 0
-            || !moving_tiles.is_empty()
-            || !guards.is_empty()
-            || !switches.is_empty()
-            || self.tiles.iter().any(|tile| tile.effect.is_some())
-            || self.things().iter().any(|thing| !is_plain(thing.kind))
-    }
-
-    /// The guards of the map, in reading order.
-    pub fn guards(&self) -> &[GuardPost] {
-        &self.mission.guards
-    }
-
-    /// The world without its guards.
-    #[must_use]
-    pub fn without_guards(mut self) -> Self {
-        self.mission.guards.clear();
-        self
-    }
-
-    /// Whether the map has an exit.
-    pub fn has_exit(&self) -> bool {
-        self.things().iter().any(|thing| thing.kind == ThingKind::Exit)
-    }
-
-    /// The same world without exits.
-    #[must_use]
-    pub fn without_exits(mut self) -> Self {
-        let exits: Vec<Cell> = self
-            .things()
-            .iter()
-            .filter(|thing| thing.kind == ThingKind::Exit)
-            .map(|thing| thing.cell)
-            .collect();
-        for cell in exits {
-            self.take_things(cell, |kind| kind == ThingKind::Exit);
-        }
-        self
-    }
-
-    /// The time in which a good player finishes, in seconds, if the map gives one.
-    pub fn par(&self) -> Option<u32> {
-        self.mission.par
-    }
-
-    /// The treasure without which exits do not let anybody out; 0 if they always do.
-    pub fn treasure_needed(&self) -> u32 {
-        self.mission.treasure_needed
-    }
-
-    /// Sets the parts that only a game uses. Its guards are on open floor, in reading order.
-    pub(crate) fn set_mission(&mut self, mission: Mission) {
-        self.mission = mission;
-    }
-}
-
 /// A switch: an index into the world's list of their names. Levers and plates set it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SwitchId(pub u8);
@@ -122,31 +58,6 @@ pub enum TileEffect {
     Water,
     /// A plate: its switch is on while somebody stands on it.
     Plate(SwitchId),
-}
-
-impl World {
-    /// The tiles that move.
-    pub fn moving_tiles(&self) -> &[MovingTile] {
-        &self.mission.moving_tiles
-    }
-
-    /// The name of the switch `id`.
-    ///
-    /// # Panics
-    /// If `id` comes from another world that has more switches.
-    pub fn switch_name(&self, id: SwitchId) -> &str {
-        &self.mission.switches[usize::from(id.0)]
-    }
-
-    /// The number of switches. Their ids are the numbers below it.
-    pub fn switch_count(&self) -> usize {
-        self.mission.switches.len()
-    }
-
-    /// The effect of the tile of `cell` on anyone who stands there.
-    pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
-        self.tile_in(cell)?.effect
-    }
 }
 
 /// A guard as the map draws it.
@@ -250,5 +161,92 @@ impl Difficulty {
     /// The difficulty of that name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|difficulty| difficulty.name() == name)
+    }
+}
+
+impl World {
+    /// Whether there is anything but walls, doors, keys and exits: guards, mechanisms, hazards or
+    /// finds. A level without them is only walked through.
+    pub fn is_mission(&self) -> bool {
+        let Mission { par, treasure_needed, moving_tiles, guards, switches, .. } = &self.mission;
+        let is_plain =
+            |kind| matches!(kind, ThingKind::Exit | ThingKind::Key(_) | ThingKind::Ornament);
+        par.is_some()
+            || *treasure_needed > 0
+            || !moving_tiles.is_empty()
+            || !guards.is_empty()
+            || !switches.is_empty()
+            || self.tiles.iter().any(|tile| tile.effect.is_some())
+            || self.things().iter().any(|thing| !is_plain(thing.kind))
+    }
+
+    /// The guards of the map, in reading order.
+    pub fn guards(&self) -> &[GuardPost] {
+        &self.mission.guards
+    }
+
+    /// The world without its guards.
+    #[must_use]
+    pub fn without_guards(mut self) -> Self {
+        self.mission.guards.clear();
+        self
+    }
+
+    /// Whether the map has an exit.
+    pub fn has_exit(&self) -> bool {
+        self.things().iter().any(|thing| thing.kind == ThingKind::Exit)
+    }
+
+    /// The same world without exits.
+    #[must_use]
+    pub fn without_exits(mut self) -> Self {
+        let exits: Vec<Cell> = self
+            .things()
+            .iter()
+            .filter(|thing| thing.kind == ThingKind::Exit)
+            .map(|thing| thing.cell)
+            .collect();
+        for cell in exits {
+            self.take_things(cell, |kind| kind == ThingKind::Exit);
+        }
+        self
+    }
+
+    /// The time in which a good player finishes, in seconds, if the map gives one.
+    pub fn par(&self) -> Option<u32> {
+        self.mission.par
+    }
+
+    /// The treasure without which exits do not let anybody out; 0 if they always do.
+    pub fn treasure_needed(&self) -> u32 {
+        self.mission.treasure_needed
+    }
+
+    /// Sets the parts that only a game uses. Its guards are on open floor, in reading order.
+    pub(crate) fn set_mission(&mut self, mission: Mission) {
+        self.mission = mission;
+    }
+
+    /// The tiles that move.
+    pub fn moving_tiles(&self) -> &[MovingTile] {
+        &self.mission.moving_tiles
+    }
+
+    /// The name of the switch `id`.
+    ///
+    /// # Panics
+    /// If `id` comes from another world that has more switches.
+    pub fn switch_name(&self, id: SwitchId) -> &str {
+        &self.mission.switches[usize::from(id.0)]
+    }
+
+    /// The number of switches. Their ids are the numbers below it.
+    pub fn switch_count(&self) -> usize {
+        self.mission.switches.len()
+    }
+
+    /// The effect of the tile of `cell` on anyone who stands there.
+    pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
+        self.tile_in(cell)?.effect
     }
 }

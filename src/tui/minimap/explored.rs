@@ -205,7 +205,7 @@ struct Observer<'a> {
     /// The gap around the eye in the observer's cell.
     own_gap: Gap,
     /// What each tile is for a ray that has been in cells with that gap only.
-    passages: [Passage; TileId::MOST],
+    passages: [Passage; TileId::MAX],
 }
 
 /// The range of slopes at which a ray still sees, in height per distance.
@@ -239,7 +239,7 @@ impl<'a> Observer<'a> {
         let tile = world.grid().tile(place.x as i64, place.y as i64);
         let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
         let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(LEAST_CLEARNESS));
-        let passages = [Passage::Other; TileId::MOST];
+        let passages = [Passage::Other; TileId::MAX];
         let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
         observer.find_passages();
         observer

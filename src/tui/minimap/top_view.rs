@@ -23,7 +23,7 @@ pub(crate) struct TopView<'a> {
     visible_floor: VisibleFloor<'a>,
     explored: Option<&'a Explored>,
     /// The appearance of each tile.
-    tiles: [TileAppearance; TileId::MOST],
+    tiles: [TileAppearance; TileId::MAX],
     /// The width of a pixel in cells.
     pixel: f64,
 }
@@ -52,7 +52,7 @@ impl<'a> TopView<'a> {
         (columns, explored): (&'a [Column], Option<&'a Explored>),
         pixel: f64,
     ) -> Self {
-        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MOST];
+        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MAX];
         for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
             *appearance = appearance_of(tile, world, camera.eye());
         }

@@ -43,7 +43,7 @@ enum Step {
 }
 
 /// A corner whose position is less than this from the centre of a pixel is as good as on it, in columns.
-const HAIR: f64 = 1e-6;
+const EPSILON: f64 = 1e-6;
 
 impl<'a, C: Caster> Fan<'a, C> {
     pub(crate) fn new(caster: &'a C, grid: &'a Grid, projection: &'a Projection) -> Self {
@@ -126,7 +126,7 @@ impl<'a> Gap<'a> {
         let end_of_left = self.column_of(left.right_end()).unwrap_or(f64::INFINITY);
         let beyond_left = self.first_column_from(end_of_left);
         if (1..=width).contains(&beyond_left) {
-            let is_clear = |column: usize| (end_of_left - column as f64).abs() > HAIR;
+            let is_clear = |column: usize| (end_of_left - column as f64).abs() > EPSILON;
             let are_known = left.is_beside(right)
                 && is_clear(beyond_left - 1)
                 && is_clear(beyond_left)

@@ -27,7 +27,7 @@ use crate::world::{Cell, Heights, Light, Thing, Tile, TileKind};
 
 /// The number of things in view for which memory is reserved in advance, so that a turn of the
 /// camera towards more of them allocates nothing.
-const MOST_AT_FIRST: usize = 4096;
+const MAX_AT_FIRST: usize = 4096;
 
 /// The height of everything solid in a level scene, in cells.
 const WALL_TOP: f64 = Heights::LEVEL.ceiling();
@@ -132,7 +132,7 @@ fn find_billboards(
     let world = scene.world;
     let first = list.billboards.len();
     if first == 0 {
-        let things = world.things().len().min(MOST_AT_FIRST);
+        let things = world.things().len().min(MAX_AT_FIRST);
         list.billboards.reserve(things + world.figures().len());
     }
     let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;

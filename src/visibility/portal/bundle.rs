@@ -63,7 +63,7 @@ impl Bundle {
 }
 
 /// The most reflections of a ray. The mirror after the last one shows only its tint.
-pub(crate) const MOST_BOUNCES: u32 = 8;
+pub(crate) const MAX_BOUNCES: u32 = 8;
 
 /// The values that all rays of a frame share.
 pub(crate) struct Surroundings<'a> {
@@ -90,7 +90,7 @@ impl<'a> Surroundings<'a> {
             top = top.max(feet + builtin::PLAYER_HEIGHT);
         }
         let top = scene.projection.rise_to(top);
-        let most_bounces = if world.has_mirrors() { MOST_BOUNCES } else { 0 };
+        let most_bounces = if world.has_mirrors() { MAX_BOUNCES } else { 0 };
         let order = CommonOrder::new(world.grid(), scene.projection.origin(), most_bounces);
         Self { scene, gaps, top, has_things, order }
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::bundle::{Bundle, Clip, MOST_BOUNCES};
+use super::bundle::{Bundle, Clip, MAX_BOUNCES};
 use super::met::Met;
 use super::tile_gaps::{BOTTOMLESS, Holds, Place, VisibleGap};
 use super::walk::{BundleWalk, WalkMemory};
@@ -157,7 +157,7 @@ impl BundleWalk<'_> {
         if lower.is_none()
             && let TileKind::Mirror(tint) = tile.kind
             && !tint.is_opaque()
-            && bundle.course.bounces() < MOST_BOUNCES
+            && bundle.course.bounces() < MAX_BOUNCES
         {
             self.reflect(bundle, line, tint);
             return;

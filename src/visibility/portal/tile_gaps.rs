@@ -157,4 +157,4 @@ impl Holds {
 const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
 
 /// A gap that contains all heights.
-pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };
+pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MAX, top: 2.0 * Heights::MAX };
