@@ -9,15 +9,14 @@
 //! it, the player has no tools, and it costs nothing that a mission would cost.
 
 mod checkpoint;
-mod checksum;
 mod collision;
 mod crowding;
+mod distances;
 mod doors;
 mod encounter;
 mod exits;
 mod fall;
 mod flight;
-mod flood;
 mod guards;
 mod hazards;
 mod health;
@@ -37,6 +36,7 @@ mod rules;
 mod scratch;
 mod script;
 mod show;
+mod sight;
 mod sound;
 mod stance;
 pub(crate) mod stored;

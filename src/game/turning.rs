@@ -5,9 +5,11 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
 use super::intent::{Intent, Intents};
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::{DampedMotion, approach};
 
 /// Radians per second.
@@ -31,7 +33,7 @@ const MOST_WAITING: u32 = 72;
 /// Each press of these is one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
@@ -42,8 +44,6 @@ pub(crate) struct Turning {
     /// The exact turns that were wanted in the last step.
     wanted: Intents,
 }
-
-stored! { struct Turning { speed, fine, about, wanted } }
 
 impl Turning {
     /// The state after one step, and the angle of that step in radians, clockwise.

@@ -5,10 +5,13 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::store::host::printable;
 
 /// Printable characters that fit in a number of columns, as [`printable`] leaves them. It is not empty.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String")]
 pub(crate) struct Line(String);
 
 impl Line {
@@ -18,9 +21,23 @@ impl Line {
         (!line.is_empty()).then_some(Self(line))
     }
 
+    /// Whether it fits in that many columns.
+    pub(crate) fn fits(&self, columns: usize) -> bool {
+        printable(&self.0, columns) == self.0
+    }
+
     /// The text.
     pub(crate) fn as_str(&self) -> &str {
         &self.0
+    }
+}
+
+/// A line that is as it is shown.
+impl TryFrom<String> for Line {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, &'static str> {
+        Self::of(&text, usize::MAX).filter(|line| line.0 == text).ok_or("a line")
     }
 }
 

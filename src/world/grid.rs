@@ -5,11 +5,14 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::distance_field::DistanceField;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct Cell {
     /// The number of cells to the west of this one.
     pub column: u32,

@@ -6,6 +6,8 @@
 //!
 //! A guard post is data of the map. The guard itself, who moves, is part of the game.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Cell, Heading, ThingKind, TileId, World};
 
 /// The parts of a level that only a game uses.
@@ -26,7 +28,9 @@ pub(crate) struct Mission {
 }
 
 /// A switch: an index into the world's list of their names. Levers and plates set it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct SwitchId(pub u8);
 
 /// A tile whose cells change their height.
@@ -76,7 +80,7 @@ pub struct GuardPost {
 }
 
 /// A kind of guard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum GuardKind {
     /// Slow and armoured; hits hard.
     Warden,
@@ -119,9 +123,10 @@ impl GuardKind {
 }
 
 /// The behaviour of a guard while nothing disturbs them.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Duty {
     /// Stands at the post and looks around.
+    #[default]
     Stand,
     /// Sleeps at the post, until a noise wakes them.
     Sleep,

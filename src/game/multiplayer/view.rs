@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::{PlayerId, Sees};
-use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, Player};
+use crate::game::sight::{Point, is_in_sight};
 use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Camera, FieldOfView, Heading, Supply};

@@ -9,15 +9,16 @@
 
 use std::sync::Arc;
 
+use serde::Serialize;
+
 use super::entry::{CHAT_COLUMNS, MemberId, NAME_COLUMNS};
 use super::member::Member;
 use super::presence::KeptPlace;
 use super::replayed::no_level;
 use super::talk::SAID;
 use super::{Catalog, Header, Room, Said};
-use crate::game::stored::{
-    Reader, Stored, StoredPart, Unrestorable, Writer, after_first_line, check, first_line,
-};
+use crate::game::PlayerColor;
+use crate::game::stored::{Reader, Unrestorable, check, checksum, written};
 use crate::rng;
 use crate::server::line::Line;
 use crate::store::host::printable;
@@ -34,12 +35,11 @@ impl Room {
         expect(dead_code, reason = "only hosts of a cluster share rooms")
     )]
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
-        let mut out = Writer::default();
-        out.raw(first_line(KIND).as_bytes());
-        self.header.to_string().write(&mut out);
-        self.write_talk(&mut out);
-        self.write_play(&mut out);
-        out.into_bytes()
+        let talk = (self.header.to_string(), &self.said, self.said_count);
+        let mut bytes = written(KIND, &(talk, self.play()));
+        // A catalog has levels of maps, which all can be stored.
+        bytes.extend(self.game.stored().unwrap_or_default());
+        bytes
     }
 
     /// The room of which `bytes` are a checkpoint.
@@ -53,8 +53,7 @@ impl Room {
     )]
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let sentence = |error: Unrestorable| error.to_string();
-        let bytes = after_first_line(KIND, bytes).map_err(sentence)?;
-        let mut input = Reader::new(bytes, (0, 0));
+        let mut input = Reader::new(KIND, bytes, (0, 0)).map_err(sentence)?;
         let header = read_header(&mut input).map_err(sentence)?;
         let room = Self::without_members(catalog, header.clone());
         let mut room = room.ok_or_else(|| no_level(&printable(&header.level, CHAT_COLUMNS)))?;
@@ -65,28 +64,15 @@ impl Room {
     /// A number that differs, almost certainly, between rooms in different states. What was said is no
     /// part of it: it goes on from round to round, and changes nothing.
     pub(crate) fn checksum(&self) -> u64 {
-        let mut out = Writer::default();
-        self.write_play(&mut out);
-        let words = out.into_bytes();
-        let words = words.chunks(8).map(|chunk| {
-            let mut word = [0; 8];
-            word[..chunk.len()].copy_from_slice(chunk);
-            u64::from_le_bytes(word)
-        });
-        rng::hash(self.step, words)
+        rng::hash(self.step, [checksum(&self.play()), self.game.checksum()])
     }
 
-    fn write_talk(&self, out: &mut Writer) {
-        self.said.write(out);
-        self.said_count.write(out);
-    }
-
-    /// Appends all but the header and what was said.
-    fn write_play(&self, out: &mut Writer) {
+    /// All but the header, what was said, and the game.
+    fn play(&self) -> impl Serialize {
         let Self {
             catalog: _,
             header: _,
-            game,
+            game: _,
             round,
             members,
             next_member,
@@ -100,25 +86,13 @@ impl Room {
             // Those of the round.
             standings: _,
         } = self;
-        step.write(out);
-        next_member.write(out);
-        round.write(out);
-        members.write(out);
-        again.write(out);
-        emotes.write(out);
-        // A catalog has levels of maps, which all can be stored.
-        out.raw(&game.stored().unwrap_or_default());
+        (step, next_member, round, members, again, emotes)
     }
 
     fn read(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
-        self.said = Stored::read(input)?;
-        self.said_count = Stored::read(input)?;
-        self.step = Stored::read(input)?;
-        self.next_member = input.number_to(u64::from(MemberId::MOST.0) + 1)? as u32;
-        self.round.read_over(input)?;
-        self.members = input.list(self.header.mode.most())?;
-        self.again = Stored::read(input)?;
-        self.emotes = Stored::read(input)?;
+        (self.said, self.said_count) = input.read()?;
+        (self.step, self.next_member, self.round) = input.read()?;
+        (self.members, self.again, self.emotes) = input.read()?;
         self.standings = self.round.standings().into();
         let start = self.game.as_ref().clone();
         self.game = Arc::new(start.restored(input.rest())?);
@@ -127,10 +101,15 @@ impl Room {
 
     /// Refuses a state in which a step could fail, or that shows what nobody can type.
     fn check(&self) -> Result<(), Unrestorable> {
-        self.round.check(self.step)?;
+        self.round.check(self.header.mode, self.step)?;
+        check(self.next_member <= MemberId::MOST.0 + 1, "the number of the next member")?;
+        check(self.members.len() <= self.header.mode.most(), "the number of members")?;
         check(self.are_members_possible(), "a member")?;
         let is_possible = |said: &Said| {
-            said.number <= self.said_count && printable(&said.text, SAID_COLUMNS) == said.text
+            let is_name = |(name, _): &(Line, PlayerColor)| name.fits(NAME_COLUMNS);
+            said.number <= self.said_count
+                && said.by.as_ref().is_none_or(is_name)
+                && printable(&said.text, SAID_COLUMNS) == said.text
         };
         let is_said = self.said.len() <= SAID && self.said.iter().all(is_possible);
         check(is_said, "what was said")
@@ -146,9 +125,8 @@ impl Room {
             let is_other = |other: &Member| {
                 other.id != member.id && (other.player.is_none() || other.player != member.player)
             };
-            let name = Line::of(member.name.as_str(), NAME_COLUMNS);
             self.members[..index].iter().all(is_other)
-                && name.as_ref() == Some(&member.name)
+                && member.name.fits(NAME_COLUMNS)
                 && member.id < self.next_member()
                 && member.kept.is_none_or(KeptPlace::is_possible)
                 && (member.player.is_none() || color(member) == Some(member.color))
@@ -157,21 +135,9 @@ impl Room {
 }
 
 fn read_header(input: &mut Reader) -> Result<Header, Unrestorable> {
-    let text = String::read(input)?;
+    let text: String = input.read()?;
     let header = Header::parse(text.lines()).filter(|header| header.to_string() == text);
     header.ok_or(Unrestorable::Damaged("the header"))
-}
-
-impl Stored for Line {
-    fn write(&self, out: &mut Writer) {
-        self.as_str().to_owned().write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let text = String::read(input)?;
-        let line = Self::of(&text, CHAT_COLUMNS).filter(|line| line.as_str() == text);
-        line.ok_or(Unrestorable::Damaged("a line"))
-    }
 }
 
 #[cfg(test)]

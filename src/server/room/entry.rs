@@ -20,12 +20,14 @@
 
 use std::fmt;
 
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
+use serde::{Deserialize, Serialize};
+
 use crate::game::{Intents, PlayerColor};
 use crate::server::line::Line;
 
 /// The number of a member in a room. It is not used again after they leave.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "u32")]
 pub(crate) struct MemberId(pub(crate) u32);
 
 impl MemberId {
@@ -43,13 +45,11 @@ impl MemberId {
     }
 }
 
-impl Stored for MemberId {
-    fn write(&self, out: &mut Writer) {
-        self.0.write(out);
-    }
+impl TryFrom<u32> for MemberId {
+    type Error = &'static str;
 
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        Ok(Self(input.number_to(Self::MOST.0.into())? as u32))
+    fn try_from(number: u32) -> Result<Self, &'static str> {
+        if number <= Self::MOST.0 { Ok(Self(number)) } else { Err("a member") }
     }
 }
 
@@ -100,7 +100,7 @@ pub(crate) const CHAT_COLUMNS: usize = 60;
 pub(crate) const NAME_COLUMNS: usize = 16;
 
 /// An emotion, or a gesture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Emote {
     /// Greets, or says goodbye.
     Wave,
@@ -115,8 +115,6 @@ pub(crate) enum Emote {
     /// Calls the others here.
     Here,
 }
-
-stored! { enum Emote { 0: Wave, 1: Yes, 2: No, 3: Laugh, 4: Help, 5: Here } }
 
 impl Emote {
     /// All of them, in the order of their keys.

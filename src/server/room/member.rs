@@ -1,13 +1,14 @@
 //! Members of a room.
 
+use serde::{Deserialize, Serialize};
+
 use super::entry::MemberId;
 use super::presence::KeptPlace;
-use crate::game::stored::stored;
 use crate::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
 /// A member of a room.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Member {
     pub(crate) id: MemberId,
     pub(crate) name: Line,
@@ -26,8 +27,6 @@ pub(crate) struct Member {
     /// The step of the game in the picture that the member saw last.
     pub(crate) seen: u64,
 }
-
-stored! { struct Member { id, name, color, player, points, kept, intents, acted, seen } }
 
 impl Member {
     /// What the member wants in the step that begins. The angles of it count in no other step.

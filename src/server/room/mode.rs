@@ -1,11 +1,13 @@
 //! Modes: what is played in a room, and the rules of each.
 
+use serde::{Deserialize, Serialize};
+
 use super::round::SECOND;
 use crate::game::{MultiplayerRules, Sees, Strikes};
 use crate::world::World;
 
 /// What is played in a room.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Mode {
     /// Walking about, without guards and without an end.
     Roam,

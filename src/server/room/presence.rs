@@ -6,12 +6,14 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::Room;
 use super::entry::MemberId;
 use super::header::Seat;
 use super::member::Member;
 use super::round::SECOND;
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
+use crate::game::stored::bits;
 use crate::game::{Intents, PlayerColor};
 use crate::server::line::Line;
 
@@ -19,9 +21,10 @@ use crate::server::line::Line;
 pub(crate) const AWAY: u64 = 60 * SECOND;
 
 /// The place that is kept for a member with an account.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct KeptPlace {
     /// The token of the last return; 0 before the first one.
+    #[serde(with = "bits")]
     pub(crate) token: u64,
     /// The steps until the member leaves, if they are away.
     pub(crate) away: Option<u64>,
@@ -31,18 +34,6 @@ impl KeptPlace {
     /// Whether such a place may be kept: nobody has more time to return than those who have just gone.
     pub(crate) fn is_possible(self) -> bool {
         self.away.is_none_or(|left| (1..=AWAY).contains(&left))
-    }
-}
-
-impl Stored for KeptPlace {
-    fn write(&self, out: &mut Writer) {
-        // A token may be greater than any count.
-        out.number(self.token);
-        self.away.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        Ok(Self { token: input.number()?, away: Stored::read(input)? })
     }
 }
 

@@ -13,6 +13,8 @@ mod tag;
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 pub(crate) use self::finishes::Finish;
 use self::finishes::Finishes;
 use self::hide::Hide;
@@ -20,7 +22,7 @@ use self::tag::Tag;
 use super::entry::MemberId;
 use super::member::Member;
 use super::mode::Mode;
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::game::{Game, Outcome, PlayerId};
 use crate::rng::SplitMix64;
 
@@ -30,7 +32,7 @@ pub(crate) const SECOND: u64 = 60;
 const STANDINGS: u64 = 10 * SECOND;
 
 /// The phase of a round. Times are steps of the round.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// There are not enough members; they walk about.
     Waiting,
@@ -40,10 +42,6 @@ pub(crate) enum Phase {
     Playing { ends: u64 },
     /// The standings are shown until `ends`.
     Over { ends: u64 },
-}
-
-stored! {
-    enum Phase { 0: Waiting, 1: Countdown { ends }, 2: Playing { ends }, 3: Over { ends } }
 }
 
 /// What a member is in a round.
@@ -59,7 +57,7 @@ pub(crate) enum Role {
 }
 
 /// A member's place in the standings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Standing {
     pub(crate) member: MemberId,
     /// The points that the round gives.
@@ -68,8 +66,6 @@ pub(crate) struct Standing {
     /// finish.
     pub(crate) steps: Option<u64>,
 }
-
-stored! { struct Standing { member, points, steps } }
 
 /// What a mode sees of its room.
 #[derive(Clone, Copy)]
@@ -106,7 +102,7 @@ impl Field<'_> {
 }
 
 /// A round.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Round {
     mode: Mode,
     phase: Phase,
@@ -115,18 +111,14 @@ pub(crate) struct Round {
     standings: Vec<Standing>,
 }
 
-stored! { part of Round { phase, play, chance, standings } level { mode } }
-
 /// What a mode remembers of a round.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Play {
     Roam,
     ToExit(Finishes),
     Tag(Tag),
     Hide(Hide),
 }
-
-stored! { enum Play { 0: Roam, 1: ToExit(it), 2: Tag(it), 3: Hide(it) } }
 
 impl Round {
     pub(crate) fn new(mode: Mode, seed: u64) -> Self {
@@ -140,8 +132,9 @@ impl Round {
         Self { mode, phase: Phase::Waiting, play, chance, standings: Vec::new() }
     }
 
-    /// Refuses what another mode remembers, and what begins after `step`.
-    pub(crate) fn check(&self, step: u64) -> Result<(), Unrestorable> {
+    /// Refuses a round of another mode, what another mode remembers, and what begins after `step`.
+    pub(crate) fn check(&self, mode: Mode, step: u64) -> Result<(), Unrestorable> {
+        check(self.mode == mode, "the mode")?;
         let is_possible = match (&self.play, self.mode) {
             (Play::Roam, Mode::Roam) => true,
             (Play::ToExit(finishes), Mode::Together | Mode::Alone | Mode::Race) => {

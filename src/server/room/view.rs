@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::entry::{Emote, MemberId};
 use super::header::Header;
 use super::round::{Finish, Phase, Role, Standing};
-use crate::game::stored::stored;
 use crate::game::{Game, Intents, PlayerColor, PlayerId};
 use crate::server::line::Line;
 
@@ -54,7 +55,7 @@ pub(crate) struct MemberView {
 }
 
 /// Something that was said to all.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Said {
     /// The number in the room, from 1, so that a session knows what is new.
     pub(crate) number: u64,
@@ -62,8 +63,6 @@ pub(crate) struct Said {
     pub(crate) by: Option<(Line, PlayerColor)>,
     pub(crate) text: String,
 }
-
-stored! { struct Said { number, by, text } }
 
 impl RoomView {
     /// A member.

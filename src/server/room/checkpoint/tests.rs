@@ -5,6 +5,7 @@ use std::time::Instant;
 use proptest::prelude::*;
 
 use super::*;
+use crate::game::stored::first_line;
 use crate::game::stored::tests::crowd::Crowd;
 use crate::game::stored::tests::winning;
 use crate::game::{PlayerColor, RULES_VERSION};

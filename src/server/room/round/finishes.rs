@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Field, Role, Score};
-use crate::game::stored::stored;
 use crate::server::room::entry::MemberId;
 use crate::server::room::mode::Mode;
 
@@ -17,14 +18,12 @@ pub(crate) struct Finish {
 }
 
 /// Who has reached the exit, and when.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Finishes {
     begun: u64,
     /// The steps to the exit, also of members who have left since.
     times: BTreeMap<MemberId, u64>,
 }
-
-stored! { struct Finishes { begun, times } }
 
 impl Finishes {
     pub(crate) fn begin(&mut self, step: u64) {

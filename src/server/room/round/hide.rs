@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Field, Role, Score};
-use crate::game::stored::stored;
 use crate::rng::SplitMix64;
 use crate::server::room::entry::MemberId;
 
@@ -11,15 +12,13 @@ use crate::server::room::entry::MemberId;
 const MEMBERS_A_SEEKER: usize = 4;
 
 /// The state of a round of hide and seek.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Hide {
     /// The seekers, with the steps for which they stayed hidden; `None` for those of the start.
     seekers: BTreeMap<MemberId, Option<u64>>,
     /// The step in which the search began.
     since: Option<u64>,
 }
-
-stored! { struct Hide { seekers, since } }
 
 impl Hide {
     /// Chooses the first seekers.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Field, Role, SECOND, Score};
-use crate::game::stored::stored;
 use crate::rng::SplitMix64;
 use crate::server::room::entry::MemberId;
 
@@ -13,7 +14,7 @@ const PAUSE: u64 = SECOND + SECOND / 2;
 const SPARED: u64 = 4 * SECOND;
 
 /// The state of a round of tag.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Tag {
     it: Option<MemberId>,
     /// The step in which "it" last changed.
@@ -23,8 +24,6 @@ pub(crate) struct Tag {
     /// How long each member was "it", in steps.
     times: BTreeMap<MemberId, u64>,
 }
-
-stored! { struct Tag { it, since, before, times } }
 
 impl Tag {
     /// Chooses the first "it".

@@ -1,18 +1,18 @@
-//! Seeing, smelling and touching: how guards notice players.
+//! How guards notice players: by sight, smell, touch and hearing.
 //!
 //! Awareness is a whole number. Each look at a player adds to it, by the light on the player, the
 //! distance, and how far the player is from the middle of the cone. No look adds so much that a
 //! player who is noticed is followed within half a second, except at [`FACE_TO_FACE`].
+//!
+//! A sound alone makes guards wonder and go there. Only listeners, who do not see, follow players
+//! by ear.
 
 use glam::DVec2;
 
-use super::act::Target;
-use super::context::Context;
-use super::guard::{ALARMED, Guard, WONDERS};
-use super::sight::{Point, is_in_sight};
-use super::state::{Quarry, State};
-use crate::game::sound::SoundKind;
-use crate::world::{GuardKind, World};
+use super::context::{Context, Target};
+use super::guard::{ALARMED, GUESSES, Guard, Quarry, State, WONDERS};
+use crate::game::sound::{Sound, SoundKind, Source, half_cells};
+use crate::world::{Cell, Difficulty, GuardKind};
 
 /// A guard looks around in every fourth step.
 pub(crate) const LOOK_EACH: u64 = 4;
@@ -30,8 +30,8 @@ const BRIGHT: u32 = 160;
 const IN_DARKNESS: u32 = 24;
 /// How far the lamp of a lantern-bearer lights players, in cells.
 const LANTERN: f64 = 4.0;
-/// The steps for which a guard knows where a player has gone whom they do not see any more.
-pub(crate) const GUESSES: u16 = 45;
+/// How far a hound smells a trail, in cells.
+pub(crate) const NOSE: f64 = 1.5;
 
 impl Guard {
     /// Notices players.
@@ -119,33 +119,8 @@ impl Guard {
 
     /// Of three parts of a player, how many this guard sees: the head is one, the body two.
     fn visible_parts(&self, context: &Context, target: &Target) -> u32 {
-        let eye = self.eye();
-        let sees = |height| {
-            let point = Point { position: target.position, height };
-            u32::from(is_in_sight(context.world, context.clouds, eye, point))
-        };
+        let sees = |height| u32::from(self.sees(context, target.position, height));
         2 * sees(target.middle()) + sees(target.head - 0.05)
-    }
-
-    /// Whether this guard sees the middle of a player, in whatever direction and light.
-    pub(crate) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
-        let point = Point { position: target.position, height: target.middle() };
-        is_in_sight(context.world, context.clouds, self.eye(), point)
-    }
-
-    /// Whether this guard is awake and could see `point`, however dark it is there, once they look that way.
-    pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
-        let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
-        let is_awake = !self.state.is_down() && self.state != State::Asleep;
-        let eye = self.eye();
-        is_awake
-            && eye.position.distance(point.position) <= range
-            && is_in_sight(world, &[], eye, point)
-    }
-
-    pub(crate) fn eye(&self) -> Point {
-        let height = self.mover.feet + self.abilities().eye;
-        Point { position: self.mover.position(), height }
     }
 
     /// Wonders, or is alarmed.
@@ -188,8 +163,7 @@ impl Guard {
             let position = self.mover.position();
             let ground = context.ground(self.gait());
             let smells = |place: DVec2| {
-                place.distance(position) <= super::alert::NOSE
-                    && ground.is_straight(position, place)
+                place.distance(position) <= NOSE && ground.is_straight(position, place)
             };
             if let Some(mark) = trail.newest(|cell| smells(cell.center())) {
                 self.state = State::Tracking { target, mark, lost: 0 };
@@ -197,5 +171,147 @@ impl Guard {
                 return;
             }
         }
+    }
+}
+
+/// The most that sounds alone add up to for those who see.
+const MOST_BY_EAR: u16 = 700;
+
+impl Guard {
+    /// How far this guard hears `sound`, in half cells; 0 if they do not care.
+    pub(crate) fn earshot(&self, sound: &Sound, difficulty: Difficulty) -> u16 {
+        let reach = half_cells(sound.reach.min(Sound::FARTHEST));
+        let is_listener = self.kind == GuardKind::Listener;
+        if self.state.is_down() || !is_startling(sound) && !is_call(sound) {
+            return 0;
+        }
+        if difficulty == Difficulty::Easy && (is_call(sound) || sound.kind == SoundKind::Walking) {
+            return 0;
+        }
+        let reach = match sound.kind {
+            SoundKind::Walking if !is_listener => 0,
+            SoundKind::Walking => reach.min(half_cells(3)),
+            _ => (reach * self.abilities().hearing / 2).min(half_cells(Sound::FARTHEST)),
+        };
+        if self.state == State::Asleep { reach / 2 } else { reach }
+    }
+
+    /// Hears `sound` at this distance of the `earshot`. `told` is what the guard knows who calls.
+    pub(crate) fn hear(
+        &mut self,
+        context: &mut Context,
+        sound: &Sound,
+        (distance, earshot): (u16, u16),
+        told: Option<Quarry>,
+    ) {
+        let place = sound.cell.center();
+        if is_call(sound) {
+            if !self.state.is_alarmed() {
+                self.quarry = self.quarry.or(told);
+                self.come(told.map_or(place, |quarry| quarry.position));
+            }
+            return;
+        }
+        let nearness = 256 - 192 * u32::from(distance) / u32::from(earshot.max(1));
+        let gain = (startle(sound.kind) * nearness / 256) as u16;
+        if self.kind == GuardKind::Listener {
+            self.listen(context, sound, gain * 2, place);
+            return;
+        }
+        if self.state.is_alarmed() {
+            self.turn_to_sound(sound, place);
+            return;
+        }
+        self.awareness = (self.awareness + gain).min(MOST_BY_EAR.max(self.awareness));
+        if self.awareness >= WONDERS || self.state == State::Asleep {
+            self.wonder_about(context, place);
+        }
+    }
+
+    /// A guard who has lost a player goes where they hear them.
+    fn turn_to_sound(&mut self, sound: &Sound, place: DVec2) {
+        if let (Some(quarry), Source::Player(target)) = (&mut self.quarry, sound.by)
+            && quarry.target == target
+            && quarry.unseen > 0
+        {
+            quarry.position = place;
+        }
+    }
+
+    fn listen(&mut self, context: &mut Context, sound: &Sound, gain: u16, place: DVec2) {
+        self.awareness = (self.awareness + gain).min(ALARMED);
+        match sound.by {
+            Source::Player(target) => {
+                self.quarry = Some(Quarry { target, position: place, unseen: 0 });
+                if self.awareness >= ALARMED && !self.state.is_alarmed() {
+                    self.raise_alarm(context);
+                } else if !self.state.is_alarmed() {
+                    self.wonder_about(context, place);
+                }
+            }
+            Source::Guard(_) | Source::Object if self.state.is_alarmed() => {
+                // A blind guard takes every loud noise for the player.
+                if let Some(quarry) = &mut self.quarry {
+                    (quarry.position, quarry.unseen) = (place, 0);
+                }
+            }
+            Source::Guard(_) | Source::Object => self.wonder_about(context, place),
+        }
+    }
+
+    fn wonder_about(&mut self, context: &mut Context, place: DVec2) {
+        match &mut self.state {
+            State::Wondering { about, goes, .. } => (*about, *goes) = (place, true),
+            State::Searching { around, next, .. } => {
+                let cell = Cell::at(place);
+                (*around, *next) = (cell, Some(cell));
+            }
+            _ => self.begin_to_wonder(context, place, true),
+        }
+    }
+
+    /// Runs where another guard has seen a player.
+    fn come(&mut self, about: DVec2) {
+        let looks = if self.state == State::Asleep { 60 } else { 20 };
+        self.awareness = self.awareness.max(WONDERS);
+        self.state = State::Wondering { about, looks, goes: true, hurries: true, wakes: None };
+    }
+}
+
+/// Whether guards go where a sound is made that they do not understand.
+fn is_startling(sound: &Sound) -> bool {
+    match sound.by {
+        Source::Guard(_) => sound.kind == SoundKind::Fall,
+        Source::Player(_) | Source::Object => startle(sound.kind) > 0,
+    }
+}
+
+/// Whether `sound` calls guards.
+fn is_call(sound: &Sound) -> bool {
+    matches!(sound.by, Source::Guard(_))
+        && matches!(sound.kind, SoundKind::Shout | SoundKind::Bell | SoundKind::Bark)
+}
+
+/// What a sound from nearby adds to awareness.
+fn startle(kind: SoundKind) -> u32 {
+    match kind {
+        SoundKind::Walking => 200,
+        SoundKind::Mechanism => 240,
+        SoundKind::Running | SoundKind::Door => 280,
+        SoundKind::Splash | SoundKind::Cry | SoundKind::Blow => 340,
+        SoundKind::Landing => 380,
+        // They make every guard wonder who hears them.
+        SoundKind::Knock | SoundKind::Crash | SoundKind::Fall => 1200,
+        // Guards are used to spikes.
+        SoundKind::Spikes
+        | SoundKind::Wonder
+        | SoundKind::GiveUp
+        | SoundKind::Shout
+        | SoundKind::Bell
+        | SoundKind::Bark
+        | SoundKind::Windup
+        | SoundKind::Draw
+        | SoundKind::Shot
+        | SoundKind::Swing => 0,
     }
 }

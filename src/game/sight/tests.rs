@@ -5,8 +5,19 @@ use num_traits::{One, Zero};
 use proptest::prelude::*;
 
 use super::*;
-use crate::world::Gap;
-use sight::{Point, is_in_sight};
+use crate::map;
+
+/// The tiles and things of all maps.
+const LEGEND: &str = r##"
+[tiles]
+"#" = { wall = "#808080" }
+"%" = { glass = "#80c0ff" }
+"1" = { floor_height = 0.3, ceiling_height = 1.5 }
+"h" = { floor_height = 0.9, ceiling_height = 2 }
+"p" = { floor_height = -2 }
+[things]
+"@" = { start = 0 }
+"##;
 
 type Exact = BigRational;
 
@@ -88,9 +99,9 @@ proptest! {
     #[test]
     fn a_line_of_sight_never_passes_anything_solid(rows in rows(), from in point(), to in point()) {
         const ROUNDING: f64 = 1e-9;
-        let scene = Scene::new(&rows, "");
-        let depth = depth(&scene.world, from, to);
-        let sees = is_in_sight(&scene.world, &[], from, to);
+        let world = map::parse_str(&format!("ceiling = \"#202028\"\ngrid = '''\n{rows}\n'''\n{LEGEND}")).unwrap();
+        let depth = depth(&world, from, to);
+        let sees = is_in_sight(&world, &[], from, to);
         if depth > ROUNDING {
             prop_assert!(!sees, "{depth} inside");
         }

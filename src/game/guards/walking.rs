@@ -6,11 +6,9 @@
 
 use glam::DVec2;
 
-use super::act::Act;
-use super::context::Context;
-use super::guard::Guard;
+use super::context::{Act, Context};
+use super::guard::{Guard, Route, STUCK};
 use super::ways::Way;
-use crate::game::stored::stored;
 use crate::world::{Cell, TileKind};
 
 /// Nearer than this to the middle of a cell, a guard is there, in cells.
@@ -23,28 +21,10 @@ const STRAIGHT: f64 = 8.0;
 const AHEAD: usize = 4;
 /// A point is found again after so many steps at the latest.
 const FRESH: u16 = 24;
-/// A guard who has not moved for so many steps is stuck, and walks with care for some time.
-const STUCK: u16 = 40;
+/// A guard who is stuck walks with care for so many steps.
 const CARE: u16 = 120;
 /// Guards wait for others who are nearer than this before them, in cells.
 const APART: f64 = 0.6;
-
-/// The way of a guard.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(crate) struct Route {
-    goal: Option<Cell>,
-    /// The point to which they walk at present.
-    point: Option<DVec2>,
-    /// The cell in which the point was found.
-    from: Option<Cell>,
-    /// The steps for which it is still used.
-    fresh: u16,
-    /// The steps for which the guard has not moved, and for which they will walk with care.
-    still: u16,
-    care: u16,
-}
-
-stored! { struct Route { goal, point, from, fresh, still, care } }
 
 /// How a walk goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,13 +32,6 @@ pub(crate) enum Progress {
     There,
     OnTheWay,
     Impossible,
-}
-
-impl Route {
-    /// Whether the guard has not stood still for longer than a guard does.
-    pub(crate) fn is_possible(&self) -> bool {
-        self.still <= STUCK
-    }
 }
 
 impl Guard {

@@ -9,8 +9,8 @@
 //! do not know where the line ends.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::Cloud;
 use crate::cast::{Ray, RayWalk};
 use crate::world::{Cell, Gap, TileId, TileKind, World};
 
@@ -19,6 +19,15 @@ use crate::world::{Cell, Gap, TileId, TileKind, World};
 pub(crate) struct Point {
     pub(crate) position: DVec2,
     pub(crate) height: f64,
+}
+
+/// Smoke: a disc that nobody sees through.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Cloud {
+    /// The middle, in cells.
+    pub(crate) position: DVec2,
+    /// The radius, in cells.
+    pub(crate) radius: f64,
 }
 
 /// Whether nothing hides one of two points from the other.
@@ -106,3 +115,6 @@ impl Line<'_> {
         ts.into_iter().flatten().any(|t| t <= 1.0 && self.height_at(t) <= top)
     }
 }
+
+#[cfg(test)]
+mod tests;

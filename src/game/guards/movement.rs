@@ -5,13 +5,13 @@
 //! the way, a step is an addition; elsewhere it is a [`slide`].
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::terrain::{DROP, Footing, Gait, Terrain};
+use super::ways::{DROP, Footing, Gait, Terrain};
 use crate::game::STEP;
-use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, slide};
+use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, is_clear, slide};
 use crate::game::fall::Flight;
 use crate::game::player::STEP_HEIGHT;
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
 use crate::world::{Cell, Heading, Outline, World};
 
 /// The radius of all guards, in cells.
@@ -22,7 +22,7 @@ pub(crate) const RADIUS: Radius =
 const ACCELERATION: f64 = 0.6;
 
 /// Where a guard is and how they move.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mover {
     pub(crate) body: Body,
     /// The height of the feet, in cells.
@@ -31,22 +31,8 @@ pub(crate) struct Mover {
     rising: f64,
     pub(crate) heading: Heading,
     /// The unit vector of the heading.
+    #[serde(skip)]
     pub(crate) facing: DVec2,
-}
-
-impl Stored for Mover {
-    fn write(&self, out: &mut Writer) {
-        let Self { body, feet, rising, heading, facing: _ } = self;
-        body.write(out);
-        (*feet, *rising).write(out);
-        heading.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let (body, (feet, rising)) = (Stored::read(input)?, Stored::read(input)?);
-        let heading: Heading = Stored::read(input)?;
-        Ok(Self { body, feet, rising, heading, facing: heading.direction() })
-    }
 }
 
 impl Mover {
@@ -58,6 +44,11 @@ impl Mover {
             heading,
             facing: heading.direction(),
         }
+    }
+
+    /// The same, facing the heading.
+    pub(crate) fn facing_ahead(self) -> Self {
+        Self { facing: self.heading.direction(), ..self }
     }
 
     pub(crate) fn position(&self) -> DVec2 {
@@ -270,7 +261,7 @@ struct Careful<'a> {
 
 impl Careful<'_> {
     fn is_clear(&self, center: DVec2) -> bool {
-        crate::game::collision::is_clear(self, center, RADIUS)
+        is_clear(self, center, RADIUS)
     }
 
     fn is_avoided(&self, cell: Cell) -> bool {
