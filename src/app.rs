@@ -26,8 +26,7 @@ mod mouse;
 mod offers;
 mod overlay;
 mod panels;
-#[cfg(feature = "serve")]
-pub(crate) mod parts;
+pub mod parts;
 mod played;
 mod question;
 mod recording;

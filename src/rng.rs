@@ -87,7 +87,7 @@ impl From<SplitMix64> for [u8; 8] {
 }
 
 /// A pseudorandom number that a seed and words determine.
-pub(crate) fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
+pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
     words.into_iter().fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
 }
 

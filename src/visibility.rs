@@ -50,7 +50,7 @@ pub use plan::{
     CeilingLoop, Filter, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
     WhyPortals,
 };
-pub(crate) use projection::Projection;
+pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;

@@ -6,7 +6,7 @@ use crate::game::STEP;
 
 /// Divides time into steps of the game. A remainder counts for the next step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Clock {
+pub struct Clock {
     /// The time up to which steps have been counted.
     counted: Duration,
 }
@@ -14,28 +14,28 @@ pub(crate) struct Clock {
 impl Clock {
     /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
     /// more slowly and does not fall behind further and further.
-    pub(crate) const MOST_STEPS: u64 = 15;
+    pub const MOST_STEPS: u64 = 15;
 
     /// The number of steps since the last call.
-    pub(crate) fn steps_until(&mut self, now: Duration) -> u64 {
+    pub fn steps_until(&mut self, now: Duration) -> u64 {
         let steps = steps_in(now.saturating_sub(self.counted));
         self.counted = after(self.counted, steps);
         steps
     }
 
     /// Skips the time up to `now`.
-    pub(crate) fn skip_to(&mut self, now: Duration) {
+    pub fn skip_to(&mut self, now: Duration) {
         self.counted = now;
     }
 
     /// The time at which the step after `steps` further steps ends.
-    pub(crate) fn step_after(&self, steps: u64) -> Duration {
+    pub fn step_after(&self, steps: u64) -> Duration {
         after(self.counted, steps.saturating_add(1))
     }
 }
 
 /// The time `steps` steps after `time`.
-pub(crate) fn after(time: Duration, steps: u64) -> Duration {
+pub fn after(time: Duration, steps: u64) -> Duration {
     time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
 }
 

@@ -11,27 +11,27 @@ use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Controls {
-    pub(crate) held: HeldKeys<Key>,
-    pub(crate) toggles: Toggles,
+pub struct Controls {
+    pub held: HeldKeys<Key>,
+    pub toggles: Toggles,
     /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
 /// The state of the game that keys depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct KeyContext {
+pub struct KeyContext {
     /// Whether the game runs and is not paused.
-    pub(crate) plays: bool,
+    pub plays: bool,
     /// Whether the player is in the air.
-    pub(crate) is_airborne: bool,
+    pub is_airborne: bool,
     /// Whether the player flies, so that ducking moves them.
-    pub(crate) flies: bool,
+    pub flies: bool,
 }
 
 impl Controls {
     /// Handles an event. Returns its meaning, or `None` for a release.
-    pub(crate) fn handle(
+    pub fn handle(
         &mut self,
         event: KeyEvent,
         now: Duration,
@@ -85,7 +85,7 @@ impl Controls {
     }
 
     /// Releases the keys that are no longer held at time `now`.
-    pub(crate) fn advance(&mut self, now: Duration, context: KeyContext) {
+    pub fn advance(&mut self, now: Duration, context: KeyContext) {
         if context.is_airborne {
             self.held.keep(now);
         }
@@ -102,7 +102,7 @@ impl Controls {
     }
 
     /// The player's intents.
-    pub(crate) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
+    pub fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
             Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
             Some(Action::Want(intent)) => Some((intent, hold)),

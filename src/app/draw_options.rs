@@ -1,38 +1,35 @@
 //! How a picture is drawn, and the drawing itself.
 
-#[cfg(feature = "serve")]
 use ratatui::layout::Rect;
 use ratatui::layout::Size;
 
 use super::hud;
+use crate::tui::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
-#[cfg(feature = "serve")]
-use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, View};
 use crate::world::{FieldOfView, Heading};
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DrawOptions {
-    pub(crate) glyphs: GlyphSet,
-    pub(crate) depth: ColorDepth,
-    pub(crate) shade_ink: ShadeInk,
-    pub(crate) cell_aspect: CellAspect,
-    pub(crate) filter: Filter,
-    pub(crate) correction: Correction,
-    pub(crate) field_of_view: FieldOfView,
+pub struct DrawOptions {
+    pub glyphs: GlyphSet,
+    pub depth: ColorDepth,
+    pub shade_ink: ShadeInk,
+    pub cell_aspect: CellAspect,
+    pub filter: Filter,
+    pub correction: Correction,
+    pub field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
-    pub(crate) flash: Option<(Flash, Heading)>,
+    pub flash: Option<(Flash, Heading)>,
     /// Whether a dot marks the middle.
-    pub(crate) marks_middle: bool,
+    pub marks_middle: bool,
 }
 
 impl DrawOptions {
     /// Draws `scene` from `camera` at the time `seconds`.
-    #[cfg(feature = "serve")]
-    pub(crate) fn draw<S: Renderable>(
+    pub fn draw<S: Renderable>(
         &self,
         scene: &S,
         camera: &S::Camera,

@@ -17,9 +17,9 @@ use super::wrap::wrapped;
 use crate::color::Rgb;
 use crate::render::Frame;
 use crate::tui::canvas::Canvas;
-pub(crate) use compass::draw as draw_compass;
-pub(crate) use edge::{draw as draw_edge, tint};
-pub(crate) use sounds::draw as draw_sounds;
+pub use compass::draw as draw_compass;
+pub use edge::{draw as draw_edge, tint};
+pub use sounds::draw as draw_sounds;
 
 /// The widest text of a note, in columns.
 const NOTE_COLUMNS: usize = 56;

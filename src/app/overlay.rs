@@ -15,7 +15,7 @@ use crate::tui::canvas::Canvas;
 use crate::tui::{MapMark, View};
 
 /// A player of a game, and how their picture is drawn.
-pub(crate) struct Overlay<'a> {
+pub struct Overlay<'a> {
     game: &'a Game,
     player: PlayerView<'a>,
     options: &'a DrawOptions,
@@ -25,7 +25,7 @@ pub(crate) struct Overlay<'a> {
 
 impl<'a> Overlay<'a> {
     /// The overlay of `player`'s picture; `None` if they are not in the game.
-    pub(crate) fn new(
+    pub fn new(
         game: &'a Game,
         player: PlayerId,
         options: &'a DrawOptions,
@@ -41,7 +41,7 @@ impl<'a> Overlay<'a> {
 
     /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
     /// `shows_events`.
-    pub(crate) fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
+    pub fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
         let Self { player, options, .. } = self;
         options.draw_middle(canvas, area);
         let heading = player.camera(options.field_of_view).heading;
@@ -61,7 +61,7 @@ impl<'a> Overlay<'a> {
     }
 
     /// Draws the map with its panel, if it is shown. `view` is that of the picture.
-    pub(crate) fn draw_map(
+    pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
         area: Rect,

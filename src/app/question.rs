@@ -14,7 +14,7 @@ const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
 /// Whether a result that is shown since `shown_since` can be answered at `now`: half a second later, once the
 /// keys that were held for the game have been released, or a second later.
-pub(crate) fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
+pub fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
     let shown_for = now.saturating_sub(shown_since);
     let is_released = shown_for >= LEAST_SHOWN && !held.is_any_down_since(shown_since);
     is_released || shown_for >= LONGEST_WAIT
@@ -25,11 +25,11 @@ const REPETITION: Duration = Duration::from_millis(150);
 
 /// A key that answers the question on the screen if it does not repeat until a certain time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PendingKey(Option<(Key, Duration)>);
+pub struct PendingKey(Option<(Key, Duration)>);
 
 impl PendingKey {
     /// Handles a press of `key` at `now`. Returns the key if it answers the question at once.
-    pub(crate) fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
+    pub fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
         match press {
             Press::Fresh => return Some(key),
             Press::Unclear => self.0 = Some((key, now + REPETITION)),
@@ -39,17 +39,17 @@ impl PendingKey {
     }
 
     /// Returns the key if it did not repeat until `now`.
-    pub(crate) fn settle(&mut self, now: Duration) -> Option<Key> {
+    pub fn settle(&mut self, now: Duration) -> Option<Key> {
         self.0.take_if(|(_, until)| *until <= now).map(|(key, _)| key)
     }
 
     /// Forgets the key: another one was pressed, or another question is asked.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.0 = None;
     }
 
     /// The time until which the key is pending.
-    pub(crate) fn until(self) -> Option<Duration> {
+    pub fn until(self) -> Option<Duration> {
         self.0.map(|(_, until)| until)
     }
 }

@@ -23,9 +23,7 @@ use std::num::NonZeroU32;
 use std::time::Duration;
 
 use super::bindings::Bindings;
-#[cfg(feature = "serve")]
 use super::bindings::PRESETS;
-#[cfg(feature = "serve")]
 use super::settings_screen::after;
 use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
@@ -154,15 +152,14 @@ pub struct Configuration {
     pub fidelity: Option<Fidelity>,
 }
 
-#[cfg(feature = "serve")]
 impl Configuration {
     /// The name of the preset that the bindings are based on.
-    pub(crate) fn preset(&self) -> &'static str {
+    pub fn preset(&self) -> &'static str {
         self.preset
     }
 
     /// Takes the bindings of the next preset, or of the one before if `forward` is false.
-    pub(crate) fn change_preset(&mut self, forward: bool) {
+    pub fn change_preset(&mut self, forward: bool) {
         let (name, bindings) = after(&PRESETS, |preset| preset.0 == self.preset, forward);
         (self.preset, self.bindings) = (name, bindings());
     }

@@ -47,7 +47,7 @@ const SETTINGS: [(Setting, &str); 11] = [
 ];
 
 const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
-pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
+pub const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Half, "half blocks"),
     (GlyphSet::Quadrant, "quadrants"),
     (GlyphSet::Sextant, "sextants"),
@@ -55,7 +55,7 @@ pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Ascii, "ASCII"),
     (GlyphSet::Ramp, "ramp"),
 ];
-pub(crate) const COLORS: [(Option<ColorDepth>, &str); 5] = [
+pub const COLORS: [(Option<ColorDepth>, &str); 5] = [
     (None, "the terminal's"),
     (Some(ColorDepth::True), "all"),
     (Some(ColorDepth::Indexed256), "256"),
@@ -63,7 +63,7 @@ pub(crate) const COLORS: [(Option<ColorDepth>, &str); 5] = [
     (Some(ColorDepth::Mono), "none"),
 ];
 
-pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
+pub const CORRECTIONS: [(Correction, &str); 3] = [
     (Correction::None, "as it is"),
     (Correction::Contrast, "more contrast"),
     (Correction::RedGreen, "red and green apart"),
@@ -163,7 +163,7 @@ impl App {
 }
 
 /// Adds a card that shows which characters the terminal has.
-pub(crate) fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
+pub fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
     let menu = menu.line("Of these, the last smooth wedge is the best for you:");
     let sets = GLYPHS.into_iter().filter(|(set, _)| set.has_blocks());
     sets.fold(menu, |menu, (set, name)| menu.line(format!("{name:·<12} {}", set.wedge())))
@@ -178,16 +178,16 @@ fn given(value: String, origin: Option<Origin>) -> String {
     }
 }
 
-pub(crate) fn on_or_off(is_on: bool) -> String {
+pub fn on_or_off(is_on: bool) -> String {
     if is_on { "on" } else { "off" }.to_owned()
 }
 
-pub(crate) fn name<T: Copy + PartialEq>(names: &[(T, &str)], value: T) -> String {
+pub fn name<T: Copy + PartialEq>(names: &[(T, &str)], value: T) -> String {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name).to_owned()
 }
 
 /// The value after the one that `is_it`, or before it; from the last, the first.
-pub(crate) fn after<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
+pub fn after<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
     let index = values.iter().position(is_it).unwrap_or(0);
     let by = if forward { 1 } else { values.len() - 1 };
     values[(index + by) % values.len()]

@@ -26,10 +26,10 @@ use crate::app::bindings::Bindings;
 
 /// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Toggles {
-    pub(crate) runs: bool,
-    pub(crate) ducks: bool,
-    pub(crate) keeps_walking: bool,
+pub struct Toggles {
+    pub runs: bool,
+    pub ducks: bool,
+    pub keeps_walking: bool,
 }
 
 /// The values that the line shows.
@@ -51,13 +51,13 @@ pub(crate) struct StatusValues<'a> {
 /// The texts of the line: place and state of the player at the left; progress and help at the
 /// right.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StatusLine {
+pub struct StatusLine {
     texts: [[String; 2]; PARTS],
 }
 
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub enum Part {
     Health,
     Alarm,
     Light,
@@ -138,7 +138,7 @@ impl StatusLine {
     }
 
     /// Replaces all texts by those that `write` writes.
-    pub(crate) fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
+    pub fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
         _ = write(self);
@@ -213,7 +213,7 @@ fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
 }
 
 /// A line with a hint instead of the game's state.
-pub(crate) fn hint(text: &str) -> impl Widget {
+pub fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
 }
 

@@ -32,15 +32,15 @@
 
 mod best;
 mod change;
-pub(crate) mod disk;
+pub mod disk;
 mod home;
 mod names;
-pub(crate) mod private;
+pub mod private;
 mod progress;
 mod read;
 #[cfg(feature = "cli")]
-mod replayed;
-pub(crate) mod values;
+pub mod replayed;
+pub mod values;
 mod write;
 
 use std::path::Path;
@@ -49,12 +49,11 @@ pub use best::{Best, Improved, Reached, Run};
 use change::Change;
 use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
-#[cfg(feature = "serve")]
-pub(crate) use names::name_in_map_key;
+pub use names::name_in_map_key;
 use progress::Progress;
 pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
 #[cfg(feature = "cli")]
-pub(crate) use replayed::{DescentRun, replayed};
+pub use replayed::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 

@@ -10,7 +10,7 @@ use crate::world::{FieldOfView, Supply};
 
 /// How health is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HealthSigns {
+pub enum HealthSigns {
     Hearts,
     Digits,
 }
@@ -21,7 +21,7 @@ const DIM: u8 = 144;
 
 impl HealthSigns {
     /// The signs that a picture of that kind shows best.
-    pub(crate) fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
+    pub fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
         let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
         if has_hearts { Self::Hearts } else { Self::Digits }
     }
@@ -29,7 +29,7 @@ impl HealthSigns {
 
 impl StatusLine {
     /// Writes health, alarm, light, supplies and treasure.
-    pub(crate) fn write_vitals(
+    pub fn write_vitals(
         &mut self,
         game: &Game,
         player: &PlayerView,

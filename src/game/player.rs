@@ -15,7 +15,7 @@ use super::tally::Counts;
 use super::tools::Supplies;
 use super::warnings::Warnings;
 use crate::world::{KeyId, World};
-pub(crate) use motion::FRICTION;
+pub use motion::FRICTION;
 pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
 /// More than a player ever counts: it grows for years before it overflows.
@@ -79,7 +79,7 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
         check(self.health.is_possible(), "the health")?;

@@ -48,11 +48,11 @@ const FORMAT_VERSION: u32 = 2;
 /// What the first line calls a game.
 const KIND: &str = "game";
 /// The most bytes that are read.
-pub(crate) const MOST_BYTES: usize = 1 << 20;
+pub const MOST_BYTES: usize = 1 << 20;
 /// The largest real number that a game has anywhere: above twice the greatest height of a map.
 const MOST_REAL: f64 = 4e9;
 /// The largest time or count. Numbers below it can be added for millions of years.
-pub(crate) const MOST_COUNT: u64 = 1 << 53;
+pub const MOST_COUNT: u64 = 1 << 53;
 
 /// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -260,13 +260,13 @@ impl Serialize for State<'_> {
 }
 
 /// The first line of `kind`, and `value`.
-pub(crate) fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
+pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
     let line = first_line(kind).into_bytes();
     postcard::to_extend(value, line).expect("all lists have a length, and memory takes all bytes")
 }
 
 /// The hash of the bytes that are stored of `value`.
-pub(crate) fn checksum(value: &impl Serialize) -> u64 {
+pub fn checksum(value: &impl Serialize) -> u64 {
     postcard::serialize_with_flavor(value, Hash::default()).expect("all lists have a length")
 }
 
@@ -317,20 +317,20 @@ impl<T: OfLevel> OfLevel for Vec<T> {
 }
 
 /// Numbers of any size as eight bytes, for `#[serde(with)]`.
-pub(crate) mod bits {
+pub mod bits {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub(crate) fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
+    pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
         bits.to_le_bytes().serialize(to)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
         Deserialize::deserialize(from).map(u64::from_le_bytes)
     }
 }
 
 /// An error that names `what`, unless it holds.
-pub(crate) fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
+pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
     if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
 }
 
@@ -380,14 +380,14 @@ where
 /// - A list is its length and its elements, each of at least one byte.
 /// - A [`Cell`] is on the map.
 #[derive(Clone, Debug)]
-pub(crate) struct Reader<'de> {
+pub struct Reader<'de> {
     bytes: &'de [u8],
     size: (u32, u32),
 }
 
 impl<'de> Reader<'de> {
     /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
-    pub(crate) fn new(
+    pub fn new(
         kind: &str,
         bytes: &'de [u8],
         size: (u32, u32),
@@ -400,12 +400,12 @@ impl<'de> Reader<'de> {
     }
 
     /// The bytes that are left.
-    pub(crate) fn rest(&self) -> &'de [u8] {
+    pub fn rest(&self) -> &'de [u8] {
         self.bytes
     }
 
     /// Reads a value.
-    pub(crate) fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
+    pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
         T::deserialize(self)
     }
 

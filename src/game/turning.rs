@@ -17,7 +17,7 @@ const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
-pub(crate) const FRICTION: f64 = 20.0;
+pub const FRICTION: f64 = 20.0;
 /// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
@@ -58,7 +58,7 @@ impl Turning {
     }
 
     /// Refuses more exact turns than may wait.
-    pub(crate) fn check(self) -> Result<(), Unrestorable> {
+    pub fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
         check(is_possible, "a turn")

@@ -51,7 +51,7 @@ impl Warnings {
     }
 
     /// Refuses warnings after the step `now`.
-    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, now: u64) -> Result<(), Unrestorable> {
         check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }
 

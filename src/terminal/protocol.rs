@@ -541,8 +541,7 @@ impl Protocol {
     }
 
     /// Sets whether frames are restricted to ASCII. If that changes, the next one is sent whole.
-    #[cfg(feature = "serve")]
-    pub(crate) fn set_ascii(&mut self, is_ascii: bool) {
+    pub fn set_ascii(&mut self, is_ascii: bool) {
         if self.options.is_ascii != is_ascii {
             self.options.is_ascii = is_ascii;
             self.writer.set_ascii(is_ascii);

@@ -37,7 +37,7 @@ pub(crate) enum Signal {
 
 /// The peak memory is unknown.
 #[cfg(feature = "cli")]
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     None
 }
 

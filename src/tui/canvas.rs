@@ -222,7 +222,7 @@ impl Mosaic {
     #[cfg(feature = "terminal")]
     /// Whether the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
     /// and octants are rows of such parts.
-    pub(crate) const fn has(self, x: u32, y: u32) -> bool {
+    pub const fn has(self, x: u32, y: u32) -> bool {
         match self.mask() {
             Ok(mask) => mask >> (y / 3 * 2 + x) & 1 == 1,
             Err(mask) => mask >> (y / 4 * 2 + x) & 1 == 1,

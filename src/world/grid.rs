@@ -132,7 +132,7 @@ impl Grid {
 
     /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
-    pub(crate) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+    pub fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.distance_field = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 

@@ -15,7 +15,7 @@ const ADVANCE: i32 = 9;
 const MOST_COLUMNS: u16 = 31;
 
 /// Draws the strip in the middle of the picture's first row.
-pub(crate) fn draw(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
+pub fn draw(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
     let width = MOST_COLUMNS.min(picture.width / 3);
     if width < 7 {
         return;

@@ -54,7 +54,7 @@ impl Sides {
 }
 
 /// Tints the pixels at the edge of `frame`.
-pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
+pub fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     let (color, opacity) = match flash.kind {
         FlashKind::Hurt { .. } => (HURT, HURT_OPACITY),
         FlashKind::Gain => (GAIN, GAIN_OPACITY),
@@ -83,7 +83,7 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
 }
 
 /// Draws the edge in characters, for pictures without colours.
-pub(crate) fn draw(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: Heading) {
+pub fn draw(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: Heading) {
     let character = match flash.kind {
         FlashKind::Hurt { .. } => '#',
         FlashKind::Gain => '+',

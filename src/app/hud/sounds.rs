@@ -24,7 +24,7 @@ const ROWS_ABOVE: u16 = 1;
 const COLUMNS_FOR_WORDS: u16 = 40;
 
 /// Draws a mark for each of `heard`, as heard in the direction of view `heading`.
-pub(crate) fn draw(
+pub fn draw(
     canvas: &mut impl Canvas,
     picture: Rect,
     heard: &[Heard],

@@ -18,12 +18,12 @@ pub(crate) const PRESET: Setting = Setting {
     meaning: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
     default: "qwerty",
 };
-pub(crate) const COLORS: Setting = Setting {
+pub const COLORS: Setting = Setting {
     name: "colors",
     meaning: "how many colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what the\nterminal has",
     default: "auto",
 };
-pub(crate) const GLYPHS: Setting = Setting {
+pub const GLYPHS: Setting = Setting {
     name: "glyphs",
     meaning: "characters for pixels: \"half\" (two a cell), \"quadrant\" (four), \"sextant\" (six),\n\
               \"octant\" (eight), \"ascii\", \"ramp\" (by brightness), or \"auto\" for what the\n\

@@ -54,7 +54,7 @@ impl StatusLine {
     }
 
     /// Writes the modes that are switched on.
-    pub(crate) fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
+    pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
         let modes = [
             (toggles.runs, "running"),
             (toggles.ducks, "ducking"),
@@ -70,14 +70,14 @@ impl StatusLine {
     }
 
     /// Writes the figures of frames and the link.
-    pub(crate) fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
+    pub fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
         let [short, long] = self.forms(Part::Stats);
         write!(short, "{}", stats.rates)?;
         write!(long, "{stats}")
     }
 
     /// Writes the names of the keys that the player has.
-    pub(crate) fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
+    pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
         for (index, key) in keys.enumerate() {
             let comma = if index > 0 { ", " } else { "" };
             self.both(Part::Keys, format_args!("{comma}{key} key"))?;
@@ -86,7 +86,7 @@ impl StatusLine {
     }
 
     /// Writes the keys that show the help.
-    pub(crate) fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
+    pub fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
         let [short, long] = &mut self.texts[Part::Help as usize];
         for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
             let blank = if index > 0 { " " } else { "" };
@@ -98,12 +98,12 @@ impl StatusLine {
     }
 
     /// The short and the long form of `part`.
-    pub(crate) fn forms(&mut self, part: Part) -> &mut [String; 2] {
+    pub fn forms(&mut self, part: Part) -> &mut [String; 2] {
         &mut self.texts[part as usize]
     }
 
     /// Appends to both forms of `part`.
-    pub(crate) fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+    pub fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
         self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 }

@@ -81,7 +81,7 @@ impl Best {
     }
 
     /// The best of both. Of equally fast runs it is the first.
-    pub(crate) fn and(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
     }

@@ -11,7 +11,7 @@ use std::time::Duration;
 use super::private;
 
 /// File operations.
-pub(crate) trait Disk: fmt::Debug + Send {
+pub trait Disk: fmt::Debug + Send {
     /// Creates a folder and those that it is in, unless it exists.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
 
@@ -42,7 +42,7 @@ pub(crate) trait Disk: fmt::Debug + Send {
 
 /// The operating system's files.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Real;
+pub struct Real;
 
 /// The time between two attempts to lock a file.
 const PAUSE: Duration = Duration::from_millis(2);

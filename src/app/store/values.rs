@@ -15,7 +15,7 @@ pub(crate) const SAVES: &str = "saves";
 pub(crate) const SAVED: &str = "saved";
 pub(crate) const SAVED_DESCENT: &str = "saved-descent";
 
-pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
+pub const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Half, "half"),
     (GlyphSet::Quadrant, "quadrant"),
     (GlyphSet::Sextant, "sextant"),
@@ -23,25 +23,25 @@ pub(crate) const GLYPHS: [(GlyphSet, &str); 6] = [
     (GlyphSet::Ascii, "ascii"),
     (GlyphSet::Ramp, "ramp"),
 ];
-pub(crate) const COLORS: [(ColorDepth, &str); 4] = [
+pub const COLORS: [(ColorDepth, &str); 4] = [
     (ColorDepth::True, "true"),
     (ColorDepth::Indexed256, "256"),
     (ColorDepth::Indexed16, "16"),
     (ColorDepth::Mono, "mono"),
 ];
 
-pub(crate) const CORRECTIONS: [(Correction, &str); 3] = [
+pub const CORRECTIONS: [(Correction, &str); 3] = [
     (Correction::None, "none"),
     (Correction::Contrast, "contrast"),
     (Correction::RedGreen, "red-green"),
 ];
 
 /// The name of `value`, which has one.
-pub(crate) fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
+pub fn name_of<T: Copy + PartialEq>(names: &[(T, &'static str)], value: T) -> &'static str {
     names.iter().find(|(named, _)| *named == value).map_or("", |(_, name)| name)
 }
 
 /// The value called `name`.
-pub(crate) fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Option<T> {
+pub fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Option<T> {
     names.iter().find(|(_, known)| *known == name).map(|&(value, _)| value)
 }

@@ -26,7 +26,7 @@ pub(crate) const WALK: f64 = 3.0;
 pub(crate) const RUN: f64 = 5.5;
 
 /// How fast the player reaches that speed, per second.
-pub(crate) const FRICTION: f64 = 12.0;
+pub const FRICTION: f64 = 12.0;
 
 /// The height of a step that the player climbs or descends by walking, in cells.
 pub(crate) const STEP_HEIGHT: f64 = 0.35;

@@ -1,6 +1,7 @@
 //! Stored games are the games that they were stored from, and nothing else is a game that fails.
 
-pub(crate) mod crowd;
+#[path = "../../../tests/support/crowd.rs"]
+mod crowd;
 mod damage;
 
 use proptest::prelude::*;

@@ -239,7 +239,6 @@ impl Screen {
     }
 
     /// The mosaic that a shown cell is, if it is one.
-    #[cfg(feature = "lab")]
     pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;
