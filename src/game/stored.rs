@@ -387,11 +387,7 @@ pub struct Reader<'de> {
 
 impl<'de> Reader<'de> {
     /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
-    pub fn new(
-        kind: &str,
-        bytes: &'de [u8],
-        size: (u32, u32),
-    ) -> Result<Self, Unrestorable> {
+    pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
         if bytes.len() > MOST_BYTES {
             return Err(Unrestorable::TooLong);
         }

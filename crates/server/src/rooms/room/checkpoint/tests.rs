@@ -5,14 +5,14 @@ use std::time::Instant;
 use proptest::prelude::*;
 
 use super::*;
+use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
+use crate::simulation;
 use cellcaster::game::stored::first_line;
 use cellcaster::game::stored::tests::crowd::Crowd;
 use cellcaster::game::stored::tests::winning;
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
-use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
-use crate::simulation;
 use cellcaster::world::Difficulty;
 
 fn line(text: &str) -> Line {
