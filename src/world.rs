@@ -20,6 +20,7 @@ mod grid;
 mod lamplight;
 mod light;
 mod mission;
+pub(crate) mod scene;
 pub mod sprite;
 #[cfg(any(test, fuzzing))]
 mod tests;

@@ -13,9 +13,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::multiplayer::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
+use super::rules::MOST_PLAYERS;
 use super::sound::SoundKind;
 use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;

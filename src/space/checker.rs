@@ -7,8 +7,8 @@
 //! of a pixel on the surface follows from the movement of a ray's end from pixel to pixel (Igehy,
 //! "Tracing Ray Differentials", 1999). Along each axis, the box has the variance of that area.
 //!
-//! Several rays for each pixel were refused: near the horizon a pixel covers hundreds of squares,
-//! and any number of samples still shimmers there.
+//! Rejected: several rays for each pixel. Near the horizon a pixel covers hundreds of squares, and any
+//! number of samples still shimmers there.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
@@ -16,7 +16,9 @@
 use glam::DVec3;
 
 use super::lanes::{LANES, Lanes, Vectors, are_finite, greatest, least};
+use crate::color::Rgb;
 use crate::numeric::rounding::{floor_double, floor_of_small};
+use crate::world::scene::SolidTexture;
 
 /// For larger widths, the mean is closer to 0 than the resolution of colours.
 const WIDEST: f64 = 65_536.0;
@@ -67,8 +69,24 @@ pub(crate) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) 
     });
 }
 
+impl SolidTexture {
+    /// The colour at `point`.
+    pub fn color_at(&self, point: DVec3) -> Rgb {
+        match *self {
+            Self::Plain(color) => color,
+            Self::Checker([first, second], scale) => {
+                if is_first(point / scale.cells()) {
+                    first
+                } else {
+                    second
+                }
+            }
+        }
+    }
+}
+
 /// Whether the cube at `point` is one of +1. The coordinates are in cubes.
-pub(crate) fn is_first(point: DVec3) -> bool {
+fn is_first(point: DVec3) -> bool {
     point.to_array().into_iter().map(|place| mean_along(place, 0.0)).product::<f64>() > 0.0
 }
 
