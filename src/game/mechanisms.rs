@@ -113,7 +113,7 @@ impl Mechanisms {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell, moving.shown(world));
             if world.grid().tile_in(cell) != Some(shown) {
-                world.set_state(cell, shown);
+                world.set_tile(cell, shown);
             }
         }
         self.recollect(world);
@@ -396,10 +396,10 @@ impl Game {
         for (index, player) in self.playing() {
             stood[index] = player.motion.stands(&self.world);
         }
-        self.world.set_state(cell.cell, state);
+        self.world.set_tile(cell.cell, state);
         let carries = cell.driver(&self.world) != Driver::Weight;
         if self.is_crushing(cell, state, carries) {
-            self.world.set_state(cell.cell, before);
+            self.world.set_tile(cell.cell, before);
             self.tell_who_blocks(cell);
             return cell.blocked();
         }

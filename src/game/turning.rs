@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn it_goes_as_far_as_it_goes_and_comes_to_rest() {
         let up = after(PitchControl::default(), 600, &[Intent::LookUp]);
-        assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MOST_DEGREES).unwrap());
+        assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MAX_DEGREES).unwrap());
         assert_eq!(after(up, 1, &[Intent::LookUp]), up);
         assert_eq!(after(up, 600, &[]), up);
         assert_eq!(after(up, 600, &[Intent::LookUp, Intent::LookDown]), up);

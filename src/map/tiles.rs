@@ -286,7 +286,7 @@ fn heights(
     let floor = cells(&own.floor_height).unwrap_or(0.0);
     let ceiling = match overhead {
         Ceiling::Covered(_) => cells(&own.ceiling_height).unwrap_or(map_ceiling),
-        Ceiling::Sky => (floor + map_ceiling).min(Heights::MOST),
+        Ceiling::Sky => (floor + map_ceiling).min(Heights::MAX),
     };
     let roof = cells(&own.roof_height).unwrap_or(map_ceiling.max(ceiling));
     let fault = |height: &Height, message: &str| Fault::new(height.place.clone(), message);
@@ -323,7 +323,7 @@ fn floor_states(tile: Tile, end: f64) -> impl Iterator<Item = Tile> {
         // Under the sky, what stands on the floor moves with it.
         let ceiling = match tile.ceiling {
             Ceiling::Covered(_) => tile.heights.ceiling(),
-            Ceiling::Sky => (floor + over).min(Heights::MOST),
+            Ceiling::Sky => (floor + over).min(Heights::MAX),
         };
         let roof = tile.heights.roof().max(ceiling);
         Some(Tile { heights: Heights::new(floor, ceiling, roof)?, ..tile })

@@ -43,7 +43,7 @@ pub(crate) const SCALE: Quantity<Scale> = Quantity {
     help: "write 2.0 to stretch a texture over two cells",
 };
 pub(crate) const HEIGHT: Quantity<f64> = Quantity {
-    of: |height| (height.abs() <= Heights::MOST).then_some(height),
+    of: |height| (height.abs() <= Heights::MAX).then_some(height),
     wanted: "a height must be a number of cells from -1000000000 to 1000000000",
     label: "this is none",
     help: "write 0.25 for a quarter of a cell above the map's floor",

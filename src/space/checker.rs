@@ -15,8 +15,9 @@
 
 use glam::DVec3;
 
-use super::lanes::{LANES, Lanes, Vectors, are_finite, floor, floor_of_small, greatest, least};
+use super::lanes::{LANES, Lanes, Vectors, are_finite, greatest, least};
 use crate::color::Rgb;
+use crate::numeric::rounding::{floor_double, floor_of_small};
 use crate::world::scene::SolidTexture;
 
 /// For larger widths, the mean is closer to 0 than the resolution of colours.
@@ -127,7 +128,7 @@ fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
 /// The mean of a square wave, +1 from 0 to 1 and −1 from 1 to 2, over `width` around `place`.
 fn mean_along(place: f64, width: f64) -> f64 {
     // With a large place, the difference of two close ends would lose its digits.
-    let place = place - 2.0 * floor(place / 2.0);
+    let place = place - 2.0 * floor_double(place / 2.0);
     let mean = mean_within(place, width);
     if width < WIDEST || mean.abs() == 1.0 { mean } else { 0.0 }
 }

@@ -7,12 +7,13 @@ use glam::DVec3;
 
 use super::camera::Projection;
 use super::checker;
-use super::lanes::{LANES, Lanes, Vectors, rounded};
+use super::lanes::{LANES, Lanes, Vectors};
 use super::relative_shape::RelativeShape;
 use super::row::Stretch;
 use super::shadows::Shadows;
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
+use crate::numeric::rounding::rounded_short;
 use crate::world::scene::{Scene, SolidTexture};
 
 /// The values that all pixels of a frame share.
@@ -152,15 +153,15 @@ impl<'a> Shader<'a> {
         let clearness = |t: f64| self.scene.fog.map_or(1.0, |fog| fog.clearness(t));
         if is_level || self.scene.fog.is_none() {
             let clearness = clearness(t[0]);
-            light.fog = [256 - rounded(WHOLE * clearness); LANES];
+            light.fog = [256 - rounded_short(WHOLE * clearness); LANES];
             for (own, brightness) in light.own.iter_mut().zip(&*brightness) {
-                *own = rounded(WHOLE * brightness * clearness);
+                *own = rounded_short(WHOLE * brightness * clearness);
             }
         } else {
             for lane in 0..LANES {
                 let clearness = clearness(t[lane]);
-                light.own[lane] = rounded(WHOLE * brightness[lane] * clearness);
-                light.fog[lane] = 256 - rounded(WHOLE * clearness);
+                light.own[lane] = rounded_short(WHOLE * brightness[lane] * clearness);
+                light.fog[lane] = 256 - rounded_short(WHOLE * clearness);
             }
         }
     }
@@ -203,7 +204,7 @@ fn mix([one, other]: [Rgb; 2], shares: &Lanes, pixels: &mut [Rgb]) {
     for (channels, (one, other)) in channels.iter_mut().zip(one.into_iter().zip(other)) {
         let [one, other] = [one, other].map(f64::from);
         for (channel, share) in channels.iter_mut().zip(shares) {
-            *channel = rounded(one + (other - one) * share);
+            *channel = rounded_short(one + (other - one) * share);
         }
     }
     let [red, green, blue] = channels;
@@ -224,7 +225,7 @@ fn sky_share(direction: DVec3) -> u32 {
     // Straight up or down, the horizontal distance is zero.
     let vertical = if z > 0.0 { 1.0 } else { 0.0 };
     let share = if away > 0.0 { height / away } else { vertical };
-    rounded(share * 255.0)
+    rounded_short(share * 255.0)
 }
 
 #[cfg(test)]
