@@ -4,10 +4,10 @@ use ratatui::layout::Rect;
 use ratatui::layout::Size;
 
 use super::hud;
-use crate::tui::canvas::Canvas;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::Flash;
 use crate::render::{Filter, Frame, Renderable};
+use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, View};
 use crate::world::{FieldOfView, Heading};
 

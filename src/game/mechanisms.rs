@@ -13,9 +13,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::multiplayer::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
+use super::rules::MOST_PLAYERS;
 use super::sound::SoundKind;
 use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;
@@ -112,7 +113,7 @@ impl Mechanisms {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell, moving.shown(world));
             if world.grid().tile_in(cell) != Some(shown) {
-                world.set_state(cell, shown);
+                world.set_tile(cell, shown);
             }
         }
         self.recollect(world);
@@ -165,8 +166,8 @@ impl Mechanisms {
         self.moving.push(MovingCell::new(cell, tile));
     }
 
-    /// Finds out anew what is kept from step to step: which plates are down, which cells do not rest,
-    /// and which secrets have been found.
+    /// Derives the facts kept from step to step again: which plates are down, which cells do not rest, and
+    /// which secrets have been found.
     fn recollect(&mut self, world: &World) {
         let plates = self.plates.iter().enumerate().filter(|(_, plate)| plate.is_down);
         self.down = plates.map(|(index, _)| index).collect();
@@ -192,7 +193,7 @@ impl Mechanisms {
         state.is_turned
     }
 
-    /// The secret walls, and those of them that have been found.
+    /// The number of secret walls, and of those found.
     pub(crate) fn secrets(&self) -> Share {
         self.secrets
     }
@@ -241,7 +242,7 @@ impl Mechanisms {
 }
 
 impl Game {
-    /// Moves what is driven by switches, hands and weights.
+    /// Moves everything that switches, hands and weights drive.
     pub(crate) fn move_mechanisms(&mut self) {
         let bodies = self.cells_of_all().count();
         *self.work += (bodies + self.mechanisms.down.len()) as u64;
@@ -395,10 +396,10 @@ impl Game {
         for (index, player) in self.playing() {
             stood[index] = player.motion.stands(&self.world);
         }
-        self.world.set_state(cell.cell, state);
+        self.world.set_tile(cell.cell, state);
         let carries = cell.driver(&self.world) != Driver::Weight;
         if self.is_crushing(cell, state, carries) {
-            self.world.set_state(cell.cell, before);
+            self.world.set_tile(cell.cell, before);
             self.tell_who_blocks(cell);
             return cell.blocked();
         }
@@ -489,7 +490,7 @@ struct MovingCell {
     is_blocked: bool,
 }
 
-/// What a moving cell does in a step.
+/// The effect of a step on a moving cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     after: MovingCell,

@@ -20,7 +20,10 @@ pub trait Canvas {
     fn bounds(&self) -> Rect;
 
     /// Draws two colours in each cell from `(x, y)` to the right, the first above the second.
-    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>);
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        self.draw_mosaics(x, y, row.map(|halves| (Mosaic::UPPER_HALF, halves)));
+    }
 
     /// Does the same as [`Canvas::draw_halves`] in true colour, which most cells of most pictures
     /// use.
@@ -42,10 +45,6 @@ pub trait Canvas {
 impl Canvas for Buffer {
     fn bounds(&self) -> Rect {
         self.area
-    }
-
-    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        self.draw_mosaics(x, y, row.map(|halves| (Mosaic::UPPER_HALF, halves)));
     }
 
     /// A mosaic and its inverse show the same two colours. Chooses the one that shares more colours with the cell

@@ -6,9 +6,9 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Ray};
+use cellcaster::world::Grid;
 use cellcaster_lab::accuracy::{self, Set};
 use cellcaster_lab::casters::{Method, Visitor};
-use cellcaster::world::Grid;
 use criterion::{Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 const RAYS: usize = 4096;

@@ -8,10 +8,10 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Exact, Walk};
-use cellcaster_lab::speed::{Ground, SIDES, crossing_rays};
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
+use cellcaster_lab::speed::{Ground, SIDES, crossing_rays};
 use criterion::{
     BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };

@@ -6,9 +6,9 @@
 
 use std::hint::black_box;
 
-use cellcaster_lab::speed::{CROWDS, Vista};
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::FieldOfView;
+use cellcaster_lab::speed::{CROWDS, Vista};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 
 fn things(criterion: &mut Criterion) {

@@ -53,14 +53,14 @@ use self::record::Record;
 use self::room_state::RoomState;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
-use crate::sessions::load::Load;
+use crate::accounts::{HostNotice, Leases, Presence};
 use crate::lock::locked;
-use crate::rooms::room::Catalog;
 use crate::rooms::directory::{RoomRefusal, Rooms};
+use crate::rooms::room::Catalog;
 use crate::rooms::summary::{RoomId, RoomWish};
+use crate::sessions::load::Load;
 use crate::sessions::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
-use crate::accounts::{HostNotice, Leases, Presence};
 
 /// A place in a cluster, for one host.
 pub struct Cluster {

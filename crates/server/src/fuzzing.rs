@@ -9,18 +9,21 @@ use std::time::Duration;
 
 pub use self::desk::Desk;
 pub use self::resumed::{CHECKPOINTS, checkpoint, resume};
+use crate::accounts::AccountSettings;
 pub use crate::cluster::fuzzing::SharedRoom;
-use crate::sessions::line::Line;
-use crate::rooms::room::{CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue, Recorded, Room, replayed};
-use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
+use crate::rooms::room::{
+    CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue,
+    Recorded, Room, replayed,
+};
 use crate::rooms::summary::{RoomId, RoomSummary};
+use crate::sessions::line::Line;
+use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
 pub use crate::ssh::fuzzing::serve;
 use cellcaster::app::Configuration;
+use cellcaster::app::store::Preferences;
 use cellcaster::game::PlayerColor;
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
-use cellcaster::app::store::Preferences;
-use crate::accounts::AccountSettings;
 use cellcaster::terminal::{Options, WindowSize};
 use cellcaster::world::Difficulty;
 

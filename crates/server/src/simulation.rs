@@ -25,21 +25,21 @@ use tokio::time::{Instant, sleep};
 pub(crate) use self::client::{Client, Conditions, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::tapes::Tapes;
+use crate::accounts::MemoryStore;
 use crate::ops::config::StandingRoom;
+use crate::ops::config::{Config, LiveConfig};
+use crate::ops::metrics::Metrics;
+use crate::rooms::directory::Rooms;
+use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
+use crate::rooms::summary::{RoomId, RoomWish};
 use crate::sessions::driver::{Setup, Simulated};
 use crate::sessions::line::Line;
 use crate::sessions::load::Worker;
-use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
-use crate::rooms::directory::Rooms;
 use crate::sessions::session::Session;
-use crate::rooms::summary::{RoomId, RoomWish};
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::metrics::Metrics;
-use crate::ssh::Visitor;
 use crate::sessions::visitors::Visitors;
+use crate::ssh::Visitor;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::map;
-use crate::accounts::MemoryStore;
 use cellcaster::world::{Difficulty, FieldOfView};
 
 pub(crate) const HALL: &str = r##"

@@ -30,13 +30,13 @@ use tokio::sync::{oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
+use crate::accounts::AddressPrefix;
+use crate::lock::locked;
+use crate::ops::config::{Config, LiveConfig};
 use crate::ops::logging::{ConnectionEvent, events};
 use crate::ssh::admission::{Admitted, Refusal, VisitId};
-use crate::ops::config::{Config, LiveConfig};
 use crate::ssh::host_key::HostKey;
-use crate::lock::locked;
 use cellcaster::rng::SplitMix64;
-use crate::accounts::AddressPrefix;
 use connection::{Entry, Shared};
 use explanation::Explanations;
 pub use inbound::{Arrival, Inbound};

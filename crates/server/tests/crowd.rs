@@ -11,9 +11,9 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use std::{env, fs, future};
 
-use cellcaster_server::ssh::{Arrival, Counters, Departure, Host, Link, Server, Visitor};
 use cellcaster_server::ops::config::Config;
 use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::ssh::{Arrival, Counters, Departure, Host, Link, Server, Visitor};
 use russh::client::{self, Handle, Handler, Session};
 use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelId, ChannelMsg, Error};

@@ -314,7 +314,7 @@ impl Screen {
     }
 }
 
-/// Replaces the colours of `cells`. A cell of which one becomes [`Shade::NONE`] is then unknown.
+/// Replaces the colours of `cells`. A cell is then unknown if one of its colours becomes [`Shade::NONE`].
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {

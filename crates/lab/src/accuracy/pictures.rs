@@ -1,8 +1,8 @@
 //! The fraction of wrong pixels in whole pictures.
 
 use super::cast;
-use cellcaster::cast::{Caster, Hit, Ray};
 use crate::casters::Method;
+use cellcaster::cast::{Caster, Hit, Ray};
 use cellcaster::render::{DynCaster, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, World};

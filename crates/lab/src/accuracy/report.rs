@@ -1,9 +1,12 @@
 //! The report: tables of figures, in parts.
 
-use super::{RAYS, SEED, Set, Table, Trial, all_methods, areas, features, motion, ordinary, plain, random_ray, ray_tables, sets};
-use cellcaster::game::STEPS_PER_SECOND;
+use super::{
+    RAYS, SEED, Set, Table, Trial, all_methods, areas, features, motion, ordinary, plain,
+    random_ray, ray_tables, sets,
+};
 use crate::casters::Method;
 use crate::speed::textured_scene;
+use cellcaster::game::STEPS_PER_SECOND;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::World;
 

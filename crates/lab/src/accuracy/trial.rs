@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use super::{Set, Truth, cast};
-use cellcaster::cast::{Caster, Hit, Ray};
 use crate::casters::{Method, Visitor};
+use cellcaster::cast::{Caster, Hit, Ray};
 use cellcaster::world::Grid;
 
 /// Rays and their exact hits.

@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
 use super::encoder::Encoder;
-use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::lab::Lab;
 use cellcaster::color::palette::of_256;
+use cellcaster::tui::canvas::Mosaic;
 
 /// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]

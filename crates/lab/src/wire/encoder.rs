@@ -9,9 +9,9 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 use ratatui::style::Color;
 
-use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::canvas::Mosaic;
 
 /// The changed cells of a frame, in the form of ratatui's backends.
 pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];

@@ -15,12 +15,12 @@ use ratatui::widgets::StatefulWidget;
 use super::encoder::{Encoder, Extensions, Writer};
 use super::seen::SeenPicture;
 use super::tour::walk;
-use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Game;
 use cellcaster::render::Filter;
 use cellcaster::terminal::Fidelity;
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::tui::{FirstPerson, GlyphSet, View};
 use cellcaster::world::{FieldOfView, World};
 

@@ -15,7 +15,6 @@ use ratatui::widgets::StatefulWidget;
 
 use super::seen::blurred;
 use super::tour::walk;
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::Rgb;
 use cellcaster::color::oklab::Oklab;
 use cellcaster::color::palette::{ColorDepth, ShadeInk, nearest_of_16, nearest_of_256, of_256};
@@ -23,6 +22,7 @@ use cellcaster::color::srgb::linear;
 use cellcaster::game::Game;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::terminal::CellWriter;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::tui::{FirstPerson, View};
 use cellcaster::world::{FieldOfView, World};
 

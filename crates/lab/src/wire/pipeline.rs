@@ -10,9 +10,9 @@ use ratatui::layout::Size;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::encoder::Sink;
+use crate::speed::median;
 use cellcaster::app::Replay;
 use cellcaster::game::{Intents, STEPS_PER_SECOND, Script};
-use crate::speed::median;
 use cellcaster::terminal::{CellWriter, Fidelity};
 
 /// The results of one encoder in a window of one size.

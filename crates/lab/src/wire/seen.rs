@@ -10,11 +10,11 @@ use std::num::NonZeroU32;
 
 use ratatui::layout::Size;
 
-use cellcaster::tui::canvas::Mosaic;
 use cellcaster::color::Rgb;
 use cellcaster::color::oklab::Oklab;
 use cellcaster::color::srgb::linear;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
+use cellcaster::tui::canvas::Mosaic;
 use cellcaster::world::{Camera, World};
 
 /// The columns and rows of points in each cell.

@@ -6,11 +6,11 @@ use std::num::NonZeroU32;
 use cellcaster::app::{Levels, Replay, Settings};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
-use cellcaster_lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use cellcaster::map;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::GlyphSet;
 use cellcaster::world::World;
+use cellcaster_lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
 /// Levels that stay as they are, unlike those of the campaign.

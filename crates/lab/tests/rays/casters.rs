@@ -2,10 +2,10 @@
 //! distance and at a position on its face.
 
 use cellcaster::cast::{Caster, Hit, Ray};
-use cellcaster_lab::accuracy::{self, Set, adversarial_ray};
-use cellcaster_lab::casters::{Method, Visitor};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
+use cellcaster_lab::accuracy::{self, Set, adversarial_ray};
+use cellcaster_lab::casters::{Method, Visitor};
 use proptest::prelude::*;
 
 /// The hits of all rays by one caster.

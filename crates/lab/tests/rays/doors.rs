@@ -3,10 +3,10 @@
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::color::Rgb;
-use cellcaster_lab::accuracy;
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, Cell, FieldOfView, Grid, Heading, Opening, World};
+use cellcaster_lab::accuracy;
 use glam::DVec2;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive};

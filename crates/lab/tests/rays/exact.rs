@@ -2,9 +2,9 @@
 //! within two units in its last place, and the texture coordinate is within 10⁻¹².
 
 use cellcaster::cast::{Caster, Exact, Ray};
-use cellcaster_lab::accuracy::{self, adversarial_ray, random_ray};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
+use cellcaster_lab::accuracy::{self, adversarial_ray, random_ray};
 use proptest::prelude::*;
 
 /// The difference between the exact caster and rational arithmetic for `ray`, if there is one.

@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use cellcaster_lab::accuracy::shimmer;
 use cellcaster::map;
 use cellcaster::render::{Filter, FrameSize};
 use cellcaster::world::{FieldOfView, World};
+use cellcaster_lab::accuracy::shimmer;
 
 /// The largest allowed ratio.
 const MOST: f64 = 0.75;

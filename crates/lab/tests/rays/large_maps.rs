@@ -7,10 +7,10 @@
 //! times as long; a few hundred of them are.
 
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
-use cellcaster_lab::accuracy::{self, adversarial_ray};
 use cellcaster::map;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Grid, World};
+use cellcaster_lab::accuracy::{self, adversarial_ray};
 use glam::DVec2;
 
 const SIDE: i32 = 4096;

@@ -76,7 +76,6 @@ impl StoreFailure {
     pub(crate) fn is_of_now(&self) -> bool {
         self.is_away() || self.is_full()
     }
-
 }
 
 impl fmt::Display for StoreFailure {

@@ -4,7 +4,11 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::score::with_run;
-use super::{Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyScore, DailyTry, Day, HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel};
+use super::{
+    Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyScore,
+    DailyTry, Day, HostStore, Identity, LevelBoard, LevelScore, NAME_HELD, Name, Origin,
+    RENAME_WAIT, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel,
+};
 use cellcaster::app::store::{Best, Improved, Reached};
 
 /// A store that ends with the program.

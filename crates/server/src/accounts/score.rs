@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::{AccountId, Day, Name, UnixTime, VerifiedLevel};
+use cellcaster::app::store::{Best, Improved, Reached, name_in_map_key};
 use cellcaster::game::{Rank, Tally};
 use cellcaster::map::builtin;
-use cellcaster::app::store::{Best, Improved, Reached, name_in_map_key};
 use cellcaster::world::Difficulty;
 
 /// A board: a built-in level or a map of the host, at one difficulty.

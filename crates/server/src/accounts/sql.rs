@@ -21,7 +21,11 @@ mod value;
 
 pub(crate) use value::{Row, Value, values};
 
-use super::{Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, DailyScore, DailyTry, Day, HostStore, LevelBoard, LevelScore, Name, Origin, Refusal, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel};
+use super::{
+    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, DailyScore, DailyTry, Day,
+    HostStore, LevelBoard, LevelScore, Name, Origin, Refusal, StoreFailure, UnixTime,
+    VerifiedDescent, VerifiedLevel,
+};
 use cellcaster::app::store::{Best, Improved};
 
 /// What runs statements, in a transaction or outside of one.

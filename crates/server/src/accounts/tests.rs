@@ -18,8 +18,8 @@ use std::time::Duration;
 use std::{env, fs};
 
 use super::*;
-use cellcaster::game::{Rank, Rules, Share, Tally};
 use cellcaster::app::store::{Preferences, Reached};
+use cellcaster::game::{Rank, Rules, Share, Tally};
 use cellcaster::world::Difficulty;
 
 /// A folder that is removed at the end of a test.

@@ -3,11 +3,11 @@
 use std::fmt;
 
 use super::{Day, LevelBoard};
+use cellcaster::app::store::{DescentRun, Reached, replayed};
 use cellcaster::fault::Faults;
 use cellcaster::game::{Game, Outcome, Rank, Rules, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::generate::descent;
 use cellcaster::map::builtin;
-use cellcaster::app::store::{DescentRun, Reached, replayed};
 use cellcaster::world::{Difficulty, World};
 
 /// The longest script that is verified, in steps: half an hour.
@@ -230,7 +230,10 @@ impl VerifiedDescent {
 mod tests {
     use super::*;
 
-    const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+    const WON: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../maps/scripts/cellar.normal.script"
+    ));
 
     #[test]
     fn a_script_that_wins_is_a_run() {

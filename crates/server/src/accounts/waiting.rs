@@ -20,10 +20,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun, verify_with};
-use cellcaster::fault::printable_path;
+use super::{
+    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun,
+    verify_with,
+};
 use cellcaster::app::store::disk::{Disk, Real};
 use cellcaster::app::store::private;
+use cellcaster::fault::printable_path;
 use cellcaster::world::World;
 
 /// The most results that wait.

@@ -16,8 +16,8 @@ use std::pin::Pin;
 
 use tokio::sync::{mpsc, oneshot};
 
-use crate::rooms::summary::RoomId;
 use crate::accounts::AccountKey;
+use crate::rooms::summary::RoomId;
 
 /// What the hosts of a cluster share.
 pub(crate) trait Bus: Send + Sync {

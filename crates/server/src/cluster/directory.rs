@@ -29,10 +29,10 @@ use super::record::Record;
 use super::replica::{Beginning, JoinRequest, Replica, Wish};
 use super::room_state::RoomState;
 use crate::lock::locked;
+use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 #[cfg(test)]
 use crate::rooms::room::RoomView;
 use crate::rooms::room::{Header, MemberId, Mode};
-use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 use crate::rooms::sequencer::{Inbox, RoomInterface, Shown};
 use crate::rooms::summary::{RoomId, RoomWish};
 

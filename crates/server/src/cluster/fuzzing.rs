@@ -10,8 +10,8 @@ use super::peer_message::PeerMessage;
 use super::record::Record;
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
-use crate::rooms::room::{Catalog, Header, Mode};
 use crate::accounts::{Leases, MemoryLeases};
+use crate::rooms::room::{Catalog, Header, Mode};
 use cellcaster::world::Difficulty;
 
 /// Read once: it takes longer than most inputs.

@@ -16,9 +16,9 @@
 
 use std::fmt::Write;
 
+use crate::rooms::room::Entry;
 use cellcaster::game::RULES_VERSION;
 use cellcaster::game::stored::MOST_COUNT;
-use crate::rooms::room::Entry;
 
 /// The version of the format of messages, records and checkpoints.
 const FORMAT: u32 = 2;

@@ -21,9 +21,9 @@
 use std::fmt::Write;
 
 use super::log_message::{self, LogMessage, Unreadable};
-use cellcaster::game::PlayerColor;
-use crate::sessions::line::Line;
 use crate::rooms::room::{Command, Entry, MemberId, NAME_COLUMNS};
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
 
 /// A broadcast to the replicas of a room.
 #[derive(Clone, Debug, PartialEq)]

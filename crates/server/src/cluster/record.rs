@@ -15,9 +15,9 @@
 use std::sync::Arc;
 
 use super::log_message::{number, version};
-use crate::sessions::line::Line;
 use crate::rooms::room::{Header, NAME_COLUMNS, Phase, Room};
 use crate::rooms::summary::{RoomId, RoomSummary};
+use crate::sessions::line::Line;
 
 /// The record of a room.
 #[derive(Clone, Debug, PartialEq)]

@@ -46,11 +46,11 @@ use super::peer_message::PeerMessage;
 use super::record::Record;
 use super::room_state::RoomState;
 use super::sequencer::ClusterSequencer;
+use crate::accounts::Lease;
 use crate::ops::metrics::RoomFigures;
 use crate::rooms::room::MemberId;
 use crate::rooms::sequencer::{RoomInterface, STEP};
 use crate::rooms::summary::RoomId;
-use crate::accounts::Lease;
 
 /// The time from one message of a sequencer to the next.
 pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);

@@ -13,10 +13,10 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
 use super::log_message::{Check, LogMessage, number};
-use cellcaster::game::STEPS_PER_SECOND;
-use cellcaster::game::stored::MOST_BYTES;
 use crate::rooms::room::{Catalog, Entry, Header, Queue, Room};
 use crate::rooms::sequencer::{Changes, RoundLog};
+use cellcaster::game::STEPS_PER_SECOND;
+use cellcaster::game::stored::MOST_BYTES;
 
 /// The steps from one checksum to the next.
 const CHECKED: u64 = STEPS_PER_SECOND as u64;
@@ -166,9 +166,9 @@ impl RoomState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cellcaster::game::PlayerColor;
-    use crate::sessions::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode};
+    use crate::sessions::line::Line;
+    use cellcaster::game::PlayerColor;
     use cellcaster::world::Difficulty;
 
     fn state() -> RoomState {

@@ -16,11 +16,11 @@ use self::returning::ReturnRequest;
 use super::log_message::LogMessage;
 use super::peer_message::PeerMessage;
 use super::room_state::RoomState;
-use cellcaster::game::PlayerColor;
-use crate::sessions::line::Line;
+use crate::accounts::Lease;
 use crate::rooms::room::{Command, Entry, MemberId, Room};
 use crate::rooms::sequencer::Inbox;
-use crate::accounts::Lease;
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
 
 /// The time after which a member is away whom no host claims.
 const UNCLAIMED: Duration = Duration::from_secs(4);

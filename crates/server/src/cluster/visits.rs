@@ -26,10 +26,10 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
 pub(crate) use self::registry::VisitRegistry;
-use crate::ssh::admission::counted_address;
-use crate::ssh::admission::Refusal;
-use crate::lock::locked;
 use crate::accounts::{AccountKey, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor};
+use crate::lock::locked;
+use crate::ssh::admission::Refusal;
+use crate::ssh::admission::counted_address;
 
 /// The time from one announcement of a host to the next.
 pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);

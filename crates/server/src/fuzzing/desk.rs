@@ -8,10 +8,10 @@ use std::task::{Context, Poll, Waker};
 
 use tokio::sync::Notify;
 
+use crate::accounts::AccountKey;
 use crate::ops::admin::socket;
 use crate::ops::admin::{Operator, RoomRow};
 use crate::sessions::visitors::{Presence, Visitors};
-use crate::accounts::AccountKey;
 
 /// An operator's host with three visitors.
 pub struct Desk {

@@ -29,9 +29,9 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::ssh::admission::Limits;
-use crate::ops::logging::LogFilter;
 use crate::accounts::AccountRate;
+use crate::ops::logging::LogFilter;
+use crate::ssh::admission::Limits;
 pub use live::LiveConfig;
 pub use standing::StandingRoom;
 

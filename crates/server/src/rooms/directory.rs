@@ -25,14 +25,14 @@ use tokio::sync::watch;
 pub(crate) use self::place::Place;
 pub(crate) use self::recording::Logs;
 pub(crate) use self::refusal::RoomRefusal;
-use crate::ops::config::Config;
-use crate::sessions::line::Line;
-use crate::sessions::load::Load;
 use crate::lock::locked;
+use crate::ops::config::Config;
 use crate::ops::logging::events;
 use crate::rooms::room::{Catalog, Header, Mode, Phase, Room};
 use crate::rooms::sequencer::{Inbox, RoomInterface, RoundLog, Sequencer, Shown};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::sessions::line::Line;
+use crate::sessions::load::Load;
 use cellcaster::rng::SplitMix64;
 
 /// The rooms of a server. Clones are the same rooms.

@@ -109,7 +109,10 @@ mod tests {
     use super::*;
     use cellcaster::map::builtin;
 
-    const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+    const WON: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../maps/scripts/cellar.normal.script"
+    ));
 
     fn cellar() -> World {
         builtin::LEVELS.iter().find(|level| level.name == "cellar").unwrap().world().unwrap()

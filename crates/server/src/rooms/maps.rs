@@ -21,9 +21,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use cellcaster::app::store::map_key;
 use cellcaster::fault::{Faults, printable_path};
 use cellcaster::map::{self, Folder, builtin};
-use cellcaster::app::store::map_key;
 use cellcaster::world::World;
 
 /// The most maps of a host.

@@ -29,10 +29,10 @@ pub(crate) use self::inbox::{CommandRefusal, Inbox, JoinRefusal};
 pub(crate) use self::round_log::Changes;
 pub(crate) use self::round_log::{FinishedRun, RoundLog};
 pub(crate) use self::shown::{Shown, State};
+use crate::rooms::room::Room;
 use crate::sessions::load::Load;
 #[cfg(test)]
 use crate::sessions::load::Work;
-use crate::rooms::room::Room;
 use cellcaster::game::STEPS_PER_SECOND;
 
 /// The most steps that follow at once after a delay.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::sessions::line::Line;
 use crate::rooms::room::{Mode, Phase};
+use crate::sessions::line::Line;
 use cellcaster::world::Difficulty;
 
 /// The number of a room. It is not used again after the room is closed.

@@ -43,20 +43,20 @@ use self::results::Recorder;
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
 use self::visit::Visit;
+use crate::accounts::UnixTime;
 use crate::cluster::SharedRooms;
+use crate::ops::admin::{Operator, RoomRow};
+use crate::ops::config::LiveConfig;
+use crate::ops::metrics::Metrics;
+use crate::rooms::directory::{RoomLimits, Rooms};
 use crate::rooms::ghost::KeptRuns;
+use crate::rooms::room::Catalog;
+use crate::rooms::summary::RoomSummary;
 use crate::sessions::governor::Governor;
 use crate::sessions::line::Line;
 use crate::sessions::load::Load;
-use crate::rooms::room::Catalog;
-use crate::rooms::directory::{RoomLimits, Rooms};
-use crate::rooms::summary::RoomSummary;
-use crate::ssh::{Departure, Host, Link, Visitor};
-use crate::ops::config::LiveConfig;
-use crate::ops::metrics::Metrics;
-use crate::ops::admin::{Operator, RoomRow};
 use crate::sessions::visitors::Visitors;
-use crate::accounts::UnixTime;
+use crate::ssh::{Departure, Host, Link, Visitor};
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
 #[derive(Debug)]

@@ -11,9 +11,9 @@ use std::time::Duration;
 
 #[cfg(test)]
 pub(crate) use self::worker::{Work, Worker};
-use crate::sessions::governor::Sample;
-use crate::ops::metrics::Metrics;
 use crate::lock::locked;
+use crate::ops::metrics::Metrics;
+use crate::sessions::governor::Sample;
 
 /// Measurements that all rooms and sessions add to.
 #[derive(Debug)]

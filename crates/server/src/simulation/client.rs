@@ -9,11 +9,11 @@ use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, sleep, sleep_until};
 
 use super::emulator::{Emulator, Speaks};
-use cellcaster::color::palette::ColorDepth;
-use crate::sessions::driver::{Simulated, Visiting};
-use crate::ssh::{FarEnd, Parts, pipe};
-use crate::ssh::{Counters, Visitor};
 use crate::lock::locked;
+use crate::sessions::driver::{Simulated, Visiting};
+use crate::ssh::{Counters, Visitor};
+use crate::ssh::{FarEnd, Parts, pipe};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{Detected, WindowSize};
 
 /// A client and the session that serves it.

@@ -27,10 +27,10 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{Client, Conditions, ENTER, HALL, Rig, Speaks, Wish, catalog};
+use crate::rooms::room::Mode;
+use crate::sessions::load::Worker;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::rng::SplitMix64;
-use crate::sessions::load::Worker;
-use crate::rooms::room::Mode;
 
 /// The time with faults, in milliseconds.
 const FAULTS: u64 = 3_000;

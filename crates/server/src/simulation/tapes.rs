@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 
 use crate::lock::locked;
-use crate::rooms::room::{Queue, Recorded};
 use crate::rooms::directory::Logs;
+use crate::rooms::room::{Queue, Recorded};
 use crate::rooms::summary::RoomId;
 
 /// The recordings of all rooms of a host. Clones share them.

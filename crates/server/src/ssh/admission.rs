@@ -27,9 +27,9 @@ use std::collections::BTreeMap;
 use std::net::IpAddr;
 use std::time::Duration;
 
+use crate::accounts::AddressPrefix;
 use crate::ssh::KeyData;
 use cellcaster::rng::SplitMix64;
-use crate::accounts::AddressPrefix;
 pub use limits::Limits;
 use penalties::Penalties;
 

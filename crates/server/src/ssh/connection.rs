@@ -21,10 +21,10 @@ use super::client::{Begun, Client};
 use super::outbox::Passage;
 use super::wire::{ByteLimits, Line, Wire};
 use super::{Counters, Host, Phase, explanation, locked};
+use crate::ops::config::LiveConfig;
 use crate::ops::logging::{ConnectionEvent, Throttle, events};
 use crate::ssh::admission::{Admission, Outcome, VisitId};
 use crate::ssh::host_key::HostKey;
-use crate::ops::config::LiveConfig;
 
 /// What the connections of a server have in common.
 pub(crate) struct Shared {

@@ -8,9 +8,9 @@ use tokio::sync::{oneshot, watch};
 
 use super::connection::{self, Entry, Shared};
 use super::{Arrival, Counters, Departure, Host, Link, Phase, Visitor};
-use cellcaster::rng::SplitMix64;
 use crate::ops::config::{Config, LiveConfig};
 use crate::ssh::host_key::HostKey;
+use cellcaster::rng::SplitMix64;
 
 static KEY: LazyLock<HostKey> = LazyLock::new(|| HostKey::of_seed([7; 32]));
 

@@ -9,8 +9,8 @@ use russh::keys::ssh_key::LineEnding;
 use russh::keys::ssh_key::private::Ed25519Keypair;
 use russh::keys::{HashAlg, PrivateKey};
 
-use cellcaster::fault::printable_path;
 use cellcaster::app::store::private;
+use cellcaster::fault::printable_path;
 
 /// An ed25519 key of a server.
 #[derive(Clone)]

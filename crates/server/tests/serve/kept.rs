@@ -17,7 +17,8 @@ pub(crate) fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-pub(crate) const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+pub(crate) const WON: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
 const NOW: UnixTime = UnixTime::new(1_795_300_000);
 /// The test of a killed process starts itself with this variable, which names the folder and the number of

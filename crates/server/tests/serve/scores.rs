@@ -11,8 +11,10 @@ use serde_json::Value;
 use crate::kept::{WON, scratch};
 use crate::support::server;
 
-const HARD: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.hard.script"));
-const MUSEUM: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
+const HARD: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.hard.script"));
+const MUSEUM: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
 
 /// A store in which two accounts have results. It stays open, as while a host runs.
 fn filled(folder: &Path) -> SqliteStore {
@@ -97,7 +99,6 @@ fn what_is_wrong_is_told_in_a_sentence() {
         assert!(sentence.contains(said) && sentence.lines().count() == 1, "{sentence}");
     }
 }
-
 
 #[test]
 fn a_folder_can_be_named_as_the_store() {

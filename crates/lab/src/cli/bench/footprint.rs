@@ -15,7 +15,7 @@ use cellcaster::cli::Error;
 use cellcaster::cli::script::SHOWCASE;
 use cellcaster::game::{Intents, STEPS_PER_SECOND};
 use crate::speed::median;
-use cellcaster::terminal::{CellWriter, peak_memory};
+use cellcaster::terminal::CellWriter;
 
 /// The costs; `None` if this system does not report them.
 pub(crate) struct Footprint {
@@ -82,4 +82,24 @@ fn start_up(path: &Path) -> io::Result<f64> {
     io::copy(&mut output, &mut io::sink())?;
     child.wait()?;
     Ok(elapsed.as_secs_f64())
+}
+
+/// The peak memory of this process in bytes, on Linux; `None` on other systems.
+fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn linux_tells_how_much_it_is() {
+        let mebibytes = peak_memory().unwrap() >> 20;
+        assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
+    }
 }

@@ -5,7 +5,9 @@ use std::time::Duration;
 use super::PostgresStore;
 use super::lease::milliseconds;
 use crate::accounts::sql::{Database, Row, values};
-use crate::accounts::{HostNotice, HostRow, Presence, StoreFailure, Visit, VisitBegin, VisitId, Visitor};
+use crate::accounts::{
+    HostNotice, HostRow, Presence, StoreFailure, Visit, VisitBegin, VisitId, Visitor,
+};
 
 impl Presence for PostgresStore {
     fn begin_visit(

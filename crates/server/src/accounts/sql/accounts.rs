@@ -3,9 +3,12 @@
 use std::num::NonZeroU32;
 
 use super::{Row, Statements, bans, values};
-use cellcaster::app::store::Preferences;
 use crate::accounts::rate::milliseconds;
-use crate::accounts::{Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban};
+use crate::accounts::{
+    Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin,
+    RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban,
+};
+use cellcaster::app::store::Preferences;
 use cellcaster::app::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use cellcaster::world::Difficulty;
 

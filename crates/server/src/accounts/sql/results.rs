@@ -1,10 +1,13 @@
 //! Results in a database.
 
 use super::{Row, Statements, values};
-use cellcaster::game::{Rank, Share, Tally};
 use crate::accounts::score::with_run;
-use crate::accounts::{AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, StoreFailure, UnixTime, VerifiedDescent, VerifiedLevel};
+use crate::accounts::{
+    AccountId, DailyScore, DailyTry, Day, LevelBoard, LevelScore, StoreFailure, UnixTime,
+    VerifiedDescent, VerifiedLevel,
+};
 use cellcaster::app::store::{Best, Improved, Reached};
+use cellcaster::game::{Rank, Share, Tally};
 use cellcaster::world::Difficulty;
 
 /// The columns of a [`Best`].

@@ -9,9 +9,9 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::salvage::salvage;
 use super::schema::{self, APPLICATION, MIGRATIONS};
-use cellcaster::fault::printable_path;
 use crate::accounts::StoreFailure;
 use cellcaster::app::store::private;
+use cellcaster::fault::printable_path;
 
 const FILE: &str = "host.db";
 /// What SQLite adds to the name for its log, and for the index of the log.

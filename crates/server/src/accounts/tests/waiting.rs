@@ -2,7 +2,8 @@
 
 use super::*;
 
-const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+const WON: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
 /// A store that is away, or that refuses all changes.
 struct Failing<'a>(&'a mut MemoryStore, Option<StoreFailure>);

@@ -4,13 +4,13 @@
 //! else ends a member, ends it in the room alone. So an entry may be out of date, and the room decides.
 
 use super::SharedRooms;
+use crate::accounts::AccountKey;
 use crate::cluster::bus::{BusFault, Key};
 use crate::cluster::replica::Wish;
-use crate::sessions::line::Line;
-use crate::rooms::room::MemberId;
 use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::room::MemberId;
 use crate::rooms::summary::RoomId;
-use crate::accounts::AccountKey;
+use crate::sessions::line::Line;
 
 /// Who joins a room.
 #[derive(Clone, Debug)]

@@ -6,13 +6,13 @@
 use std::collections::BTreeSet;
 
 use super::SharedRooms;
-use cellcaster::rng;
 use crate::cluster::bus::{BusFault, Key};
 use crate::cluster::log_message::version;
 use crate::cluster::record::Record;
 use crate::lock::locked;
 use crate::rooms::room::Header;
 use crate::rooms::summary::RoomId;
+use cellcaster::rng;
 
 impl SharedRooms {
     /// Makes those that are missing, and lists those of the configuration.

@@ -6,11 +6,11 @@ use tokio::sync::oneshot;
 use tokio::time::Instant;
 
 use super::Replica;
-use cellcaster::game::PlayerColor;
 use crate::cluster::peer_message::PeerMessage;
-use crate::sessions::line::Line;
-use crate::rooms::room::MemberId;
 use crate::rooms::directory::RoomRefusal;
+use crate::rooms::room::MemberId;
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
 
 /// A request to be a member.
 pub(crate) struct JoinRequest {

@@ -8,8 +8,8 @@ use super::joining::{AGAIN, PATIENCE, Reply};
 use super::{MESSAGE_PERIOD, Replica};
 use crate::cluster::peer_message::PeerMessage;
 use crate::cluster::sequencer::ClusterSequencer;
-use crate::rooms::room::MemberId;
 use crate::rooms::directory::RoomRefusal;
+use crate::rooms::room::MemberId;
 
 /// A request to return that is neither granted nor refused.
 pub(crate) struct PendingReturn {

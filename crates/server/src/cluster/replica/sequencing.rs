@@ -7,11 +7,11 @@ use tokio::time::Instant;
 
 use super::Replica;
 use super::times::{is_due, steps_due};
+use crate::accounts::Lease;
 use crate::cluster::bus::{BusFault, Key};
 use crate::cluster::lease_worker::LEASE_TIME;
 use crate::cluster::peer_message::PeerMessage;
 use crate::cluster::sequencer::ClusterSequencer;
-use crate::accounts::Lease;
 
 /// The time from one checkpoint to the next.
 const CHECKPOINTS: Duration = Duration::from_secs(5);

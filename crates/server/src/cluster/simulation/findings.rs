@@ -9,8 +9,8 @@ use super::super::log_message::LogMessage;
 use super::super::record::Record;
 use super::super::room_state::{Position, RoomState};
 use super::Run;
-use crate::rooms::room::{Command, Header, MemberId};
 use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::room::{Command, Header, MemberId};
 use crate::rooms::summary::RoomId;
 
 /// The longest time without a message in a room with members.

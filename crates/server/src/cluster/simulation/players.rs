@@ -6,12 +6,12 @@ use super::super::Entrant;
 use super::super::log_message::LogMessage;
 use super::world::World;
 use super::{HOSTS, Run, wish};
-use cellcaster::game::{Intent, Intents};
-use crate::sessions::line::Line;
-use crate::rooms::room::{Command, MemberId};
-use crate::rooms::directory::{Place, RoomRefusal};
-use crate::rooms::summary::RoomId;
 use crate::accounts::AccountKey;
+use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::room::{Command, MemberId};
+use crate::rooms::summary::RoomId;
+use crate::sessions::line::Line;
+use cellcaster::game::{Intent, Intents};
 
 /// The players from this one on are guests.
 const FIRST_GUEST: usize = 4;

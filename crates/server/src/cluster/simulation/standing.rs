@@ -7,8 +7,8 @@ use tokio::time::sleep;
 
 use super::super::Entrant;
 use super::Run;
-use crate::sessions::line::Line;
 use crate::rooms::directory::RoomLimits;
+use crate::sessions::line::Line;
 
 /// Long enough for the configuration to be followed, and for a room to end on its host.
 const WHILE: Duration = Duration::from_secs(12);

@@ -12,10 +12,10 @@ use super::super::bus::{Bus, HostRequest, Key};
 use super::super::lease_worker::{self, Call, LeaseWorker};
 use super::super::visits::{VisitRegistry, Visits};
 use super::bus::SimulatedBus;
-use cellcaster::rng::SplitMix64;
+use crate::accounts::{HostNotice, MemoryLeases, MemoryPresence};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
-use crate::accounts::{HostNotice, MemoryLeases, MemoryPresence};
+use cellcaster::rng::SplitMix64;
 
 pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
 /// The time from one look whether a fault is over to the next.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
 use super::{Call, CountedVisit, NewVisit, THERE, TooMany, Visits};
+use crate::accounts::{HostNotice, Presence, StoreFailure, VisitBegin, VisitId};
 use crate::lock::locked;
 use crate::ops::logging::events;
-use crate::accounts::{HostNotice, Presence, StoreFailure, VisitBegin, VisitId};
 
 /// The visits of this host.
 pub(crate) struct VisitRegistry {

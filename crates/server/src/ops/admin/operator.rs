@@ -8,8 +8,8 @@ use tokio::sync::Notify;
 use super::merging;
 use super::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
 use crate::cluster::SharedRooms;
-use crate::sessions::line::Line;
 use crate::ops::logging::events;
+use crate::sessions::line::Line;
 use crate::sessions::visitors::{Present, SessionId, Visitors};
 
 /// What an operator can see and change in a server. Clones are the same.
@@ -39,12 +39,7 @@ impl Operator {
         rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
         drain: Arc<Notify>,
     ) -> Self {
-        Self {
-            visitors,
-            rooms: Arc::new(rooms),
-            drain,
-            cluster: None,
-        }
+        Self { visitors, rooms: Arc::new(rooms), drain, cluster: None }
     }
 
     /// Has the operator see the other hosts of a cluster, too.
@@ -132,7 +127,6 @@ impl Operator {
         }
     }
 }
-
 
 impl fmt::Debug for Operator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -7,9 +7,9 @@ use toml::de::{DeTable, DeValue};
 
 use super::settings::{SETTINGS, Setting};
 use super::{Config, standing};
+use crate::ops::logging::{LogFilter, UnknownLogFilter};
 use cellcaster::fault::document::{self, Entry, FaultList};
 use cellcaster::fault::{Fault, Faults, quoted};
-use crate::ops::logging::{LogFilter, UnknownLogFilter};
 
 /// In characters: the longest message of the day.
 const LONGEST_MESSAGE: usize = 200;

@@ -7,10 +7,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Config;
-use cellcaster::fault::document::{self, Entry, FaultList};
-use cellcaster::fault::{Fault, Faults, nearest, quoted};
 use crate::rooms::room::Mode;
 use crate::rooms::summary::RoomWish;
+use cellcaster::fault::document::{self, Entry, FaultList};
+use cellcaster::fault::{Fault, Faults, nearest, quoted};
 use cellcaster::world::Difficulty;
 
 /// The most standing rooms.

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use tracing::{error, info, warn};
 
-use crate::ssh::admission::{Outcome, Refusal};
-use crate::sessions::visitors::SessionId;
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget};
+use crate::sessions::visitors::SessionId;
+use crate::ssh::admission::{Outcome, Refusal};
 
 const HOST: &str = "host";
 const CONNECTIONS: &str = "connections";

@@ -3,8 +3,8 @@ use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
 
 use super::*;
-use crate::ssh::admission::Refusal;
 use crate::accounts::{AccountKey, AddressPrefix};
+use crate::ssh::admission::Refusal;
 
 /// Keeps what is written.
 #[derive(Clone, Default)]

@@ -9,8 +9,8 @@ use std::mem;
 use std::net::IpAddr;
 
 use super::events;
-use crate::ssh::admission::{Outcome, Refusal};
 use crate::accounts::AddressPrefix;
+use crate::ssh::admission::{Outcome, Refusal};
 
 /// What a client brings about without logging in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -52,14 +52,7 @@ impl Place {
             Role::Member(member) => interface.inbox.seat_number(member),
             Role::Watcher { .. } => None,
         };
-        Self {
-            room,
-            role,
-            interface,
-            seat,
-            is_kept: false,
-            state,
-        }
+        Self { room, role, interface, seat, is_kept: false, state }
     }
 
     pub(crate) fn room(&self) -> RoomId {

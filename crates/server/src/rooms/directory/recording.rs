@@ -23,10 +23,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
+use crate::lock::locked;
+use crate::rooms::recorded::MOST_RECORDED_BYTES;
 use crate::rooms::room::{Entry, Header, Log, Queue, Recorded};
 use crate::rooms::summary::RoomId;
-use crate::rooms::recorded::MOST_RECORDED_BYTES;
-use crate::lock::locked;
 use cellcaster::app::store::private;
 
 /// Gives each room its log.
@@ -285,8 +285,8 @@ mod tests {
     use std::{env, process};
 
     use super::*;
-    use crate::sessions::line::Line;
     use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, parse_log};
+    use crate::sessions::line::Line;
     use cellcaster::world::Difficulty;
 
     const DAY: Duration = Duration::from_hours(24);

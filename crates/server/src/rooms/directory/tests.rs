@@ -3,11 +3,11 @@ use std::io;
 use tokio::runtime::Builder;
 
 use super::*;
-use cellcaster::game::PlayerColor;
-use crate::ops::metrics::Metrics;
 use crate::ops::logging::LogFormat;
 use crate::ops::logging::tests::logged;
+use crate::ops::metrics::Metrics;
 use crate::rooms::room::{Command, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
+use cellcaster::game::PlayerColor;
 use cellcaster::world::Difficulty;
 
 impl Rooms {

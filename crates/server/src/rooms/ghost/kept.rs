@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::{Ghost, Run};
-use cellcaster::game::Script;
-use crate::sessions::line::Line;
-use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use crate::accounts::{AccountId, HostStore, LevelBoard, StoreFailure};
+use crate::rooms::room::{Catalog, NAME_COLUMNS};
+use crate::sessions::line::Line;
+use cellcaster::game::Script;
 use cellcaster::world::Difficulty;
 
 /// The most runs that are kept: at most 10 MB.
@@ -99,7 +99,10 @@ mod tests {
     use super::*;
     use crate::accounts::{Account, AccountKey, MemoryStore, Name, UnixTime, VerifiedRun, verify};
 
-    const WON: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+    const WON: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../maps/scripts/cellar.normal.script"
+    ));
     const CELLAR: (&str, Difficulty) = ("cellar", Difficulty::Normal);
 
     fn account(store: &mut MemoryStore, number: u8, name: &str) -> Account {

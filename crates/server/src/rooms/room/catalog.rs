@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Mode;
-use cellcaster::map::builtin;
 use crate::rooms::maps::HostMaps;
 use cellcaster::app::store::name_in_map_key;
+use cellcaster::map::builtin;
 use cellcaster::world::World;
 
 /// Levels by name, in their order. The name of a map of the host is its key, which differs between two

@@ -17,11 +17,11 @@ use super::presence::KeptPlace;
 use super::replayed::no_level;
 use super::talk::SAID;
 use super::{Catalog, Header, Room, Said};
+use crate::accounts::printable;
+use crate::sessions::line::Line;
 use cellcaster::game::PlayerColor;
 use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
 use cellcaster::rng;
-use crate::sessions::line::Line;
-use crate::accounts::printable;
 
 /// What the first line calls a room.
 const KIND: &str = "room-checkpoint";

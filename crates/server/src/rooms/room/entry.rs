@@ -22,8 +22,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use cellcaster::game::{Intents, PlayerColor};
 use crate::sessions::line::Line;
+use cellcaster::game::{Intents, PlayerColor};
 
 /// The number of a member in a room. It is not used again after they leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -19,8 +19,8 @@ use std::fmt;
 use super::entry::{MemberId, NAME_COLUMNS};
 use super::mode::Mode;
 use super::presence::KeptPlace;
-use cellcaster::game::PlayerColor;
 use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
 use cellcaster::world::Difficulty;
 
 /// The version of the format, and the first line of each log.

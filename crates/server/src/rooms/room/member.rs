@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::entry::MemberId;
 use super::presence::KeptPlace;
-use cellcaster::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 use crate::sessions::line::Line;
+use cellcaster::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 
 /// A member of a room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

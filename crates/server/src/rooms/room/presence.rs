@@ -13,9 +13,9 @@ use super::entry::MemberId;
 use super::header::Seat;
 use super::member::Member;
 use super::round::SECOND;
+use crate::sessions::line::Line;
 use cellcaster::game::stored::bits;
 use cellcaster::game::{Intents, PlayerColor};
-use crate::sessions::line::Line;
 
 /// The longest time for which a member is away, in steps. Then they leave.
 pub(crate) const AWAY: u64 = 60 * SECOND;

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::{Finish, MemberId, Mode, Room, Said};
+use crate::sessions::line::Line;
 use cellcaster::app::parts::time;
 use cellcaster::game::{PlayerColor, STEP};
-use crate::sessions::line::Line;
 
 /// How many lines a room remembers.
 pub(crate) const SAID: usize = 8;

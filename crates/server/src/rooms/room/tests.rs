@@ -1,8 +1,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use cellcaster::game::{Intent, Outcome, PlayerColor};
 use crate::simulation;
+use cellcaster::game::{Intent, Outcome, PlayerColor};
 use cellcaster::world::{Difficulty, FieldOfView};
 
 /// Two levels with a hall in which the exit is straight ahead.

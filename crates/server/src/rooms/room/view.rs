@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::entry::{Emote, MemberId};
 use super::header::Header;
 use super::round::{Finish, Phase, Role, Standing};
-use cellcaster::game::{Game, Intents, PlayerColor, PlayerId};
 use crate::sessions::line::Line;
+use cellcaster::game::{Game, Intents, PlayerColor, PlayerId};
 
 /// An immutable snapshot of a room. It shares the game with the room, which copies it only if a
 /// snapshot still exists in the next step.

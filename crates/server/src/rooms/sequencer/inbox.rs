@@ -15,10 +15,10 @@ use std::sync::Mutex;
 use tokio::sync::Notify;
 
 use super::FinishedRun;
-use cellcaster::game::{PlayerColor, STEPS_PER_SECOND};
-use crate::sessions::line::Line;
 use crate::lock::locked;
 use crate::rooms::room::{Command, MemberId, Mode};
+use crate::sessions::line::Line;
+use cellcaster::game::{PlayerColor, STEPS_PER_SECOND};
 
 /// The least number of steps between two changes of a member's intents: 30 changes a second.
 const INTENT_PAUSE: u64 = STEPS_PER_SECOND as u64 / 30;

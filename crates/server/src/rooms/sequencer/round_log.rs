@@ -2,8 +2,10 @@
 
 use std::io;
 
-use cellcaster::game::{self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch};
 use crate::rooms::room::{Command, Entry, Log, MemberId, Mode, Room};
+use cellcaster::game::{
+    self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch,
+};
 
 /// The log of a room, from which it takes its steps.
 pub(crate) struct RoundLog {

@@ -3,12 +3,15 @@
 use std::sync::{Arc, Mutex};
 
 use super::{Shared, unix_time};
-use crate::sessions::line::Line;
+use crate::accounts::{
+    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
+    Origin, Refusal, StoreFailure,
+};
+use crate::lock::locked;
 use crate::ops::logging::events;
 use crate::rooms::room::NAME_COLUMNS;
+use crate::sessions::line::Line;
 use crate::ssh::{Departure, Visitor};
-use crate::lock::locked;
-use crate::accounts::{Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name, Origin, Refusal, StoreFailure};
 
 /// What the store knows of a visitor.
 #[derive(Debug)]

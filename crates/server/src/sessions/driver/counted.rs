@@ -2,10 +2,10 @@
 
 use super::Shared;
 use super::account::NOT_KNOWN;
+use crate::accounts::AccountKey;
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::ops::logging::events;
 use crate::ssh::{Departure, Visitor};
-use crate::accounts::AccountKey;
 
 impl Shared {
     /// Counts a visitor on all hosts, or tells why they may not play, and how they depart.

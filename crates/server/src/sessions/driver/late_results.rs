@@ -11,9 +11,9 @@ use tokio::time::sleep;
 
 use super::results::{Recorder, clock};
 use super::{Shared, unix_time};
+use crate::accounts::{HostStore, Late, WaitingResults};
 use crate::lock::locked;
 use crate::ops::logging::events;
-use crate::accounts::{HostStore, Late, WaitingResults};
 
 /// The time from one round to the next.
 const PERIOD: Duration = Duration::from_secs(2);

@@ -4,15 +4,15 @@ use std::io;
 use std::sync::Arc;
 
 use super::store_worker::StoreWorker;
+use crate::accounts::{HostStore, WaitingResults};
 use crate::cluster::Cluster;
-use crate::sessions::load::Load;
-use crate::rooms::room::Catalog;
-use crate::rooms::directory::Logs;
-use crate::rooms::maps::HostMaps;
 use crate::ops::config::LiveConfig;
 use crate::ops::metrics::Metrics;
+use crate::rooms::directory::Logs;
+use crate::rooms::maps::HostMaps;
+use crate::rooms::room::Catalog;
+use crate::sessions::load::Load;
 use crate::sessions::visitors::Visitors;
-use crate::accounts::{HostStore, WaitingResults};
 
 /// What a [`GameHost`](super::GameHost) is made of.
 pub struct HostParts {

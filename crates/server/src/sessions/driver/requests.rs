@@ -8,13 +8,13 @@ use super::account::{self, choose_name};
 use super::results;
 use super::stay::Way;
 use super::visit::Visit;
+use crate::accounts::{Account, AccountSettings, Name, Origin};
 use crate::lock::locked;
 use crate::ops::logging::events;
-use crate::rooms::room::Command;
 use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::sessions::session::{Request, SessionEvent};
-use crate::accounts::{Account, AccountSettings, Name, Origin};
 use cellcaster::world::Difficulty;
 
 /// What the store has answered.

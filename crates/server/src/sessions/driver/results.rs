@@ -3,17 +3,20 @@
 use std::sync::{Arc, Mutex};
 
 use super::unix_time;
-use cellcaster::game::STEPS_PER_SECOND;
-use crate::sessions::line::Line;
+use crate::accounts::{
+    Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun,
+    WaitingResult, WaitingResults, verify_with,
+};
+use crate::lock::locked;
 use crate::ops::logging::events;
+use crate::ops::metrics::Metrics;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use crate::rooms::sequencer::FinishedRun;
+use crate::sessions::line::Line;
 use crate::sessions::session::BoardRow;
-use crate::ops::metrics::Metrics;
 use crate::sessions::visitors::Visitors;
-use crate::lock::locked;
 use cellcaster::app::store::Improved;
-use crate::accounts::{Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun, WaitingResult, WaitingResults, verify_with};
+use cellcaster::game::STEPS_PER_SECOND;
 use cellcaster::world::{Difficulty, World};
 
 /// The most entries of a board that are shown, and the places that are told.

@@ -10,15 +10,15 @@ use super::store_worker::StoreWorker;
 use super::terminal;
 use super::visit::Visit;
 use super::{GameHost, HostParts, Shared, refuse};
-use crate::sessions::load::{Load, Worker};
-use crate::rooms::room::{Catalog, RoomView};
-use crate::rooms::directory::{Logs, Place, Rooms};
-use crate::sessions::session::Session;
-use crate::ssh::{Link, Visitor};
+use crate::accounts::HostStore;
 use crate::ops::config::LiveConfig;
 use crate::ops::metrics::Metrics;
+use crate::rooms::directory::{Logs, Place, Rooms};
+use crate::rooms::room::{Catalog, RoomView};
+use crate::sessions::load::{Load, Worker};
+use crate::sessions::session::Session;
 use crate::sessions::visitors::Visitors;
-use crate::accounts::HostStore;
+use crate::ssh::{Link, Visitor};
 use cellcaster::terminal::Options;
 
 /// A host in simulated time.

@@ -14,8 +14,8 @@ use super::requests::Reply;
 use super::visit::Visit;
 use crate::cluster::Entrant;
 use crate::rooms::directory::{Place, RoomRefusal};
-use crate::sessions::session::SessionEvent;
 use crate::rooms::summary::{RoomId, RoomWish};
+use crate::sessions::session::SessionEvent;
 
 /// A way into a room.
 pub(crate) enum Way {

@@ -13,16 +13,16 @@ use super::Shared;
 use super::account::{self, Known, NameInUse};
 use super::requests::{Reply, replies};
 use super::terminal;
-use cellcaster::app::Configuration;
+use crate::accounts::{Account, AccountKey, Name};
+use crate::rooms::directory::Place;
+use crate::rooms::summary::RoomSummary;
 use crate::sessions::line::Line;
 #[cfg(test)]
 use crate::sessions::load::Work;
-use crate::rooms::directory::Place;
 use crate::sessions::session::{HostFacts, Identity, IdleLimits, Session, SessionEvent};
-use crate::rooms::summary::RoomSummary;
-use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::sessions::visitors::{Notice, Presence};
-use crate::accounts::{Account, AccountKey, Name};
+use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
+use cellcaster::app::Configuration;
 use cellcaster::terminal::Options;
 
 /// A visitor with everything that concerns them.

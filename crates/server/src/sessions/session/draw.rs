@@ -18,10 +18,13 @@ use self::ghost::Ghost;
 use super::page::Page;
 use super::stay::seconds_left;
 use super::visit::Visit;
-use cellcaster::app::parts::{DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message, picture_and_status, too_small, whole_seconds};
-use cellcaster::color::palette::ColorDepth;
-use crate::sessions::line;
 use crate::rooms::room::{Phase, RoomView};
+use crate::sessions::line;
+use cellcaster::app::parts::{
+    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
+    picture_and_status, too_small, whole_seconds,
+};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::tui::View;
 use cellcaster::tui::canvas::Canvas;
 use cellcaster::world::{Figure, World};

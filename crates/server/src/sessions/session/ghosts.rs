@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::messages::Request;
-use cellcaster::game::PlayerColor;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::room::RoomView;
+use cellcaster::game::PlayerColor;
 use cellcaster::world::{Difficulty, Figure};
 
 /// The ghosts of the level that is played.

@@ -5,13 +5,13 @@
 
 use std::time::Duration;
 
-use super::page::Page;
-use super::visit::Visit;
 use super::Request;
 use super::choice::Choice;
-use cellcaster::app::parts::{Action, Selection, changes_by};
-use crate::sessions::line::Line;
+use super::page::Page;
+use super::visit::Visit;
 use crate::rooms::room::Command;
+use crate::sessions::line::Line;
+use cellcaster::app::parts::{Action, Selection, changes_by};
 use cellcaster::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use cellcaster::tui::Press;
 

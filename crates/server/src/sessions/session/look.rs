@@ -2,9 +2,9 @@
 
 use super::messages::Identity;
 use cellcaster::app::parts::DrawOptions;
+use cellcaster::app::store::Preferences;
 use cellcaster::color::palette::{ColorDepth, ShadeInk};
 use cellcaster::render::Filter;
-use cellcaster::app::store::Preferences;
 use cellcaster::terminal::Protocol;
 use cellcaster::tui::{CellAspect, Correction, GlyphSet};
 use cellcaster::world::FieldOfView;

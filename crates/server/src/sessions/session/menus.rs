@@ -4,12 +4,12 @@ use super::choice::{Choice, Target};
 use super::draw::COMPRESSION;
 use super::page::Page;
 use super::visit::Visit;
+use crate::rooms::directory::RoomRefusal;
+use crate::rooms::room::{Emote, Mode};
+use crate::rooms::summary::RoomSummary;
+use crate::sessions::line::Line;
 use cellcaster::app::parts::{Menu, time};
 use cellcaster::game::STEP;
-use crate::sessions::line::Line;
-use crate::rooms::room::{Emote, Mode};
-use crate::rooms::directory::RoomRefusal;
-use crate::rooms::summary::RoomSummary;
 
 /// The rooms that the lobby lists itself; the others are on a page of their own.
 const ROOMS_IN_LOBBY: usize = 5;

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use cellcaster::app::Configuration;
-use cellcaster::game::Rank;
+use crate::accounts::AccountSettings;
 use crate::rooms::ghost::Ghost;
-use crate::sessions::line::Line;
 use crate::rooms::room::{Catalog, Command, MemberId};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::sessions::line::Line;
+use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
-use crate::accounts::AccountSettings;
+use cellcaster::game::Rank;
 use cellcaster::world::Difficulty;
 
 /// Who the visitor is.

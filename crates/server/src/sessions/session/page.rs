@@ -6,8 +6,8 @@
 
 use super::choice::{Choice, Target};
 use super::visit::Visit;
-use cellcaster::app::parts::Menu;
 use crate::rooms::room::Mode;
+use cellcaster::app::parts::Menu;
 
 /// A page. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,9 +5,9 @@ use super::messages::Request;
 use super::page::Page;
 use super::settings::Preference;
 use super::visit::Visit;
+use crate::rooms::room::{CHAT_COLUMNS, Command};
 use cellcaster::app::parts::{Action, is_answerable};
 use cellcaster::game::Intent;
-use crate::rooms::room::{CHAT_COLUMNS, Command};
 use cellcaster::terminal::Key;
 use cellcaster::tui::Press;
 

@@ -6,8 +6,10 @@
 use super::choice::Choice;
 use super::messages::Request;
 use super::visit::{Visit, bindings_of};
-use cellcaster::app::parts::{COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off, with_card};
 use crate::accounts::AccountSettings;
+use cellcaster::app::parts::{
+    COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off, with_card,
+};
 use cellcaster::world::Difficulty;
 
 /// A setting on the page.

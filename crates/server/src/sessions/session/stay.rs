@@ -9,10 +9,10 @@ use super::look::Look;
 use super::messages::Request;
 use super::shown_steps::ShownSteps;
 use super::talk::Talk;
+use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use cellcaster::app::MapDisplay;
 use cellcaster::app::parts::{MapPanel, Watch};
 use cellcaster::game::{self, Outcome, PlayerView, STEPS_PER_SECOND};
-use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use cellcaster::world::{Camera, FieldOfView, Figure};
 
 /// A stay in a room.

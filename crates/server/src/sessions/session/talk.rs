@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use cellcaster::game::PlayerColor;
-use crate::sessions::line::Line;
 use crate::rooms::room::Said;
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
 
 /// How long a line is shown.
 const SHOWN: Duration = Duration::from_secs(8);

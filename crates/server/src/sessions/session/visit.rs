@@ -10,11 +10,14 @@ use super::look::Look;
 use super::messages::{BoardRow, HostFacts, Identity, Request};
 use super::page::{Page, Shelved};
 use super::stay::Stay;
-use cellcaster::app::parts::{Clock, Controls, Detection, HelpScroll, KeyContext, Menu, PendingKey, Pointer, Stats, StatusLine};
-use cellcaster::app::{Bindings, Configuration};
-use cellcaster::game::Intents;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
+use cellcaster::app::parts::{
+    Clock, Controls, Detection, HelpScroll, KeyContext, Menu, PendingKey, Pointer, Stats,
+    StatusLine,
+};
+use cellcaster::app::{Bindings, Configuration};
+use cellcaster::game::Intents;
 use cellcaster::terminal::Key;
 
 /// The most wishes that wait for the driver. Further ones are left out: they come from a paste.

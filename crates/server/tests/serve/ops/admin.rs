@@ -176,10 +176,8 @@ fn the_socket_is_private_and_its_requests_are_bounded() {
 #[test]
 fn one_server_uses_a_folder_and_a_killed_one_is_no_obstacle() {
     let mut running = Running::start("", "text");
-    let second = server(&["--listen", "127.0.0.1:0", "--data"])
-        .arg(&running.folder)
-        .output()
-        .unwrap();
+    let second =
+        server(&["--listen", "127.0.0.1:0", "--data"]).arg(&running.folder).output().unwrap();
     let error = String::from_utf8(second.stderr).unwrap();
     assert_eq!(second.status.code(), Some(2));
     assert!(error.contains("another server runs with the data in"), "{error}");

@@ -7,7 +7,8 @@ use cellcaster_server::accounts::{
 use super::server::GameServer;
 
 /// A run whose first seven seconds lead straight on.
-const RUN: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/archive.normal.script"));
+const RUN: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/archive.normal.script"));
 
 fn record_run_of_mara(store: &mut SqliteStore) {
     let now = UnixTime::new(1_000);

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use cellcaster_server::ops::config::Config;
-use cellcaster_server::sessions::driver::{GameHost, HostParts};
-use cellcaster_server::ssh::host_key::HostKey;
-use cellcaster_server::ops::metrics::Metrics;
-use cellcaster_server::ssh::Server;
-use cellcaster_server::sessions::visitors::Visitors;
 use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::ops::config::Config;
+use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::sessions::driver::{GameHost, HostParts};
+use cellcaster_server::sessions::visitors::Visitors;
+use cellcaster_server::ssh::Server;
+use cellcaster_server::ssh::host_key::HostKey;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 

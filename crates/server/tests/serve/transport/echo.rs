@@ -7,8 +7,8 @@
 use std::time::Duration;
 
 use cellcaster::rng::SplitMix64;
-use cellcaster_server::ssh::{Arrival, Departure, Host, Link, Visitor};
 use cellcaster::terminal::{CellWriter, WindowSize};
+use cellcaster_server::ssh::{Arrival, Departure, Host, Link, Visitor};
 use ratatui::layout::Size;
 use ratatui::style::Color;
 use ratatui::widgets::{Paragraph, Wrap};

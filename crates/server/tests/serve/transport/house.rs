@@ -11,8 +11,8 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use cellcaster_server::ops::config::Config;
-use cellcaster_server::ssh::{Counters, Server};
 use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::ssh::{Counters, Server};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::oneshot;
 

@@ -10,12 +10,12 @@ use proptest::prelude::*;
 
 use self::crowd::Crowd;
 use super::*;
+use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
+use crate::simulation;
 use cellcaster::game::stored::first_line;
 use cellcaster::game::{Intents, PlayerColor, RULES_VERSION, Script};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
-use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
-use crate::simulation;
 use cellcaster::world::Difficulty;
 
 fn line(text: &str) -> Line {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{Field, Role, Score};
-use cellcaster::rng::SplitMix64;
 use crate::rooms::room::entry::MemberId;
+use cellcaster::rng::SplitMix64;
 
 /// Members for each seeker at the start.
 const MEMBERS_A_SEEKER: usize = 4;

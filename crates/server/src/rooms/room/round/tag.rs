@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{Field, Role, SECOND, Score};
-use cellcaster::rng::SplitMix64;
 use crate::rooms::room::entry::MemberId;
+use cellcaster::rng::SplitMix64;
 
 /// How long a new "it" stands still, so that the others get away.
 const PAUSE: u64 = SECOND + SECOND / 2;

@@ -1,6 +1,6 @@
 use super::*;
-use cellcaster::game::{Intent, Intents};
 use crate::rooms::room::Emote;
+use cellcaster::game::{Intent, Intents};
 
 fn line(text: &str) -> Line {
     Line::of(text, 16).unwrap()

@@ -1,7 +1,7 @@
 //! A ghost in a picture.
 
-use cellcaster::game::PlayerColor;
 use crate::sessions::session::ghosts::Seen;
+use cellcaster::game::PlayerColor;
 use cellcaster::world::Figure;
 
 /// A ghost, where it is drawn.

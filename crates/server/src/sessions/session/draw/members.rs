@@ -7,11 +7,11 @@ use unicode_width::UnicodeWidthStr;
 
 use super::overhead::style;
 use super::seconds_left;
+use crate::rooms::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
 use cellcaster::app::parts::{message, time, whole_seconds};
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::STEP;
-use crate::rooms::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
+use cellcaster::tui::canvas::Canvas;
 
 /// Draws who is in the room, and their points.
 pub(crate) fn draw_members(

@@ -7,12 +7,12 @@ use ratatui::text::Span;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::ghost::Ghost;
+use crate::rooms::room::{MemberView, Mode, Role, RoomView};
 use cellcaster::app::parts::DrawOptions;
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::{OtherPlayer, PlayerColor, PlayerView};
 use cellcaster::render::FrameSize;
-use crate::rooms::room::{MemberView, Mode, Role, RoomView};
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::tui::color_at;
 use cellcaster::visibility::Projection;
 use cellcaster::world::Figure;

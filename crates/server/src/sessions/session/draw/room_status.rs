@@ -4,12 +4,12 @@ use std::fmt;
 
 use ratatui::layout::Rect;
 
-use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
-use cellcaster::tui::canvas::Canvas;
-use cellcaster::game::{Outcome, PlayerView};
 use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};
 use crate::sessions::session::visit::Visit;
+use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
+use cellcaster::game::{Outcome, PlayerView};
+use cellcaster::tui::canvas::Canvas;
 
 impl Visit {
     /// Draws the mode, the time, what the player is and has, and who is watched.

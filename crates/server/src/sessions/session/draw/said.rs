@@ -5,10 +5,10 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::overhead::style;
-use cellcaster::tui::canvas::Canvas;
-use cellcaster::color::palette::ColorDepth;
 use crate::sessions::session::talk::Remark;
 use crate::sessions::session::visit::Visit;
+use cellcaster::color::palette::ColorDepth;
+use cellcaster::tui::canvas::Canvas;
 
 /// The rows of a picture that are left to others.
 const ROWS_ABOVE: u16 = 3;

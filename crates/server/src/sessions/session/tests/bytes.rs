@@ -6,8 +6,8 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::*;
-use cellcaster::color::palette::ColorDepth;
 use crate::rooms::room::Catalog;
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::Fidelity;
 
 /// The frames of a walk through the museum.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::*;
-use cellcaster::game::{Game, Intent, Intents, Rules};
 use crate::rooms::ghost::Ghost;
+use cellcaster::game::{Game, Intent, Intents, Rules};
 use cellcaster::world::{Difficulty, World};
 
 const RUN: &str = "3 s forward\n2 s stand\n";

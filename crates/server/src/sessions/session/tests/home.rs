@@ -6,14 +6,14 @@ use std::time::Duration;
 use russh::keys::ssh_key::public::{self, Ed25519PublicKey};
 
 use super::*;
-use cellcaster::color::palette::ColorDepth;
-use cellcaster::game::Outcome;
-use crate::sessions::line::Line;
 use crate::rooms::room::{Room, parse_log};
+use crate::rooms::summary::RoomId;
+use crate::sessions::line::Line;
 use crate::sessions::session::page::Page;
 use crate::simulation::guest;
-use crate::rooms::summary::RoomId;
 use crate::ssh::{KeyData, Visitor};
+use cellcaster::color::palette::ColorDepth;
+use cellcaster::game::Outcome;
 use cellcaster::terminal::Fidelity;
 
 /// A key, which makes its owner an account.

@@ -1,10 +1,10 @@
 //! The way from the name into a room, and back.
 
 use super::*;
+use crate::rooms::summary::RoomId;
 use crate::sessions::session::choice::Target;
 use crate::sessions::session::page::Page;
 use crate::simulation::emulator::{Emulator, Modes};
-use crate::rooms::summary::RoomId;
 
 #[test]
 fn enter_alone_leads_to_a_first_walk() {
