@@ -32,12 +32,12 @@ impl std::error::Error for Takes {}
 ///
 /// # Errors
 /// One sentence about the first mistake.
-pub fn parse<P: Parser>(
-    words: impl IntoIterator<Item = OsString>,
-) -> Result<Option<P>, Error> {
+pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Option<P>, Error> {
     match P::try_parse_from(words) {
         Ok(arguments) => Ok(Some(arguments)),
-        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+        Err(error)
+            if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>
+        {
             write!(io::stdout(), "{error}").map_err(|error| Error::of_output(&error))?;
             Ok(None)
         }
@@ -126,4 +126,3 @@ fn first_line(error: &clap::Error) -> String {
     let line = text.lines().next().unwrap_or_default();
     line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }
-

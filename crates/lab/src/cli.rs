@@ -38,7 +38,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 /// The words with the command first, as in `--caster dda snapshot`, and `play` where none is named.
 fn caster_last(mut words: Vec<OsString>) -> Vec<OsString> {
-    let is_caster = |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--caster"));
+    let is_caster =
+        |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--caster"));
     if !words.get(1).is_some_and(is_caster) {
         return words;
     }
@@ -87,9 +88,8 @@ fn without_caster(words: Vec<OsString>) -> Result<(Method, Vec<OsString>), Error
             }
         };
         let value = value.to_string_lossy();
-        method = value
-            .parse()
-            .map_err(|error| Error::mistake(format!("--caster {value}: {error}")))?;
+        method =
+            value.parse().map_err(|error| Error::mistake(format!("--caster {value}: {error}")))?;
     }
     Ok((method, others))
 }

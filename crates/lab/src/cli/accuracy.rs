@@ -13,8 +13,8 @@ mod text;
 use std::io::{self, BufWriter, IsTerminal, Write};
 
 use super::arguments::{Accuracy, ReportFormat};
-use cellcaster::cli::{Error, level, snapshot};
 use crate::accuracy::{Plan, RaySource, Table, report, set_names};
+use cellcaster::cli::{Error, level, snapshot};
 use progress::Progress;
 use run::Run;
 

@@ -132,7 +132,9 @@ pub(crate) enum BenchFormat {
 ///
 /// Plays a script off screen, and measures what its frames take on their way to a terminal.
 #[derive(Args, Debug)]
-#[command(after_help = "Examples:\n  cellcaster-lab wire\n  cellcaster-lab wire --script walk.script cellar\n  cellcaster-lab wire --palette 256 --size 80x24\n  cellcaster-lab wire --glyphs all --format svg > glyphs.svg")]
+#[command(
+    after_help = "Examples:\n  cellcaster-lab wire\n  cellcaster-lab wire --script walk.script cellar\n  cellcaster-lab wire --palette 256 --size 80x24\n  cellcaster-lab wire --glyphs all --format svg > glyphs.svg"
+)]
 pub(crate) struct Wire {
     /// A map file, \"-\" for standard input, or a built-in level
     pub(crate) map: Option<OsString>,

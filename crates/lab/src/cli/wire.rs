@@ -10,10 +10,10 @@ use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 
 use super::arguments::{Glyphs, Wire, WireFormat};
+use crate::wire::{self, Plan, Report};
+use cellcaster::app::{Replay, Settings};
 use cellcaster::cli::script::{self, SHOWCASE};
 use cellcaster::cli::{Error, level};
-use cellcaster::app::{Replay, Settings};
-use crate::wire::{self, Plan, Report};
 use cellcaster::terminal::Fidelity;
 
 /// Writes the report that `options` request.

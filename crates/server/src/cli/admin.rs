@@ -9,13 +9,15 @@ mod table;
 use std::io::{self, Write};
 use std::path::Path;
 
-use cellcaster::cli::Error;
 use super::arguments::{Admin, AdminAction};
 use super::database::Database;
-use cellcaster::cli::data_folder::data_folder;
 use crate::cli::host_store;
+use crate::ops::admin::{
+    AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
+};
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
 use cellcaster::rng;
-use crate::ops::admin::{AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask};
 use table::{table, time};
 
 /// Does the action, and writes what came of it.
@@ -118,7 +120,9 @@ impl RunningHost<'_> {
 
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
         match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
-            0 => Err(Error::mistake("nobody there is on; \"cellcaster-server admin who\" lists who is")),
+            0 => Err(Error::mistake(
+                "nobody there is on; \"cellcaster-server admin who\" lists who is",
+            )),
             count => Ok(format!("ended {}\n", sessions(count))),
         }
     }

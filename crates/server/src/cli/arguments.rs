@@ -245,7 +245,8 @@ impl ClusterAddress {
             let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
             rest.is_some_and(|rest| !rest.is_empty())
         };
-        let takes = "an address of NATS such as nats://host:4222, or several with commas between them";
+        let takes =
+            "an address of NATS such as nats://host:4222, or several with commas between them";
         text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(Takes(takes))
     }
 }

@@ -13,21 +13,21 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
-use cellcaster::cli::Error;
 use super::arguments::Serve;
 use super::database::Database;
-use cellcaster::cli::data_folder::data_folder;
+use crate::accounts::{HostStore, StoreFailure, WaitingResults};
 use crate::cli::host_store::{self, failed};
 #[cfg(unix)]
 use crate::ops::admin::AdminSocket;
 use crate::ops::config::Config;
-use crate::sessions::driver::{GameHost, HostParts};
-use crate::ssh::host_key::HostKey;
 use crate::ops::logging::{LogFormat, Logging, events};
 use crate::ops::metrics::{Metrics, respond};
-use crate::ssh::Server;
+use crate::sessions::driver::{GameHost, HostParts};
 use crate::sessions::visitors::Visitors;
-use crate::accounts::{HostStore, StoreFailure, WaitingResults};
+use crate::ssh::Server;
+use crate::ssh::host_key::HostKey;
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
@@ -35,7 +35,9 @@ use signals::{Hangups, Signals};
 pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(&options)?;
     let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
-        Error::mistake("there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"")
+        Error::mistake(
+            "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
+        )
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
     let database = host_store::named(options.store.store.take());
@@ -153,7 +155,8 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
             Err(Error::mistake(format!("another server runs with the data in {folder}")))
         }
         Err(error) => {
-            Error::machine(format!("\"cellcaster-server admin\" can't reach this server: {error}")).warn();
+            Error::machine(format!("\"cellcaster-server admin\" can't reach this server: {error}"))
+                .warn();
             Ok(None)
         }
     }

@@ -3,9 +3,9 @@
 use std::net::SocketAddr;
 
 use super::{Database, Error, Serve};
+use crate::accounts::{HostNotice, PostgresStore};
 use crate::cluster::Cluster;
 use crate::sessions::driver::HostParts;
-use crate::accounts::{HostNotice, PostgresStore};
 
 /// A cluster that the host is going to join.
 pub(crate) struct PendingCluster {
@@ -14,7 +14,6 @@ pub(crate) struct PendingCluster {
     leases: PostgresStore,
     presence: PostgresStore,
 }
-
 
 /// The cluster that `options` name. The store is that of all hosts.
 pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
@@ -31,7 +30,6 @@ pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<Pendin
     let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
     Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
 }
-
 
 impl PendingCluster {
     /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
@@ -50,7 +48,6 @@ impl PendingCluster {
         let cluster = Cluster::join(&self.address, leases, presence, notice).await;
         Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
     }
-
 }
 
 /// The name of this machine with the port, which operators know, and a number that no other start of a host has.

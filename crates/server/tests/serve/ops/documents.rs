@@ -49,7 +49,11 @@ fn commands_in_the_documents_are_right() {
         let line = line.split(" #").next().unwrap().trim();
         let words: Vec<String> = words(line);
         // A server would run on: its options are read before the help is written.
-        let help = if words.first().is_none_or(|word| word.starts_with("--")) { &["--help"][..] } else { &[] };
+        let help = if words.first().is_none_or(|word| word.starts_with("--")) {
+            &["--help"][..]
+        } else {
+            &[]
+        };
         let output = server(&words.iter().map(String::as_str).collect::<Vec<_>>())
             .args(help)
             .env("CELLCASTER_DATA", &data)
@@ -105,8 +109,9 @@ fn the_unit_is_what_systemd_takes() {
 #[test]
 fn the_unit_starts_the_program_with_options_that_there_are() {
     let text = document("hosting/cellcaster.service");
-    let starts =
-        text.lines().filter_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/cellcaster-server "));
+    let starts = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/cellcaster-server "));
     let starts: Vec<&str> = starts.collect();
     assert_eq!(starts.len(), 1);
     let output = server(&words(starts[0]).iter().map(String::as_str).collect::<Vec<_>>())
