@@ -5,93 +5,76 @@
 
 mod banner;
 mod bindings;
-mod clock;
 mod controls;
-mod demo;
 mod descents;
 mod detection;
 mod draw;
-mod draw_options;
-mod ghost;
-mod goal;
 mod help;
 mod hud;
-mod interruption;
 mod keys;
 mod levels;
 mod map_panel;
 mod menu;
 mod menus;
 mod mouse;
-mod offers;
-mod overlay;
 mod panels;
 #[cfg(feature = "serve")]
 pub(crate) mod parts;
+mod picture;
 mod played;
 mod question;
 mod recording;
-mod redraw;
-mod reload;
 mod replay;
 mod results;
 mod run;
-mod run_log;
 mod saved;
 mod screen;
-mod script_cursor;
-mod series;
 mod settings;
 mod settings_screen;
 mod stats;
 mod status;
 mod steps;
 pub mod store;
-mod summary;
-mod time;
-mod tmux_offer;
-mod vitals;
-mod watch;
+mod title;
 
 use std::time::Duration;
 
 pub use bindings::Bindings;
-use demo::Demo;
-use draw_options::DrawOptions;
-use ghost::Ghost;
-use goal::Goal;
 use help::HelpScroll;
 pub use levels::Levels;
 use levels::{Course, LevelNumber, Stage};
 use map_panel::MapPanel;
 use menu::Menu;
 use menus::Choice;
-pub use offers::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
+use recording::Ghost;
 pub use recording::Recording;
+use recording::RunLog;
 pub use replay::Replay;
 use results::LevelResult;
 pub use run::{Farewell, Opening, play};
-use run_log::RunLog;
 use screen::{Screen, Shelved};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
+use status::Goal;
+use title::Demo;
+pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
 use crate::app::store::{Reached, Store};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::STEP;
 use crate::tui::{CellAspect, GlyphSet, View};
 use crate::world::{Difficulty, FieldOfView, Figure};
-use clock::Clock;
+use controls::Clock;
 use controls::Controls;
 use detection::Detection;
+use levels::Reload;
 use mouse::Pointer;
 use played::{Played, Viewpoint, Views};
 use question::PendingKey;
 use recording::ScriptRecorder;
-use reload::Reload;
 use stats::Stats;
 use status::StatusLine;
-use tmux_offer::TmuxOrder;
-use watch::Watch;
+use steps::Watch;
+use title::TmuxOrder;
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -311,4 +294,3 @@ impl App {
 
 #[cfg(test)]
 mod tests;
-mod wrap;

@@ -8,8 +8,8 @@ use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Padding, Paragraph};
 
 use super::App;
+use super::panels::wrapped;
 use super::panels::{BORDERS, PADDING, framed, key_names};
-use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings, MapChange};
 use crate::game::Intent;
 use crate::terminal::Key;

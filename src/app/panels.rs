@@ -1,4 +1,4 @@
-//! Panels on the picture: the minimap's frame, and messages.
+//! Panels on the picture: frames, messages, and lines wrapped to fit.
 
 use std::fmt::{self, Display};
 
@@ -132,6 +132,34 @@ pub(crate) fn time(seconds: f64) -> String {
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }
 
+/// Wraps `text` into lines of up to `width` characters, between words, and within words that are
+/// longer.
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut room = width;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if room < width {
+            if length < room {
+                lines[..].last_mut().into_iter().for_each(|line| line.push(' '));
+                room -= 1;
+            } else {
+                lines.push(String::new());
+                room = width;
+            }
+        }
+        for character in word.chars() {
+            if room == 0 {
+                lines.push(String::new());
+                room = width;
+            }
+            lines[..].last_mut().into_iter().for_each(|line| line.push(character));
+            room -= 1;
+        }
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,5 +169,18 @@ mod tests {
         assert_eq!(time(0.0), "0:00.0");
         assert_eq!(time(61.26), "1:01.2");
         assert_eq!(time(3600.0), "60:00.0");
+    }
+
+    #[test]
+    fn lines_are_filled_to_the_width() {
+        for (text, width, lines) in [
+            ("", 5, &[""][..]),
+            ("one two three", 7, &["one two", "three"]),
+            ("one two three", 13, &["one two three"]),
+            ("abcdefgh i", 3, &["abc", "def", "gh", "i"]),
+            ("ä ö", 1, &["ä", "ö"]),
+        ] {
+            assert_eq!(wrapped(text, width), lines, "{text} in {width}");
+        }
     }
 }

@@ -30,31 +30,26 @@
 //! text that the player can read and copy. So was one file that is locked while the game runs: the
 //! second game would keep nothing.
 
-mod best;
-mod change;
-pub(crate) mod disk;
-mod home;
+pub(crate) mod home;
 mod names;
 pub(crate) mod private;
 mod progress;
 mod read;
-#[cfg(feature = "cli")]
-mod replayed;
+mod results;
 pub(crate) mod values;
 mod write;
 
 use std::path::Path;
 
-pub use best::{Best, Improved, Reached, Run};
-use change::Change;
 use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
 #[cfg(feature = "serve")]
 pub(crate) use names::name_in_map_key;
-use progress::Progress;
+use progress::{Change, Progress};
 pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
+pub use results::{Best, Improved, Reached, Run};
 #[cfg(feature = "cli")]
-pub(crate) use replayed::{DescentRun, replayed};
+pub(crate) use results::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 
@@ -85,7 +80,7 @@ impl Store {
     /// The store in `folder`, which is created with the first change; and a sentence if something
     /// in it is damaged, or can't be used.
     pub fn open(folder: &Path) -> (Self, Option<String>) {
-        Self::at(Home::new(folder.to_owned(), Box::new(disk::Real)))
+        Self::at(Home::new(folder.to_owned(), Box::new(home::Real)))
     }
 
     fn at(mut home: Home) -> (Self, Option<String>) {

@@ -10,8 +10,8 @@ use std::num::NonZeroU32;
 
 use toml::de::DeValue;
 
-use super::best::{Best, Reached};
 use super::progress::{Daily, Descent, Preferences, Progress, Save, SavedEntry};
+use super::results::{Best, Reached};
 use super::values::{
     COLORS, CORRECTIONS, GLYPHS, OLDEST, SAVED, SAVED_DESCENT, SAVES, VERSION, named,
 };

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-use super::best::{Best, Reached};
 use super::progress::{Preferences, Progress, Save, SavedEntry};
+use super::results::{Best, Reached};
 use super::values::{COLORS, CORRECTIONS, GLYPHS, SAVES, VERSION, name_of};
 use crate::game::{Rules, Share};
 use crate::tui::Correction;

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::titles::titled;
 use super::*;
-use crate::app::run_log::RunLog;
+use crate::app::recording::RunLog;
 use crate::app::store::{Run, map_key};
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};

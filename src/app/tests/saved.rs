@@ -3,7 +3,7 @@
 use super::missions::text;
 use super::titles::titled;
 use super::*;
-use crate::app::run_log::RunLog;
+use crate::app::recording::RunLog;
 use crate::app::store::{MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
 use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
 use crate::game::{Header, Intents, Script};

@@ -3,7 +3,7 @@
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
-use crate::app::tmux_offer::TmuxOrder;
+use crate::app::title::TmuxOrder;
 use crate::terminal::{ColorSource, TmuxClient};
 
 const OFFER: &str = "24-bit colours in tmux";

@@ -24,7 +24,7 @@ use super::{
     Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun,
     verify_with,
 };
-use crate::app::store::disk::{Disk, Real};
+use crate::app::store::home::{Disk, Real};
 use crate::app::store::private;
 use crate::fault::printable_path;
 use crate::world::World;
