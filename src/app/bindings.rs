@@ -171,18 +171,15 @@ impl Bindings {
     }
 }
 
-impl Default for Bindings {
-    /// The bindings for QWERTY keyboards.
-    fn default() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'w',
-            back: 's',
-            strafe_left: 'a',
-            leave: 'q',
-            lamp: 'l',
-            turns: None,
-        })
-    }
+/// A keyboard that keys are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) enum Preset {
+    #[default]
+    Qwerty,
+    /// Z, Q, S and D are where W, A, S and D are on QWERTY keyboards; A leaves.
+    Azerty,
+    /// For users of vi: H and L turn, J and K walk, A and D strafe, Z lights the lamp.
+    Hjkl,
 }
 
 /// The keys that differ between presets.
@@ -196,40 +193,35 @@ struct Letters {
     turns: Option<[char; 2]>,
 }
 
-/// The name of a preset and its constructor.
-pub(crate) type Preset = (&'static str, fn() -> Bindings);
-
-/// The presets, the default first.
-pub(crate) const PRESETS: [Preset; 3] =
-    [("qwerty", Bindings::default), ("azerty", Bindings::azerty), ("hjkl", Bindings::hjkl)];
-
-impl Bindings {
-    /// The bindings for AZERTY keyboards: Z, Q, S and D are where W, A, S and D are on QWERTY
-    /// keyboards; A leaves.
-    pub fn azerty() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'z',
+impl Preset {
+    /// The bindings for that keyboard.
+    pub(crate) fn bindings(self) -> Bindings {
+        let qwerty = Letters {
+            forward: 'w',
             back: 's',
-            strafe_left: 'q',
-            leave: 'a',
-            lamp: 'l',
-            turns: None,
-        })
-    }
-
-    /// The bindings for users of vi: H and L turn, J and K walk, A and D strafe, Z
-    /// lights the lamp.
-    pub fn hjkl() -> Self {
-        Self::with_letters(&Letters {
-            forward: 'k',
-            back: 'j',
             strafe_left: 'a',
             leave: 'q',
-            lamp: 'z',
-            turns: Some(['h', 'l']),
+            lamp: 'l',
+            turns: None,
+        };
+        Bindings::with_letters(&match self {
+            Self::Qwerty => qwerty,
+            Self::Azerty => Letters { forward: 'z', strafe_left: 'q', leave: 'a', ..qwerty },
+            Self::Hjkl => {
+                Letters { forward: 'k', back: 'j', lamp: 'z', turns: Some(['h', 'l']), ..qwerty }
+            }
         })
     }
+}
 
+impl Default for Bindings {
+    /// The bindings for QWERTY keyboards.
+    fn default() -> Self {
+        Preset::default().bindings()
+    }
+}
+
+impl Bindings {
     fn with_letters(letters: &Letters) -> Self {
         let mut keys = vec![
             (Key::Char(letters.forward), Action::Want(Intent::Forward)),
@@ -299,9 +291,9 @@ mod tests {
 
     #[test]
     fn every_action_has_a_key_in_every_preset() {
-        for (preset, bindings) in PRESETS {
+        for preset in [Preset::Qwerty, Preset::Azerty, Preset::Hjkl] {
             for (name, _, action) in Action::ALL {
-                assert!(bindings().keys(action).next().is_some(), "{name} in {preset}");
+                assert!(preset.bindings().keys(action).next().is_some(), "{name} in {preset:?}");
             }
         }
     }

@@ -45,7 +45,7 @@ impl App {
         self.show_ghost();
         let [picture, _] = panels::picture_and_status(area);
         let (options, screen, bindings) =
-            (self.draw_options(), self.screen, &self.settings.bindings);
+            (self.draw_options(), self.screen(), &self.settings.bindings);
         let go_on = &mut || go_on(screen, bindings);
         self.game.render(&options, picture.as_size(), &mut self.views, go_on)
     }
@@ -60,7 +60,7 @@ impl App {
         self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
-        } else if self.screen.is_result() {
+        } else if self.shows_result() {
             canvas.draw_widget(hint("up and down, Enter"), status);
         } else {
             self.draw_status(canvas, status);
@@ -71,19 +71,19 @@ impl App {
 
     fn draw_panel(&mut self, canvas: &mut impl Canvas, picture: Rect) {
         let bindings = &self.settings.bindings;
-        match self.screen {
+        match self.screen() {
             Screen::Playing => {}
             Screen::Help => {
-                self.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
+                self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
             Screen::Leaving => {
                 panels::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
             Screen::Title => {
-                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth);
-                self.menu.draw(canvas, below);
+                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth());
+                self.pages.menu.draw(canvas, below);
             }
-            _ => self.menu.draw(canvas, picture),
+            _ => self.pages.menu.draw(canvas, picture),
         }
     }
 
@@ -98,7 +98,7 @@ impl App {
             mouse: self.pointer.is_on(),
             stats: self.stats.as_ref().filter(|_| self.shows_stats),
             bindings: &self.settings.bindings,
-            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth),
+            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth()),
         });
         canvas.draw_widget(&self.status, area);
     }
@@ -118,9 +118,9 @@ impl App {
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));
         DrawOptions {
             glyphs: self.settings.glyphs,
-            depth: self.depth,
+            depth: self.depth(),
             shade_ink: self.terminal.shade_ink,
-            cell_aspect: self.cell_aspect,
+            cell_aspect: self.settings.cell_aspect.or(self.terminal.aspect).unwrap_or_default(),
             filter: self.settings.filter,
             correction: self.store.preferences().correction,
             field_of_view: self.field_of_view,
@@ -142,7 +142,7 @@ impl App {
         let Some(overlay) = self.overlay(options) else {
             return options.draw_middle(canvas, area);
         };
-        overlay.draw_hud(canvas, area, self.screen == Screen::Playing);
+        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
     }
 
     fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
@@ -208,8 +208,8 @@ impl App {
         if self.demo.is_some() {
             return Some(self.clock.step_after(0));
         }
-        if self.screen != Screen::Playing {
-            return self.pending.until();
+        if self.screen() != Screen::Playing {
+            return self.pages.pending_until();
         }
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
@@ -223,7 +223,7 @@ impl App {
     /// Whether the player wants nothing, and the next step changes only what others do.
     pub(crate) fn waits_for_others(&self) -> bool {
         let wanted = self.wanted();
-        self.screen == Screen::Playing
+        self.screen() == Screen::Playing
             && self.demo.is_none()
             && wanted.is_empty()
             && !self.controls.held.has_taps()
@@ -253,7 +253,7 @@ impl App {
         has_arrived: &mut HasArrived<'_>,
     ) -> Rendered {
         if self.is_interrupted {
-            let (screen, bindings) = (self.screen, &self.settings.bindings);
+            let (screen, bindings) = (self.screen(), &self.settings.bindings);
             // Other events may have arrived before it.
             if has_arrived(&|event| comes_first(event, screen, bindings)) {
                 return Rendered::Interrupted;

@@ -352,7 +352,7 @@ impl App {
                 self.stage.change(level);
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
-                if self.screen.is_result() {
+                if self.shows_result() {
                     self.show(Screen::Playing);
                 }
                 self.shown = None;

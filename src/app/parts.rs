@@ -9,15 +9,14 @@ pub(crate) use super::help::HelpScroll;
 pub(crate) use super::map_panel::MapPanel;
 pub(crate) use super::menu::{Menu, Selection, changes_by};
 pub(crate) use super::mouse::Pointer;
+pub(crate) use super::page::{PendingKey, is_answerable};
 pub(crate) use super::panels::{
     is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
 };
 pub(crate) use super::picture::DrawOptions;
 pub(crate) use super::picture::Overlay;
-pub(crate) use super::question::{PendingKey, is_answerable};
-pub(crate) use super::settings_screen::{
-    COLORS, CORRECTIONS, GLYPHS, after, name, on_or_off, with_card,
-};
+pub(crate) use super::setting::Value;
+pub(crate) use super::settings_page::with_card;
 pub(crate) use super::stats::{Meter, Stats};
 pub(crate) use super::status::HealthSigns;
 pub(crate) use super::status::{Part, StatusLine, hint};

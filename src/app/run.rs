@@ -225,7 +225,7 @@ fn update_terminal(app: &mut App, session: &Session) {
         glyphs: session.glyph_support(),
     });
     app.pointer.set_columns(session.size().columns);
-    app.detection.depth = app.depth;
+    app.detection.depth = app.depth();
     app.detection.is_tmux = session.is_tmux();
     app.detection.tmux = session.tmux_client().cloned();
     app.detection.source = app.settings.depth.is_none().then(|| session.color_source());

@@ -37,7 +37,7 @@ impl App {
                 }
             }
         }
-        while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
+        while steps > 0 && moves < Clock::MOST_STEPS && self.screen() == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
             step = controls::after(step, passed);
             steps -= passed;

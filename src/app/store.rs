@@ -32,12 +32,11 @@
 
 pub(crate) mod home;
 mod names;
+pub(crate) mod preferences;
 pub(crate) mod private;
 mod progress;
-mod read;
 mod results;
-pub(crate) mod values;
-mod write;
+mod text;
 
 use std::path::Path;
 
@@ -45,8 +44,9 @@ use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
 #[cfg(feature = "serve")]
 pub(crate) use names::name_in_map_key;
+pub use preferences::Preferences;
 use progress::{Change, Progress};
-pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
+pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 pub use results::{Best, Improved, Reached, Run};
 #[cfg(feature = "cli")]
 pub(crate) use results::{DescentRun, replayed};

@@ -129,7 +129,7 @@ impl App {
     pub(crate) fn tmux_remedy(&self) -> Option<String> {
         let decides = self.detection.source == Some(ColorSource::Tmux);
         let is_offered =
-            decides && self.settings.depth.is_none() && self.depth == ColorDepth::Indexed256;
+            decides && self.settings.depth.is_none() && self.depth() == ColorDepth::Indexed256;
         self.detection.tmux.as_ref().filter(|_| is_offered).and_then(TmuxClient::remedy)
     }
 
@@ -178,7 +178,7 @@ impl App {
     /// Shows whether telling tmux has worked.
     pub(crate) fn tmux_told(&mut self, has_worked: bool) {
         self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
-        if self.screen == Screen::Tmux {
+        if self.screen() == Screen::Tmux {
             self.renew_menu();
         }
     }
@@ -190,14 +190,14 @@ impl App {
             return;
         }
         self.tmux_order = TmuxOrder::None;
-        match self.screen {
+        match self.screen() {
             Screen::Tmux if now.is_none() => self.close(),
             Screen::Tmux => self.renew_menu(),
             Screen::Title => {
-                let selected = self.menu.choice();
+                let selected = self.pages.menu.choice();
                 self.renew_menu();
                 if let Some(choice) = selected {
-                    self.menu.select_choice(choice);
+                    self.pages.menu.select_choice(choice);
                 }
             }
             _ => {}

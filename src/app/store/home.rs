@@ -12,7 +12,7 @@ use std::{fmt, thread};
 
 use crate::app::store::private;
 use crate::app::store::progress::{Change, Progress};
-use crate::app::store::read::{self, Content};
+use crate::app::store::text::{self, Content};
 use crate::fault::printable_path;
 use crate::sort;
 
@@ -133,7 +133,7 @@ impl Home {
                 ));
             }
         };
-        match read::read(&content) {
+        match text::read(&content) {
             Content::Sound(progress) => Ok(Found::Sound(progress)),
             Content::Damaged(progress) => Ok(Found::Damaged(progress, content)),
             Content::Newer(version) => Err(format!(

@@ -2,14 +2,12 @@
 //! holds at that time.
 
 use std::collections::BTreeMap;
-use std::num::NonZeroU32;
 use std::{fmt, mem};
 
 use crate::app::store::names;
+use crate::app::store::preferences::Preferences;
 use crate::app::store::results::{Best, Improved, Reached, Run};
-use crate::color::palette::ColorDepth;
 use crate::game::Rules;
-use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
@@ -87,46 +85,6 @@ pub(crate) struct SavedEntry {
     pub(crate) save: Save,
     /// The name of the script's file.
     pub(crate) script: String,
-}
-
-/// What the player has chosen in the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
-pub struct Preferences {
-    /// Whether a dot marks the middle of the picture.
-    pub crosshair: bool,
-    /// Whether a strip shows the directions.
-    pub compass: bool,
-    /// Whether the terminal's bell rings at sounds.
-    pub bell: bool,
-    /// Whether the best run walks along.
-    pub ghost: bool,
-    /// The difficulty of new games.
-    pub difficulty: Difficulty,
-    /// The glyph set; `None` for the best that the terminal can show.
-    pub glyphs: Option<GlyphSet>,
-    /// The colour depth; `None` for that of the terminal.
-    pub colors: Option<ColorDepth>,
-    /// How pictures are changed for the player's eyes.
-    pub correction: Correction,
-    /// The most frames per second; `None` for the default.
-    pub frames_per_second: Option<NonZeroU32>,
-}
-
-impl Default for Preferences {
-    fn default() -> Self {
-        Self {
-            crosshair: false,
-            compass: false,
-            bell: false,
-            ghost: true,
-            difficulty: Difficulty::Normal,
-            glyphs: None,
-            colors: None,
-            correction: Correction::None,
-            frames_per_second: None,
-        }
-    }
 }
 
 /// A daily run that was tried.
@@ -298,25 +256,5 @@ impl Progress {
     fn add_daily(&mut self, date: u32, daily: Daily) {
         let known = self.dailies.entry(date).or_insert(daily);
         known.reached = known.reached.max(daily.reached);
-    }
-}
-
-impl Preferences {
-    /// Takes over what differs between `before` and `after`.
-    fn choose(&mut self, before: Self, after: Self) {
-        fn set<T: PartialEq>(value: &mut T, before: &T, after: T) {
-            if *before != after {
-                *value = after;
-            }
-        }
-        set(&mut self.crosshair, &before.crosshair, after.crosshair);
-        set(&mut self.compass, &before.compass, after.compass);
-        set(&mut self.bell, &before.bell, after.bell);
-        set(&mut self.ghost, &before.ghost, after.ghost);
-        set(&mut self.difficulty, &before.difficulty, after.difficulty);
-        set(&mut self.glyphs, &before.glyphs, after.glyphs);
-        set(&mut self.colors, &before.colors, after.colors);
-        set(&mut self.correction, &before.correction, after.correction);
-        set(&mut self.frames_per_second, &before.frames_per_second, after.frames_per_second);
     }
 }
