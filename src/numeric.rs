@@ -5,10 +5,6 @@
 //! hundred lines of them, and every picture depends on each bit of the results.
 
 pub(crate) mod damped_motion;
-mod double_double;
-mod error_free;
-mod orientation;
+mod exact;
 
-pub(crate) use double_double::DoubleDouble;
-pub(crate) use error_free::{two_product, two_sum};
-pub(crate) use orientation::{cross, sign_of_cross};
+pub(crate) use exact::{DoubleDouble, cross, sign_of_cross, two_product, two_sum};

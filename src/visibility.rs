@@ -20,20 +20,15 @@
 //! its light and its mip level, which a span finds once for many pixels.
 
 mod billboard;
-mod chains;
 mod column;
 mod draw_list;
 mod face_column;
-mod facing;
 mod filter;
 mod flat;
-mod frame_size;
-mod layer_order;
 mod lighting;
 mod plan;
 mod portal;
 mod projection;
-mod ray_counter;
 mod runs;
 mod scene;
 mod span_mapping;
@@ -49,16 +44,17 @@ pub use column::{Column, Surface};
 pub(crate) use draw_list::{
     BillboardColumn, DrawList, DrawnPlane, Layer, PlaneSpan, Span, SpanMemory, SpanPair,
 };
-pub(crate) use face_column::{Extent, Material, SeeThroughColumn, WallColumn, WallRun, WallSink};
-pub(crate) use facing::Facing;
+pub(crate) use face_column::{
+    Extent, Facing, Material, SeeThroughColumn, WallColumn, WallRun, WallSink,
+};
 pub use filter::Filter;
-pub use frame_size::{FrameSize, PixelAspect};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{
     CeilingLoop, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
     WhyPortals,
 };
 pub(crate) use projection::Projection;
+pub use projection::{FrameSize, PixelAspect};
 pub(crate) use scene::Scene;
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;

@@ -156,7 +156,7 @@ impl Presenter {
             return Ok(());
         }
         if app.is_stale() {
-            let window = session.size().cells();
+            let window = session.protocol().size().cells();
             let rendered =
                 app.render_unless(window, &mut |comes_first| session.has_event(comes_first));
             if rendered == Rendered::Interrupted {
@@ -185,9 +185,10 @@ impl Presenter {
     }
 
     fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
-        if let Some(rates) = self.meter.frame(now, session.bytes_written()) {
-            let (round_trip, fidelity) = (session.round_trip(), session.fidelity());
-            let wants_compression = session.is_limited_by_network();
+        if let Some(rates) = self.meter.frame(now, session.protocol().bytes_drawn()) {
+            let (round_trip, fidelity) =
+                (session.protocol().round_trip(), session.protocol().fidelity());
+            let wants_compression = session.protocol().is_limited_by_network();
             app.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
         }
     }
@@ -211,24 +212,24 @@ impl Presenter {
 
 /// Whether the terminal does not show the current state, or not exactly.
 fn is_unfinished(app: &App, session: &Session) -> bool {
-    app.is_stale() || !session.is_settled()
+    app.is_stale() || !session.protocol().is_settled()
 }
 
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
     let offered = app.tmux_remedy();
-    let aspect = session.size().cell_aspect.and_then(CellAspect::new);
+    let aspect = session.protocol().size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(TerminalLook {
         aspect,
-        depth: session.color_depth(),
-        shade_ink: session.shade_ink(),
+        depth: session.protocol().color_depth(),
+        shade_ink: session.protocol().shade_ink(),
         glyphs: session.glyph_support(),
     });
-    app.pointer.set_columns(session.size().columns);
+    app.pointer.set_columns(session.protocol().size().columns);
     app.detection.depth = app.depth();
-    app.detection.is_tmux = session.is_tmux();
-    app.detection.tmux = session.tmux_client().cloned();
-    app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
+    app.detection.is_tmux = session.protocol().is_tmux();
+    app.detection.tmux = session.protocol().tmux_client().cloned();
+    app.detection.source = app.settings.depth.is_none().then(|| session.protocol().color_source());
     app.renew_tmux_offer(offered.as_deref());
 }
 

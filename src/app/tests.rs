@@ -25,7 +25,7 @@ use crate::app::store::Store;
 use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
-use crate::tui::held::keyboard::Keyboard;
+use crate::tui::held::tests::Keyboard;
 use crate::world::World;
 
 const W: Key = Key::Char('w');

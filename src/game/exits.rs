@@ -124,7 +124,7 @@ impl<'a> Reach<'a> {
     fn go_on(&mut self, from: Place) {
         self.flights += 1;
         self.pass(from.cell);
-        let is_on_a_ledge = beside(from.cell).any(|cell| {
+        let is_on_a_ledge = from.cell.beside().any(|cell| {
             let highest = highest(from, cell);
             let within = |way: &&Way| way.least <= highest;
             let gaps = self.gaps(cell);
@@ -133,7 +133,7 @@ impl<'a> Reach<'a> {
         });
         self.ahead.push(from.cell);
         while let Some(cell) = self.ahead.pop() {
-            for next in beside(cell) {
+            for next in cell.beside() {
                 let Some(index) = self.index(next) else { continue };
                 if self.passed[index] == self.flights {
                     continue;
@@ -179,7 +179,7 @@ impl<'a> Reach<'a> {
 
     /// The gaps of a cell that are high enough to duck in.
     fn gaps(&self, cell: Cell) -> Ways {
-        let Some(id) = self.world.grid().tile(cell.column.into(), cell.row.into()) else {
+        let Some(id) = self.world.grid().tile_in(cell) else {
             return Ways::default();
         };
         let moves = || self.world.moving_tiles().iter().any(|moving| moving.states[0] == id);
@@ -212,19 +212,6 @@ fn highest(from: Place, cell: Cell) -> f64 {
     let to_top = (2.0 * JUMP_HEIGHT / GRAVITY).sqrt();
     let falling = (seconds - to_top).max(0.0);
     from.height + JUMP_HEIGHT - GRAVITY / 2.0 * falling * falling
-}
-
-/// The neighbours of a cell in the west, east, north and south.
-fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
-    let at = |column: Option<u32>, row: Option<u32>| Some(Cell { column: column?, row: row? });
-    [
-        at(column.checked_sub(1), Some(row)),
-        at(column.checked_add(1), Some(row)),
-        at(Some(column), row.checked_sub(1)),
-        at(Some(column), row.checked_add(1)),
-    ]
-    .into_iter()
-    .flatten()
 }
 
 #[cfg(test)]

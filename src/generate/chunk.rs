@@ -9,9 +9,11 @@
 //! Positions wrap around: after the last cell that a number can name comes the first one, so that
 //! no arithmetic on them overflows.
 
-use std::collections::VecDeque;
 use std::fmt;
+use std::iter;
 use std::ops::Range;
+
+use crate::world::{Cell, Flood};
 
 /// The cells along each side of a chunk.
 pub const CHUNK_SIDE: usize = 32;
@@ -198,37 +200,20 @@ impl Chunk {
         start: (usize, usize),
         is_open: impl Fn(u8) -> bool,
     ) -> Vec<(usize, usize)> {
-        let mut seen = [[false; CHUNK_SIDE]; CHUNK_SIDE];
-        let mut queue = VecDeque::from([start]);
-        let mut found = Vec::new();
-        seen[start.1][start.0] = true;
-        while let Some((column, row)) = queue.pop_front() {
-            found.push((column, row));
-            for (column, row) in beside(column, row) {
-                if is_open(self.get(column, row)) && !seen[row][column] {
-                    seen[row][column] = true;
-                    queue.push_back((column, row));
-                }
-            }
-        }
-        found
+        let start = Cell { column: start.0 as u32, row: start.1 as u32 };
+        let place = |cell: Cell| (cell.column as usize, cell.row as usize);
+        let mut flood = Flood::new((CHUNK_SIDE as u32, CHUNK_SIDE as u32), start);
+        let is_open = |cell| {
+            let (column, row) = place(cell);
+            is_open(self.get(column, row))
+        };
+        iter::from_fn(|| flood.next(is_open)).map(|(cell, _)| place(cell)).collect()
     }
 }
 
 /// All cells of a chunk, row by row.
 pub(crate) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
     (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
-}
-
-/// The neighbours of a cell in the west, east, north and south, in the same chunk.
-fn beside(column: usize, row: usize) -> impl Iterator<Item = (usize, usize)> {
-    let places = [
-        (column.wrapping_sub(1), row),
-        (column + 1, row),
-        (column, row.wrapping_sub(1)),
-        (column, row + 1),
-    ];
-    places.into_iter().filter(|&(column, row)| column < CHUNK_SIDE && row < CHUNK_SIDE)
 }
 
 /// The rows as text.

@@ -141,7 +141,7 @@ fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
         line.bytes().zip(0..).map(move |(byte, column)| (byte, Cell { column, row }))
     });
     let meaning = |cell: Cell| {
-        let tile = world.grid().tile(cell.column.into(), cell.row.into())?;
+        let tile = world.grid().tile_in(cell)?;
         let thing = world.things_in(cell).first().map(|thing| (thing.kind, thing.sprite));
         let is_free = !world.grid().is_occupied(cell.column.into(), cell.row.into());
         let Tile { kind, .. } = world.tile(tile);

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::column_batch::ColumnBatch;
 use super::direct_columns::{self, DirectColumn};
 use super::sampling::Sampling;
-use super::wall_level::WallLevel;
+use super::wall_column::WallLevel;
 use crate::visibility::{Column, Facing, Pass, Scene, SideLit, WallRun};
 use crate::world::{Paint, TextureId};
 

@@ -4,10 +4,9 @@
 //! and drawing such a frame takes milliseconds. A thread pool was refused: it would need a shutdown
 //! and sharing between renderers, and save little.
 
-use std::fmt;
 use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
-use std::thread;
+use std::{fmt, thread};
 
 use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};

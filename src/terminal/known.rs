@@ -38,7 +38,6 @@ pub(crate) enum Colors {
 struct Terminal {
     /// The reported name, in lower case.
     name: &'static str,
-    colors: Colors,
     /// The first versions that draw quadrants, sextants and octants themselves.
     blocks: [Option<Version>; 3],
     shades: ShadeInk,
@@ -76,7 +75,7 @@ const TERMINALS: [Terminal; 13] = [
 ];
 
 const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: ShadeInk) -> Terminal {
-    Terminal { name, colors: Colors::True, blocks, shades }
+    Terminal { name, blocks, shades }
 }
 
 /// What the name and version in `report` say, such as `kitty(0.42.1)` or `WezTerm 20240203-110809`.
@@ -105,7 +104,7 @@ pub(crate) fn known(report: &str) -> Known {
     let mut drawn = kinds.into_iter().zip(terminal.blocks);
     let blocks = drawn.rfind(|(_, since)| since.is_some_and(|since| version >= since));
     Known {
-        colors: terminal.colors,
+        colors: Colors::True,
         blocks: blocks.map_or(GlyphSet::Half, |(kind, _)| kind),
         shades: terminal.shades,
         is_tmux: false,

@@ -18,6 +18,7 @@
 use std::io::Read;
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::task::Poll;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -89,15 +90,6 @@ impl TmuxClient {
 #[derive(Debug)]
 pub(crate) struct Request<T>(Receiver<Option<T>>);
 
-/// The state of a request.
-#[derive(Debug)]
-pub(crate) enum Reply<T> {
-    Pending,
-    Answer(T),
-    /// The command has failed, or its answer is unknown.
-    Nothing,
-}
-
 impl Request<TmuxClient> {
     /// Asks the tmux that the environment names for its client.
     pub(crate) fn client() -> Self {
@@ -130,11 +122,11 @@ impl<T: Send + 'static> Request<T> {
         Self(receiver)
     }
 
-    pub(crate) fn reply(&self) -> Reply<T> {
+    /// The answer, once there is one; `None` if the command has failed or its answer is unknown.
+    pub(crate) fn reply(&self) -> Poll<Option<T>> {
         match self.0.try_recv() {
-            Ok(Some(answer)) => Reply::Answer(answer),
-            Err(TryRecvError::Empty) => Reply::Pending,
-            Ok(None) | Err(TryRecvError::Disconnected) => Reply::Nothing,
+            Err(TryRecvError::Empty) => Poll::Pending,
+            answer => Poll::Ready(answer.ok().flatten()),
         }
     }
 }

@@ -1,12 +1,8 @@
-//! The Unix part of a terminal: its device, its attributes, waiting for it, and signals.
+//! The Unix part of a terminal: its device, its attributes, and waiting for it.
 
-#[cfg(feature = "cli")]
-mod memory;
-mod signals;
-
-use std::io;
-use std::os::fd::{BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::time::Duration;
+use std::{fs, io};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
@@ -16,9 +12,6 @@ use rustix::termios::{
     ttyname,
 };
 
-#[cfg(feature = "cli")]
-pub(crate) use self::memory::peak_memory;
-pub(crate) use self::signals::{Signal, Signals};
 use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
@@ -146,7 +139,7 @@ impl Device {
     /// Waits for bytes, signals or, if `wants_room`, room to write; for `timeout` at most.
     pub(crate) fn wait(
         &self,
-        signals: &Signals,
+        signals: &impl AsFd,
         wants_room: bool,
         timeout: Option<Duration>,
     ) -> io::Result<Ready> {
@@ -164,7 +157,8 @@ impl Device {
 }
 
 /// Replaces standard input, which was read to its end and is not needed any more, by the terminal
-/// of standard output. "/dev/tty" was refused, since it cannot be polled on every system.
+/// of standard output. Rejected:
+/// "/dev/tty", which cannot be polled on every system.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let output = rustix::stdio::stdout();
@@ -189,7 +183,7 @@ fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
 }
 
 /// Polls `streams`; a signal ends the wait early.
-fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
+pub(crate) fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
     // A timeout too long for the system's type is infinite.
     let timeout = timeout.and_then(|timeout| Timespec::try_from(timeout).ok());
     match poll(streams, timeout.as_ref()) {
@@ -199,5 +193,25 @@ fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
             Ok(())
         }
         Err(error) => Err(error.into()),
+    }
+}
+
+/// The peak memory of this process in bytes, on Linux; `None` on other systems.
+pub(crate) fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn linux_tells_how_much_it_is() {
+        let mebibytes = peak_memory().unwrap() >> 20;
+        assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
     }
 }

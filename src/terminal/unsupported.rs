@@ -1,4 +1,4 @@
-//! The interface of `unix` on platforms where no terminal can be opened.
+//! The interfaces of `unix` and `signals` on platforms where no terminal can be opened.
 //!
 //! A device cannot exist here, so that functions with a device are never called.
 

@@ -1,62 +1,35 @@
-//! The `ascii` glyph set: a cell shows one pixel. Its character says first which surface it is, and
-//! then how bright.
+//! The glyph sets `ascii` and `ramp`: a cell shows one pixel.
 //!
-//! Each surface has its own characters, so that x sides and y sides of walls, floor, ceiling and
-//! sky differ without colour. Without colour, the cells around a thing are blank, too. Within a
-//! surface, four characters stand for four shades. One ramp of
-//! brightness for all surfaces was refused: a dark wall in front of a bright one looked the same as
-//! a bright floor in front of a dark wall.
+//! In `ascii`, the character says first which surface it is, and then how bright. Each surface has its own characters,
+//! so that x sides and y sides of walls, floor, ceiling and sky differ without colour. Without colour, the cells around
+//! a thing are blank, too. Within a surface, four characters stand for four shades. In `ramp`, sixteen characters show
+//! the brightness of every surface.
+//!
+//! Rejected: `ramp` alone. A dark wall in front of a bright one looks the same as a bright floor in front of a dark
+//! wall.
 
-use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::glyphs::color_at;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;
-use crate::tui::canvas::Canvas;
-
-/// Draws one pixel in each cell of `area`. `pixel(x, y)` counts from its top left corner.
-pub(crate) fn draw(
-    area: Rect,
-    canvas: &mut impl Canvas,
-    depth: ColorDepth,
-    pixel: impl Fn(u32, u32) -> (Rgb, char),
-) {
-    for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
-        for (column, x) in (0u32..).zip(area.left()..area.right()) {
-            let (color, character) = pixel(column, row);
-            let colors = [color, Rgb::BLACK].map(|color| color_at(depth, color));
-            canvas.draw_character(x, y, character, colors);
-        }
-    }
-}
 
 /// The black corner of the cube. The nearest colour to an almost black one is a grey.
 const BLACK_OF_256: u8 = 16;
 
-/// Does the same as [`draw`] for a picture whose characters show the brightness. Colours are drawn
-/// at full brightness, because a dark wall would otherwise be darkened twice.
-pub(crate) fn draw_picture(
-    area: Rect,
-    canvas: &mut impl Canvas,
-    depth: ColorDepth,
-    pixel: impl Fn(u32, u32) -> (Rgb, char),
-) {
+/// The colours of a character that shows the brightness of `color`. They are at full brightness, because a dark wall
+/// would otherwise be darkened twice.
+pub(crate) fn picture_colors(depth: ColorDepth, color: Rgb) -> [Color; 2] {
     let background = match depth {
         ColorDepth::Indexed256 => Color::Indexed(BLACK_OF_256),
         _ => color_at(depth, Rgb::BLACK),
     };
-    for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
-        for (column, x) in (0u32..).zip(area.left()..area.right()) {
-            let (color, character) = pixel(column, row);
-            let text = match depth {
-                ColorDepth::Indexed16 => Color::Indexed(named_color(brightened(color))),
-                _ => color_at(depth, brightened(color)),
-            };
-            canvas.draw_character(x, y, character, [text, background]);
-        }
-    }
+    let text = match depth {
+        ColorDepth::Indexed16 => Color::Indexed(named_color(brightened(color))),
+        _ => color_at(depth, brightened(color)),
+    };
+    [text, background]
 }
 
 /// `color` with its brightest channel at the maximum. An almost black colour has an unreliable hue,
@@ -109,6 +82,15 @@ fn shades(surface: Surface) -> [char; 4] {
     }
 }
 
+/// From the character that lights most of its cell to the one that lights nothing.
+const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
+
+/// The character of the ramp for a pixel with that colour.
+pub(crate) fn ramp_character(color: Rgb) -> char {
+    let darkness = usize::from(u8::MAX - color.luma());
+    char::from(RAMP[darkness * RAMP.len() / 256])
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
@@ -154,5 +136,13 @@ mod tests {
         assert_eq!(character(Surface::WallX, Rgb::WHITE), '@');
         assert_eq!(character(Surface::WallY, Rgb::WHITE.halved()), 'H');
         assert_eq!(character(Surface::Floor, Rgb::BLACK), '.');
+    }
+
+    #[test]
+    fn the_ramp_goes_from_black_to_white() {
+        let shades =
+            (0..16).map(|shade| ramp_character(Rgb::new(shade * 17, shade * 17, shade * 17)));
+        let ramp: Vec<u8> = shades.map(|character| character as u8).rev().collect();
+        assert_eq!(ramp, RAMP);
     }
 }

@@ -44,18 +44,12 @@ impl Canvas for Buffer {
         self.area
     }
 
-    /// Two glyphs show the same two colours. Chooses the one that shares more colours with the cell
-    /// to the left, since most encoders need not send those again. A cell of one colour is a space.
     fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        let mut before = [Color::Reset; 2];
-        for (x, [top, bottom]) in (x..self.area.right()).zip(row) {
-            let (glyph, colors) = glyph_sharing_most([top, bottom], before);
-            self.draw_character(x, y, glyph, colors);
-            before = colors;
-        }
+        self.draw_mosaics(x, y, row.map(|halves| (Mosaic::UPPER_HALF, halves)));
     }
 
-    /// Chooses between a mosaic and its inverse as [`Canvas::draw_halves`] does.
+    /// A mosaic and its inverse show the same two colours. Chooses the one that shares more colours with the cell
+    /// to the left, since most encoders need not send those again. A cell of one colour is a space.
     fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
         let mut before = [Color::Reset; 2];
         for (x, (mosaic, [dots, rest])) in (x..self.area.right()).zip(row) {
@@ -91,22 +85,28 @@ impl Canvas for Buffer {
     }
 }
 
+/// Draws a character in each cell of `area`. `cell(x, y)` returns the character and its colours, and counts from the
+/// top left corner.
+pub(crate) fn draw_characters(
+    area: Rect,
+    canvas: &mut impl Canvas,
+    cell: impl Fn(u32, u32) -> (char, [Color; 2]),
+) {
+    for (row, y) in (0..).zip(area.top()..area.bottom()) {
+        for (column, x) in (0..).zip(area.left()..area.right()) {
+            let (character, colors) = cell(column, row);
+            canvas.draw_character(x, y, character, colors);
+        }
+    }
+}
+
+/// The characters that show one, two and three quarters of the text colour.
+pub(crate) const SHADES: [char; 3] = ['░', '▒', '▓'];
+
 /// `color` as a ratatui colour.
 #[inline]
 pub(crate) fn true_color(color: Rgb) -> Color {
     Color::Rgb(color.red(), color.green(), color.blue())
-}
-
-/// The glyph that shows two halves, and its foreground and background colours. Shares as many
-/// colours as possible with `before`.
-fn glyph_sharing_most([top, bottom]: [Color; 2], before: [Color; 2]) -> (char, [Color; 2]) {
-    if top == bottom {
-        (' ', [top, top])
-    } else if shared([bottom, top], before) > shared([top, bottom], before) {
-        ('▄', [bottom, top])
-    } else {
-        ('▀', [top, bottom])
-    }
 }
 
 /// The number of colours that two cells share.
@@ -163,6 +163,17 @@ impl Mosaic {
     /// A mosaic of two by four dots, in the order of [`Mosaic::quadrants`].
     pub const fn octants(mask: u8) -> Self {
         Self(mask as u16)
+    }
+
+    /// A mosaic of that number of dots: octants, sextants, quadrants or halves.
+    #[inline]
+    pub(crate) const fn of_dots(dots: usize, mask: u8) -> Self {
+        match dots {
+            8 => Self::octants(mask),
+            6 => Self::sextants(mask),
+            4 => Self::quadrants(mask),
+            _ => Self::halves(mask),
+        }
     }
 
     /// The mosaic whose other dots have the text colour.

@@ -14,10 +14,10 @@ mod wall;
 use glam::DVec2;
 
 use super::column::Column;
-use super::ray_counter::RayCounter;
+use super::stats::RayCounter;
 use super::{DrawList, Filter, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
-use crate::world::{Cell, Grid, TileId, TileKind, World};
+use crate::world::{Cell, Grid, TileKind, World};
 use fan::Fan;
 pub(crate) use layers::{FlatMemory, PassedHits};
 pub(crate) use planes::{PlaneRow, for_each_span};
@@ -101,8 +101,8 @@ fn cast<C: Caster>(
 
 /// Whether `cell` ends rays, is level, and is not a wall.
 fn may_be_passed(world: &World, cell: Cell) -> bool {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.map(|TileId(index)| &world.tiles()[usize::from(index)])
+    world
+        .tile_in(cell)
         .is_some_and(|tile| !matches!(tile.kind, TileKind::Wall(_)) && tile.is_level())
 }
 

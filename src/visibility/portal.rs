@@ -8,18 +8,16 @@
 //! are those of the Build engine (Ken Silverman, 1995).
 //!
 //! `walk` follows the rays from their `start` through the `tile_gaps`; `line` handles the faces and gaps at a line, and
-//! `standing` the objects inside a cell. `billboards` are found last, and `layers` orders them with
+//! `met` the faces, and the objects inside a cell. `layers` finds billboards last, and orders them with
 //! the see-through faces. For a level world without mirrors, the flat way fills the same list at a
 //! lower cost.
 
-mod billboards;
 mod bundle;
 mod layers;
 mod line;
 mod met;
 mod ray_segments;
 mod spans;
-mod standing;
 mod start;
 mod surroundings;
 mod tile_gaps;
@@ -27,12 +25,10 @@ mod walk;
 
 use std::ops::Range;
 
-use super::runs::IMAGES_AT_ONCE;
-use super::runs::ImageId;
+use super::runs::{IMAGES_AT_ONCE, ImageId};
 use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
 use crate::world::World;
-use billboards::Finder;
-use layers::LayerMemory;
+use layers::{Finder, LayerMemory};
 pub(crate) use spans::for_each_span;
 pub(crate) use start::PortalStart;
 use surroundings::Surroundings;

@@ -73,14 +73,14 @@ impl World {
     /// Sets the opening of the door in `cell`; does nothing if there is none. The cell becomes open
     /// floor if the door is fully open, and solid otherwise.
     pub fn set_opening(&mut self, cell: Cell, opening: Opening) {
-        let Some(tile) = self.tile_at(cell) else { return };
-        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_)) {
+        let Some(&Tile { character, kind, .. }) = self.tile_in(cell) else { return };
+        if !matches!(kind, TileKind::Door(_) | TileKind::Doorway(_)) {
             return;
         }
         let solid = |kind: &TileKind| matches!(kind, TileKind::Door(_));
         let id = match opening {
-            Opening::OPEN => self.doorway(tile.character),
-            _ => self.tile_id(tile.character, solid),
+            Opening::OPEN => self.doorway(character),
+            _ => self.tile_id(character, solid),
         };
         if let Some(id) = id {
             self.set_tile(cell, id);
@@ -101,7 +101,7 @@ impl World {
     }
 
     fn kind_at(&self, cell: Cell) -> Option<TileKind> {
-        self.tile_at(cell).map(|tile| tile.kind)
+        self.tile_in(cell).map(|tile| tile.kind)
     }
 
     /// The doorway of the door with `character`.

@@ -22,6 +22,33 @@ impl Cell {
     pub fn center(self) -> DVec2 {
         DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
     }
+
+    /// The cell that contains `point`; `None` in the west or north of the map.
+    #[inline]
+    pub(crate) fn containing(point: DVec2) -> Option<Self> {
+        (point.x >= 0.0 && point.y >= 0.0).then(|| Self::at(point))
+    }
+
+    /// The cell that contains `point`, which is not in the west or north of the map.
+    #[inline]
+    pub(crate) fn at(point: DVec2) -> Self {
+        Self { column: point.x as u32, row: point.y as u32 }
+    }
+
+    /// The cell that is so many columns to the east and rows to the south; `None` at negative coordinates.
+    pub(crate) fn moved(self, columns: i64, rows: i64) -> Option<Self> {
+        let along = |index: u32, by: i64| u32::try_from(i64::from(index) + by).ok();
+        Some(Self { column: along(self.column, columns)?, row: along(self.row, rows)? })
+    }
+
+    /// The neighbours in the west, east, north and south, without those at negative coordinates.
+    pub(crate) fn beside(self) -> impl Iterator<Item = Self> {
+        let west = self.column.checked_sub(1).map(|column| Self { column, ..self });
+        let east = self.column.checked_add(1).map(|column| Self { column, ..self });
+        let north = self.row.checked_sub(1).map(|row| Self { row, ..self });
+        let south = self.row.checked_add(1).map(|row| Self { row, ..self });
+        [west, east, north, south].into_iter().flatten()
+    }
 }
 
 /// A kind of tile: an index into the world's list of tiles.
@@ -141,6 +168,19 @@ impl Grid {
         let (column, row) = (column as u64, row as u64);
         let is_on_map = column < u64::from(self.width()) && row < u64::from(self.height());
         is_on_map.then(|| self.cells[row as usize * self.width() as usize + column as usize])
+    }
+
+    /// The tile of `cell`; `None` outside the map.
+    #[inline]
+    pub fn tile_in(&self, cell: Cell) -> Option<TileId> {
+        self.tile(cell.column.into(), cell.row.into())
+    }
+
+    /// The cell at a column and a row, and its tile; `None` outside the map.
+    #[inline]
+    pub(crate) fn cell(&self, column: i64, row: i64) -> Option<(Cell, TileId)> {
+        let tile = self.tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
 
     /// The same cells, where those are solid as well whose tile is not among `level`.

@@ -14,8 +14,8 @@ pub(crate) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
         let (columns, rows) = (grid.width(), grid.height());
         return Some(format!("the camera is off the map, which has {columns}×{rows} cells"));
     }
-    let cell = Cell { column: position.x as u32, row: position.y as u32 };
-    let tile = world.tile(grid.tile(cell.column.into(), cell.row.into())?);
+    let cell = Cell::at(position);
+    let tile = world.tile_in(cell)?;
     let (eye, floor, ceiling) = (camera.eye(), tile.heights.floor(), tile.heights.ceiling());
     if tile.gaps().any(|gap| gap.holds(eye)) {
         return None;

@@ -18,11 +18,10 @@
 //! cube root of light, and so of lightness. Rejected: the upper six bits of sRGB, whose lowest levels
 //! are as far apart as black and the darkest grey.
 
-use std::array;
-use std::iter;
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::{array, iter};
 
 use super::{CUBE, ColorDepth, ShadeInk, of_256};
 use crate::color::Rgb;

@@ -26,8 +26,7 @@ pub(crate) struct Target {
 impl Target {
     /// The cell of the middle.
     pub(crate) fn cell(&self) -> Cell {
-        let DVec2 { x, y } = self.position;
-        Cell { column: x as u32, row: y as u32 }
+        Cell::at(self.position)
     }
 
     /// The height of the middle of the body.

@@ -41,7 +41,7 @@ impl Guard {
             }
             return;
         }
-        let Some(cell) = cell_at(about) else { return self.give_up(context) };
+        let Some(cell) = Cell::containing(about) else { return self.give_up(context) };
         let abilities = self.abilities();
         let speed = if hurries { abilities.chase } else { abilities.walk * 1.15 };
         match self.go(context, cell, about, speed) {
@@ -172,9 +172,4 @@ impl Guard {
         let point = super::sight::Point { position, height };
         super::sight::is_in_sight(context.world, context.clouds, self.eye(), point)
     }
-}
-
-/// The cell at a position; `None` west or north of the map.
-pub(crate) fn cell_at(DVec2 { x, y }: DVec2) -> Option<Cell> {
-    (x >= 0.0 && y >= 0.0).then_some(Cell { column: x as u32, row: y as u32 })
 }

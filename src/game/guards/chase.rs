@@ -2,14 +2,13 @@
 
 use glam::DVec2;
 
-use super::alert::cell_at;
 use super::context::Context;
 use super::guard::{ALARMED, Guard, WONDERS};
 use super::perceive::GUESSES;
 use super::route::Progress;
 use super::state::{Phase, Quarry, State};
 use crate::game::sound::{Sound, SoundKind};
-use crate::world::{Difficulty, GuardKind};
+use crate::world::{Cell, Difficulty, GuardKind};
 
 /// The steps for which a guard stands and shouts before they run.
 const FRIGHT: u16 = 24;
@@ -62,7 +61,7 @@ impl Guard {
 
     /// Walks to where the player is, or was.
     fn close_in(&mut self, context: &mut Context, quarry: Quarry) {
-        let Some(cell) = cell_at(quarry.position) else { return self.give_up(context) };
+        let Some(cell) = Cell::containing(quarry.position) else { return self.give_up(context) };
         let speed = self.abilities().chase;
         let progress = self.go(context, cell, quarry.position, speed);
         let is_seen = quarry.unseen <= GUESSES;
@@ -100,7 +99,7 @@ impl Guard {
         let mark = trail.and_then(|trail| trail.newest(|cell| is_near(cell.center())));
         if let Some(mark) = mark.filter(|_| self.blind == 0) {
             self.state = State::Tracking { target: quarry.target, mark, lost: 0 };
-        } else if let Some(cell) = cell_at(quarry.position) {
+        } else if let Some(cell) = Cell::containing(quarry.position) {
             let left = self.random.whole(600, 900) as u16;
             self.begin_to_search(cell, left);
         }

@@ -100,7 +100,7 @@ impl Guard {
         match &mut self.state {
             State::Wondering { about, goes, .. } => (*about, *goes) = (place, true),
             State::Searching { around, next, .. } => {
-                let cell = crate::world::Cell { column: place.x as u32, row: place.y as u32 };
+                let cell = crate::world::Cell::at(place);
                 (*around, *next) = (cell, Some(cell));
             }
             _ => self.begin_to_wonder(context, place, true),

@@ -66,8 +66,7 @@ impl Mover {
 
     /// The cell of the middle.
     pub(crate) fn cell(&self) -> Cell {
-        let DVec2 { x, y } = self.body.position;
-        Cell { column: x as u32, row: y as u32 }
+        Cell::at(self.body.position)
     }
 
     /// Whether the guard neither falls nor flies.
@@ -220,10 +219,10 @@ impl Ground<'_> {
         const ROOM: f64 = 0.3;
         let way = to - from;
         let count = (way.length() / STRIDE).ceil().max(1.0);
-        let mut last = Cell { column: from.x as u32, row: from.y as u32 };
+        let mut last = Cell::at(from);
         (0..=count as u32).all(|index| {
             let at = from + way * (f64::from(index) / count);
-            let middle = Cell { column: at.x as u32, row: at.y as u32 };
+            let middle = Cell::at(at);
             let is_step = middle == last
                 || self.terrain.leads(self.world, self.gait, last, middle)
                     && (middle.column == last.column || middle.row == last.row);

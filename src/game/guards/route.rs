@@ -190,10 +190,8 @@ impl Guard {
     /// The closed door that the guard is about to walk into.
     fn closed_door_ahead(&self, context: &Context, direction: DVec2) -> Option<Cell> {
         let ahead = self.mover.position() + direction * 0.7;
-        let cell = Cell { column: ahead.x as u32, row: ahead.y as u32 };
-        let grid = context.world.grid();
-        let tile = grid.tile(i64::from(cell.column), i64::from(cell.row))?;
-        let kind = context.world.tiles()[usize::from(tile.0)].kind;
+        let cell = Cell::at(ahead);
+        let kind = context.world.tile_in(cell)?.kind;
         matches!(kind, TileKind::Door(_)).then_some(cell)
     }
 

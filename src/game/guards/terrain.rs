@@ -254,7 +254,7 @@ impl Costs for Backwards<'_> {
 
 #[inline]
 fn tile(world: &World, cell: Cell) -> Option<TileId> {
-    world.grid().tile(i64::from(cell.column), i64::from(cell.row))
+    world.grid().tile_in(cell)
 }
 
 /// The cost of the step between two neighbours, in half cells.

@@ -55,7 +55,7 @@ impl Mechanisms {
         for moving in &self.moving {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell(), moving.shown(world));
-            if world.grid().tile(cell.column.into(), cell.row.into()) != Some(shown) {
+            if world.grid().tile_in(cell) != Some(shown) {
                 world.set_state(cell, shown);
             }
         }

@@ -128,11 +128,7 @@ fn neighbors(cell: Cell, heading: Heading) -> impl Iterator<Item = Cell> {
         [0.0, facing.y.signum()]
     };
     let [x, y] = ahead.map(|way| way as i64);
-    [[x, y], [-x, -y], [-y, x], [y, -x]].into_iter().filter_map(move |[x, y]| {
-        let column = u32::try_from(i64::from(cell.column) + x).ok()?;
-        let row = u32::try_from(i64::from(cell.row) + y).ok()?;
-        Some(Cell { column, row })
-    })
+    [[x, y], [-x, -y], [-y, x], [y, -x]].into_iter().filter_map(move |[x, y]| cell.moved(x, y))
 }
 
 /// Whether a cell is on the map and not solid.

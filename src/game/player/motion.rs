@@ -126,8 +126,7 @@ impl Motion {
 
     /// The cell of the player's centre.
     pub(crate) fn cell(&self) -> Cell {
-        let DVec2 { x, y } = self.body.position;
-        Cell { column: x as u32, row: y as u32 }
+        Cell::at(self.body.position)
     }
 
     /// Whether the player would overlap `cell` if it were solid.

@@ -6,7 +6,7 @@
 use super::Sound;
 use crate::game::flood::{Costs, Flood, STRAIGHT};
 use crate::game::stored::{Reader, Stored, Unrestorable, Writer};
-use crate::world::{Cell, Tile, TileId, TileKind, World};
+use crate::world::{Cell, Tile, TileKind, World};
 
 /// The additional cost of a closed door or of glass, in half cells.
 const DAMPING: u16 = 12;
@@ -82,8 +82,7 @@ struct Air<'a> {
 
 impl Air<'_> {
     fn tile(&self, cell: Cell) -> Option<&Tile> {
-        let TileId(id) = self.world.grid().tile(i64::from(cell.column), i64::from(cell.row))?;
-        self.world.tiles().get(usize::from(id))
+        self.world.tile_in(cell)
     }
 
     /// Whether sound passes between two neighbours.

@@ -103,7 +103,7 @@ impl Hearing {
         if from.distance(position) > f64::from(sound.reach) * 1.1 + 1.5 {
             return None;
         }
-        let cell = Cell { column: position.x as u32, row: position.y as u32 };
+        let cell = Cell::at(position);
         self.field.reach_out(world, cell, reach, self.steps);
         let distance = self.field.distance(sound.cell).filter(|&distance| distance <= reach)?;
         Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)

@@ -172,7 +172,7 @@ impl Missile {
     }
 
     fn cell(&self) -> Cell {
-        Cell { column: self.position.x as u32, row: self.position.y as u32 }
+        Cell::at(self.position)
     }
 }
 

@@ -1,11 +1,11 @@
 //! The ground of a floor: its cells, the ways from the start, and what is in sight.
 
-use std::collections::VecDeque;
+use std::iter;
 use std::num::NonZeroU32;
 
 use super::super::tileset::Tileset;
 use crate::rng::SplitMix64;
-use crate::world::Cell;
+use crate::world::{Cell, Flood};
 
 /// The cells of a floor before things and guards are placed.
 pub(crate) struct Ground {
@@ -78,9 +78,9 @@ impl Ground {
         self.kind(cell).is_bare
     }
 
-    /// The number of cells beside a cell on which one can walk.
+    /// The number of cells on which one can walk beside a cell that is not on the edge.
     pub(crate) fn exits_of(&self, cell: Cell) -> usize {
-        self.beside(cell).filter(|&cell| self.kind(cell).is_walkable).count()
+        cell.beside().filter(|&cell| self.kind(cell).is_walkable).count()
     }
 
     /// The cells within a number of steps on open floor, and the steps to them, the nearest first.
@@ -147,21 +147,9 @@ impl Ground {
 
     /// The cells within `most` steps of one for which `is_open` is true, the nearest first.
     fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(Kind) -> bool) -> Vec<(Cell, u32)> {
-        let mut seen = vec![false; self.kinds.len()];
-        let mut queue = VecDeque::from([(from, 0)]);
-        let mut found = Vec::new();
-        seen[self.index(from)] = true;
-        while let Some((cell, distance)) = queue.pop_front() {
-            found.push((cell, distance));
-            for next in self.beside(cell).filter(|_| distance < most) {
-                let index = self.index(next);
-                if !seen[index] && is_open(self.kinds[index]) {
-                    seen[index] = true;
-                    queue.push_back((next, distance + 1));
-                }
-            }
-        }
-        found
+        let mut flood = Flood::new((self.width().get(), self.cells.len() as u32), from);
+        let next = || flood.next(|cell| is_open(self.kind(cell)));
+        iter::from_fn(next).take_while(|&(_, distance)| distance <= most).collect()
     }
 
     /// Whether none of the cell and its eight neighbours is opaque.
@@ -177,19 +165,5 @@ impl Ground {
 
     fn index(&self, cell: Cell) -> usize {
         cell.row as usize * self.width().get() as usize + cell.column as usize
-    }
-
-    /// The neighbours of a cell. The outermost cells are walls, so each cell that is asked about has
-    /// four.
-    fn beside(&self, Cell { column, row }: Cell) -> impl Iterator<Item = Cell> + use<> {
-        let (width, height) = (self.width().get(), self.cells.len() as u32);
-        let places = [
-            (column.wrapping_sub(1), row),
-            (column + 1, row),
-            (column, row.wrapping_sub(1)),
-            (column, row + 1),
-        ];
-        let is_inside = move |&(column, row): &(u32, u32)| column < width && row < height;
-        places.into_iter().filter(is_inside).map(|(column, row)| Cell { column, row })
     }
 }

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 use std::num::NonZeroU32;
 
-use crate::world::{Cell, Grid};
+use crate::world::{Cell, Flood, Grid};
 
 /// What opens a door.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -101,36 +101,30 @@ impl<'g> Reach<'g> {
     ) -> BTreeSet<OpenerId> {
         let mut taken = given;
         let mut waiting = BTreeMap::<OpenerId, Vec<Cell>>::new();
-        let mut seen = PerCell::<bool>::new(self.grid);
-        seen.replace(start, true);
-        let mut next = vec![start];
-        while let Some(cell) = next.pop() {
-            if let Some(opener) = self.locks.get(cell)
-                && !taken.contains(&opener)
-            {
-                waiting.entry(opener).or_default().push(cell);
-                continue;
-            }
+        let size = (self.grid.width(), self.grid.height());
+        let mut flood = Flood::new(size, start);
+        loop {
+            let next = flood.next(|cell| {
+                let missing = self.locks.get(cell).filter(|opener| !taken.contains(opener));
+                if let Some(opener) = missing {
+                    waiting.entry(opener).or_default().push(cell);
+                }
+                missing.is_none() && self.can_enter(cell)
+            });
+            let Some((cell, _)) = next else { return taken };
             let at_levers = self.levers.get(&cell).into_iter().flatten().copied();
             for opener in self.found.get(cell).into_iter().chain(at_levers) {
                 if taken.insert(opener) {
-                    next.extend(waiting.remove(&opener).unwrap_or_default());
+                    let doors = waiting.remove(&opener).unwrap_or_default();
+                    doors.into_iter().for_each(|door| flood.enter(door));
                 }
             }
-            next.extend(self.neighbors(cell).filter(|&it| !seen.replace(it, true)));
         }
-        taken
     }
 
-    /// The neighbours of `cell` that the player can enter.
-    fn neighbors(&self, cell: Cell) -> impl Iterator<Item = Cell> {
-        let sides = [(-1, 0), (1, 0), (0, -1), (0, 1)];
-        sides.into_iter().filter_map(move |(columns, rows)| {
-            let (column, row) = (i64::from(cell.column) + columns, i64::from(cell.row) + rows);
-            let tile = self.grid.tile(column, row)?;
-            let is_barred = self.grid.is_solid_tile(tile) || self.grid.is_occupied(column, row);
-            let cell = Cell { column: column as u32, row: row as u32 };
-            (!is_barred || self.passable.get(cell)).then_some(cell)
-        })
+    fn can_enter(&self, cell: Cell) -> bool {
+        let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+        let is_barred = self.grid.is_solid(column, row) || self.grid.is_occupied(column, row);
+        !is_barred || self.passable.get(cell)
     }
 }

@@ -25,7 +25,6 @@ use crate::app::parts::{
 use crate::color::palette::ColorDepth;
 use crate::server::line;
 use crate::server::room::{Phase, RoomView};
-use crate::terminal::thread_memory;
 use crate::tui::View;
 use crate::tui::canvas::Canvas;
 use crate::world::{Figure, World};
@@ -135,7 +134,7 @@ impl Visit {
             let ghosts: Vec<Ghost> =
                 stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
             let world = with_ghosts(game.world(), &ghosts);
-            let mut view = thread_memory::take(&VIEW).unwrap_or_default();
+            let mut view = VIEW.take().unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
             stay.next_change = view.next_change();
             if let Some((_, player)) = seen_through {
@@ -146,7 +145,7 @@ impl Visit {
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }
-            thread_memory::put_back(&VIEW, Some(view));
+            VIEW.set(Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
             members::draw_standings(canvas, area, room, look.depth);

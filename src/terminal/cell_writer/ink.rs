@@ -1,8 +1,7 @@
 //! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
-use super::packed_cell::PackedCell;
-use super::shape::Shape;
-use super::style::{Kind, Shade};
+use super::block::Shape;
+use super::style::{Kind, Notation, Shade};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
 use crate::color::palette;
@@ -21,7 +20,7 @@ pub(crate) struct Ink {
 impl Ink {
     /// The ink of `shade`; an indexed colour is that of xterm's standard palette.
     #[inline(never)]
-    fn new(shade: Shade) -> Self {
+    pub(crate) fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {
             Kind::Rgb(channels) => PackedLab::of(channels).components(),
             Kind::Indexed(index) => {
@@ -60,6 +59,23 @@ pub(crate) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     (l * l + a * a + b * b).sqrt()
 }
 
+/// The nearest of at most 256 points, given component by component, and the square of its distance.
+#[inline]
+pub(crate) fn nearest([ls, as_, bs]: &[Vec<f32>; 3], [l, a, b]: [f32; 3]) -> (u8, f32) {
+    let mut squares = [f32::INFINITY; 256];
+    for (square, ((&one, &two), &three)) in squares.iter_mut().zip(ls.iter().zip(as_).zip(bs)) {
+        let (l, a, b) = (one - l, two - a, three - b);
+        *square = l * l + a * a + b * b;
+    }
+    let mut nearest = 0;
+    for (place, &square) in squares.iter().enumerate() {
+        if square < squares[nearest] {
+            nearest = place;
+        }
+    }
+    (nearest as u8, squares[nearest])
+}
+
 /// The inks of recent colours, in a direct-mapped cache.
 ///
 /// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place,
@@ -77,9 +93,7 @@ impl Inks {
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
     pub(crate) fn of(&mut self, shade: Shade) -> Ink {
-        let place =
-            (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize;
-        let known = &mut self.places[place];
+        let known = &mut self.places[shade.hash(PLACE_BITS)];
         if known.shade != shade {
             *known = Ink::new(shade);
         }
@@ -115,19 +129,6 @@ impl Inks {
     }
 }
 
-/// The notation of a colour in a control sequence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Notation {
-    /// As one of the 16 named colours, in two bytes.
-    Named,
-    /// As one of the 240 fixed colours, in up to eight bytes.
-    Indexed,
-    /// As an entry of the palette if one holds it, in up to eight bytes.
-    Entry,
-    /// As red, green and blue, in up to sixteen bytes.
-    Rgb,
-}
-
 impl Default for Inks {
     fn default() -> Self {
         // No requested colour is equal to this one.
@@ -137,18 +138,21 @@ impl Default for Inks {
     }
 }
 
-impl Notation {
-    /// The notation of the longest colour in a row of cells, on a terminal with or without a
-    /// palette that may be defined.
-    pub(crate) fn of(targets: &[PackedCell], has_palette: bool) -> Self {
-        let all = targets.iter().fold([0; 2], |all, target| {
-            let colors = target.colors().map(Shade::in_bits);
-            [all[0] | colors[0], all[1] | colors[1]]
-        });
-        match Shade::longest_of(all[0] | all[1]) {
-            Self::Rgb if has_palette => Self::Entry,
-            notation => notation,
-        }
+/// A colour that may be sent for another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Telling {
+    pub(crate) ink: Ink,
+    /// The bytes of its parameters.
+    pub(crate) bytes: f32,
+    /// The price of its error, in bytes.
+    pub(crate) error: f32,
+}
+
+impl Telling {
+    /// The bytes and the price together.
+    #[inline]
+    pub(crate) fn cost(self) -> f32 {
+        self.bytes + self.error
     }
 }
 

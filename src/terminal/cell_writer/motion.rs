@@ -6,8 +6,7 @@
 
 use ratatui::layout::{Position, Size};
 
-use super::bytes::Piece;
-use super::control::ControlSequence;
+use super::bytes::{ControlSequence, Piece};
 
 /// Adds the motion from `cursor` to `target`, on a terminal of `size`. In the column after the last
 /// one, a cursor waits to wrap.

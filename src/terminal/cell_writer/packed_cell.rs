@@ -1,15 +1,17 @@
-//! A cell in one word.
+//! Cells in one word, and the table of a screen's glyphs.
+//!
+//! A character and its modifiers take 26 bits, and two colours 52. So each glyph has an id of few bits, with which a
+//! packed cell fits in one word. Most screens show some dozens of characters. If the table is full, further characters
+//! are still shown, but not compared.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
-use ratatui::buffer::Cell;
-use ratatui::style::Color;
+use ratatui::buffer::{Cell, CellWidth};
+use ratatui::style::{Color, Modifier};
 
-use super::block_element::BlockElement;
-use super::glyph_table::{Glyph, GlyphId, GlyphTable};
-use super::shape::Shape;
+use super::block::{BlockElement, Shape};
 use super::style::{Shade, Style};
-use super::symbol::Symbol;
 use crate::color::Rgb;
 use crate::tui::canvas::Mosaic;
 
@@ -284,4 +286,225 @@ fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
     let halves = element.halves(style.foreground, style.background);
     let has_own = halves.contains(&Shade::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
+}
+
+/// A character one cell wide, and its modifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Glyph {
+    character: char,
+    /// The modifiers as bits, which have an order.
+    modifiers: u16,
+}
+
+/// The id of a glyph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct GlyphId(u16);
+
+/// The glyphs that have an id.
+#[derive(Debug)]
+pub(crate) struct GlyphTable {
+    glyphs: Vec<Glyph>,
+    ids: BTreeMap<Glyph, GlyphId>,
+    /// The glyphs that were looked up last, with their ids, each in its place: nearly all that a frame has.
+    recent: [(Glyph, GlyphId); RECENT],
+}
+
+/// The number of places for recent glyphs.
+const RECENT: usize = 128;
+
+impl Glyph {
+    pub(crate) const fn new(character: char, modifier: Modifier) -> Self {
+        Self { character, modifiers: modifier.bits() }
+    }
+
+    /// Its place among the recent ones. ASCII characters with the same modifiers have different places.
+    #[inline]
+    fn place(self) -> usize {
+        (self.character as usize ^ usize::from(self.modifiers)) % RECENT
+    }
+
+    pub(crate) fn character(self) -> char {
+        self.character
+    }
+
+    pub(crate) fn modifier(self) -> Modifier {
+        Modifier::from_bits_truncate(self.modifiers)
+    }
+}
+
+impl GlyphId {
+    /// The id of a space without modifiers, in every table.
+    pub(crate) const SPACE: Self = Self(0);
+    /// The id of an upper half block without modifiers, in every table.
+    pub(crate) const UPPER_HALF: Self = Self(1);
+    /// The maximum number of glyphs in a table.
+    pub(crate) const COUNT: u16 = 3900;
+
+    /// The id as a number, which is less than [`GlyphId::COUNT`].
+    pub(crate) const fn get(self) -> u16 {
+        self.0
+    }
+
+    /// The id with this number, which must be from [`GlyphId::get`].
+    pub(crate) fn new(id: u16) -> Self {
+        Self(id)
+    }
+}
+
+impl GlyphTable {
+    /// The id of `glyph`, a new one if necessary; `None` if the table is full.
+    #[inline]
+    pub(crate) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        self.recent_id(glyph).or_else(|| self.find(glyph))
+    }
+
+    /// The id of `glyph` if it was looked up recently.
+    #[inline]
+    pub(crate) fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
+        let (recent, id) = self.recent[glyph.place()];
+        (recent == glyph).then_some(id)
+    }
+
+    fn find(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        let id = self.ids.get(&glyph).copied().or_else(|| self.add(glyph))?;
+        self.recent[glyph.place()] = (glyph, id);
+        Some(id)
+    }
+
+    fn add(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        let next = u16::try_from(self.glyphs.len()).ok()?;
+        let id = (next < GlyphId::COUNT).then_some(GlyphId(next))?;
+        self.glyphs.push(glyph);
+        self.ids.insert(glyph, id);
+        Some(id)
+    }
+
+    /// The glyph with this id.
+    pub(crate) fn glyph(&self, id: GlyphId) -> Glyph {
+        self.glyphs[usize::from(id.0)]
+    }
+}
+
+impl Default for GlyphTable {
+    fn default() -> Self {
+        let [space, half] = [' ', '▀'].map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let recent = [(space, GlyphId::SPACE); RECENT];
+        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new(), recent };
+        let ids = [space, half].map(|glyph| glyph_table.find(glyph));
+        debug_assert_eq!(ids, [Some(GlyphId::SPACE), Some(GlyphId::UPPER_HALF)]);
+        glyph_table
+    }
+}
+
+/// The text of a cell, as far as a terminal may receive it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Symbol {
+    /// Nothing to show: the text is empty, has no width, or contains a control character. A terminal
+    /// would obey a control character, and would add a character without a width to the cell before.
+    Blank,
+    /// A character one cell wide.
+    Character(char),
+    /// Several characters, or one that is wider than a cell; none of them is a control character.
+    Intricate,
+}
+
+impl Symbol {
+    /// The text of `cell`.
+    #[inline]
+    pub(crate) fn of(cell: &Cell) -> Self {
+        Self::classify(cell.symbol(), |_| cell.cell_width())
+    }
+
+    /// A text without a cell.
+    pub(crate) fn of_text(text: &str) -> Self {
+        Self::classify(text, CellWidth::cell_width)
+    }
+
+    /// Measures `text` only if it has no control character, since ratatui cannot measure these.
+    #[inline]
+    fn classify(text: &str, width: impl FnOnce(&str) -> u16) -> Self {
+        let mut characters = text.chars();
+        let (first, second) = (characters.next(), characters.next());
+        match (first, second) {
+            (Some(character), None) if character.is_ascii_graphic() => Self::Character(character),
+            _ if text.chars().any(char::is_control) => Self::Blank,
+            _ => match (width(text), first, second) {
+                (0, ..) => Self::Blank,
+                (1, Some(character), None) => Self::Character(character),
+                _ => Self::Intricate,
+            },
+        }
+    }
+}
+
+/// The substitute of `symbol`, the text of a cell: the symbol if it is a single ASCII character,
+/// otherwise a similar character or a question mark. The empty second cell of a wide character
+/// becomes a space.
+pub(crate) fn ascii_substitute(symbol: &str) -> char {
+    let Some(character) = symbol.chars().next() else { return ' ' };
+    match character {
+        ' '..='~' => character,
+        '─' | '━' | '═' | '╌' | '┄' | '–' | '—' | '−' => '-',
+        '│' | '┃' | '║' | '╎' | '┆' => '|',
+        '\u{2500}'..='\u{257f}' => '+',
+        '←' | '◀' | '◂' | '‹' => '<',
+        '→' | '▶' | '▸' | '›' => '>',
+        '↑' | '▲' | '▴' => '^',
+        '↓' | '▼' | '▾' => 'v',
+        '↗' | '↙' => '/',
+        '↖' | '↘' => '\\',
+        '░' | '·' | '…' => '.',
+        '▒' => ':',
+        '\u{2580}'..='\u{259f}' => '#',
+        '×' => 'x',
+        '•' | '●' | '◆' | '■' => '*',
+        '‘' | '’' | '′' => '\'',
+        '“' | '”' | '„' | '«' | '»' | '″' => '"',
+        '\u{a0}' => ' ',
+        _ => '?',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn glyphs_have_ids_until_the_table_is_full() {
+        let mut glyph_table = GlyphTable::default();
+        // A half block has an id from the start.
+        let glyphs =
+            || std::iter::once('▀').chain(' '..).map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let ids: Vec<_> =
+            glyphs().take(GlyphId::COUNT.into()).map(|glyph| glyph_table.id(glyph)).collect();
+        for (glyph, id) in glyphs().zip(&ids) {
+            assert_eq!(glyph_table.glyph(id.unwrap()), glyph);
+            assert_eq!(glyph_table.id(glyph), *id);
+        }
+        assert_eq!(glyph_table.id(Glyph::new('a', Modifier::BOLD)), None);
+    }
+
+    proptest! {
+        #[test]
+        fn any_cell_becomes_one_ascii_character(symbol in ".{0,3}") {
+            let substitute = ascii_substitute(&symbol);
+            prop_assert!(matches!(substitute, ' '..='~'));
+            if let &[byte @ b' '..=b'~'] = symbol.as_bytes() {
+                prop_assert_eq!(substitute, char::from(byte));
+            }
+        }
+    }
+
+    #[test]
+    fn a_panel_stays_a_panel() {
+        let panel = ["┌──┐", "│→↗│", "└──┘"];
+        let shown = panel.map(|row| {
+            row.chars()
+                .map(|symbol| ascii_substitute(symbol.encode_utf8(&mut [0; 4])))
+                .collect::<String>()
+        });
+        assert_eq!(shown, ["+--+", "|>/|", "+--+"]);
+    }
 }

@@ -1,23 +1,19 @@
 //! The pen: the bytes of a frame, and the state of the terminal after them.
 
-mod pixels;
-
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
 use ratatui::layout::{Position, Size};
 
-use super::block_element::BlockElement;
-use super::bytes::Bytes;
-use super::control::ControlSequence;
+use super::block::{BlockElement, Shape};
+use super::bytes::{Bytes, ControlSequence};
 use super::ink::Price;
 use super::motion;
-use super::packed_position::PackedPosition;
+use super::packed_cell::PackedCell;
 use super::palette::Palette;
 use super::screen::Screen;
-use super::shape::Shape;
 use super::shift::{Shift, Way};
-use super::style::Style;
+use super::style::{Shade, Style};
 
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
@@ -37,6 +33,19 @@ pub(crate) struct Pen {
     /// The number of repetitions of that block that are drawn but not written yet.
     repeated: u16,
     palette: Palette,
+}
+
+/// The state of the terminal between cells of pixels.
+///
+/// Most cells of most pictures are two pixels, drawn after another such cell. Between them, the colours and the column
+/// of the cursor are in registers, and nothing else of the terminal's state matters: a cell takes half of the
+/// instructions that it takes one by one.
+#[derive(Clone, Copy)]
+struct PixelState {
+    /// The text colour and the background, in true colour; there are no modifiers.
+    colors: [Shade; 2],
+    /// The column of the cursor in the row.
+    column: usize,
 }
 
 /// The final bytes of the sequences that delete characters and that insert blank ones.
@@ -72,10 +81,9 @@ impl Pen {
 
     /// Defines entries of the palette for the targets of `screen`, where that saves bytes.
     pub(crate) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
-        if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
-            // The definitions borrow the palette, so they are taken out of it and put back.
-            self.frame().push_text(definitions.as_slice());
-            self.palette.keep(definitions);
+        if self.palette.begin_frame(screen, self.style, price) {
+            self.frame();
+            self.frame.push_text(self.palette.definitions());
         }
     }
 
@@ -110,6 +118,11 @@ impl Pen {
             self.move_to(Position::ORIGIN);
             Position::ORIGIN
         })
+    }
+
+    /// The size of the terminal.
+    pub(crate) fn size(&self) -> Size {
+        self.size
     }
 
     /// Sets the size of the terminal.
@@ -293,6 +306,73 @@ impl Pen {
         edit.end(operation);
         piece.finish();
     }
+
+    /// Draws these columns of row `y`, and has `draw_other` draw those that cannot be drawn as pixels now.
+    #[inline]
+    pub(crate) fn draw_pixels(
+        &mut self,
+        y: u16,
+        cells: impl Iterator<Item = (usize, PackedCell)>,
+        mut draw_other: impl FnMut(&mut Self, usize, PackedCell),
+    ) {
+        let mut state = self.pixel_state(y);
+        for (column, target) in cells {
+            let Some((now, (shape, pixels))) = state.zip(target.pixels()) else {
+                self.keep_pixel_state(y, state);
+                draw_other(self, column, target);
+                state = self.pixel_state(y);
+                continue;
+            };
+            if column != now.column {
+                self.keep_pixel_state(y, state);
+                self.move_to(Position { x: column as u16, y });
+            }
+            let colors = self.push_pixels(shape, pixels, now.colors);
+            state = Some(PixelState { colors, column: column + 1 });
+        }
+        self.keep_pixel_state(y, state);
+    }
+
+    /// The state in which pixels can be drawn: after a cell of pixels in row `y`, on a terminal that neither
+    /// repeats characters nor has a palette.
+    #[inline]
+    fn pixel_state(&self, y: u16) -> Option<PixelState> {
+        let Position { x, y: row } = self.cursor()?;
+        let colors = self.style?.plain_colors()?;
+        let is_sound = colors.into_iter().all(Shade::is_rgb)
+            && row == y
+            && !self.repeats
+            && self.repeated == 0
+            && !self.palette.is_on()
+            && !self.frame.is_empty();
+        is_sound.then_some(PixelState { colors, column: x.into() })
+    }
+
+    #[inline]
+    fn keep_pixel_state(&mut self, y: u16, state: Option<PixelState>) {
+        if let Some(PixelState { colors: [text, ground], column }) = state {
+            self.style = Some(Style::plain(text, ground));
+            self.cursor = Some(PackedPosition::of(Position { x: column as u16, y }));
+            self.last = None;
+        }
+    }
+
+    /// Adds a cell of pixels where the cursor is, and returns the colours after it.
+    #[inline]
+    fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
+        let (element, colors) = BlockElement::cheapest_after(current, pixels);
+        let mut piece = self.frame.piece();
+        if colors != current {
+            let mut rendition = ControlSequence::begin(&mut piece);
+            Shade::push_change(colors, current, |shade| shade, &mut rendition);
+            rendition.end(b'm');
+        }
+        let (encoded, count) =
+            if shape == Shape::HALF { element.encoded() } else { shape.encoded(element) };
+        piece.push(encoded, count);
+        piece.finish();
+        colors
+    }
 }
 
 /// Whether all terminals advance the cursor by one cell for `symbol`: a European letter, or a symbol of the
@@ -304,4 +384,24 @@ fn advances_by_one(symbol: &str) -> bool {
     characters.next().is_some_and(is_sure)
         && characters.next().is_none()
         && symbol.cell_width() == 1
+}
+
+/// A position in one word.
+///
+/// The pen stores its position after each cell and loads it before the next. The two fields of a [`Position`] were
+/// stored one by one and loaded as one word. A processor cannot forward two pending stores to one load, and waited a
+/// third of the time that drawing a cell took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct PackedPosition(u32);
+
+impl PackedPosition {
+    #[inline]
+    fn of(position: Position) -> Self {
+        Self(u32::from(position.y) << u16::BITS | u32::from(position.x))
+    }
+
+    #[inline]
+    fn get(self) -> Position {
+        Position { x: self.0 as u16, y: (self.0 >> u16::BITS) as u16 }
+    }
 }

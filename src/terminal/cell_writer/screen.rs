@@ -1,19 +1,18 @@
 //! The model of the screen: the cells that the terminal shows, and their targets.
 
-mod canvas;
-mod whole_frame;
+use std::cell;
 
 use ratatui::backend::ClearType;
-use ratatui::buffer::{Cell, CellWidth};
-use ratatui::layout::{Position, Size};
+use ratatui::buffer::{Buffer, Cell, CellWidth};
+use ratatui::layout::{Position, Rect, Size};
+use ratatui::style::Color;
+use ratatui::widgets::Widget;
 
-use super::ascii;
-use super::glyph_table::GlyphTable;
-use super::packed_cell::{Form, PackedCell};
-use super::shift::{Mark, Shift};
+use super::packed_cell::{Form, GlyphTable, PackedCell, ascii_substitute};
+use super::shift::Mark;
 use super::style::{Shade, Style};
-#[cfg(feature = "lab")]
-use crate::tui::canvas::Mosaic;
+use crate::color::Rgb;
+use crate::tui::canvas::{Canvas, Mosaic, true_color};
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
@@ -28,8 +27,6 @@ pub struct Screen {
     shown: Vec<PackedCell>,
     /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
-    /// The targets before the present frame; empty between frames.
-    targets_before: Vec<PackedCell>,
     /// The landmarks of the targets at the time when each row was last drawn.
     marks: Vec<Mark>,
     /// The intricate targets, which packed cells do not describe in full; empty before the first.
@@ -57,6 +54,15 @@ pub(crate) struct Row<'a> {
     pub(crate) exact: &'a mut bool,
     /// The number of frames for which it has not changed.
     pub(crate) rested: u8,
+}
+
+// A call leaves nothing in this memory that a later call needs. So each thread has it once, and not each of the some
+// hundred screens of a server.
+thread_local! {
+    /// The buffer into which widgets are drawn first.
+    static SCRATCH: cell::Cell<Buffer> = cell::Cell::default();
+    /// The memory of the targets before a frame.
+    static BEFORE: cell::Cell<Vec<PackedCell>> = const { cell::Cell::new(Vec::new()) };
 }
 
 impl Screen {
@@ -163,7 +169,7 @@ impl Screen {
 
     /// Sets a target to the ASCII substitute of `cell`.
     fn set_ascii_cell(&mut self, place: usize, mut cell: Cell) {
-        let character = ascii::substitute(cell.symbol());
+        let character = ascii_substitute(cell.symbol());
         cell.set_char(character);
         let style = Style::of(&cell);
         self.targets[place] = PackedCell::of_glyph(character, style, &mut self.glyph_table);
@@ -189,6 +195,29 @@ impl Screen {
             self.wanted[place].clone_from(cell);
             self.changed[y] = true;
         }
+    }
+
+    /// Begins a whole frame, with blank targets. Returns the targets before it.
+    pub(crate) fn begin_frame(&mut self) -> Vec<PackedCell> {
+        let mut before = BEFORE.take();
+        let (count, capacity) = (self.targets.len(), self.targets.capacity());
+        if before.capacity() != capacity {
+            before = Vec::with_capacity(capacity);
+        }
+        std::mem::swap(&mut self.targets, &mut before);
+        self.targets.clear();
+        self.targets.resize(count, PackedCell::BLANK);
+        before
+    }
+
+    /// Ends a whole frame: rows whose targets differ from those `before` it have changed.
+    pub(crate) fn end_frame(&mut self, before: Vec<PackedCell>) {
+        let width = self.width.max(1);
+        let rows = self.targets.chunks(width).zip(before.chunks(width));
+        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
+            *changed |= targets != before;
+        }
+        BEFORE.set(before);
     }
 
     /// Whether any target has changed since the rows were drawn.
@@ -317,9 +346,97 @@ impl Row<'_> {
                 }
         })
     }
+}
 
-    /// Records that the terminal has moved a part of the row.
-    pub(crate) fn shift(&mut self, shift: &Shift) {
-        shift.apply(self.shown, PackedCell::UNKNOWN);
+impl Canvas for Screen {
+    fn bounds(&self) -> Rect {
+        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
+    }
+
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row);
+        }
+        for (target, halves) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_colors(halves);
+        }
+    }
+
+    #[inline]
+    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row.map(|halves| halves.map(true_color)));
+        }
+        for (target, pixels) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_pixels(pixels);
+        }
+    }
+
+    #[inline]
+    fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row.map(|(_, colors)| colors));
+        }
+        let start = usize::from(y) * self.width;
+        let cells = start + usize::from(x).min(self.width)..start + self.width;
+        let Some(targets) = self.targets.get_mut(cells) else { return };
+        for (target, (mosaic, colors)) in targets.iter_mut().zip(row) {
+            *target = PackedCell::of_mosaic(mosaic, colors, &mut self.glyph_table);
+        }
+    }
+
+    fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if self.is_ascii {
+            return self.draw_ascii(x, y, character, colors);
+        }
+        let target = PackedCell::of_character(character, colors, &mut self.glyph_table);
+        let Some(place) = self.targets_from(x, y).first_mut() else { return };
+        *place = target;
+        if target.is_intricate() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
+        }
+    }
+
+    fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
+        let area = area.intersection(self.bounds());
+        let mut scratch = SCRATCH.take();
+        scratch.area = area;
+        scratch.content.clear();
+        scratch.content.resize(area.area() as usize, Cell::EMPTY);
+        widget.render(area, &mut scratch);
+        for (position, cell) in area.positions().zip(scratch.content()) {
+            let place = usize::from(position.y) * self.width + usize::from(position.x);
+            self.set(place, cell);
+        }
+        SCRATCH.set(scratch);
+    }
+}
+
+impl Screen {
+    /// The targets from `(x, y)` to the right; empty off the screen.
+    #[inline]
+    fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
+        let row = usize::from(y) * self.width;
+        let cells = row + usize::from(x).min(self.width)..row + self.width;
+        self.targets.get_mut(cells).unwrap_or_default()
+    }
+
+    /// Draws the ASCII substitute of `character`.
+    fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if !self.targets_from(x, y).is_empty() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.set_ascii_cell(usize::from(y) * self.width + usize::from(x), cell);
+        }
+    }
+
+    /// Draws cells of two colours without a block element, in their lower colours.
+    fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        for (x, colors) in (x..).zip(row) {
+            self.draw_ascii(x, y, ' ', colors);
+        }
     }
 }

@@ -17,7 +17,7 @@ use super::ceilings::Ceilings;
 use super::distance_to_edge;
 use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
-use crate::visibility::layer_order::put_in_order;
+use crate::visibility::draw_list::put_in_order;
 use crate::visibility::visible_cells::VisibleCells;
 use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,

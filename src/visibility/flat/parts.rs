@@ -293,6 +293,6 @@ fn face_of(scene: Scene<'_>, columns: &[Column]) -> Option<Face> {
 
 /// The tile of `cell`, if it is a wall.
 fn wall_tile(world: &World, cell: Cell) -> Option<TileId> {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into())?;
+    let tile = world.grid().tile_in(cell)?;
     matches!(world.tile(tile).kind, TileKind::Wall(_)).then_some(tile)
 }

@@ -8,9 +8,9 @@ use std::ops::Range;
 use glam::DVec2;
 
 use crate::cast::{Hit, Side};
-use crate::visibility::facing::cell_before;
+use crate::visibility::face_column::cell_before;
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallRun, WallSink};
-use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
+use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileKind, World};
 
 /// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right.
 #[inline]
@@ -139,10 +139,7 @@ struct Face<'a> {
 impl<'a> Face<'a> {
     /// The face that the ray of column `x` hit.
     fn new(scene: Scene<'a>, x: u32, hit: &Hit, is_lit: bool) -> Self {
-        let Cell { column, row } = hit.cell;
-        let world = scene.world;
-        let id = world.grid().tile(i64::from(column), i64::from(row));
-        let tile = id.map(|TileId(index)| &world.tiles()[usize::from(index)]);
+        let tile = scene.world.tile_in(hit.cell);
         let light = if is_lit { face_light(scene, x, hit, tile) } else { FaceLight::FULL };
         Self { cell: hit.cell, side: hit.side, tile, light }
     }

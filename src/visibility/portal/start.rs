@@ -10,7 +10,7 @@ use super::surroundings::{Place, Surroundings};
 use super::tile_gaps::GapId;
 use super::walk::BundleWalk;
 use crate::cast::{Course, Hit};
-use crate::visibility::facing::place_before;
+use crate::visibility::face_column::place_before;
 use crate::visibility::runs::{ImageId, Shown};
 use crate::visibility::{Column, PortalStats};
 use crate::world::TileId;

@@ -13,15 +13,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::billboards::RayPart;
 use super::bundle::{Bundle, Clip};
-use super::layers::Passed;
+use super::layers::{Passed, RayPart};
 use super::ray_segments::RaySegment;
 use super::surroundings::Surroundings;
 use super::tile_gaps::{Holds, VisibleGap};
 use crate::cast::{Crossed, Ray, Side};
-use crate::visibility::chains::Chains;
-use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
+use crate::visibility::runs::{Chains, FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{DrawList, PortalStats, Scene};
 use crate::world::{Cell, TileId};
 
