@@ -36,6 +36,7 @@ mod stats;
 mod status;
 mod steps;
 pub mod store;
+pub(crate) mod time;
 mod title;
 
 use std::time::Duration;

@@ -8,9 +8,9 @@
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
-use super::panels::whole_seconds;
 use super::saved::save_of_descent;
 use super::status::Goal;
+use super::time::whole_seconds;
 use super::{App, Levels, STEP, Screen};
 use crate::app::store::{Descent, Reached};
 use crate::game::Rules;

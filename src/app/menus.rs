@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::menu::Menu;
-use super::panels::{key_names, time, whole_seconds};
-use super::{App, Levels, STEP, Screen};
+use super::panels::key_names;
+use super::time::{of_steps, whole_seconds};
+use super::{App, Levels, Screen};
 use crate::app::bindings::Action;
 use crate::app::store::SaveId;
 use crate::map::builtin;
@@ -168,7 +169,7 @@ impl App {
     fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
         self.store.best(name, difficulty).map_or_else(
             || "-".to_owned(),
-            |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+            |best| format!("{} {:>7}", of_steps(best.tally.steps), best.rank),
         )
     }
 

@@ -1,7 +1,5 @@
 //! Panels on the picture: frames, messages, and lines wrapped to fit.
 
-use std::fmt::{self, Display};
-
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::Color;
 use ratatui::text::{Span, Text};
@@ -109,29 +107,6 @@ pub(crate) fn key_names(bindings: &Bindings, action: Action) -> String {
     names.join(" ")
 }
 
-/// Formats minutes and seconds.
-pub(crate) fn whole_seconds(seconds: f64) -> impl Display {
-    let seconds = seconds as u64;
-    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
-}
-
-struct WholeSeconds {
-    minutes: u64,
-    seconds: u64,
-}
-
-impl Display for WholeSeconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{:02}", self.minutes, self.seconds)
-    }
-}
-
-/// Formats minutes, seconds and tenths.
-pub(crate) fn time(seconds: f64) -> String {
-    let tenths = (seconds * 10.0) as u64;
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
-}
-
 /// Wraps `text` into lines of up to `width` characters, between words, and within words that are
 /// longer.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
@@ -163,13 +138,6 @@ pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times_are_minutes_seconds_and_tenths() {
-        assert_eq!(time(0.0), "0:00.0");
-        assert_eq!(time(61.26), "1:01.2");
-        assert_eq!(time(3600.0), "60:00.0");
-    }
 
     #[test]
     fn lines_are_filled_to_the_width() {

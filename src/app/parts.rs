@@ -10,9 +10,7 @@ pub(crate) use super::map_panel::MapPanel;
 pub(crate) use super::menu::{Menu, Selection, changes_by};
 pub(crate) use super::mouse::Pointer;
 pub(crate) use super::page::{PendingKey, is_answerable};
-pub(crate) use super::panels::{
-    is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
-};
+pub(crate) use super::panels::{is_too_small, leaving, message, picture_and_status, too_small};
 pub(crate) use super::picture::DrawOptions;
 pub(crate) use super::picture::Overlay;
 pub(crate) use super::setting::Value;
@@ -21,3 +19,4 @@ pub(crate) use super::stats::{Meter, Stats};
 pub(crate) use super::status::HealthSigns;
 pub(crate) use super::status::{Part, StatusLine, hint};
 pub(crate) use super::steps::Watch;
+pub(crate) use super::time::{of_steps, whole_seconds};

@@ -5,9 +5,9 @@ use crate::app::App;
 use crate::app::levels::Stage;
 use crate::app::menu::Menu;
 use crate::app::menus::Choice;
-use crate::app::panels::{time, whole_seconds};
 use crate::app::recording::{RunLog, ScriptCursor};
 use crate::app::store::{Improved, Run};
+use crate::app::time::{tenths, whole_seconds};
 use crate::game::{Game, Header, LevelName, Outcome, Rank, STEP, Script, Share, Tally};
 use crate::map::builtin;
 
@@ -123,7 +123,7 @@ impl App {
             self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
         let is_fastest = self.result.is_some_and(|result| result.improved.time);
         let fastest = if is_fastest { " (your fastest)" } else { "" };
-        let menu = menu.line(format!("in {}{fastest}", time(self.game.elapsed())));
+        let menu = menu.line(format!("in {}{fastest}", tenths(self.game.elapsed())));
         let menu = match &self.result {
             Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
             None => menu,
@@ -156,7 +156,7 @@ impl App {
 
     pub(crate) fn end_menu(&self) -> Menu<Choice> {
         let seconds = self.earlier + self.game.elapsed();
-        let menu = Menu::new("the end").line("all levels").line(format!("in {}", time(seconds)));
+        let menu = Menu::new("the end").line("all levels").line(format!("in {}", tenths(seconds)));
         self.with_leaving(menu)
     }
 

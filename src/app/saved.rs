@@ -12,10 +12,10 @@
 use super::descents::date_of;
 use super::menu::Menu;
 use super::menus::{Choice, capitalized};
-use super::panels::whole_seconds;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
 use super::steps::Watch;
+use super::time::whole_seconds;
 use super::{App, Levels, STEP, Screen};
 use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};

@@ -21,10 +21,10 @@ use ratatui::widgets::Widget;
 
 use crate::app::bindings::{Action, Bindings};
 use crate::app::levels::LevelNumber;
-use crate::app::panels::whole_seconds;
 use crate::app::played::Played;
 use crate::app::settings::MapDisplay;
 use crate::app::stats::Stats;
+use crate::app::time::whole_seconds;
 use crate::color::palette::ColorDepth;
 use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, STEPS_PER_SECOND, Share};
 use crate::tui::GlyphSet;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use super::Error;
-use super::verify::clock;
+use crate::app::time::of_steps;
 use crate::server::{HostMaps, MOST_RECORDED_BYTES, is_room_recording, replay_room};
 
 /// A line for each round of the recording in `path`; `None` if the file is no recording of a room. `maps`
@@ -31,7 +31,7 @@ pub(crate) fn replayed(path: &Path, maps: Option<&OsStr>) -> Result<Option<Strin
     let mut lines = String::new();
     for round in rounds {
         // Memory accepts every byte.
-        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, clock(round.steps));
+        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, of_steps(round.steps));
         for (name, points) in round.standings {
             _ = writeln!(lines, "  {name}  {points}");
         }

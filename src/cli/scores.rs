@@ -5,10 +5,11 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
+use super::Error;
 use super::arguments::{Database, Scores, ScoresFormat};
 use super::data_folder::data_folder;
 use super::host_store::{self, failed};
-use super::{Error, verify};
+use crate::app::time::of_steps;
 use crate::game::STEPS_PER_SECOND;
 use crate::store::host::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 
@@ -72,7 +73,7 @@ fn table(boards: &Boards) -> String {
                     ["time", "rank"],
                     scores.iter().map(|score| {
                         let rank = score.rank.name().to_owned();
-                        (score.name.as_str(), [verify::clock(score.tally.steps), rank])
+                        (score.name.as_str(), [of_steps(score.tally.steps), rank])
                     }),
                 )
             });
@@ -83,7 +84,7 @@ fn table(boards: &Boards) -> String {
             ["floors", "treasure", "time"],
             scores.iter().map(|score| {
                 let reached = score.reached;
-                let time = verify::clock(reached.steps);
+                let time = of_steps(reached.steps);
                 let values = [reached.floors.to_string(), reached.treasure.to_string(), time];
                 (score.name.as_str(), values)
             }),

@@ -3,8 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use super::unix_time;
+use crate::app::parts::of_steps;
 use crate::app::store::Improved;
-use crate::game::STEPS_PER_SECOND;
 use crate::server::line::Line;
 use crate::server::logging::events;
 use crate::server::room::{Catalog, NAME_COLUMNS};
@@ -81,7 +81,7 @@ impl Recorder {
         let (steps, rank) = (run.tally().steps, run.rank());
         events::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
         let what = if improved.time { "your best" } else { "not your best" };
-        let what = format!("{}, rank {rank}: {what}.", clock(steps));
+        let what = format!("{}, rank {rank}: {what}.", of_steps(steps));
         let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
             self.failed(&failure);
             Vec::new()
@@ -143,10 +143,4 @@ pub(crate) fn board(
         })
     };
     scores.into_iter().filter_map(row).collect()
-}
-
-/// Steps as minutes and seconds.
-pub(crate) fn clock(steps: u64) -> String {
-    let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

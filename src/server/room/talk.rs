@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{Finish, MemberId, Mode, Room, Said};
-use crate::app::parts::time;
-use crate::game::{PlayerColor, STEP};
+use crate::app::parts::of_steps;
+use crate::game::PlayerColor;
 use crate::server::line::Line;
 
 /// How many lines a room remembers.
@@ -59,7 +59,7 @@ impl Finish {
 
     /// The time to the exit.
     pub(crate) fn time(self) -> String {
-        time(self.steps as f64 * STEP)
+        of_steps(self.steps)
     }
 }
 

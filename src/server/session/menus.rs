@@ -4,8 +4,7 @@ use super::choice::{Choice, Target};
 use super::draw::COMPRESSION;
 use super::page::Page;
 use super::visit::Visit;
-use crate::app::parts::{Menu, time};
-use crate::game::STEP;
+use crate::app::parts::{Menu, of_steps};
 use crate::server::line::Line;
 use crate::server::room::{Emote, Mode};
 use crate::server::rooms::RoomRefusal;
@@ -176,7 +175,7 @@ impl Visit {
             Some(rows) => rows.iter().enumerate().fold(menu, |menu, (index, row)| {
                 let own = if row.is_own { " (you)" } else { "" };
                 let label = format!("{:>2}. {}{own}", index + 1, row.name);
-                let value = format!("{}  {}", row.rank.name(), time(row.steps as f64 * STEP));
+                let value = format!("{}  {}", row.rank.name(), of_steps(row.steps));
                 menu.entry_with(label, value, Choice::Nothing)
             }),
         }

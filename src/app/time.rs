@@ -1,0 +1,45 @@
+//! Times as players read them: minutes and seconds, with or without tenths.
+
+use std::fmt::{self, Display};
+
+use crate::game::STEP;
+
+/// Formats minutes and seconds.
+pub(crate) fn whole_seconds(seconds: f64) -> impl Display {
+    let seconds = seconds as u64;
+    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
+}
+
+struct WholeSeconds {
+    minutes: u64,
+    seconds: u64,
+}
+
+impl Display for WholeSeconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{:02}", self.minutes, self.seconds)
+    }
+}
+
+/// Formats minutes, seconds and tenths.
+pub(crate) fn tenths(seconds: f64) -> String {
+    let all = (seconds * 10.0) as u64;
+    format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
+}
+
+/// Formats the time of `steps` steps of a game as minutes, seconds and tenths.
+pub(crate) fn of_steps(steps: u64) -> String {
+    tenths(steps as f64 * STEP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_minutes_seconds_and_tenths() {
+        assert_eq!(tenths(0.0), "0:00.0");
+        assert_eq!(tenths(61.26), "1:01.2");
+        assert_eq!(tenths(3600.0), "60:00.0");
+    }
+}
