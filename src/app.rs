@@ -19,8 +19,7 @@ mod menus;
 mod mouse;
 mod page;
 mod panels;
-#[cfg(feature = "serve")]
-pub(crate) mod parts;
+pub mod parts;
 mod picture;
 mod played;
 mod recording;

@@ -45,14 +45,12 @@ pub(crate) use major_axis::MajorAxisTraversal;
 pub(crate) use ray::HitFace;
 #[cfg(feature = "tui")]
 pub(crate) use ray::distance_on_entry;
-#[cfg(feature = "lab")]
-pub(crate) use ray::texture_coordinate;
+pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
 pub(crate) use through::Passage;
 #[cfg(feature = "tui")]
 pub(crate) use walk::WalkFromInside;
-#[cfg(feature = "lab")]
-pub(crate) use walk::first_line;
+pub use walk::first_line;
 pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Order, Walk};
 

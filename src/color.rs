@@ -6,9 +6,9 @@
 //! same, bit for bit, on every machine and with every version.
 
 pub mod lab;
-pub(crate) mod oklab;
+pub mod oklab;
 pub mod palette;
-pub(crate) mod srgb;
+pub mod srgb;
 
 use std::fmt;
 use std::ops::{Add, Mul};

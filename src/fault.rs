@@ -5,7 +5,7 @@
 //! reported. Stopping at the first fault was refused: correcting a file would take one run for
 //! each.
 
-pub(crate) mod document;
+pub mod document;
 mod excerpt;
 mod printable;
 mod words;
@@ -18,8 +18,8 @@ pub(crate) use printable::printable;
 #[cfg(feature = "cli")]
 pub(crate) use printable::printable_lines;
 #[cfg(feature = "terminal")]
-pub(crate) use printable::printable_path;
-pub(crate) use words::{nearest, quoted};
+pub use printable::printable_path;
+pub use words::{nearest, quoted};
 
 /// All faults of a file; there is at least one.
 ///
@@ -35,7 +35,7 @@ pub struct Faults {
 
 impl Faults {
     /// The faults of the file `name` with the contents `text`. `faults` is not empty.
-    pub(crate) fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+    pub fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
         sort::by_key(&mut faults, |fault| {
             fault.place.as_ref().map(|place| (place.start, place.end))
@@ -54,7 +54,7 @@ impl Faults {
     ///
     /// # Errors
     /// A fault that names the first line that is not UTF-8.
-    pub(crate) fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
+    pub fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
@@ -106,7 +106,7 @@ impl fmt::Debug for Faults {
 impl std::error::Error for Faults {}
 
 /// A fault in a text.
-pub(crate) struct Fault {
+pub struct Fault {
     /// Bytes of the text; `None` if the fault is that of the whole file.
     place: Option<Range<usize>>,
     /// A sentence.
@@ -119,7 +119,7 @@ pub(crate) struct Fault {
 
 impl Fault {
     /// A fault at `place`, a range of bytes of the text.
-    pub(crate) fn new(place: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn new(place: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { place: Some(place), message, label: String::new(), help: String::new() }
     }
@@ -130,7 +130,7 @@ impl Fault {
     }
 
     /// The fault with what to write instead.
-    pub(crate) fn help(self, help: impl Into<String>) -> Self {
+    pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
     /// The first byte of the place.

@@ -9,15 +9,14 @@
 //! it, the player has no tools, and it costs nothing that a mission would cost.
 
 mod checkpoint;
-mod checksum;
 mod collision;
 mod crowding;
+mod distances;
 mod doors;
 mod encounter;
 mod exits;
 mod fall;
 mod flight;
-mod flood;
 mod guards;
 mod hazards;
 mod health;
@@ -37,9 +36,10 @@ mod rules;
 mod scratch;
 mod script;
 mod show;
+mod sight;
 mod sound;
 mod stance;
-pub(crate) mod stored;
+pub mod stored;
 mod tally;
 mod tools;
 mod turn;
@@ -70,7 +70,7 @@ pub use multiplayer::{
     Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, OtherPlayer, PlayerId, PlayerView, Sees,
     Strikes,
 };
-pub(crate) use player::FRICTION;
+pub use player::FRICTION;
 pub use report::Outcome;
 pub use rules::Rules;
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
@@ -81,7 +81,7 @@ pub use tally::{Rank, Share, Tally};
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
-pub(crate) const STEPS_PER_SECOND: u32 = 60;
+pub const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.
 ///

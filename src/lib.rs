@@ -59,6 +59,9 @@
 //! Each feature needs the one before it: `tui`, `terminal`, `lab`, `cli`. `cli` is the default. Without features there is
 //! the engine, which uses no terminal crate.
 
+#[cfg(test)]
+extern crate self as cellcaster;
+
 #[cfg(feature = "terminal")]
 pub mod app;
 pub mod cast;
@@ -68,24 +71,18 @@ pub mod color;
 pub mod fault;
 pub mod game;
 pub mod generate;
-#[cfg(feature = "lab")]
-pub mod lab;
 pub mod map;
-mod numeric;
+pub mod numeric;
 mod raster;
 pub mod render;
 pub mod rng;
-#[cfg(feature = "serve")]
-pub mod server;
-mod sort;
+pub mod sort;
 pub mod space;
-#[cfg(feature = "serve")]
-pub mod store;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
-mod visibility;
+pub mod visibility;
 pub mod world;
 
 /// The examples of the README, compiled and run as tests.

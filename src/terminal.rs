@@ -7,8 +7,8 @@
 //!
 //! This module reads the bytes and divides them into units itself.
 //!
-//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys, or
-//! keep a reading thread that competes with the answers to queries.
+//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys,
+//! or keep a reading thread that competes with the answers to queries.
 
 mod cell_writer;
 mod error;
@@ -49,4 +49,4 @@ pub use self::protocol::Protocol;
 pub use self::session::Session;
 pub use self::tmux::TmuxClient;
 #[cfg(feature = "cli")]
-pub(crate) use self::unix::{peak_memory, take_keys_from_terminal};
+pub(crate) use self::unix::take_keys_from_terminal;

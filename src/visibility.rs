@@ -53,7 +53,7 @@ pub use plan::{
     CeilingLoop, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
     WhyPortals,
 };
-pub(crate) use projection::Projection;
+pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
 pub(crate) use scene::Scene;
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};

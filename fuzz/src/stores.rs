@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::fmt::Debug;
 
 use cellcaster::game::{Rank, Rules, Share, Tally};
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyTry, Day,
     HostStore, LevelBoard, MemoryStore, Name, SqliteStore, UnixTime, VerifiedDescent,
     VerifiedLevel,

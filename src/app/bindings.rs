@@ -6,7 +6,7 @@ use crate::terminal::{Key, KeyEvent};
 
 /// An action that a key can be bound to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Action {
+pub enum Action {
     /// Want something for as long as the key is held.
     Want(Intent),
     /// Run until the key is pressed again.
@@ -43,7 +43,7 @@ pub(crate) enum Action {
 
 /// A change of the minimap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum MapChange {
+pub enum MapChange {
     Larger,
     Smaller,
     North,
@@ -139,9 +139,8 @@ impl Bindings {
     }
 
     /// The bindings without those of `keys`.
-    #[cfg(feature = "serve")]
     #[must_use]
-    pub(crate) fn without(mut self, keys: &[Key]) -> Self {
+    pub fn without(mut self, keys: &[Key]) -> Self {
         self.keys.retain(|(key, _)| !keys.contains(key));
         self
     }
@@ -154,13 +153,13 @@ impl Bindings {
     }
 
     /// The action of `key`.
-    pub(crate) fn action(&self, key: Key) -> Option<Action> {
+    pub fn action(&self, key: Key) -> Option<Action> {
         self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
     }
 
     /// The event with the key whose action counts: the pressed one, or if that has no action, the
     /// key at its position on a US keyboard.
-    pub(crate) fn resolve(&self, event: KeyEvent) -> KeyEvent {
+    pub fn resolve(&self, event: KeyEvent) -> KeyEvent {
         let base = event.base.filter(|_| self.action(event.key).is_none());
         KeyEvent { key: base.unwrap_or(event.key), ..event }
     }
@@ -173,7 +172,7 @@ impl Bindings {
 
 /// A keyboard that keys are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) enum Preset {
+pub enum Preset {
     #[default]
     Qwerty,
     /// Z, Q, S and D are where W, A, S and D are on QWERTY keyboards; A leaves.

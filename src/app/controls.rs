@@ -10,7 +10,7 @@ use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 
 /// Divides time into steps of the game. A remainder counts for the next step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Clock {
+pub struct Clock {
     /// The time up to which steps have been counted.
     counted: Duration,
 }
@@ -18,28 +18,28 @@ pub(crate) struct Clock {
 impl Clock {
     /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
     /// more slowly and does not fall behind further and further.
-    pub(crate) const MOST_STEPS: u64 = 15;
+    pub const MOST_STEPS: u64 = 15;
 
     /// The number of steps since the last call.
-    pub(crate) fn steps_until(&mut self, now: Duration) -> u64 {
+    pub fn steps_until(&mut self, now: Duration) -> u64 {
         let steps = steps_in(now.saturating_sub(self.counted));
         self.counted = after(self.counted, steps);
         steps
     }
 
     /// Skips the time up to `now`.
-    pub(crate) fn skip_to(&mut self, now: Duration) {
+    pub fn skip_to(&mut self, now: Duration) {
         self.counted = now;
     }
 
     /// The time at which the step after `steps` further steps ends.
-    pub(crate) fn step_after(&self, steps: u64) -> Duration {
+    pub fn step_after(&self, steps: u64) -> Duration {
         after(self.counted, steps.saturating_add(1))
     }
 }
 
 /// The time `steps` steps after `time`.
-pub(crate) fn after(time: Duration, steps: u64) -> Duration {
+pub fn after(time: Duration, steps: u64) -> Duration {
     time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
 }
 
@@ -60,27 +60,27 @@ const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
 
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Controls {
-    pub(crate) held: HeldKeys<Key>,
-    pub(crate) toggles: Toggles,
+pub struct Controls {
+    pub held: HeldKeys<Key>,
+    pub toggles: Toggles,
     /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
 /// The state of the game that keys depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct KeyContext {
+pub struct KeyContext {
     /// Whether the game runs and is not paused.
-    pub(crate) plays: bool,
+    pub plays: bool,
     /// Whether the player is in the air.
-    pub(crate) is_airborne: bool,
+    pub is_airborne: bool,
     /// Whether the player flies, so that ducking moves them.
-    pub(crate) flies: bool,
+    pub flies: bool,
 }
 
 impl Controls {
     /// Handles an event. Returns its meaning, or `None` for a release.
-    pub(crate) fn handle(
+    pub fn handle(
         &mut self,
         event: KeyEvent,
         now: Duration,
@@ -134,7 +134,7 @@ impl Controls {
     }
 
     /// Releases the keys that are no longer held at time `now`.
-    pub(crate) fn advance(&mut self, now: Duration, context: KeyContext) {
+    pub fn advance(&mut self, now: Duration, context: KeyContext) {
         if context.is_airborne {
             self.held.keep(now);
         }
@@ -151,7 +151,7 @@ impl Controls {
     }
 
     /// The player's intents.
-    pub(crate) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
+    pub fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
             Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
             Some(Action::Want(intent)) => Some((intent, hold)),

@@ -16,7 +16,7 @@ use crate::tui::canvas::Canvas;
 
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct HelpScroll {
+pub struct HelpScroll {
     /// The first line shown, below those that are always shown.
     first: usize,
     /// The number of lines shown last, and the number of all lines.
@@ -29,7 +29,7 @@ const GAP: usize = 3;
 
 impl HelpScroll {
     /// Scrolls if `key` does that. Returns whether it does.
-    pub(crate) fn scroll(&mut self, key: Key) -> bool {
+    pub fn scroll(&mut self, key: Key) -> bool {
         let page = self.page.max(1);
         let wanted = match key {
             Key::Up => self.first.saturating_sub(1),
@@ -50,7 +50,7 @@ impl HelpScroll {
 
     /// Draws the help: further keys, in sentences, before those of the bindings, and `notes` about the
     /// terminal at the end.
-    pub(crate) fn draw(
+    pub fn draw(
         &mut self,
         canvas: &mut impl Canvas,
         picture: Rect,

@@ -19,14 +19,14 @@ use crate::terminal::Key;
 use crate::tui::{HeldKeys, Press};
 
 /// A page, which has the keys of its kind.
-pub(crate) trait Page: Copy + PartialEq {
+pub trait Page: Copy + PartialEq {
     /// The kind of the page.
     fn kind(self) -> Kind;
 }
 
 /// A kind of pages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// The picture, or a page whose owner handles its keys.
     Bare,
     /// A menu. If it has values, keys to the left and the right change them.
@@ -41,7 +41,7 @@ pub(crate) enum Kind {
 
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effect {
+pub enum Effect {
     /// Nothing.
     None,
     /// The page has changed.
@@ -60,20 +60,21 @@ pub(crate) enum Effect {
 
 /// The page that is shown, its menu, and the pages to return to.
 #[derive(Clone, Debug)]
-pub(crate) struct Pages<P, C> {
+pub struct Pages<P, C> {
     page: P,
     /// The menu of the page; empty if it has none.
-    pub(crate) menu: Menu<C>,
+    pub menu: Menu<C>,
     /// The pages to return to, the next one last.
     behind: Vec<(P, Menu<C>)>,
-    pub(crate) help: HelpScroll,
+    /// The help, if it is shown.
+    pub help: HelpScroll,
     pending: PendingKey,
     shown_since: Duration,
 }
 
 impl<P: Page, C: Copy> Pages<P, C> {
     /// A page without a menu.
-    pub(crate) fn new(page: P) -> Self {
+    pub fn new(page: P) -> Self {
         Self {
             page,
             menu: Menu::new(""),
@@ -85,24 +86,24 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The page that is shown.
-    pub(crate) fn page(&self) -> P {
+    pub fn page(&self) -> P {
         self.page
     }
 
     /// Shows `page`, from which there is no way back.
-    pub(crate) fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.clear();
         self.enter(page, menu, now);
     }
 
     /// Opens `page` over the one that is shown.
-    pub(crate) fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter(page, menu, now);
     }
 
     /// Returns to the page from which this one was opened, or to `home`.
-    pub(crate) fn close(&mut self, home: P, now: Duration) {
+    pub fn close(&mut self, home: P, now: Duration) {
         let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::new("")));
         self.enter(page, menu, now);
     }
@@ -114,13 +115,13 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// Replaces the menu, after something that it shows has changed. The selection stays.
-    pub(crate) fn renew(&mut self, menu: Menu<C>) {
+    pub fn renew(&mut self, menu: Menu<C>) {
         let selected = self.menu.selected();
         self.menu = menu.selecting(selected);
     }
 
     /// Handles a press of `key` while the keys in `held` are down.
-    pub(crate) fn press(
+    pub fn press(
         &mut self,
         (key, press): (Key, Press),
         bindings: &Bindings,
@@ -170,7 +171,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// Answers the question on the page by `key`, now or once it is certain that it does not repeat.
-    pub(crate) fn press_to_answer(
+    pub fn press_to_answer(
         &mut self,
         key: Key,
         press: Press,
@@ -182,7 +183,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The effect of a pending key that did not repeat until `now`.
-    pub(crate) fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
+    pub fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
         self.pending.settle(now).map_or(Effect::None, |key| self.answer(key, bindings))
     }
 
@@ -203,7 +204,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The time until which a key is pending.
-    pub(crate) fn pending_until(&self) -> Option<Duration> {
+    pub fn pending_until(&self) -> Option<Duration> {
         self.pending.until()
     }
 }
@@ -214,7 +215,7 @@ const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
 /// Whether a result that is shown since `shown_since` can be answered at `now`: half a second later, once the
 /// keys that were held for the game have been released, or a second later.
-pub(crate) fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
+pub fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration) -> bool {
     let shown_for = now.saturating_sub(shown_since);
     let is_released = shown_for >= LEAST_SHOWN && !held.is_any_down_since(shown_since);
     is_released || shown_for >= LONGEST_WAIT
@@ -225,11 +226,11 @@ const REPETITION: Duration = Duration::from_millis(150);
 
 /// A key that answers the question on the screen if it does not repeat until a certain time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PendingKey(Option<(Key, Duration)>);
+pub struct PendingKey(Option<(Key, Duration)>);
 
 impl PendingKey {
     /// Handles a press of `key` at `now`. Returns the key if it answers the question at once.
-    pub(crate) fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
+    pub fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
         match press {
             Press::Fresh => return Some(key),
             Press::Unclear => self.0 = Some((key, now + REPETITION)),
@@ -239,17 +240,17 @@ impl PendingKey {
     }
 
     /// Returns the key if it did not repeat until `now`.
-    pub(crate) fn settle(&mut self, now: Duration) -> Option<Key> {
+    pub fn settle(&mut self, now: Duration) -> Option<Key> {
         self.0.take_if(|(_, until)| *until <= now).map(|(key, _)| key)
     }
 
     /// Forgets the key: another one was pressed, or another question is asked.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.0 = None;
     }
 
     /// The time until which the key is pending.
-    pub(crate) fn until(self) -> Option<Duration> {
+    pub fn until(self) -> Option<Duration> {
         self.0.map(|(_, until)| until)
     }
 }

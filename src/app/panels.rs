@@ -23,18 +23,18 @@ pub(crate) const BORDERS: u16 = 2;
 pub(crate) const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
-pub(crate) fn is_too_small(area: Rect) -> bool {
+pub fn is_too_small(area: Rect) -> bool {
     area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
 }
 
 /// Draws the message that the window is too small.
-pub(crate) fn too_small(canvas: &mut impl Canvas) {
+pub fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
 /// The areas of the picture and of the status line.
-pub(crate) fn picture_and_status(area: Rect) -> [Rect; 2] {
+pub fn picture_and_status(area: Rect) -> [Rect; 2] {
     let picture = Rect { height: area.height.saturating_sub(1), ..area };
     let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
     [picture, status]
@@ -83,7 +83,7 @@ pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect 
 }
 
 /// Draws the question whether to leave; `effect` is what that does.
-pub(crate) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
+pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
     let text = format!("{keys}Enter {effect}\nany other key goes on");
@@ -91,7 +91,7 @@ pub(crate) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindin
 }
 
 /// Draws a panel in the middle of the picture, as large as `text` needs.
-pub(crate) fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
+pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));

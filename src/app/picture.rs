@@ -18,24 +18,23 @@ use crate::world::{FieldOfView, Heading};
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DrawOptions {
-    pub(crate) glyphs: GlyphSet,
-    pub(crate) depth: ColorDepth,
-    pub(crate) shade_ink: ShadeInk,
-    pub(crate) cell_aspect: CellAspect,
-    pub(crate) filter: Filter,
-    pub(crate) correction: Correction,
-    pub(crate) field_of_view: FieldOfView,
+pub struct DrawOptions {
+    pub glyphs: GlyphSet,
+    pub depth: ColorDepth,
+    pub shade_ink: ShadeInk,
+    pub cell_aspect: CellAspect,
+    pub filter: Filter,
+    pub correction: Correction,
+    pub field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
-    pub(crate) flash: Option<(Flash, Heading)>,
+    pub flash: Option<(Flash, Heading)>,
     /// Whether a dot marks the middle.
-    pub(crate) marks_middle: bool,
+    pub marks_middle: bool,
 }
 
 impl DrawOptions {
     /// Draws `scene` from `camera` at the time `seconds`.
-    #[cfg(feature = "serve")]
-    pub(crate) fn draw<S: Renderable>(
+    pub fn draw<S: Renderable>(
         &self,
         scene: &S,
         camera: &S::Camera,
@@ -95,7 +94,7 @@ impl DrawOptions {
 }
 
 /// A player of a game, and how their picture is drawn.
-pub(crate) struct Overlay<'a> {
+pub struct Overlay<'a> {
     game: &'a Game,
     player: PlayerView<'a>,
     options: &'a DrawOptions,
@@ -105,7 +104,7 @@ pub(crate) struct Overlay<'a> {
 
 impl<'a> Overlay<'a> {
     /// The overlay of `player`'s picture; `None` if they are not in the game.
-    pub(crate) fn new(
+    pub fn new(
         game: &'a Game,
         player: PlayerId,
         options: &'a DrawOptions,
@@ -121,7 +120,7 @@ impl<'a> Overlay<'a> {
 
     /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
     /// `shows_events`.
-    pub(crate) fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
+    pub fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, shows_events: bool) {
         let Self { player, options, .. } = self;
         options.draw_middle(canvas, area);
         let heading = player.camera(options.field_of_view).heading;
@@ -141,7 +140,7 @@ impl<'a> Overlay<'a> {
     }
 
     /// Draws the map with its panel, if it is shown. `view` is that of the picture.
-    pub(crate) fn draw_map(
+    pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
         area: Rect,

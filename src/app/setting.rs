@@ -19,17 +19,17 @@ use crate::tui::{Correction, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 
 /// A setting that `C` contains.
-pub(crate) struct Setting<C: 'static> {
+pub struct Setting<C: 'static> {
     /// The key in a file.
-    pub(crate) key: &'static str,
+    pub key: &'static str,
     /// Its meaning in lines of a comment, or its label on a settings page.
-    pub(crate) about: &'static str,
+    pub about: &'static str,
     /// The value.
-    pub(crate) value: &'static dyn Field<C>,
+    pub value: &'static dyn Field<C>,
 }
 
 /// The value of a setting in `C`.
-pub(crate) trait Field<C>: Sync {
+pub trait Field<C>: Sync {
     /// Reads the value of `entry`, or reports a fault.
     fn read(&self, entry: &Entry<'_, '_>, into: &mut C);
 
@@ -89,7 +89,7 @@ impl<C: Clone, T: Value> Field<C> for At<C, T> {
 }
 
 /// A value that a setting can have.
-pub(crate) trait Value: Copy + PartialEq {
+pub trait Value: Copy + PartialEq {
     /// The value of `entry`. Reports a fault if it is none.
     fn read(entry: &Entry<'_, '_>) -> Option<Self>;
 
@@ -112,7 +112,7 @@ pub(crate) trait Value: Copy + PartialEq {
 type Named<T> = (T, &'static str, &'static str);
 
 /// A value that is one of a few with names.
-pub(crate) trait Choice: Copy + PartialEq + 'static {
+pub trait Choice: Copy + PartialEq + 'static {
     /// The label of no value, which lets the terminal decide, if a settings page offers it.
     const AUTO: Option<&'static str> = None;
     /// The values, in the order of a settings page.

@@ -25,9 +25,7 @@ use std::time::Duration;
 use toml::de::{DeTable, DeValue};
 
 use crate::app::bindings::{Action, Bindings, Preset};
-#[cfg(feature = "serve")]
-use crate::app::setting::Value;
-use crate::app::setting::{At, Choice, FRAME_RATE, Setting, toml_string};
+use crate::app::setting::{At, Choice, FRAME_RATE, Setting, Value, toml_string};
 use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
@@ -137,7 +135,7 @@ pub enum MapDisplay {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
     /// The preset that the bindings are based on.
-    pub(crate) preset: Preset,
+    pub preset: Preset,
     /// The actions of keys.
     pub bindings: Bindings,
     /// The colour depth; `None` for that of the terminal.
@@ -265,8 +263,7 @@ impl Configuration {
     }
 
     /// Takes the bindings of the next preset, or of the one before if `forward` is false.
-    #[cfg(feature = "serve")]
-    pub(crate) fn change_preset(&mut self, forward: bool) {
+    pub fn change_preset(&mut self, forward: bool) {
         self.preset = self.preset.after(forward);
         self.bindings = self.preset.bindings();
     }

@@ -132,7 +132,7 @@ fn origin(given: Given, key: &str) -> &'static str {
 }
 
 /// Adds a card that shows which characters the terminal has.
-pub(crate) fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
+pub fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
     let menu = menu.line("Of these, the last smooth wedge is the best for you:");
     let sets = GlyphSet::ALL.iter().filter(|(set, ..)| set.has_blocks());
     sets.fold(menu, |menu, (set, _, name)| menu.line(format!("{name:·<12} {}", set.wedge())))

@@ -32,10 +32,10 @@ use crate::world::{FieldOfView, Supply};
 
 /// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Toggles {
-    pub(crate) runs: bool,
-    pub(crate) ducks: bool,
-    pub(crate) keeps_walking: bool,
+pub struct Toggles {
+    pub runs: bool,
+    pub ducks: bool,
+    pub keeps_walking: bool,
 }
 
 /// The values that the line shows.
@@ -57,13 +57,13 @@ pub(crate) struct StatusValues<'a> {
 /// The texts of the line: place and state of the player at the left; progress and help at the
 /// right.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StatusLine {
+pub struct StatusLine {
     texts: [[String; 2]; PARTS],
 }
 
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub enum Part {
     Health,
     Alarm,
     Light,
@@ -144,7 +144,7 @@ impl StatusLine {
     }
 
     /// Replaces all texts by those that `write` writes.
-    pub(crate) fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
+    pub fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
         _ = write(self);
@@ -219,7 +219,7 @@ fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
 }
 
 /// A line with a hint instead of the game's state.
-pub(crate) fn hint(text: &str) -> impl Widget {
+pub fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
 }
 
@@ -269,7 +269,7 @@ impl StatusLine {
     }
 
     /// Writes the modes that are switched on.
-    pub(crate) fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
+    pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
         let modes = [
             (toggles.runs, "running"),
             (toggles.ducks, "ducking"),
@@ -285,14 +285,14 @@ impl StatusLine {
     }
 
     /// Writes the figures of frames and the link.
-    pub(crate) fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
+    pub fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
         let [short, long] = self.forms(Part::Stats);
         write!(short, "{}", stats.rates)?;
         write!(long, "{stats}")
     }
 
     /// Writes the names of the keys that the player has.
-    pub(crate) fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
+    pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
         for (index, key) in keys.enumerate() {
             let comma = if index > 0 { ", " } else { "" };
             self.both(Part::Keys, format_args!("{comma}{key} key"))?;
@@ -301,7 +301,7 @@ impl StatusLine {
     }
 
     /// Writes the keys that show the help.
-    pub(crate) fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
+    pub fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
         let [short, long] = &mut self.texts[Part::Help as usize];
         for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
             let blank = if index > 0 { " " } else { "" };
@@ -313,19 +313,19 @@ impl StatusLine {
     }
 
     /// The short and the long form of `part`.
-    pub(crate) fn forms(&mut self, part: Part) -> &mut [String; 2] {
+    pub fn forms(&mut self, part: Part) -> &mut [String; 2] {
         &mut self.texts[part as usize]
     }
 
     /// Appends to both forms of `part`.
-    pub(crate) fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+    pub fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
         self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
     }
 }
 
 /// How health is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HealthSigns {
+pub enum HealthSigns {
     Hearts,
     Digits,
 }
@@ -336,7 +336,7 @@ const DIM: u8 = 144;
 
 impl HealthSigns {
     /// The signs that a picture of that kind shows best.
-    pub(crate) fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
+    pub fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
         let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
         if has_hearts { Self::Hearts } else { Self::Digits }
     }
@@ -344,7 +344,7 @@ impl HealthSigns {
 
 impl StatusLine {
     /// Writes health, alarm, light, supplies and treasure.
-    pub(crate) fn write_vitals(
+    pub fn write_vitals(
         &mut self,
         game: &Game,
         player: &PlayerView,

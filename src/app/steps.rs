@@ -108,7 +108,7 @@ impl App {
 
 /// The last state, to compare the next one with.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Watch {
+pub struct Watch {
     alarm: Alarm,
     health: u8,
     /// Whether something has happened since [`Watch::take_ring`].
@@ -126,8 +126,7 @@ impl Watch {
     }
 
     /// A watch that begins with the state of `player` in `game`.
-    #[cfg(feature = "serve")]
-    pub(crate) fn of(game: &Game, player: PlayerId) -> Self {
+    pub fn of(game: &Game, player: PlayerId) -> Self {
         let mut watch = Self::default();
         watch.look_at(game, player);
         watch.silenced()
@@ -143,7 +142,7 @@ impl Watch {
     }
 
     /// Looks at the state of `player` after a step.
-    pub(crate) fn look_at(&mut self, game: &Game, player: PlayerId) {
+    pub fn look_at(&mut self, game: &Game, player: PlayerId) {
         let alarm = game.alarm();
         let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
         self.rings |= alarm > self.alarm || health < self.health;
@@ -151,7 +150,7 @@ impl Watch {
     }
 
     /// Whether something has happened since the last call.
-    pub(crate) fn take_ring(&mut self) -> bool {
+    pub fn take_ring(&mut self) -> bool {
         std::mem::take(&mut self.rings)
     }
 }

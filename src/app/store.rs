@@ -30,10 +30,10 @@
 //! text that the player can read and copy. So was one file that is locked while the game runs: the
 //! second game would keep nothing.
 
-pub(crate) mod home;
+pub mod home;
 mod names;
 pub(crate) mod preferences;
-pub(crate) mod private;
+pub mod private;
 mod progress;
 mod results;
 mod text;
@@ -42,14 +42,13 @@ use std::path::Path;
 
 use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
-#[cfg(feature = "serve")]
-pub(crate) use names::name_in_map_key;
+pub use names::name_in_map_key;
 pub use preferences::Preferences;
 use progress::{Change, Progress};
 pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 pub use results::{Best, Improved, Reached, Run};
 #[cfg(feature = "cli")]
-pub(crate) use results::{DescentRun, replayed};
+pub use results::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use crate::game::STEP;
 
 /// Formats minutes and seconds.
-pub(crate) fn whole_seconds(seconds: f64) -> impl Display {
+pub fn whole_seconds(seconds: f64) -> impl Display {
     let seconds = seconds as u64;
     WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
 }
@@ -22,13 +22,13 @@ impl Display for WholeSeconds {
 }
 
 /// Formats minutes, seconds and tenths.
-pub(crate) fn tenths(seconds: f64) -> String {
+pub fn tenths(seconds: f64) -> String {
     let all = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
 }
 
 /// Formats the time of `steps` steps of a game as minutes, seconds and tenths.
-pub(crate) fn of_steps(steps: u64) -> String {
+pub fn of_steps(steps: u64) -> String {
     tenths(steps as f64 * STEP)
 }
 

@@ -49,7 +49,7 @@ impl Ray {
     /// The direction scaled by a power of two so that its larger component is between 1/2 and 1,
     /// and the exponent of the divisor. The smaller component underflows to 0 if it is too small
     /// relative to the larger one.
-    pub(crate) fn scaled_direction(&self) -> (DVec2, i32) {
+    pub fn scaled_direction(&self) -> (DVec2, i32) {
         let exponent = libm::ilogb(self.direction.abs().max_element()) + 1;
         let scale = |component| libm::scalbn(component, -exponent);
         (DVec2::new(scale(self.direction.x), scale(self.direction.y)), exponent)
@@ -63,7 +63,7 @@ impl Ray {
     }
 
     /// The ray of the same line with another origin and another unit of `t`.
-    pub(crate) fn moved(origin: DVec2, direction: DVec2) -> Self {
+    pub fn moved(origin: DVec2, direction: DVec2) -> Self {
         Self { origin, direction }
     }
 }
@@ -308,7 +308,7 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
 /// The texture coordinate of a point `along` cells from the north or west end of a face, for a
 /// viewer who looks along `direction`.
 #[inline]
-pub(crate) fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
+pub fn texture_coordinate(direction: DVec2, side: Side, along: f64) -> f64 {
     from_left(along, is_from_left(direction, side))
 }
 

@@ -166,7 +166,7 @@ impl Axis {
 ///
 /// A ray that starts off the map starts with the edge: the empty space before it takes no steps,
 /// whatever its length.
-pub(crate) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
+pub fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 {
         origin.ceil().max(0.0)
     } else if direction < 0.0 {

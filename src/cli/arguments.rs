@@ -5,15 +5,9 @@
 //! about an option's valid values, which the sentences about mistakes need.
 
 mod about;
-mod accuracy;
-#[cfg(all(unix, feature = "serve"))]
-mod admin;
-mod bench;
 mod cast;
 mod check;
 mod config;
-#[cfg(feature = "serve")]
-mod database;
 mod generated;
 mod help;
 mod levels;
@@ -23,13 +17,8 @@ mod option;
 mod order;
 mod play;
 mod replay;
-#[cfg(feature = "serve")]
-mod scores;
-#[cfg(feature = "serve")]
-mod serve;
 mod snapshot;
 mod value;
-mod wire;
 
 use std::ffi::OsString;
 
@@ -38,28 +27,17 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, ValueHint, value_parser};
 use clap_complete::Shell;
 
-pub(crate) use self::accuracy::{Accuracy, ReportFormat};
-#[cfg(all(unix, feature = "serve"))]
-pub(crate) use self::admin::{Admin, AdminAction};
-pub(crate) use self::bench::{Bench, BenchFormat};
 pub(crate) use self::cast::Cast;
 pub(crate) use self::check::Check;
 pub(crate) use self::config::Config;
-#[cfg(feature = "serve")]
-pub(crate) use self::database::Database;
 pub(crate) use self::generated::Generated;
 pub(crate) use self::levels::{Levels, LevelsFormat};
 pub(crate) use self::map::STANDARD_INPUT;
 use self::option::OptionSpec;
 pub(crate) use self::play::{FidelityChoice, Play};
 pub(crate) use self::replay::Replay;
-#[cfg(feature = "serve")]
-pub(crate) use self::scores::{Scores, ScoresFormat};
-#[cfg(feature = "serve")]
-pub(crate) use self::serve::Serve;
 pub(crate) use self::snapshot::{Format, Snapshot};
 pub(crate) use self::value::Size;
-pub(crate) use self::wire::{Wire, WireFormat};
 use super::Error;
 
 /// The requested command.
@@ -75,16 +53,7 @@ pub(crate) enum Command {
     Check(Check),
     Config(Config),
     Levels(Levels),
-    Accuracy(Accuracy),
-    #[cfg(all(unix, feature = "serve"))]
-    Admin(Admin),
-    Bench(Bench),
     Replay(Replay),
-    #[cfg(feature = "serve")]
-    Scores(Scores),
-    #[cfg(feature = "serve")]
-    Serve(Serve),
-    Wire(Wire),
 }
 
 impl Command {
@@ -119,16 +88,7 @@ const SUBCOMMANDS: &[&Subcommand] = &[
     &check::SUBCOMMAND,
     &levels::SUBCOMMAND,
     &config::SUBCOMMAND,
-    &accuracy::SUBCOMMAND,
-    &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
-    &wire::SUBCOMMAND,
-    #[cfg(feature = "serve")]
-    &serve::SUBCOMMAND,
-    #[cfg(all(unix, feature = "serve"))]
-    &admin::SUBCOMMAND,
-    #[cfg(feature = "serve")]
-    &scores::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
     &about::HELP,

@@ -20,7 +20,6 @@ enum Cause {
     /// A file of the user with faults.
     Faults(Faults),
     /// The same of several files, as text of several lines.
-    #[cfg(feature = "serve")]
     Report(String),
     /// A failure of the system.
     Machine(String),
@@ -39,7 +38,6 @@ impl Error {
     }
 
     /// Faults of several files: `text` has a line with the place of each.
-    #[cfg(feature = "serve")]
     pub(crate) fn report_of(text: String) -> Self {
         Self { cause: Cause::Report(text) }
     }
@@ -83,7 +81,6 @@ impl Error {
                 self.print();
                 ExitCode::from(2)
             }
-            #[cfg(feature = "serve")]
             Cause::Report(_) => {
                 self.print();
                 ExitCode::from(2)
@@ -105,7 +102,6 @@ impl Error {
         let message = self.to_string();
         match self.cause {
             Cause::Faults(_) => printable_lines(&message),
-            #[cfg(feature = "serve")]
             Cause::Report(_) => printable_lines(&message),
             _ => printable(&message),
         }
@@ -135,7 +131,6 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
-            #[cfg(feature = "serve")]
             Cause::Report(text) => f.write_str(text),
             Cause::Failed => f.write_str("cellcaster: not so"),
             Cause::Reported => f.write_str("cellcaster: already reported"),

@@ -10,16 +10,16 @@ use super::{Rgb, product};
 
 /// A colour by its lightness, its red–green and its yellow–blue component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Oklab(pub(crate) [f64; 3]);
+pub struct Oklab(pub [f64; 3]);
 
 impl Oklab {
     /// Converts red, green and blue light, each from 0 to 1.
-    pub(crate) fn from_linear(light: [f64; 3]) -> Self {
+    pub fn from_linear(light: [f64; 3]) -> Self {
         Self(product(&FROM_CONE_ROOTS, cones(light).map(libm::cbrt)))
     }
 
     /// The square of the distance of two colours.
-    pub(crate) fn distance_squared(&self, other: &Self) -> f64 {
+    pub fn distance_squared(&self, other: &Self) -> f64 {
         self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other)).sum()
     }
 }

@@ -7,13 +7,12 @@
 use super::Rgb;
 
 /// Converts a colour to red, green and blue light, each from 0 to 1.
-pub(crate) fn linear(color: Rgb) -> [f64; 3] {
+pub fn linear(color: Rgb) -> [f64; 3] {
     color.channels().map(|channel| LINEAR[usize::from(channel)])
 }
 
 /// Converts linear light from 0 to 1 to a channel from 0 to 1, without rounding it to 8 bits.
-#[cfg(feature = "lab")]
-pub(crate) fn encoded(light: f64) -> f64 {
+pub fn encoded(light: f64) -> f64 {
     if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 }
 }
 

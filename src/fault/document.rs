@@ -27,11 +27,11 @@ const MOST_TOKENS_RECOVERED: usize = 1 << 16;
 
 /// The faults of a document, collected while it is read.
 #[derive(Default)]
-pub(crate) struct FaultList(RefCell<Vec<Fault>>);
+pub struct FaultList(RefCell<Vec<Fault>>);
 
 impl FaultList {
     /// Adds a fault.
-    pub(crate) fn push(&self, fault: Fault) {
+    pub fn push(&self, fault: Fault) {
         self.0.borrow_mut().push(fault);
     }
 
@@ -46,12 +46,12 @@ impl FaultList {
     }
 
     /// Whether there is no fault so far.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The faults so far, which are no longer in the list.
-    pub(crate) fn take(&self) -> Vec<Fault> {
+    pub fn take(&self) -> Vec<Fault> {
         self.0.take()
     }
 
@@ -85,7 +85,7 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
 ///
 /// A bracket that is never closed ends the document at its line. The parser takes the rest of the text for the
 /// content of the bracket, and finds a fault in almost every line of it.
-pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
+pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut tokens = Source::new(text).lex();
     let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
     if let Some(token) = tokens.nth(MOST_TOKENS - MOST_TOKENS_RECOVERED - 1) {
@@ -137,17 +137,17 @@ fn too_many_tokens(place: Range<usize>) -> Fault {
 }
 
 /// A key and its value.
-pub(crate) struct Entry<'a, 't> {
-    pub(crate) key: &'a str,
-    pub(crate) key_place: Range<usize>,
-    pub(crate) value: &'a DeValue<'t>,
-    pub(crate) value_place: Range<usize>,
+pub struct Entry<'a, 't> {
+    pub key: &'a str,
+    pub key_place: Range<usize>,
+    pub value: &'a DeValue<'t>,
+    pub value_place: Range<usize>,
     /// The faults of its document.
-    pub(crate) faults: &'a FaultList,
+    pub faults: &'a FaultList,
 }
 
 /// The entries of `table`, in the order of their keys. Their faults go to `faults`.
-pub(crate) fn entries<'a, 't>(
+pub fn entries<'a, 't>(
     table: &'a DeTable<'t>,
     faults: &'a FaultList,
 ) -> impl Iterator<Item = Entry<'a, 't>> {
@@ -162,15 +162,12 @@ pub(crate) fn entries<'a, 't>(
 
 impl<'a, 't> Entry<'a, 't> {
     /// The entries of a table of the same document, in the order of their keys.
-    pub(crate) fn entries(
-        &self,
-        table: &'a DeTable<'t>,
-    ) -> impl Iterator<Item = Self> + use<'a, 't> {
+    pub fn entries(&self, table: &'a DeTable<'t>) -> impl Iterator<Item = Self> + use<'a, 't> {
         entries(table, self.faults)
     }
 
     /// The value as a string; reports a fault where it is not one. `example` is a whole entry.
-    pub(crate) fn string(&self, example: &str) -> Option<&'a str> {
+    pub fn string(&self, example: &str) -> Option<&'a str> {
         let DeValue::String(string) = self.value else {
             self.faults.push(self.wrong_type("a string", example));
             return None;
@@ -179,7 +176,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The value as a table; faults as in [`Entry::string`].
-    pub(crate) fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
+    pub fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
         let DeValue::Table(table) = self.value else {
             self.faults.push(self.wrong_type("a table", example));
             return None;
@@ -188,7 +185,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The value as a number; `None` if it is not one.
-    pub(crate) fn number(&self) -> Option<f64> {
+    pub fn number(&self) -> Option<f64> {
         match self.value {
             DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
                 .ok()
@@ -226,7 +223,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The fault that the value is not what is `wanted`; `example` is a whole entry.
-    pub(crate) fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
+    pub fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
         let found = match self.value {
             DeValue::String(_) => "a string",
             DeValue::Integer(_) => "an integer",
@@ -242,7 +239,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The fault that the key is not one of `known`, the keys of `owner`.
-    pub(crate) fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
+    pub fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
         let fault =
             Fault::new(self.key_place.clone(), format!("{owner} has no key {}", quoted(self.key)))
                 .label("unknown key");

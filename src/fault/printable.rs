@@ -20,7 +20,7 @@ pub(crate) fn printable(text: &str) -> String {
 
 /// A path in a sentence, on one line and with escapes as in [`printable`].
 #[cfg(feature = "terminal")]
-pub(crate) fn printable_path(path: &Path) -> String {
+pub fn printable_path(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 

@@ -5,7 +5,7 @@ const LONGEST_NAME: usize = 40;
 
 /// The most similar of `known` to `word`, if any is similar: with at most one edit for every three
 /// letters.
-pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > LONGEST_NAME {
         return None;
     }
@@ -16,7 +16,7 @@ pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
 }
 
 /// `word` in double quotes, with non-printing characters escaped, shortened if it is long.
-pub(crate) fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     match word.char_indices().nth(LONGEST_NAME) {
         Some((end, _)) => format!("{:?}…", &word[..end]),
         None => format!("{word:?}"),

@@ -10,9 +10,10 @@
 //! there may be no room for them.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::cast::{Ray, Walk};
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
@@ -24,14 +25,12 @@ const STAY: u32 = 240;
 const REACH: f64 = 0.75;
 
 /// The doors that are not closed, in the order in which they were opened.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Doors {
     moving: Vec<MovingDoor>,
 }
 
-stored! { struct Doors { moving } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct MovingDoor {
     cell: Cell,
     phase: Phase,
@@ -39,9 +38,7 @@ struct MovingDoor {
     is_held: bool,
 }
 
-stored! { struct MovingDoor { cell, phase, is_held } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// The number of steps from closed.
     Opening(u32),
@@ -50,8 +47,6 @@ enum Phase {
     /// The number of steps from closed.
     Closing(u32),
 }
-
-stored! { enum Phase { 0: Opening(steps), 1: Open(steps), 2: Closing(steps) } }
 
 impl Doors {
     /// Opens the door in `cell`, unless it is opening already.

@@ -1,10 +1,11 @@
 //! Health: what hurts takes points, and a player without points is dead.
 
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
+use serde::{Deserialize, Serialize};
+
 use crate::world::{GuardKind, Heading};
 
 /// How many points of health a player has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Health {
     /// The points left, at most [`Health::most`].
     pub points: u8,
@@ -13,7 +14,7 @@ pub struct Health {
 }
 
 /// What the edge of the picture shows for a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flash {
     /// Why it is shown.
     pub kind: FlashKind,
@@ -21,10 +22,8 @@ pub struct Flash {
     pub left: u16,
 }
 
-stored! { struct Flash { kind, left } }
-
 /// Why the edge of the picture flashes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FlashKind {
     /// The player has been hurt, from that direction on the map; `None` for what has no direction,
     /// such as a fall.
@@ -35,8 +34,6 @@ pub enum FlashKind {
     /// The player has found something.
     Gain,
 }
-
-stored! { enum FlashKind { 0: Hurt { bearing }, 1: Gain } }
 
 /// What takes health.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +48,7 @@ pub(crate) struct Harm {
 }
 
 /// What can kill a player.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub(crate) enum Cause {
     Guard(GuardKind),
     Bolt,
@@ -59,8 +56,6 @@ pub(crate) enum Cause {
     Water,
     Fall,
 }
-
-stored! { enum Cause { 0: Guard(kind), 1: Bolt, 2: Spikes, 3: Water, 4: Fall } }
 
 /// The duration of a flash in steps.
 const HURT_STEPS: u16 = 24;
@@ -91,21 +86,14 @@ impl Health {
         Self { points: self.points.max(self.most / 2), ..self }
     }
 
+    /// Whether a player can have it.
+    pub(crate) fn is_possible(self) -> bool {
+        self.points <= self.most && self.most == Self::MOST
+    }
+
     /// Whether points are missing.
     pub(crate) fn is_hurt(self) -> bool {
         self.points < self.most
-    }
-}
-
-impl Stored for Health {
-    fn write(&self, out: &mut Writer) {
-        let Self { points, most: _ } = self;
-        points.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let points = input.number_to(Self::MOST.into())? as u8;
-        Ok(Self { points, most: Self::MOST })
     }
 }
 

@@ -3,8 +3,9 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::look::Look;
-use super::stored::{Reader, Stored, Unrestorable, Writer};
 
 /// One action that the player may want.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -147,7 +148,8 @@ impl Intent {
 }
 
 /// A set of intents, and the angles by which the player turns and tilts in each step.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(try_from = "(u32, Look)")]
 pub struct Intents {
     /// One bit for each intent, by its position in the enum.
     bits: u32,
@@ -212,16 +214,11 @@ impl Intents {
     }
 }
 
-impl Stored for Intents {
-    fn write(&self, out: &mut Writer) {
-        let Self { bits, look } = self;
-        bits.write(out);
-        look.write(out);
-    }
+impl TryFrom<(u32, Look)> for Intents {
+    type Error = &'static str;
 
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let bits = input.number_to((1 << Intent::ALL.len()) - 1)? as u32;
-        Ok(Self { bits, look: Stored::read(input)? })
+    fn try_from((bits, look): (u32, Look)) -> Result<Self, &'static str> {
+        if bits >> Intent::ALL.len() == 0 { Ok(Self { bits, look }) } else { Err("an intent") }
     }
 }
 

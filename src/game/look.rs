@@ -5,19 +5,18 @@
 //! Converting an angle into a time of turning was refused: a step turns by 2.3°, which is coarser
 //! than a hand can aim.
 
-use crate::game::stored::stored;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// The angles by which the player turns and tilts in one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Look {
     /// Clockwise as seen from above, in hundredths of a degree.
     pub turn: i16,
     /// Upwards, in hundredths of a degree: the horizon in a grid, the eye in a scene of bodies.
     pub tilt: i16,
 }
-
-stored! { struct Look { turn, tilt } }
 
 /// The names of both in files.
 pub(crate) const TURN: &str = "turn";

@@ -20,9 +20,10 @@ mod keys;
 mod members;
 mod seen;
 mod step;
-mod stored;
 mod strike;
 mod view;
+
+use serde::{Deserialize, Serialize};
 
 use super::Intents;
 pub(crate) use members::{Members, playing, playing_mut};
@@ -35,7 +36,8 @@ pub const MOST_PLAYERS: usize = 16;
 pub const MOST_LAG: u64 = 15;
 
 /// A player in a game for several: the number of a slot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "u8")]
 pub struct PlayerId(u8);
 
 impl PlayerId {
@@ -50,6 +52,14 @@ impl PlayerId {
     /// The index of the slot, below [`MOST_PLAYERS`].
     pub fn index(self) -> usize {
         usize::from(self.0)
+    }
+}
+
+impl TryFrom<u8> for PlayerId {
+    type Error = &'static str;
+
+    fn try_from(index: u8) -> Result<Self, &'static str> {
+        Self::new(index.into()).ok_or("a player")
     }
 }
 

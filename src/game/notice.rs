@@ -1,18 +1,16 @@
 //! Messages to the player, shown for some time.
 
-use crate::game::stored::stored;
+use serde::{Deserialize, Serialize};
 
 /// The duration of a message in steps: 3 seconds.
 const DURATION: u64 = 180;
 
 /// A message that is shown for some more steps.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Notice {
     text: String,
     steps_left: u64,
 }
-
-stored! { struct Notice { text, steps_left } }
 
 impl Notice {
     /// Shows `text` from now on.

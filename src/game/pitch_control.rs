@@ -3,9 +3,10 @@
 //! The pitch never returns by itself, since the player may want to walk around something that they
 //! look up at. A key to look ahead returns it fully, even if it is only tapped.
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
 use super::intent::{Intent, Intents};
-use crate::game::stored::stored;
 use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::world::Pitch;
 
@@ -19,15 +20,13 @@ const RETURN: f64 = 10.0;
 /// Less than this is nothing, as a slope or a slope per second: it is less than a row of pixels.
 const STILL: f64 = 1e-3;
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct PitchControl {
     pub(crate) pitch: Pitch,
     /// Slope per second, upwards.
     speed: f64,
     returns: bool,
 }
-
-stored! { struct PitchControl { pitch, speed, returns } }
 
 impl PitchControl {
     /// The pitch after one step.

@@ -4,23 +4,25 @@ mod motion;
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
+
 use super::health::{Cause, Flash, Health};
 use super::intent::Intents;
 use super::notice::Notice;
 use super::sound::Hearing;
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use super::tally::Counts;
 use super::tools::Supplies;
 use super::warnings::Warnings;
 use crate::world::{KeyId, World};
-pub(crate) use motion::FRICTION;
+pub use motion::FRICTION;
 pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 
 /// More than a player ever counts: it grows for years before it overflows.
 const MOST_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Player {
     pub(crate) motion: Motion,
     pub(crate) health: Health,
@@ -50,13 +52,6 @@ pub(crate) struct Player {
     pub(crate) counts: Counts,
 }
 
-stored! {
-    struct Player {
-        motion, health, supplies, keys, treasure, has_light, strike_wait, pressed, fell_from, stride,
-        in_water, last_thrust, warnings, hearing, flash, notice, killed_by, counts,
-    }
-}
-
 impl Player {
     /// A player at the start of `world`, with these supplies.
     pub(crate) fn new(world: &World, supplies: Supplies) -> Self {
@@ -84,15 +79,17 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
+        check(self.health.is_possible(), "the health")?;
+        check(self.supplies.are_possible(), "the number of a tool")?;
         let Counts { alarms, deaths, stunned } = self.counts;
         let counts = [alarms, deaths, stunned, self.in_water];
         check(counts.iter().all(|&count| count < MOST_COUNT), "a count")?;
         self.motion.check(world)?;
         self.warnings.check(now)?;
-        self.hearing.check()
+        self.hearing.check(world)
     }
 
     /// The same player at another place.

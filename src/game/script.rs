@@ -169,15 +169,14 @@ impl fmt::Display for Stretch {
 
 impl Intents {
     /// The words of a script for the set.
-    pub(crate) fn words(self) -> String {
+    pub fn words(self) -> String {
         let names = self.iter().map(|intent| intent.name().to_owned());
         let wanted: Vec<String> = names.chain(self.look().words()).collect();
         if wanted.is_empty() { STAND.to_owned() } else { wanted.join(" ") }
     }
 
     /// The set that words of a script name; `None` if they name none.
-    #[cfg(feature = "serve")]
-    pub(crate) fn from_words(words: &str) -> Option<Self> {
+    pub fn from_words(words: &str) -> Option<Self> {
         parse::intents(words)
     }
 }

@@ -3,8 +3,10 @@
 //! The eye follows the feet smoothly over steps: it lags by the height of the step and catches up.
 //! The body, which collides with ceilings, moves with the feet.
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
@@ -23,7 +25,7 @@ const FOLLOWING: f64 = 14.0;
 /// Less than this is nothing, in cells.
 const STILL: f64 = 1e-4;
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Stance {
     /// From 0 for standing to 1 for ducking.
     ducking: f64,
@@ -31,11 +33,9 @@ pub(crate) struct Stance {
     lag: f64,
 }
 
-stored! { struct Stance { ducking, lag } }
-
 impl Stance {
     /// Refuses a body that is neither standing, ducking nor between.
-    pub(crate) fn check(self) -> Result<(), Unrestorable> {
+    pub fn check(self) -> Result<(), Unrestorable> {
         check((0.0..=1.0).contains(&self.ducking), "a stance")
     }
 

@@ -1,58 +1,71 @@
-//! Stored games: the whole state of a game as bytes, and back.
+//! Stored games: the whole state of a game as bytes, and back; and checksums, which are hashes of these bytes.
 //!
 //! Only what changes is stored. A game at its start, of the same level and rules, gives the rest: the
 //! map, the posts of guards, sprites and textures. What is computed from the stored state is not stored
 //! either: the openings of doors and the states of moving tiles in the grid, and the light of lamps.
 //!
-//! The bytes may come from a network. Whatever they are, reading them ends, takes memory in proportion
-//! to them and to the level, and gives a game in which every index points at something and every step
-//! succeeds, or an error. Whether the game was ever played like that is not checked.
-//!
 //! The first line says who can read the rest:
 //!
 //! ```text
-//! cellcaster-game 1 rules 2 version 0.1.0
+//! cellcaster-game 2 rules 2 version 0.1.0
 //! ```
 //!
-//! The script so far was refused: playing it again takes a second for each minute. So was `serde` with
-//! a compact format: the engine would depend on both, and derived code accepts any number where the
-//! rules need one of a range.
+//! The rest is the state as [`postcard`] writes it. The bytes may come from a network, so that [`Reader`], which
+//! reads them, is stricter than the one of `postcard`: it accepts only numbers that a game can add for years, and
+//! only cells on the map. Each type checks what else must hold in it. Whatever the bytes are, reading them ends,
+//! takes memory in proportion to them and to the level, and returns an error or a game in which every index points
+//! at something and every step succeeds. It does not prove that the game was ever played like that.
+//!
+//! Rejected: storing the script so far, since playing it again takes a second for each minute; and `postcard`'s own
+//! reader with a check of each number afterwards, since a new field would be unchecked until somebody notices.
 
-mod codec;
-mod lists;
-mod macros;
-mod numbers;
-mod parts;
 #[cfg(test)]
 pub(crate) mod tests;
-mod whole;
 
 use std::fmt;
+use std::sync::Arc;
 
-pub(crate) use self::codec::{Reader, Stored, StoredPart, Writer, check, check_on_map};
-pub(crate) use self::macros::stored;
-#[cfg(feature = "cluster")]
-pub(crate) use self::numbers::MOST_COUNT;
+use glam::DVec2;
+use postcard::ser_flavors::Flavor;
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, EnumAccess, Error as _, IntoDeserializer, MapAccess,
+    SeqAccess, VariantAccess, Visitor,
+};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, forward_to_deserialize_any};
+
+use super::checkpoint::Checkpoint;
+use super::multiplayer::Members;
+use super::{Game, MultiplayerRules, Rules};
+use crate::rng::hash;
+use crate::world::{Cell, Changes, Thing, World};
 
 /// The version of the rules. It grows with every change after which the same intents may give another
 /// game.
 pub const RULES_VERSION: u32 = 2;
 
+/// The version of the format.
+const FORMAT_VERSION: u32 = 2;
+/// What the first line calls a game.
+const KIND: &str = "game";
 /// The most bytes that are read.
-pub(crate) const MOST_BYTES: usize = 1 << 20;
+pub const MOST_BYTES: usize = 1 << 20;
+/// The largest real number that a game has anywhere: above twice the greatest height of a map.
+const MOST_REAL: f64 = 4e9;
+/// The largest time or count. Numbers below it can be added for millions of years.
+pub const MOST_COUNT: u64 = 1 << 53;
 
-/// Why bytes give no game.
+/// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unrestorable {
-    /// They are of no stored game, or of one of another version of the format, the rules or the crate.
+    /// The bytes are no stored game, or one of another version of the format, the rules or the crate.
     OtherVersion,
-    /// They are of another level, or of other rules.
+    /// The game is of another level, or of other rules.
     OtherLevel,
-    /// They end too early.
+    /// The bytes end too early.
     Cut,
-    /// They go on after the end.
+    /// The bytes go on after the end.
     Longer,
-    /// They are more than the 2²⁰ bytes that are read.
+    /// There are more than the 2²⁰ bytes that are read.
     TooLong,
     /// This part is out of its range.
     Damaged(&'static str),
@@ -77,16 +90,562 @@ impl fmt::Display for Unrestorable {
 
 impl std::error::Error for Unrestorable {}
 
+impl serde::de::Error for Unrestorable {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self::Damaged("a value")
+    }
+}
+
+impl Game {
+    /// The whole state between two steps as bytes, without what the level gives. `None` in a generated
+    /// level, which is not the same at each start.
+    ///
+    /// ```
+    /// use cellcaster::game::{Game, Intent};
+    /// use cellcaster::map::builtin;
+    ///
+    /// let world = builtin::LEVELS[0].world()?;
+    /// let mut game = Game::new(world.clone());
+    /// (0..60).for_each(|_| game.step([Intent::Forward].into_iter().collect()));
+    /// let bytes = game.stored().expect("the level is built in");
+    /// assert_eq!(Game::new(world).restored(&bytes), Ok(game));
+    /// # Ok::<(), cellcaster::fault::Faults>(())
+    /// ```
+    pub fn stored(&self) -> Option<Vec<u8>> {
+        self.window.is_none().then(|| written(KIND, &State(self)))
+    }
+
+    /// The game that `bytes` were stored from. This one is at its start, of the same level and
+    /// rules.
+    ///
+    /// # Errors
+    /// If the bytes are not those of such a game, or are damaged. That they pass does not mean that the
+    /// game was ever played.
+    pub fn restored(self, bytes: &[u8]) -> Result<Self, Unrestorable> {
+        let grid = self.world.grid();
+        let mut input = Reader::new(KIND, bytes, (grid.width(), grid.height()))?;
+        let game = self.read(&mut input, true)?;
+        if input.rest().is_empty() { Ok(game) } else { Err(Unrestorable::Longer) }
+    }
+
+    /// A number that depends on the whole state: of the world, the player, the guards and all that
+    /// moves. Games in different states very likely have different ones, on every machine.
+    pub fn checksum(&self) -> u64 {
+        let rows = self.world.grid().rows();
+        let tiles = rows.map(|row| hash(0, row.iter().map(|tile| u64::from(tile.0))));
+        hash(checksum(&State(self)), tiles)
+    }
+
+    /// Reads a game, of which this is the start, and the game at the checkpoint of its player, if it may
+    /// have one.
+    fn read(mut self, input: &mut Reader, has_checkpoint: bool) -> Result<Self, Unrestorable> {
+        let start = (has_checkpoint && self.members.is_none()).then(|| self.clone());
+        if input.read::<[u8; 8]>()? != self.level_hash().to_le_bytes() {
+            return Err(Unrestorable::OtherLevel);
+        }
+        (self.steps, self.revision, self.figure_revision) = input.read()?;
+        if input.read()? {
+            self.sprites.add_player(&mut self.world);
+        }
+        let is_lamplit = input.read()?;
+        let things = input.read()?;
+        let figures: Vec<_> = input.read()?;
+        self.doors = input.read()?;
+        self.mechanisms = input.read_with(self.mechanisms)?;
+        self.spikes = input.read_with(self.spikes)?;
+        (self.missiles, self.smoke) = input.read()?;
+        self.guards = input.read_with(self.guards)?;
+        self.player = input.read()?;
+        let members: Option<Members> = input.read()?;
+        self.members = match (members, self.members) {
+            (Some(members), Some(start)) => Some(Box::new(members.of_level(*start)?)),
+            (None, None) => None,
+            _ => return Err(Unrestorable::OtherLevel),
+        };
+        self.check()?;
+        self.show_changes(things, is_lamplit)?;
+        self.world.set_figures(figures.into_iter());
+        let cell: Option<Cell> = input.read()?;
+        let saved = if input.read()? {
+            let start = start.ok_or(Unrestorable::Damaged("a checkpoint"))?;
+            Some(Arc::new(start.read(input, false)?))
+        } else {
+            None
+        };
+        if cell.is_some() {
+            self.checkpoint = Checkpoint::new(saved, cell);
+        }
+        Ok(self)
+    }
+
+    /// Refuses a state in which a step could fail.
+    fn check(&self) -> Result<(), Unrestorable> {
+        self.missiles.check()?;
+        self.smoke.check()?;
+        self.guards.check(&self.world)?;
+        self.player.check(&self.world, self.steps)?;
+        self.members.as_ref().map_or(Ok(()), |members| members.check(&self.world, self.steps))
+    }
+
+    /// Shows in the world of the start what has changed in it since.
+    fn show_changes(&mut self, things: Vec<Thing>, is_lamplit: bool) -> Result<(), Unrestorable> {
+        self.doors.show(&mut self.world)?;
+        self.mechanisms.show(&mut self.world)?;
+        check(self.world.leave_things(things), "a thing")?;
+        if is_lamplit {
+            self.world.make_room_for_light();
+        }
+        self.show_lamps();
+        Ok(())
+    }
+
+    /// A number that differs, almost certainly, between levels, rules and companies.
+    fn level_hash(&self) -> u64 {
+        let Rules { difficulty, seed } = self.rules;
+        let multiplayer = self.multiplayer_rules().map_or(0, |rules| {
+            let MultiplayerRules { collides, respawns, sees, strikes } = rules;
+            1 | u64::from(collides) << 1
+                | u64::from(respawns) << 2
+                | (sees as u64) << 8
+                | (strikes as u64) << 16
+        });
+        let world = &self.world;
+        let place = |cell: Cell| u64::from(cell.row) << 32 | u64::from(cell.column);
+        let title = world.title().bytes().map(u64::from);
+        let posts = world.guards().iter().flat_map(|it| [it.kind as u64, place(it.cell)]);
+        let size = [world.grid().width(), world.grid().height(), world.tiles().len() as u32];
+        let words = [difficulty as u64, seed, multiplayer, place(world.start().cell)];
+        hash(0, words.into_iter().chain(size.map(u64::from)).chain(title).chain(posts))
+    }
+}
+
+/// The part of a game that the level does not give.
+struct State<'a>(&'a Game);
+
+impl Serialize for State<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let Game {
+            rules: _,
+            world,
+            is_mission: _,
+            window: _,
+            player,
+            members,
+            doors,
+            mechanisms,
+            spikes,
+            missiles,
+            smoke,
+            guards,
+            sprites,
+            // Empty between steps.
+            sounds: _,
+            checkpoint,
+            steps,
+            revision,
+            figure_revision,
+            // Counted in each step.
+            work: _,
+        } = self.0;
+        let Changes { things, figures, is_lamplit } = world.changes();
+        let level = self.0.level_hash().to_le_bytes();
+        let world = (sprites.has_player(), is_lamplit, things, figures);
+        let moving = (doors, mechanisms, spikes, missiles, smoke, guards);
+        let cell = checkpoint.cell();
+        // Without a cell it is the start, which is known.
+        let saved = checkpoint.game().filter(|_| cell.is_some()).map(State);
+        let revisions = (steps, revision, figure_revision);
+        (level, revisions, world, moving, player, members, cell, saved).serialize(to)
+    }
+}
+
+/// The first line of `kind`, and `value`.
+pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
+    let line = first_line(kind).into_bytes();
+    postcard::to_extend(value, line).expect("all lists have a length, and memory takes all bytes")
+}
+
+/// The hash of the bytes that are stored of `value`.
+pub fn checksum(value: &impl Serialize) -> u64 {
+    postcard::serialize_with_flavor(value, Hash::default()).expect("all lists have a length")
+}
+
+/// The hash of the bytes that are written, eight at a time.
+#[derive(Default)]
+struct Hash {
+    bits: u64,
+    word: u64,
+    count: u64,
+}
+
+impl Flavor for Hash {
+    type Output = u64;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.word = self.word << 8 | u64::from(byte);
+        self.count += 1;
+        if self.count.is_multiple_of(8) {
+            self.bits = hash(self.bits, [self.word]);
+        }
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<u64> {
+        Ok(hash(self.bits, [self.word, self.count]))
+    }
+}
+
 /// The first line of what is stored as `kind`.
 pub(crate) fn first_line(kind: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
-    format!("cellcaster-{kind} 1 rules {RULES_VERSION} version {version}\n")
+    format!("cellcaster-{kind} {FORMAT_VERSION} rules {RULES_VERSION} version {version}\n")
 }
 
-/// What follows the first line of what is stored as `kind`.
-pub(crate) fn after_first_line<'a>(kind: &str, bytes: &'a [u8]) -> Result<&'a [u8], Unrestorable> {
-    if bytes.len() > MOST_BYTES {
-        return Err(Unrestorable::TooLong);
+/// A state of which the level gives the fields that serde skips.
+pub(crate) trait OfLevel: DeserializeOwned {
+    /// The state with those fields of `start`, the state at the start of the same level.
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable>;
+}
+
+impl<T: OfLevel> OfLevel for Vec<T> {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        if self.len() != start.len() {
+            return Err(Unrestorable::OtherLevel);
+        }
+        self.into_iter().zip(start).map(|(state, start)| state.of_level(start)).collect()
     }
-    bytes.strip_prefix(first_line(kind).as_bytes()).ok_or(Unrestorable::OtherVersion)
+}
+
+/// Numbers of any size as eight bytes, for `#[serde(with)]`.
+pub mod bits {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
+        bits.to_le_bytes().serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+        Deserialize::deserialize(from).map(u64::from_le_bytes)
+    }
+}
+
+/// An error that names `what`, unless it holds.
+pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
+    if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
+}
+
+/// An error, unless a position is on the map of `world`.
+pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
+    let end = DVec2::new(world.grid().width().into(), world.grid().height().into());
+    let is_on_map = position.cmpge(DVec2::ZERO).all() && position.cmplt(end).all();
+    check(is_on_map, "a position")
+}
+
+/// Reads a list of at most `MOST` values, for `#[serde(deserialize_with)]`. Values that are much larger than their
+/// bytes need it.
+pub(crate) fn at_most<'de, const MOST: usize, T, D>(from: D) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    struct List<T, const MOST: usize>(std::marker::PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            write!(f, "at most {MOST} values")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
+            let mut values = Vec::new();
+            while let Some(value) = list.next_element()? {
+                if values.len() == MOST {
+                    return Err(A::Error::custom("a list is too long"));
+                }
+                values.push(value);
+            }
+            Ok(values)
+        }
+    }
+
+    from.deserialize_seq(List::<T, MOST>(std::marker::PhantomData))
+}
+
+/// Bytes that are left to read, and the size of the map that they are about.
+///
+/// - A whole number is a variable-length integer: 7 bits in a byte, the lowest first. A signed one is
+///   first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
+/// - A real number is the eight bytes of its bits. It is finite, and at most [`MOST_REAL`].
+/// - A list is its length and its elements, each of at least one byte.
+/// - A [`Cell`] is on the map.
+#[derive(Clone, Debug)]
+pub struct Reader<'de> {
+    bytes: &'de [u8],
+    size: (u32, u32),
+}
+
+impl<'de> Reader<'de> {
+    /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
+    pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
+        if bytes.len() > MOST_BYTES {
+            return Err(Unrestorable::TooLong);
+        }
+        let bytes = bytes.strip_prefix(first_line(kind).as_bytes());
+        Ok(Self { bytes: bytes.ok_or(Unrestorable::OtherVersion)?, size })
+    }
+
+    /// The bytes that are left.
+    pub fn rest(&self) -> &'de [u8] {
+        self.bytes
+    }
+
+    /// Reads a value.
+    pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
+        T::deserialize(self)
+    }
+
+    /// Reads a value of which `start`, the one at the start of the level, gives a part.
+    fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
+        self.read::<T>()?.of_level(start)
+    }
+
+    fn take(&mut self, count: usize) -> Result<&'de [u8], Unrestorable> {
+        let (taken, rest) = self.bytes.split_at_checked(count).ok_or(Unrestorable::Cut)?;
+        self.bytes = rest;
+        Ok(taken)
+    }
+
+    fn number(&mut self) -> Result<u64, Unrestorable> {
+        let mut number = 0;
+        for shift in (0..=49).step_by(7) {
+            let byte = self.take(1)?[0];
+            number |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                check(number <= MOST_COUNT, "a number")?;
+                return Ok(number);
+            }
+        }
+        Err(Unrestorable::Damaged("a number"))
+    }
+
+    fn signed_number(&mut self) -> Result<i64, Unrestorable> {
+        let number = self.number()?;
+        Ok((number >> 1) as i64 ^ -((number & 1) as i64))
+    }
+
+    fn flag(&mut self) -> Result<bool, Unrestorable> {
+        let byte = self.take(1)?[0];
+        check(byte <= 1, "a flag")?;
+        Ok(byte == 1)
+    }
+
+    /// Reads the length of a list whose elements have at least one byte.
+    fn length(&mut self) -> Result<usize, Unrestorable> {
+        let length = self.number()?;
+        if length > self.bytes.len() as u64 { Err(Unrestorable::Cut) } else { Ok(length as usize) }
+    }
+}
+
+macro_rules! numbers {
+    ($($method:ident: $read:ident, $visit:ident;)*) => {$(
+        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+            visitor.$visit(self.$read()?)
+        }
+    )*};
+}
+
+impl<'de> Deserializer<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+
+    numbers! {
+        deserialize_bool: flag, visit_bool;
+        deserialize_u16: number, visit_u64;
+        deserialize_u32: number, visit_u64;
+        deserialize_u64: number, visit_u64;
+        deserialize_i16: signed_number, visit_i64;
+        deserialize_i32: signed_number, visit_i64;
+    }
+
+    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        visitor.visit_u8(self.take(1)?[0])
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let mut bits = [0; 8];
+        bits.copy_from_slice(self.take(8)?);
+        let real = f64::from_le_bytes(bits);
+        check(real.abs() <= MOST_REAL, "a real number")?;
+        visitor.visit_f64(real)
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let length = self.length()?;
+        let text = std::str::from_utf8(self.take(length)?);
+        visitor.visit_borrowed_str(text.map_err(|_| Unrestorable::Damaged("a text"))?)
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        if self.flag()? { visitor.visit_some(self) } else { visitor.visit_none() }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let left = self.length()?;
+        visitor.visit_seq(Elements { input: self, left })
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let left = self.length()?;
+        visitor.visit_map(Elements { input: self, left })
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(
+        self,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_seq(Elements { input: self, left })
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(left, visitor)
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        if name == "Cell" {
+            let mut ahead = self.clone();
+            let (column, row) = (ahead.number()?, ahead.number()?);
+            check(column < self.size.0.into() && row < self.size.1.into(), "a cell")?;
+        }
+        self.deserialize_tuple(fields.len(), visitor)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_enum(self)
+    }
+
+    /// The bytes do not say what they are.
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Unrestorable> {
+        Err(Unrestorable::Damaged("a value"))
+    }
+
+    forward_to_deserialize_any! {
+        i8 i64 f32 char bytes byte_buf unit unit_struct identifier ignored_any
+    }
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+}
+
+/// The elements of a list that are left to read.
+struct Elements<'a, 'de> {
+    input: &'a mut Reader<'de>,
+    left: usize,
+}
+
+impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
+    type Error = Unrestorable;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(
+        &mut self,
+        seed: T,
+    ) -> Result<Option<T::Value>, Unrestorable> {
+        let Some(left) = self.left.checked_sub(1) else { return Ok(None) };
+        self.left = left;
+        seed.deserialize(&mut *self.input).map(Some)
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.left)
+    }
+}
+
+impl<'de> MapAccess<'de> for Elements<'_, 'de> {
+    type Error = Unrestorable;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, Unrestorable> {
+        self.next_element_seed(seed)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> Result<V::Value, Unrestorable> {
+        seed.deserialize(&mut *self.input)
+    }
+}
+
+impl<'de> EnumAccess<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(
+        self,
+        seed: V,
+    ) -> Result<(V::Value, Self), Unrestorable> {
+        let variant = self.number()?;
+        Ok((seed.deserialize(variant.into_deserializer())?, self))
+    }
+}
+
+impl<'de> VariantAccess<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+
+    fn unit_variant(self) -> Result<(), Unrestorable> {
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(
+        self,
+        seed: T,
+    ) -> Result<T::Value, Unrestorable> {
+        seed.deserialize(self)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(
+        self,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(left, visitor)
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(fields.len(), visitor)
+    }
 }

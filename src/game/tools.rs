@@ -6,12 +6,13 @@
 mod missiles;
 mod smoke;
 
+use serde::{Deserialize, Serialize};
+
 use super::Game;
 use super::intent::{Intent, Intents};
 use super::multiplayer::playing;
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
-use super::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Camera, GuardKind, Supply};
 pub(crate) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
 pub(crate) use smoke::{Puff, Smoke};
@@ -33,7 +34,7 @@ const HOUND_STUNNED: u16 = 480;
 const WARDEN_SHOT: u16 = 300;
 
 /// The tools that a player carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Supplies([u8; Supply::ALL.len()]);
 
 impl Supplies {
@@ -42,6 +43,11 @@ impl Supplies {
 
     /// Those of a player at the start.
     pub(crate) const AT_START: Self = Self([3, 0, 0]);
+
+    /// Whether a player can carry them.
+    pub(crate) fn are_possible(self) -> bool {
+        self.0.iter().all(|&count| count <= Self::MOST)
+    }
 
     /// The number of `supply`.
     pub(crate) fn count(self, supply: Supply) -> u8 {
@@ -67,19 +73,6 @@ impl Supplies {
         let has_one = *count > 0;
         *count -= u8::from(has_one);
         has_one
-    }
-}
-
-impl Stored for Supplies {
-    fn write(&self, out: &mut Writer) {
-        let Self(counts) = self;
-        counts.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let counts: [u8; Supply::ALL.len()] = Stored::read(input)?;
-        check(counts.iter().all(|&count| count <= Self::MOST), "the number of a tool")?;
-        Ok(Self(counts))
     }
 }
 

@@ -5,9 +5,11 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
 use super::intent::{Intent, Intents};
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::{DampedMotion, approach};
 
 /// Radians per second.
@@ -15,7 +17,7 @@ const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
-pub(crate) const FRICTION: f64 = 20.0;
+pub const FRICTION: f64 = 20.0;
 /// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
@@ -31,7 +33,7 @@ const MOST_WAITING: u32 = 72;
 /// Each press of these is one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
@@ -42,8 +44,6 @@ pub(crate) struct Turning {
     /// The exact turns that were wanted in the last step.
     wanted: Intents,
 }
-
-stored! { struct Turning { speed, fine, about, wanted } }
 
 impl Turning {
     /// The state after one step, and the angle of that step in radians, clockwise.
@@ -58,7 +58,7 @@ impl Turning {
     }
 
     /// Refuses more exact turns than may wait.
-    pub(crate) fn check(self) -> Result<(), Unrestorable> {
+    pub fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
         check(is_possible, "a turn")

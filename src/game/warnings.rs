@@ -9,7 +9,9 @@
 //! kill a player whom they had not struck before. Sparing the player each time was refused, too: a
 //! player who faced a wall could not be killed.
 
-use super::stored::{Unrestorable, check, stored};
+use serde::{Deserialize, Serialize};
+
+use super::stored::{Unrestorable, check};
 
 /// The steps after a warning in which the guard does not kill: 3 seconds.
 pub(crate) const GRACE: u16 = 180;
@@ -17,15 +19,13 @@ pub(crate) const GRACE: u16 = 180;
 const FORGOTTEN: u64 = 600;
 
 /// The guards of whom a player has been warned.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Warnings {
     list: Vec<Warning>,
 }
 
-stored! { struct Warnings { list } }
-
 /// A guard of whom a player has been warned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Warning {
     /// The index of the guard.
     guard: usize,
@@ -33,8 +33,6 @@ struct Warning {
     since: u64,
     last: u64,
 }
-
-stored! { struct Warning { guard, since, last } }
 
 impl Warnings {
     /// Records a blow of `guard` in the step `now` that would kill from outside the view. Returns the
@@ -53,20 +51,13 @@ impl Warnings {
     }
 
     /// Refuses warnings after the step `now`.
-    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, now: u64) -> Result<(), Unrestorable> {
         check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }
 
     /// Forgets all guards.
     pub(crate) fn clear(&mut self) {
         self.list.clear();
-    }
-
-    /// A number that depends on all warnings; 0 without any.
-    pub(crate) fn word(&self) -> u64 {
-        self.list.iter().fold(0, |word, &Warning { guard, since, last }| {
-            crate::rng::hash(word, [guard as u64, since, last])
-        })
     }
 }
 

@@ -9,17 +9,17 @@ use glam::DVec2;
 
 /// The state of a motion at the end of a step, and the displacement during it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DampedMotion<V> {
+pub struct DampedMotion<V> {
     /// Units per second.
-    pub(crate) velocity: V,
+    pub velocity: V,
     /// Units.
-    pub(crate) displacement: V,
+    pub displacement: V,
 }
 
 /// The motion after `duration` seconds. It begins with `velocity` and approaches `target`; the
 /// difference between the two shrinks by the factor e every 1 / `rate` seconds. The result is
 /// finite if all arguments are finite, `rate` is above 0 and `duration` at least 0.
-pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
+pub fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
     let remains = libm::exp(-rate * duration);
     // The displacement is that of the first velocity for this time, and of the target for the rest.
     let first_part = (-libm::expm1(-rate * duration) / rate).min(duration);

@@ -50,7 +50,6 @@ pub(crate) use self::style::Style;
 use self::style::Style;
 use self::style::{Notation, Shade};
 use super::fidelity::Fidelity;
-#[cfg(feature = "lab")]
 use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
@@ -178,8 +177,7 @@ impl<W: Write> CellWriter<W> {
     }
 
     /// The mosaic that a cell shows in its colours; `None` if it shows none, or an unknown one.
-    #[cfg(feature = "lab")]
-    pub(crate) fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
+    pub fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
         self.screen.shown_mosaic(column, row)
     }
 

@@ -8,22 +8,24 @@
 //! frame is late, no frame is sent: the link may have become slower, and all frames in flight
 //! arrive before a new one.
 //!
-//! Answers arrive in the order of the requests, so that the n-th answer belongs to the n-th
-//! request, however late it is. A lost answer is detected at the next *fence*, a request of another kind: when a fence is
-//! answered, no answer to an earlier request can still arrive. Every few seconds the request after
-//! a frame is a fence.
+//! Answers arrive in the order of the requests, so that the n-th answer belongs to the n-th request, however late it
+//! is. A lost answer is detected at the next *fence*, a request of another kind: when a fence is answered, no answer
+//! to an earlier request can still arrive. Every few seconds the request after a frame is a fence.
 //!
 //! After a timeout, one fence is sent alone and then nothing more: frames that are not received
 //! delay the detection of a dead connection. An answer or a key ends this state. A terminal that
 //! stays silent, or that never answered, receives no more requests; for it a frame may be sent when
 //! the system has accepted the one before.
 //!
+//! The fidelity of frames follows from the rate and from the bytes that exact frames of motion would take.
+//!
 //! This module has neither a clock nor a terminal. Its functions receive events and their times,
 //! which are durations since any fixed moment.
 //!
-//! Rejected: a limit in bytes. 16 kB make exact frames coarse (fidelity 6) at 10 Mbit/s and 100 ms. Removing frames after
-//! a timeout: their answers are then credited to newer frames, and the link seems faster than it is for as long as
-//! anything moves.
+//! Rejected: a limit in bytes. 16 kB make exact frames coarse (fidelity 6) at 10 Mbit/s and 100 ms. Removing frames
+//! after a timeout: their answers are then credited to newer frames, and the link seems faster than it is for as long
+//! as anything moves. Raising and lowering the fidelity step by step: it is then late at the beginning of motion, when
+//! lag is most noticeable.
 
 mod link;
 
@@ -53,7 +55,8 @@ pub(crate) struct Flow {
     forgotten: usize,
     is_remote: bool,
     link: Link,
-    demand: Demand,
+    /// The bytes that an exact frame of motion would take, estimated from the sent frames.
+    exact_bytes: f64,
 }
 
 /// A request to the terminal, after a frame or alone.
@@ -100,11 +103,21 @@ const MAX_TIMEOUT: Duration = Duration::from_secs(8);
 const TIMEOUT_FACTOR: u32 = 4;
 /// The rate of the slowest link, in bytes a second.
 const MIN_RATE: f64 = 16_000.0;
-/// After this number of consecutive timeouts, with keys between them, a terminal counts as one that
-/// does not answer.
+/// After this number of consecutive timeouts, with keys between them, a terminal counts as
+/// silent.
 const MAX_TIMEOUTS: u32 = 5;
 /// The time between two requests that are fences.
 const FENCE_PERIOD: Duration = Duration::from_secs(5);
+
+/// The number of frames a second for which the rate should suffice.
+const FRAMES_PER_SECOND: f64 = 18.0;
+/// An exact frame takes 1 + 0.32 t times the bytes of one at tolerance t: 3.6 times at 8, and 8.7
+/// times at 24.
+const SAVING: f64 = 0.32;
+/// The share of a high estimate that is left after one more frame.
+const DECAY: f64 = 0.99;
+/// The coarsest fidelity: beyond it, fewer frames are better than coarser ones.
+const MIN_FIDELITY: Fidelity = Fidelity::new(48);
 
 impl Flow {
     /// Flow control of an unknown link; the link is a network if `is_remote`.
@@ -259,15 +272,23 @@ impl Flow {
         if self.is_remote && !self.link.is_known() {
             return FIRST_FIDELITY;
         }
-        self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.demand.fidelity_within(rate))
+        self.link.usable_rate().map_or(Fidelity::EXACT, |rate| self.fidelity_within(rate))
     }
 
     /// Records that a frame of motion was sent. The first frame does not count as motion, since it
     /// paints the whole screen.
     pub(crate) fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
         if self.link.is_known() {
-            self.demand.sent_motion(bytes, fidelity);
+            let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
+            self.exact_bytes = (self.exact_bytes * DECAY).max(bytes as f64 * saving);
         }
+    }
+
+    /// The best fidelity for a link that carries `rate` bytes a second.
+    fn fidelity_within(&self, rate: f64) -> Fidelity {
+        let excess = self.exact_bytes * FRAMES_PER_SECOND / rate;
+        let tolerance = (excess - 1.0).max(0.0) / SAVING;
+        Fidelity::new(tolerance.min(f64::from(MIN_FIDELITY.tolerance())).round() as u8)
     }
 
     fn frames_in_flight(&self) -> usize {
@@ -310,42 +331,6 @@ impl Flow {
         // Exponential backoff, as in RFC 6298.
         let factor = 1_u32.checked_shl(self.timeouts).unwrap_or(u32::MAX);
         first.saturating_mul(factor).min(MAX_TIMEOUT)
-    }
-}
-
-/// The bytes that an exact frame of motion would take, estimated from the sent frames.
-///
-/// The fidelity follows from this estimate and the rate alone.
-///
-/// Rejected: raising and lowering it step by step. It is then late at the beginning of motion, when lag is most
-/// noticeable.
-#[derive(Debug, Default)]
-struct Demand {
-    exact_bytes: f64,
-}
-
-/// The number of frames a second for which the rate should suffice.
-const FRAMES_PER_SECOND: f64 = 18.0;
-/// An exact frame takes 1 + 0.32 t times the bytes of one at tolerance t: 3.6 times at 8, and 8.7
-/// times at 24.
-const SAVING: f64 = 0.32;
-/// The share of a high estimate that is left after one more frame.
-const DECAY: f64 = 0.99;
-/// The coarsest fidelity: beyond it, fewer frames are better than coarser ones.
-const MIN_FIDELITY: Fidelity = Fidelity::new(48);
-
-impl Demand {
-    /// Updates the estimate with a frame of motion.
-    fn sent_motion(&mut self, bytes: usize, fidelity: Fidelity) {
-        let saving = 1.0 + f64::from(fidelity.tolerance()) * SAVING;
-        self.exact_bytes = (self.exact_bytes * DECAY).max(bytes as f64 * saving);
-    }
-
-    /// The best fidelity for a link that carries `rate` bytes a second.
-    fn fidelity_within(&self, rate: f64) -> Fidelity {
-        let excess = self.exact_bytes * FRAMES_PER_SECOND / rate;
-        let tolerance = (excess - 1.0).max(0.0) / SAVING;
-        Fidelity::new(tolerance.min(f64::from(MIN_FIDELITY.tolerance())).round() as u8)
     }
 }
 

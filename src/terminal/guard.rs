@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::layout::Size;
 
+use super::error::Kind;
 use super::input::{Answer, Decoder, Input};
 use super::protocol::Changes;
 use super::unix::Device;
@@ -176,7 +177,7 @@ impl Guard {
     /// shell again.
     fn lock_taken(&self) -> io::Result<MutexGuard<'_, State>> {
         let state = self.lock();
-        if state.taken { Ok(state) } else { Err(io::Error::other(Error::given_back())) }
+        if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(Kind::GivenBack))) }
     }
 
     fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {
@@ -265,8 +266,7 @@ struct OutputQueue {
 }
 
 impl OutputQueue {
-    /// Writes `bytes` after those that wait, as far as `device` accepts them at once. They are kept if the
-    /// device does not accept all of them.
+    /// Writes `bytes` after the waiting ones, as far as `device` accepts them at once. Keeps the rest.
     fn send(&mut self, bytes: &[u8], device: &Device) -> io::Result<()> {
         if self.is_empty() {
             let accepted = device.write_some(bytes);
@@ -280,7 +280,7 @@ impl OutputQueue {
         self.write_to(device)
     }
 
-    /// Writes those of the waiting bytes that `device` accepts at once.
+    /// Writes the waiting bytes, as far as `device` accepts them at once.
     fn write_to(&mut self, device: &Device) -> io::Result<()> {
         self.taken += device.write_some(&self.bytes[self.taken..])?;
         if self.taken == self.bytes.len() {
@@ -315,7 +315,7 @@ fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
     static HOOK: Once = Once::new();
     let mut current = lock();
     if current.is_some() {
-        return Err(Error::already_taken());
+        return Err(Kind::AlreadyTaken.into());
     }
     *current = Some(Arc::clone(guard));
     HOOK.call_once(install_hook);

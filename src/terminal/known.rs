@@ -11,7 +11,7 @@
 use crate::color::palette::ShadeInk;
 use crate::tui::GlyphSet;
 
-/// What is known of a terminal from its name and version.
+/// The properties of a terminal, by its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Known {
     pub(crate) colors: Colors,
@@ -21,7 +21,7 @@ pub(crate) struct Known {
     pub(crate) is_tmux: bool,
 }
 
-/// What a name and version say about 24-bit colours.
+/// Whether a terminal of some name and version shows 24-bit colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Colors {
     #[default]
@@ -78,7 +78,8 @@ const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: Shad
     Terminal { name, blocks, shades }
 }
 
-/// What the name and version in `report` say, such as `kitty(0.42.1)` or `WezTerm 20240203-110809`.
+/// The properties of the terminal that reports this name and version, such as `kitty(0.42.1)` or `WezTerm
+/// 20240203-110809`.
 pub(crate) fn known(report: &str) -> Known {
     let end = report.find(|letter: char| letter == '(' || letter.is_ascii_digit());
     let (name, version) = report.split_at(end.unwrap_or(report.len()));

@@ -1,7 +1,7 @@
-//! What the environment says about a terminal, and how to use it.
+//! A terminal's properties by its environment, and how to use it.
 //!
-//! For the colours, the user's choice comes first (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then the terminal's own
-//! claims (`COLORTERM`, `TERM`), then a guess that a query may raise.
+//! For the colours, the user's choice comes first (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then the terminal's
+//! own claims (`COLORTERM`, `TERM`), then a guess that a query may raise.
 //!
 //! Missing variables do not restrict the game: containers and `ssh` often set neither a locale nor `TERM`, in terminals
 //! that show UTF-8 and know every sequence.
@@ -12,7 +12,7 @@
 use super::Fidelity;
 use crate::color::palette::ColorDepth;
 
-/// The properties of a terminal that are known at first, and how to use it.
+/// The initially known properties of a terminal, and how to use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
 pub struct Options {
@@ -49,7 +49,7 @@ impl Options {
     /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in
     /// a terminal that is unknown or has no window.
     ///
-    /// A multiplexer is not asked for key releases: those that support them lose some, and a key
+    /// A multiplexer is not asked for key releases: the ones that support them lose some, and a key
     /// whose release is lost is held for ever. Nor is it asked for pixels, since it has none of its
     /// own.
     ///
@@ -133,7 +133,7 @@ pub enum ColorSource {
     Palette,
     /// The answer of tmux about the terminal around it.
     Tmux,
-    /// No evidence; the depth is that of most terminals.
+    /// No evidence; most terminals have this depth.
     Nothing,
 }
 
@@ -211,8 +211,8 @@ const TELETYPES: [&str; 12] = [
     "tty40", "tty43",
 ];
 
-/// The value of `TERM` in `environment`, which looks up variables by name, if it is that of a
-/// terminal that cannot move its cursor.
+/// The value of `TERM` in `environment`, which looks up variables by name, if it names a terminal that cannot move its
+/// cursor.
 fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
     let term = environment("TERM")?;
     TELETYPES.into_iter().find(|&known| known == term)

@@ -4,16 +4,16 @@
 //! moment. So one implementation serves the terminal of the process ([`Session`](super::Session)), a
 //! channel of an SSH server, and a test that decides what arrives when.
 //!
-//! Some control sequences make frames shorter, and are used if the terminal proves that they work. The program probes two
-//! at the beginning. A repeated half block (REP) must move the cursor as far as it should. An entry of the palette,
-//! defined in the form that frames use (OSC 4), must be reported as defined, and with its old colour after a reset
-//! (OSC 104). Some terminals claim to repeat characters and fail on half blocks, so that no terminal is trusted by its
-//! name or version. A terminal of 256 colours whose palette can be defined and reset shows 24-bit colours as entries of
-//! its own. Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives the sent
-//! bytes, since a recording must play on any terminal.
+//! Some control sequences make frames shorter, and are used if the terminal proves that they work. The program probes
+//! two at the beginning. A repeated half block (REP) must move the cursor as far as it should. An entry of the
+//! palette, defined in the form that frames use (OSC 4), must be reported as defined, and with its old colour after a
+//! reset (OSC 104). Some terminals claim to repeat characters and fail on half blocks, so that no terminal is trusted
+//! by its name or version. A terminal of 256 colours whose palette can be defined and reset shows 24-bit colours as
+//! entries of its own. Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
+//! the sent bytes, since a recording must play on any terminal.
 //!
-//! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a thread
-//! for each of them.
+//! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a
+//! thread for each of them.
 
 mod changes;
 
@@ -74,7 +74,7 @@ pub struct Protocol {
     received_at: Duration,
     events: VecDeque<Event>,
     size: WindowSize,
-    /// What the terminal's name says.
+    /// The terminal's properties, by its name.
     known: Known,
     /// The client of the tmux in which the program runs.
     tmux: Option<TmuxClient>,
@@ -92,7 +92,7 @@ pub struct Protocol {
     frames_before_key_flags: u64,
 }
 
-/// What a frame shows.
+/// The kind of a frame.
 #[derive(Clone, Copy, Debug)]
 enum Drawn {
     /// A new picture, at this fidelity.
@@ -113,7 +113,7 @@ struct Mouse {
 }
 
 impl Protocol {
-    /// The protocol with a terminal of which `options` are known. Nothing is sent yet.
+    /// The protocol with a terminal that has these `options`. Nothing is sent yet.
     pub fn new(options: Options, size: WindowSize) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size.cells());
         writer.set_ascii(options.is_ascii);
@@ -208,8 +208,7 @@ impl Protocol {
         self.output.extend_from_slice(sequence::of(LeaveAlternateScreen).as_bytes());
     }
 
-    /// The bytes to send at `now`. The caller removes those that it has taken, and sends them in this
-    /// order.
+    /// The bytes to send at `now`, in this order. The caller removes the bytes that it has taken.
     pub fn output(&mut self, now: Duration) -> &mut Vec<u8> {
         self.queue_frame(now);
         &mut self.output
@@ -220,7 +219,7 @@ impl Protocol {
         self.flow.written(now);
     }
 
-    /// What must be undone at the end, and which answers may still arrive.
+    /// The changes to undo at the end, and the answers that may still arrive.
     pub(crate) fn changes(&self) -> Changes {
         self.changes
     }
@@ -541,8 +540,7 @@ impl Protocol {
     }
 
     /// Sets whether frames are restricted to ASCII. If that changes, the next one is sent whole.
-    #[cfg(feature = "serve")]
-    pub(crate) fn set_ascii(&mut self, is_ascii: bool) {
+    pub fn set_ascii(&mut self, is_ascii: bool) {
         if self.options.is_ascii != is_ascii {
             self.options.is_ascii = is_ascii;
             self.writer.set_ascii(is_ascii);
@@ -572,8 +570,8 @@ impl Protocol {
         self.flow.frames_sent()
     }
 
-    /// The number of frames that the terminal shows, as far as is known: those that it has answered,
-    /// or if it never answers, those that the system has accepted.
+    /// The number of frames that the terminal shows, as far as is known: the ones that it has answered,
+    /// or, if it never answers, the ones that the system has accepted.
     pub fn frames_answered(&self) -> u64 {
         self.flow.frames_answered()
     }

@@ -1,8 +1,7 @@
 //! Control sequences that crossterm lacks or has in another form.
 //!
-//! Crossterm provides all others. It couples the keyboard flags with its event reader, which was
-//! refused, and formats colours and motions in a way that takes longer than the rest of a cell's
-//! encoding.
+//! Crossterm provides all others. It couples the keyboard flags with its event reader, which this crate does not use,
+//! and formats colours and motions in a way that takes longer than the rest of a cell's encoding.
 
 use std::ops::RangeInclusive;
 
@@ -19,7 +18,7 @@ pub(crate) fn of(command: impl Command) -> String {
 /// Requests all keys as escape codes, with presses, repeats and releases, and with shifted
 /// characters: the kitty keyboard protocol's flags 1, 2, 4 and 8.
 pub(crate) const PUSH_KEY_FLAGS: &str = "\x1b[>15u";
-/// Clears the present keyboard flags, and leaves those that were pushed.
+/// Clears the present keyboard flags, and leaves the pushed ones.
 pub(crate) const CLEAR_KEY_FLAGS: &str = "\x1b[=0u";
 /// Restores the previous keyboard flags.
 pub(crate) const POP_KEY_FLAGS: &str = "\x1b[<u";
@@ -56,8 +55,8 @@ pub(crate) const QUERY_TRUE_COLOR: &str = "\x1bP+q524742\x1b\\";
 pub(crate) const QUERY_STATUS: &str = "\x1b[5n";
 /// Repeats a half block in the second row, queries the cursor's position, and erases the row.
 pub(crate) const PROBE_REPETITION: &str = "\x1b[2;1H\u{2580}\x1b[3b\x1b[6n\x1b[2;1H\x1b[K";
-/// The answer if the half block was repeated correctly. No key has this report; that of F3, the
-/// most similar, has 1 in place of 2.
+/// The answer if the half block was repeated correctly. No key has this report; F3 has the
+/// most similar one, with 1 in place of 2.
 pub(crate) const REPEATED: &[u8] = b"\x1b[2;5R";
 /// Moves the cursor to the upper left corner and erases the screen.
 pub(crate) const ERASE: &str = "\x1b[H\x1b[J";

@@ -7,6 +7,7 @@ use std::task::Poll;
 use std::time::Duration;
 use std::{io, mem};
 
+use super::error::Kind;
 use super::guard::Guard;
 use super::signals::{Signal, Signals};
 use super::tmux::Request;
@@ -59,7 +60,7 @@ impl Session {
     ) -> Result<Self, Error> {
         let device = Device::open()?;
         if let Some(term) = options.teletype {
-            return Err(Error::teletype(term));
+            return Err(Kind::Teletype { term }.into());
         }
         let guard = Guard::install(device, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
@@ -87,7 +88,7 @@ impl Session {
                 }
             }
             if !self.guard.is_taken() {
-                return Err(Error::given_back());
+                return Err(Kind::GivenBack.into());
             }
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };

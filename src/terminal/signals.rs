@@ -42,15 +42,15 @@ const REQUESTS: [i32; 4] = [SIGHUP, SIGINT, SIGTERM, SIGTSTP];
 const ENDS: [i32; 10] =
     [SIGABRT, SIGALRM, SIGPROF, SIGQUIT, SIGSYS, SIGTRAP, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU];
 
-/// The signals that end the program by default and that the library does not know how to end it by:
-/// SIGSTKFLT, SIGIO, SIGPWR and the real-time signals. After them it ends with [`STATUS`] and their
+/// The signals that end the program by default, and whose default effect the library cannot emulate: SIGSTKFLT,
+/// SIGIO, SIGPWR and the real-time signals. After one of them, the program ends with the status [`STATUS`] plus its
 /// number, as a shell reports a program that a signal has ended.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 const NAMELESS: [RangeInclusive<i32>; 4] = [16..=16, 29..=29, 30..=30, 34..=64];
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 const NAMELESS: [RangeInclusive<i32>; 0] = [];
 
-/// What a shell adds to the number of a signal.
+/// A shell adds this to the number of a signal.
 const STATUS: i32 = 128;
 
 /// The signals that have no effect, by default or, as SIGXFSZ, here: without that effect, a write
@@ -114,7 +114,7 @@ impl Signals {
         signals
     }
 
-    /// Stops this program, and those that were started with it, until the shell continues them.
+    /// Stops this program and the ones started with it until the shell continues them.
     /// Returns at once if there is no shell to continue them.
     pub(crate) fn stop_until_continued(&mut self) -> io::Result<()> {
         if !is_a_job()? {

@@ -1,4 +1,4 @@
-//! What tmux says about the terminal around it.
+//! The terminal around tmux, as tmux knows it.
 //!
 //! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux
 //! itself knows which features the attached client has, and which terminal it is.
@@ -8,7 +8,6 @@
 //! - What a client reports is text from a stranger: names with unusual characters are dropped.
 //! - tmux reads a terminal's features only when a client attaches (measured with 3.3a: after
 //!   `set -as terminal-features`, an attached client got RGB by attaching again, not before).
-//!
 //! - Nothing tells a program that a client attaches if the window stays the same and `focus-events` is
 //!   off, as by default. A key after a pause may come from another client.
 //!
@@ -57,7 +56,7 @@ impl TmuxClient {
         (is_missing && !self.term.is_empty()).then(|| format!(",{}:RGB", self.term))
     }
 
-    /// What is known of the client's terminal, within what tmux passes on.
+    /// The properties of the client's terminal, as far as tmux passes them on.
     pub(crate) fn known(&self) -> Known {
         // tmux drops characters that its C library does not know, and the rest of the line moves: with
         // glibc 2.36 all octants (measured with 3.3a), with older ones also sextants.

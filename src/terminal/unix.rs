@@ -1,8 +1,8 @@
 //! The Unix part of a terminal: its device, its attributes, and waiting for it.
 
+use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::time::Duration;
-use std::{fs, io};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
@@ -12,6 +12,7 @@ use rustix::termios::{
     ttyname,
 };
 
+use super::error::Kind;
 use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
@@ -43,7 +44,7 @@ impl Device {
         let (input, output) = (rustix::stdio::stdin(), rustix::stdio::stdout());
         for (stream, name) in [(input, "standard input"), (output, "standard output")] {
             if !isatty(stream) {
-                return Err(Error::not_a_terminal(name));
+                return Err(Kind::NotATerminal { stream: name }.into());
             }
         }
         Self::of_terminals(input, output).map_err(Error::while_doing("opening the terminal"))
@@ -193,25 +194,5 @@ pub(crate) fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Res
             Ok(())
         }
         Err(error) => Err(error.into()),
-    }
-}
-
-/// The peak memory of this process in bytes, on Linux; `None` on other systems.
-pub(crate) fn peak_memory() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
-    kibibytes.checked_mul(1024)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn linux_tells_how_much_it_is() {
-        let mebibytes = peak_memory().unwrap() >> 20;
-        assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
     }
 }

@@ -6,6 +6,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::error::Kind;
 use super::guard::Guard;
 use super::{Error, QuitReason, WindowSize};
 
@@ -35,12 +36,6 @@ pub(crate) enum Signal {
     Quit(QuitReason),
 }
 
-/// The peak memory is unknown.
-#[cfg(feature = "cli")]
-pub(crate) fn peak_memory() -> Option<u64> {
-    None
-}
-
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
@@ -49,7 +44,7 @@ pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
 
 impl Device {
     pub(crate) fn open() -> Result<Self, Error> {
-        Err(Error::unsupported_platform())
+        Err(Kind::UnsupportedPlatform.into())
     }
 
     pub(crate) fn make_raw(&self) -> io::Result<()> {

@@ -43,7 +43,7 @@ fn brightened(color: Rgb) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The index of the named colour whose hue is nearest to that of a bright `color`, or white. Users
+/// The index of the named colour with the hue nearest to a bright `color`'s, or white. Users
 /// redefine the sixteen colours, but red stays red. Blue is the bright one, because the dark one is
 /// hard to read.
 fn named_color(color: Rgb) -> u8 {
@@ -82,7 +82,7 @@ fn shades(surface: Surface) -> [char; 4] {
     }
 }
 
-/// From the character that lights most of its cell to the one that lights nothing.
+/// The sixteen characters, by the share of the cell that they light, from most to none.
 const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
 
 /// The character of the ramp for a pixel with that colour.

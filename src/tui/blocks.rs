@@ -1,7 +1,7 @@
 //! Blocks: a cell shows two, four, six or eight pixels, each in one of two colours.
 //!
-//! [`split`] chooses the two colours of a cell and the pixels that have the first of them. Flat colours, such as those of
-//! a map, become the nearest colours.
+//! [`split`] chooses the two colours of a cell and the pixels that have the first of them. Flat colours, such as
+//! those of a map, become the nearest colours.
 //!
 //! In a small palette, each cell of a picture is a block in two palette colours or one of the shades ░ ▒ ▓, whichever
 //! shows it better (see [`mixture`](crate::color::palette::mixture)).
@@ -12,9 +12,9 @@
 //!
 //! Nothing depends on earlier frames, and patterns are fixed to the screen, so that a still picture stays still.
 //!
-//! Rejected: error diffusion, since one changed pixel changes all pixels after it. Without colour: measuring a frame and
-//! stretching its range of brightness, since one lamp that comes into view would change every cell; and lit and unlit
-//! pixels in a pattern (Bayer's matrix), whose dots hide joints, and a guard among them.
+//! Rejected: error diffusion, since one changed pixel changes all pixels after it. Without colour: measuring a frame
+//! and stretching its range of brightness, since one lamp that comes into view would change every cell; and lit and
+//! unlit pixels in a pattern (Bayer's matrix), whose dots hide joints, and a guard among them.
 
 mod split;
 

@@ -20,7 +20,10 @@ pub trait Canvas {
     fn bounds(&self) -> Rect;
 
     /// Draws two colours in each cell from `(x, y)` to the right, the first above the second.
-    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>);
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        self.draw_mosaics(x, y, row.map(|halves| (Mosaic::UPPER_HALF, halves)));
+    }
 
     /// Does the same as [`Canvas::draw_halves`] in true colour, which most cells of most pictures
     /// use.
@@ -42,10 +45,6 @@ pub trait Canvas {
 impl Canvas for Buffer {
     fn bounds(&self) -> Rect {
         self.area
-    }
-
-    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
-        self.draw_mosaics(x, y, row.map(|halves| (Mosaic::UPPER_HALF, halves)));
     }
 
     /// A mosaic and its inverse show the same two colours. Chooses the one that shares more colours with the cell
@@ -222,7 +221,7 @@ impl Mosaic {
     #[cfg(feature = "terminal")]
     /// Whether the dot at the column `x` and the row `y` of a cell of 2×12 parts has the text colour. Sextants
     /// and octants are rows of such parts.
-    pub(crate) const fn has(self, x: u32, y: u32) -> bool {
+    pub const fn has(self, x: u32, y: u32) -> bool {
         match self.mask() {
             Ok(mask) => mask >> (y / 3 * 2 + x) & 1 == 1,
             Err(mask) => mask >> (y / 4 * 2 + x) & 1 == 1,

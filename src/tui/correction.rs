@@ -1,9 +1,9 @@
-//! Contrast: corrections of a picture for eyes that see less of it, or no difference between red and green, and outlines
-//! of things in pictures without colours.
+//! Contrast: corrections of a picture for eyes that see less of it, or no difference between red and green, and
+//! outlines of things in pictures without colours.
 //!
-//! A correction changes pixels, before they become cells of any depth. It depends on the picture
-//! alone, so that a still picture stays still. An outline sets a thing apart from any surface: a guard a few pixels wide
-//! is lost among the dots and characters of the wall behind, whatever its brightness.
+//! A correction changes pixels, before they become cells of any depth. It depends on the picture alone, so that a
+//! still picture stays still. An outline sets a thing apart from any surface: a guard a few pixels wide is lost among
+//! the dots and characters of the wall behind, whatever its brightness.
 
 use crate::color::Rgb;
 use crate::render::{Frame, FrameSize, Surface};
@@ -114,7 +114,7 @@ mod tests {
     use crate::color::srgb::linear;
     use crate::render::{FrameSize, PixelAspect};
 
-    /// What people without green cones see, and without red ones (Machado and others, 2009).
+    /// The colours that people without green cones and without red cones see (Machado and others, 2009).
     const BLIND: [[[f64; 3]; 3]; 2] = [
         [
             [0.367_322, 0.860_646, -0.227_968],

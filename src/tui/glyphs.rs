@@ -94,7 +94,7 @@ impl Default for CellAspect {
 
 /// `color` as a terminal of that depth shows it best.
 #[inline]
-pub(crate) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
+pub fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {
         ColorDepth::True => true_color(color),
         ColorDepth::Indexed256 => Color::Indexed(palette::nearest_of_256(color)),

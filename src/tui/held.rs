@@ -605,7 +605,7 @@ impl RepeatTiming {
         self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + SHORTEST_TAP)
     }
 
-    /// The delay, or that of most systems if it is unknown.
+    /// The delay; if it is unknown, the default of most systems.
     fn delay_or_default(self) -> Duration {
         self.delay.unwrap_or(DEFAULT_DELAY)
     }
@@ -632,7 +632,8 @@ pub fn tap_steps(intent: Intent) -> u32 {
 /// The intents of a step, given the intents that are bound to keys and how each key is held.
 ///
 /// A tap has a small, exact effect, because motion that starts and stops smoothly covers the same distance as motion
-/// that does not: 5 steps of walking are a quarter of a cell, and 10 steps of turning slowly are 5 degrees. Taps turn slowly and never run. A key to duck that may be down counts as held.
+/// that does not: 5 steps of walking are a quarter of a cell, and 10 steps of turning slowly are 5 degrees. Taps turn
+/// slowly and never run. A key to duck that may be down counts as held.
 pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
     let mut wanted = Intents::new();
     let mut held = Intents::new();

@@ -58,7 +58,7 @@ impl<'a> Minimap<'a> {
         }
     }
 
-    /// Sets the hits that bound the visible floor. They must be those of a picture by the same
+    /// Sets the hits that bound the visible floor. They must come from a picture by the same
     /// camera.
     #[must_use]
     pub fn seen(self, columns: &'a [Column]) -> Self {
@@ -71,7 +71,7 @@ impl<'a> Minimap<'a> {
         Self { explored: Some(explored), ..self }
     }
 
-    /// Sets the marks of those who move. A mark shows only where the floor is visible.
+    /// Sets the marks of other characters. A mark shows only where the floor is visible.
     #[must_use]
     pub fn marks(self, marks: &'a [MapMark]) -> Self {
         Self { marks, ..self }

@@ -16,7 +16,7 @@ use crate::world::{Camera, Heights};
 
 /// The mapping from the world to the pixels of one frame.
 #[derive(Clone, Debug)]
-pub(crate) struct Projection {
+pub struct Projection {
     origin: DVec2,
     direction: DVec2,
     plane: DVec2,
@@ -40,15 +40,15 @@ pub(crate) struct Rise(f64);
 
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// The distance from the camera plane, in cells; at most 0 for a point behind it.
-    pub(crate) depth: f64,
+    pub depth: f64,
     /// The number of columns of pixels from the left edge.
-    pub(crate) column: f64,
+    pub column: f64,
 }
 
 impl Projection {
-    pub(crate) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+    pub fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let height = f64::from(size.height.get());
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
@@ -176,7 +176,7 @@ impl Projection {
     }
 
     /// The position in the picture of a point on the map.
-    pub(crate) fn place(&self, point: DVec2) -> Place {
+    pub fn place(&self, point: DVec2) -> Place {
         let from_eye = point - self.origin;
         let depth = from_eye.dot(self.direction);
         let beside = from_eye.dot(self.direction.perp());
@@ -196,7 +196,7 @@ impl Projection {
     }
 
     /// The position of `height` at `depth`, in rows from the top.
-    pub(crate) fn row_at(&self, height: f64, depth: f64) -> f64 {
+    pub fn row_at(&self, height: f64, depth: f64) -> f64 {
         self.horizon + (self.eye - height) * self.focal_length / depth
     }
 

@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::Cell;
 
@@ -18,7 +19,8 @@ use super::Cell;
 /// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
 /// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
 /// each step was refused, since its length drifts.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "(u8, f64)")]
 pub struct Heading {
     quarter_turns: u8,
     /// Radians, within ±π/4 but for rounding.
@@ -59,17 +61,6 @@ impl Heading {
         }
     }
 
-    /// The quarter turns, and the radians beside them.
-    pub(crate) fn parts(self) -> (u8, f64) {
-        (self.quarter_turns, self.beside)
-    }
-
-    /// The heading with these [`parts`](Self::parts); `None` if no heading has them.
-    pub(crate) fn from_parts(quarter_turns: u8, beside: f64) -> Option<Self> {
-        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
-        is_one.then_some(Self { quarter_turns, beside })
-    }
-
     /// The unit vector in this direction.
     pub fn direction(self) -> DVec2 {
         let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));
@@ -79,6 +70,16 @@ impl Heading {
             2 => DVec2::new(-cos, -sin),
             _ => DVec2::new(sin, -cos),
         }
+    }
+}
+
+/// A heading from the quarter turns and the radians beside them.
+impl TryFrom<(u8, f64)> for Heading {
+    type Error = &'static str;
+
+    fn try_from((quarter_turns, beside): (u8, f64)) -> Result<Self, &'static str> {
+        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
+        is_one.then_some(Self { quarter_turns, beside }).ok_or("a heading")
     }
 }
 
@@ -189,7 +190,8 @@ impl Camera {
 }
 
 /// How far the camera looks up or down: within ±30°.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
 pub struct Pitch {
     slope: f64,
 }
@@ -227,6 +229,16 @@ impl Pitch {
         }
         // Adding zero removes the sign of a negative zero.
         Self { slope: (self.slope + slope).clamp(-STEEPEST, STEEPEST) + 0.0 }
+    }
+}
+
+/// A pitch from its slope.
+impl TryFrom<f64> for Pitch {
+    type Error = &'static str;
+
+    fn try_from(slope: f64) -> Result<Self, &'static str> {
+        let pitch = Self::LEVEL.tilted(slope);
+        if pitch.slope.to_bits() == slope.to_bits() { Ok(pitch) } else { Err("a pitch") }
     }
 }
 

@@ -7,6 +7,8 @@
 //! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
 //! the leaf would be inside it when it closes.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Cell, Paint, SwitchId, Tile, TileId, TileKind, World};
 
 /// A kind of door.
@@ -23,7 +25,7 @@ pub struct Door {
 }
 
 /// A key: an index into the world's list of their names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct KeyId(pub u8);
 
 /// How far a door is open, from 0 to 1: the part of its leaf that is in the jamb.
@@ -63,11 +65,6 @@ impl World {
             Some(TileKind::Doorway(_)) => Opening::OPEN,
             _ => self.ajar.opening(cell).unwrap_or(Opening::CLOSED),
         }
-    }
-
-    /// The doors that are partly open, by cell.
-    pub(crate) fn openings(&self) -> impl Iterator<Item = (Cell, Opening)> {
-        self.ajar.openings.iter().copied()
     }
 
     /// Sets the opening of the door in `cell`; does nothing if there is none. The cell becomes open

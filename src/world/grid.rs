@@ -5,11 +5,14 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::distance_field::DistanceField;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct Cell {
     /// The number of cells to the west of this one.
     pub column: u32,
@@ -123,7 +126,7 @@ impl Grid {
 
     /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
-    pub(crate) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+    pub fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.distance_field = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 

@@ -6,6 +6,8 @@
 //!
 //! A guard post is data of the map. The guard itself, who moves, is part of the game.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Cell, Heading, ThingKind, TileId, World};
 
 /// The parts of a level that only a game uses.
@@ -90,7 +92,9 @@ impl World {
 }
 
 /// A switch: an index into the world's list of their names. Levers and plates set it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct SwitchId(pub u8);
 
 /// A tile whose cells change their height.
@@ -174,7 +178,7 @@ pub struct GuardPost {
 }
 
 /// A kind of guard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum GuardKind {
     /// Slow and armoured; hits hard.
     Warden,
@@ -217,9 +221,10 @@ impl GuardKind {
 }
 
 /// What a guard does while nothing disturbs them.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Duty {
     /// Stands at the post and looks around.
+    #[default]
     Stand,
     /// Sleeps at the post, until a noise wakes them.
     Sleep,

@@ -19,12 +19,13 @@
 use std::ops::Range;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, Heading, KeyId, Light, Sprite, SpriteId, SwitchId, World};
 use crate::sort;
 
 /// Something that stands in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thing {
     /// The kind of thing.
     pub kind: ThingKind,
@@ -37,7 +38,7 @@ pub struct Thing {
 }
 
 /// A kind of thing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThingKind {
     /// Reaching it finishes the level.
     Exit,
@@ -64,7 +65,7 @@ pub enum ThingKind {
 }
 
 /// A tool that is used up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Supply {
     /// Thrown, to make a noise elsewhere.
     Pebbles,
@@ -89,11 +90,11 @@ impl Supply {
 }
 
 /// A text that is found: an index into the world's list of notes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NoteId(pub u16);
 
 /// The times at which spikes come out: once in each period, in steps of the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Rhythm {
     /// The steps from one time to the next; at least 60.
     pub period: u16,
@@ -249,7 +250,7 @@ fn place(thing: &Thing) -> (u32, u32) {
 }
 
 /// A sprite at any place.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// Its sprite, among those of the world; a figure with any other is not drawn.
     pub sprite: SpriteId,

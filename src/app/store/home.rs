@@ -221,7 +221,7 @@ impl Home {
 }
 
 /// File operations.
-pub(crate) trait Disk: fmt::Debug + Send {
+pub trait Disk: fmt::Debug + Send {
     /// Creates a folder and those that it is in, unless it exists.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
 
@@ -252,7 +252,7 @@ pub(crate) trait Disk: fmt::Debug + Send {
 
 /// The operating system's files.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Real;
+pub struct Real;
 
 /// The time between two attempts to lock a file.
 const PAUSE: Duration = Duration::from_millis(2);

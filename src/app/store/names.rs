@@ -24,8 +24,7 @@ pub fn map_key(file_name: &str, text: &str) -> String {
 }
 
 /// The name of the map in a [`map_key`]; `None` if `key` is none.
-#[cfg(feature = "serve")]
-pub(crate) fn name_in_map_key(key: &str) -> Option<&str> {
+pub fn name_in_map_key(key: &str) -> Option<&str> {
     let (name, hash) = key.rsplit_once('-')?;
     let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
     let is_hash = hash.len() == 16 && hash.bytes().all(is_digit);

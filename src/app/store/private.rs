@@ -12,7 +12,7 @@ struct NoFile(&'static str);
 
 /// Opens a file to read it. Never waits: a named pipe, on which a reader waits for a writer, is an error
 /// as all are that are no regular files.
-pub(crate) fn open(file: &Path) -> io::Result<File> {
+pub fn open(file: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
     do_not_wait(&mut options);
@@ -46,7 +46,7 @@ pub(crate) fn read_text(file: &Path, most: u64) -> io::Result<String> {
 }
 
 /// Creates a folder, and those that it is in, unless it exists. Only its owner can look into it.
-pub(crate) fn create_folder(folder: &Path) -> io::Result<()> {
+pub fn create_folder(folder: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);
     restrict_folder(&mut builder);
@@ -70,20 +70,18 @@ pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
 }
 
 /// Creates an empty file unless it exists. Only its owner can read it, then and from now on.
-#[cfg(feature = "serve")]
-pub(crate) fn create_file(file: &Path) -> io::Result<()> {
+pub fn create_file(file: &Path) -> io::Result<()> {
     open_to_write(file).map(drop)
 }
 
 /// An error unless `file` is a regular file.
-#[cfg(feature = "serve")]
-pub(crate) fn check_is_file(file: &Path) -> io::Result<()> {
+pub fn check_is_file(file: &Path) -> io::Result<()> {
     refuse_others(&fs::metadata(file)?)
 }
 
 /// Lets only the owner read the file that is created with `options`.
 #[cfg(unix)]
-pub(crate) fn restrict_file(options: &mut OpenOptions) {
+pub fn restrict_file(options: &mut OpenOptions) {
     use std::os::unix::fs::OpenOptionsExt;
     options.mode(0o600);
 }

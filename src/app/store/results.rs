@@ -83,22 +83,22 @@ impl Best {
     }
 
     /// The best of both. Of equally fast runs it is the first.
-    pub(crate) fn and(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
     }
 }
 
 /// The end of a descent.
-pub(crate) struct DescentRun {
+pub struct DescentRun {
     /// The game on the last floor.
-    pub(crate) game: Game,
+    pub game: Game,
     /// How far it came.
-    pub(crate) reached: Reached,
+    pub reached: Reached,
 }
 
 /// The game at the end of `script`, or at its first exit.
-pub(crate) fn replayed(world: World, rules: Rules, script: &Script) -> Game {
+pub fn replayed(world: World, rules: Rules, script: &Script) -> Game {
     let mut game = Game::with_rules(world, rules);
     for (_section, intents) in script.iter() {
         if game.is_finished() {
@@ -112,7 +112,7 @@ pub(crate) fn replayed(world: World, rules: Rules, script: &Script) -> Game {
 impl DescentRun {
     /// The descent of `script` from `floor` on, whose world is `first`. As in a game, a descent ends
     /// with the first death, and what is found counts once the exit is reached.
-    pub(crate) fn replayed(floor: u32, first: World, rules: Rules, script: &Script) -> Self {
+    pub fn replayed(floor: u32, first: World, rules: Rules, script: &Script) -> Self {
         let mut game = Game::with_rules(first, rules);
         let mut later = floors_below(rules.seed, floor);
         let mut reached = Reached::default();

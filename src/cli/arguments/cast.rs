@@ -5,13 +5,11 @@ use std::ffi::OsString;
 use clap::ArgMatches;
 
 use super::{Command, Error, Subcommand, map, value};
-use crate::lab::casters::Method;
 
 /// Options of `cast`.
 #[derive(Debug)]
 pub(crate) struct Cast {
     pub(crate) map: Option<OsString>,
-    pub(crate) method: Method,
 }
 
 pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
@@ -38,6 +36,5 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
              name a file",
         ));
     }
-    let method = value::CASTER.of(&mut matches).unwrap_or_default();
-    Ok(Command::Cast(Cast { map, method }))
+    Ok(Command::Cast(Cast { map }))
 }

@@ -10,7 +10,6 @@ use super::option::{FileOption, Flag, Parser, ValueOption};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphSet};
@@ -29,7 +28,6 @@ pub(crate) struct Play {
     pub(crate) cell_aspect: Option<CellAspect>,
     pub(crate) glyphs: Option<GlyphSet>,
     pub(crate) depth: Option<ColorDepth>,
-    pub(crate) method: Option<Method>,
     pub(crate) filter: Option<Filter>,
     pub(crate) fidelity: Option<FidelityChoice>,
     /// The difficulty; the one chosen before if `None`.
@@ -117,7 +115,6 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
         cell_aspect: CELL_ASPECT.of(&mut matches),
         glyphs: value::GLYPHS.of(&mut matches),
         depth: COLORS.of(&mut matches),
-        method: value::CASTER.of(&mut matches),
         filter: value::FILTER.of(&mut matches),
         fidelity: FIDELITY.of(&mut matches),
         difficulty: DIFFICULTY.of(&mut matches),

@@ -10,7 +10,6 @@ use super::option::{Flag, Parser, ValueOption};
 use super::value::{self, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{FieldOfView, Heading, Pitch};
@@ -34,7 +33,6 @@ pub(crate) struct Snapshot {
     pub(crate) glyphs: GlyphSet,
     pub(crate) depth: ColorDepth,
     pub(crate) format: Format,
-    pub(crate) method: Method,
     pub(crate) filter: Filter,
     /// Whether to write the frame's counts instead of the frame.
     pub(crate) explain: bool,
@@ -101,7 +99,6 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         glyphs: value::GLYPHS.of(&mut matches).unwrap_or_default(),
         depth: value::COLORS.of(&mut matches).unwrap_or_default(),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
-        method: value::CASTER.of(&mut matches).unwrap_or_default(),
         filter: value::FILTER.of(&mut matches).unwrap_or_default(),
         explain: EXPLAIN.of(&matches),
         watches: value::WATCH.of(&matches),

@@ -4,7 +4,6 @@ use std::num::NonZeroU32;
 
 use super::option::{Flag, Parser, ValueOption};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::{Method, ParseMethodError};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphSet};
@@ -164,16 +163,16 @@ fn size(text: &str) -> Option<Size> {
     Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-pub(crate) const CASTER: ValueOption<Method> = ValueOption {
+/// Other methods than the exact one are those of `cellcaster-lab`, which [`super::parse`] runs for them.
+pub(crate) const CASTER: ValueOption<()> = ValueOption {
     name: "caster",
     value: "METHOD",
     takes: "the name of a method",
-    help: "How walls are found: exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP",
+    help: "How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, \
+           table:ANGLES or march:STEP",
     default: "exact",
     choices: &[],
-    read: Parser::Fallible(|text| {
-        text.parse().map_err(|error: ParseMethodError| format!("--caster {text}: {error}"))
-    }),
+    read: Parser::Optional(|text| (text == "exact").then_some(())),
     repeats: false,
 };
 

@@ -2,8 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::Target;
-use crate::game::stored::{Unrestorable, check, stored};
+use serde::{Deserialize, Serialize};
+
+use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, TileEffect, World};
 
 /// The steps for which a cell smells: 20 seconds.
@@ -12,28 +13,23 @@ const LASTS: u64 = 1200;
 const MOST: usize = 128;
 
 /// The cells in which a player has been, the oldest first. Water keeps no smell.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Trail {
     marks: VecDeque<Mark>,
     /// The number of the oldest mark: marks are counted from the first of the game.
     first: u64,
 }
 
-stored! { struct Trail { marks, first } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Mark {
     cell: Cell,
     left_at: u64,
 }
 
-stored! { struct Mark { cell, left_at } }
-
 impl Trail {
     /// Records where a player is in the step `now`.
-    pub(crate) fn record(&mut self, world: &World, target: &Target, now: u64) {
+    pub(crate) fn record(&mut self, world: &World, cell: Cell, now: u64) {
         self.fade(now);
-        let cell = target.cell();
         match self.marks.back_mut() {
             Some(mark) if mark.cell == cell => mark.left_at = now,
             _ if world.effect_in(cell) == Some(TileEffect::Water) => {}
@@ -76,7 +72,7 @@ impl Trail {
     }
 
     /// Refuses more marks than are remembered, and marks after the step `now`.
-    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub fn check(&self, now: u64) -> Result<(), Unrestorable> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
         check(are_past && self.marks.len() <= MOST, "a trail")
     }

@@ -2,8 +2,8 @@
 //! author has meant it.
 
 use crate::game::Game;
-use crate::game::guards::Point;
 use crate::game::player::{Motion, RADIUS, STEP_HEIGHT};
+use crate::game::sight::Point;
 use crate::world::{Cell, Heading, ThingKind, World};
 
 /// The cells that are considered, from the nearest on.

@@ -6,7 +6,6 @@ use super::members::{Member, Members};
 use crate::game::Game;
 use crate::game::guards::Target;
 use crate::game::player::Motion;
-#[cfg(feature = "serve")]
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::sprite::builtin::PlayerFrame;
 use crate::world::{Figure, SpriteId, World};
@@ -56,10 +55,9 @@ impl Game {
     }
 }
 
-#[cfg(feature = "serve")]
 impl Game {
     /// The frame of a figure of the player of a game for one, who has walked so many cells.
-    pub(crate) fn frame_of_figure(&self, walked: f64) -> u8 {
+    pub fn frame_of_figure(&self, walked: f64) -> u8 {
         let frame = match self.player.killed_by {
             Some(_) => PlayerFrame::Down,
             None => walking_frame(&self.player.motion, walked),
@@ -68,7 +66,7 @@ impl Game {
     }
 
     /// The sprite of the players of that colour; `None` in a game for one.
-    pub(crate) fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
+    pub fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
         self.members.as_ref()?.sprites[color as usize]
     }
 }

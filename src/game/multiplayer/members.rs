@@ -1,41 +1,49 @@
 //! The players of a game for several, by slot, and whose turn it is.
 
+use serde::{Deserialize, Serialize};
+
 use super::seen::Track;
 use super::{MOST_PLAYERS, MultiplayerRules};
-use crate::game::checksum::{word_of, words_of_player};
 use crate::game::guards::Target;
 use crate::game::player::Player;
 use crate::game::scratch::Scratch;
-use crate::game::stored::stored;
+use crate::game::stored::{OfLevel, Unrestorable, at_most, check};
 use crate::game::{Game, Intents};
-use crate::rng::hash;
 use crate::world::sprite::builtin::PlayerColor;
-use crate::world::{Cell, Figure, SpriteId, Thing};
+use crate::world::{Cell, Figure, SpriteId, Thing, World};
 
 /// The players of a game for several.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Members {
+    #[serde(skip)]
     pub(crate) rules: MultiplayerRules,
     /// The last slot is taken, if there is any.
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
     pub(crate) slots: Vec<Option<Member>>,
     /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.
+    #[serde(skip)]
     pub(crate) turn: Option<usize>,
     /// The worth of the treasure of those who have left.
     pub(crate) treasure_of_the_gone: u32,
     /// Where the keys lay at the start.
+    #[serde(skip)]
     pub(crate) keys: Vec<Thing>,
     /// By colour.
+    #[serde(skip)]
     pub(crate) sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
     /// The blows of the last step: who has struck whom.
     pub(crate) blows: Vec<(usize, usize)>,
     /// The memory for what guards perceive, for the positions of those in the way, and for figures.
+    #[serde(skip)]
     pub(crate) targets: Scratch<Vec<Target>>,
+    #[serde(skip)]
     pub(crate) in_the_way: Scratch<Vec<glam::DVec2>>,
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
     pub(crate) figures: Vec<Figure>,
 }
 
 /// A player, and what concerns them among others.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Member {
     pub(crate) player: Player,
     pub(crate) color: PlayerColor,
@@ -57,13 +65,6 @@ pub(crate) struct Member {
     pub(crate) swing: u16,
     pub(crate) walked: f64,
     pub(crate) track: Track,
-}
-
-stored! {
-    struct Member {
-        player, color, is_playing, has_won, intents, seen, joined, ended, checkpoint, stunned, spared,
-        swing, walked, track,
-    }
 }
 
 impl Member {
@@ -111,31 +112,26 @@ impl Members {
         self.each().any(|(_, member)| member.checkpoint == Some(cell))
     }
 
-    /// What rules depend on, of all players.
-    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
-        let members = self.each().map(|(index, member)| {
-            let counts = member.player.counts;
-            let numbers = [
-                index as u64,
-                member.color as u64,
-                u64::from(member.has_won),
-                u64::from(member.stunned) << 32 | u64::from(member.spared) << 16,
-                member.joined,
-                member.ended.unwrap_or(u64::MAX),
-                member.checkpoint.map_or(u64::MAX, word_of),
-                u64::from(counts.alarms) << 32 | u64::from(counts.deaths),
-                u64::from(counts.stunned),
-            ];
-            let words = numbers.into_iter().chain(words_of_player(&member.player));
-            hash(0, words.chain(member.track.words()))
-        });
-        std::iter::once(u64::from(self.treasure_of_the_gone)).chain(members)
+    /// Refuses a state in which a step after the step `now` could fail.
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+        check(self.slots.last().is_none_or(Option::is_some), "a player")?;
+        self.each().try_for_each(|(_, member)| {
+            check(member.walked >= 0.0, "how far a player has walked")?;
+            member.player.check(world, now)
+        })
     }
 
     /// The first free slot.
     pub(crate) fn free_slot(&self) -> Option<usize> {
         let free = self.slots.iter().position(Option::is_none);
         free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
+    }
+}
+
+impl OfLevel for Members {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { rules, keys, sprites, .. } = start;
+        Ok(Self { rules, keys, sprites, ..self })
     }
 }
 

@@ -1,14 +1,12 @@
 //! Where everybody was in the last steps, by which acts are judged.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{MOST_LAG, PlayerId};
 use crate::game::Game;
-use crate::game::checksum::words_of;
-use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, RADIUS};
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
-use crate::rng::hash;
+use crate::game::sight::{Point, is_in_sight};
 use crate::world::World;
 
 /// The number of positions that are remembered: those of this step and of the last ones.
@@ -17,22 +15,11 @@ const STEPS: usize = MOST_LAG as usize + 1;
 const TOUCH: f64 = 0.25;
 
 /// Where a player was in the last steps.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Track([Option<Stand>; STEPS]);
 
-impl Stored for Track {
-    fn write(&self, out: &mut Writer) {
-        let Self(stands) = self;
-        stands.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        Ok(Self(Stored::read(input)?))
-    }
-}
-
 /// Where a player was in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stand {
     pub(crate) position: DVec2,
     /// The unit vector of the heading.
@@ -40,8 +27,6 @@ pub(crate) struct Stand {
     feet: f64,
     head: f64,
 }
-
-stored! { struct Stand { position, facing, feet, head } }
 
 impl Track {
     /// Records where a player stands at the end of the step `now`; `None` if they do not play.
@@ -52,11 +37,6 @@ impl Track {
         self.0[now as usize % STEPS] = stand;
         let way = stand.zip(before).map(|(now, before)| now.position.distance(before.position));
         way.unwrap_or_default()
-    }
-
-    /// The positions as numbers.
-    pub(crate) fn words(&self) -> impl Iterator<Item = u64> {
-        self.0.iter().map(|stand| stand.map_or(0, |stand| hash(1, words_of(stand.position))))
     }
 
     /// Where the player was in the step `seen`.

@@ -3,6 +3,7 @@
 mod carried;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::game::STEP;
 use crate::game::collision::{Body, Place, Radius, Stature, overlaps, slide};
@@ -10,7 +11,6 @@ use crate::game::fall::{Flight, GRAVITY, Room};
 use crate::game::intent::{Intent, Intents};
 use crate::game::pitch_control::PitchControl;
 use crate::game::stance::Stance;
-use crate::game::stored::stored;
 use crate::game::turning::Turning;
 use crate::generate::Shift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
@@ -26,7 +26,7 @@ pub(crate) const WALK: f64 = 3.0;
 pub(crate) const RUN: f64 = 5.5;
 
 /// How fast the player reaches that speed, per second.
-pub(crate) const FRICTION: f64 = 12.0;
+pub const FRICTION: f64 = 12.0;
 
 /// The height of a step that the player climbs or descends by walking, in cells.
 pub(crate) const STEP_HEIGHT: f64 = 0.35;
@@ -37,7 +37,7 @@ pub(crate) const JUMP_HEIGHT: f64 = 0.66;
 /// never ends, but a program should be able to sleep when nothing moves.
 pub(crate) const STILL: f64 = 1e-4;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Motion {
     body: Body,
     /// The height of the feet, in cells.
@@ -51,8 +51,6 @@ pub(crate) struct Motion {
     heading: Heading,
     turning: Turning,
 }
-
-stored! { struct Motion { body, feet, rising, stance, pitch_control, wanted_to_jump, heading, turning } }
 
 impl Motion {
     /// Standing still at the start.
@@ -199,15 +197,6 @@ impl Motion {
     /// Whether the player stands on the floor.
     pub(crate) fn stands(&self, world: &World) -> bool {
         self.rising == 0.0 && self.feet == self.room(world).floor
-    }
-
-    /// The position and the speeds, as bits.
-    pub(crate) fn words(&self) -> [u64; 8] {
-        let Body { position, velocity } = self.body;
-        let direction = self.heading.direction();
-        let numbers = [position.x, position.y, velocity.x, velocity.y, self.feet, self.rising];
-        let [x, y, across, down, feet, rising] = numbers.map(f64::to_bits);
-        [x, y, across, down, feet, rising, direction.x.to_bits(), direction.y.to_bits()]
     }
 
     /// The height of the floor here.

@@ -189,7 +189,6 @@ impl Reader<'_> {
 }
 
 /// The intents that words name, as a line of a script does after its duration.
-#[cfg(feature = "serve")]
 pub(crate) fn intents(words_of_line: &str) -> Option<Intents> {
     let reader = Reader {
         text: words_of_line,

@@ -5,13 +5,14 @@
 //! in its way: darts meet guards, and bolts players.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::game::STEP;
 use crate::game::collision::{Place, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, World};
 
@@ -26,15 +27,13 @@ const MARGIN: f64 = 0.05;
 const HAND: f64 = 0.45;
 
 /// What flies, in the order in which it was launched.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Missiles {
     flying: Vec<Missile>,
 }
 
-stored! { struct Missiles { flying } }
-
 /// Something that flies.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Missile {
     pub(crate) kind: MissileKind,
     pub(crate) position: DVec2,
@@ -47,10 +46,8 @@ pub(crate) struct Missile {
     steps: u16,
 }
 
-stored! { struct Missile { kind, position, height, velocity, rising, steps } }
-
 /// A kind of missile.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum MissileKind {
     Pebble,
     /// The player with that index has shot it.
@@ -65,8 +62,6 @@ pub(crate) enum MissileKind {
         by: usize,
     },
 }
-
-stored! { enum MissileKind { 0: Pebble, 1: Dart { by }, 2: Flask, 3: Bolt { points, from, by } } }
 
 /// A missile that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,7 +219,7 @@ impl Missiles {
     }
 
     /// Refuses those that have flown for too long.
-    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+    pub fn check(&self) -> Result<(), Unrestorable> {
         check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
     }
 

@@ -1,9 +1,10 @@
 //! Smoke: clouds that nobody sees through, for some time.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use crate::game::guards::Cloud;
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check, stored};
+use crate::game::sight::Cloud;
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 
 /// The radius of a cloud in cells, and the steps for which it stays.
@@ -25,38 +26,17 @@ const PUFFS: [(f64, f64, f64); 7] = [
 ];
 
 /// All clouds, in the order in which they arose.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Smoke {
     clouds: Vec<Cloud>,
     /// For each cloud, its height and the steps left.
     lives: Vec<Life>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Life {
     height: f64,
     left: u16,
-}
-
-stored! { struct Life { height, left } }
-
-impl Stored for Smoke {
-    fn write(&self, out: &mut Writer) {
-        let Self { clouds, lives } = self;
-        lives.write(out);
-        // All clouds have one radius.
-        for &Cloud { position, radius: _ } in clouds {
-            position.write(out);
-        }
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let lives: Vec<Life> = Stored::read(input)?;
-        check(lives.iter().all(|life| (1..=STEPS).contains(&life.left)), "a cloud")?;
-        let cloud = |_: &Life| Ok(Cloud { position: Stored::read(input)?, radius: RADIUS });
-        let clouds = lives.iter().map(cloud).collect::<Result<_, _>>()?;
-        Ok(Self { clouds, lives })
-    }
 }
 
 /// A part of a cloud, as it is shown.
@@ -69,6 +49,14 @@ pub(crate) struct Puff {
 }
 
 impl Smoke {
+    /// Refuses clouds that cannot be.
+    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+        let are_possible = self.clouds.len() == self.lives.len()
+            && self.clouds.iter().all(|cloud| cloud.radius == RADIUS)
+            && self.lives.iter().all(|life| (1..=STEPS).contains(&life.left));
+        check(are_possible, "a cloud")
+    }
+
     /// Adds a cloud around `position`, above a floor of that height.
     pub(crate) fn add(&mut self, position: DVec2, height: f64) {
         self.clouds.push(Cloud { position, radius: RADIUS });
@@ -83,11 +71,6 @@ impl Smoke {
     /// Whether there is none.
     pub(crate) fn is_empty(&self) -> bool {
         self.clouds.is_empty()
-    }
-
-    /// The steps left of each cloud.
-    pub(crate) fn lives(&self) -> impl Iterator<Item = u16> {
-        self.lives.iter().map(|life| life.left)
     }
 
     /// Advances all clouds by one step.

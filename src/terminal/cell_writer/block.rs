@@ -1,8 +1,8 @@
 //! Blocks: cells of two colours, and the characters that show them.
 //!
-//! A shape is a mosaic, regardless of which of its two colours is the text's. A mosaic and its inverse with swapped colours look the same. A shape is the one of the two without the last
-//! dot, so that cells that look the same are equal. The first colour of a cell is that of the shape's dots, the
-//! second that of the rest. A half block is the shape of the upper half.
+//! A mosaic and its inverse with swapped colours look the same. Of the two, a shape is the one without the last dot,
+//! so that cells that look the same are equal. The first colour of a cell is the colour of the shape's dots, the
+//! second the colour of the rest. A half block is the shape of the upper half.
 //!
 //! Two cells of different shapes are compared by the parts of a cell that their colours have in common. An edge
 //! that moves by a dot within one wall then leaves the cells whose colours are near.
@@ -158,8 +158,8 @@ static PARTS: [u32; Shape::COUNT as usize] = {
 
 /// A character that shows at most two colours, each in a whole half of its cell.
 ///
-/// A cell of two pixels can be written as an upper half block, or as a lower one with the colours swapped; a cell of two
-/// equal pixels as a space or a full block. They look the same, so the pen uses the one with the fewest bytes
+/// A cell of two pixels can be written as an upper half block, or as a lower one with the colours swapped; a cell of
+/// two equal pixels as a space or a full block. They look the same, so the pen uses the one with the fewest bytes
 /// after the terminal's present style. A space has no foreground, so that it keeps that of the cell before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlockElement {

@@ -86,7 +86,7 @@ impl Piece<'_> {
 
     /// Sets the number of bytes in this piece.
     #[inline]
-    pub(crate) fn end_at(&mut self, end: usize) {
+    fn end_at(&mut self, end: usize) {
         self.end = end;
     }
 

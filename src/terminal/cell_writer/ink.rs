@@ -18,7 +18,7 @@ pub(crate) struct Ink {
 }
 
 impl Ink {
-    /// The ink of `shade`; an indexed colour is that of xterm's standard palette.
+    /// The ink of `shade`; an indexed colour counts as xterm's standard one.
     #[inline(never)]
     pub(crate) fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {

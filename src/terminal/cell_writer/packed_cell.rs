@@ -44,10 +44,6 @@ impl PackedCell {
     const KIND: u32 = 2 * Shade::BITS;
     const SHAPES: u64 = Shape::COUNT as u64;
     const FIRST_GLYPH: u64 = Self::SHAPES + 2;
-    const _KINDS_FIT: () =
-        assert!(Self::FIRST_GLYPH + (GlyphId::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
-
-    const LAST_GLYPH: u64 = Self::FIRST_GLYPH + GlyphId::COUNT as u64 - 1;
 
     /// Packs `cell`.
     #[inline]
@@ -55,7 +51,7 @@ impl PackedCell {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(Symbol::of(cell), style, glyph_table),
+            None => Self::of_symbol(Symbol::of(symbol, |_| cell.cell_width()), style, glyph_table),
         }
     }
 
@@ -136,7 +132,7 @@ impl PackedCell {
         if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
             return Self::of_text(id, colors.map(Shade::of));
         }
-        Self::of_symbol(Symbol::of_text(symbol), style, glyph_table)
+        Self::of_symbol(Symbol::of(symbol, CellWidth::cell_width), style, glyph_table)
     }
 
     #[inline]
@@ -268,7 +264,9 @@ impl PackedCell {
     }
 }
 
-const _: () = assert!(PackedCell::LAST_GLYPH <= u64::MAX >> PackedCell::KIND);
+/// All forms fit in the upper bits.
+const _: () =
+    assert!(PackedCell::FIRST_GLYPH + GlyphId::COUNT as u64 <= 1 << (u64::BITS - PackedCell::KIND));
 
 impl fmt::Debug for PackedCell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -334,7 +332,7 @@ impl Glyph {
 
 impl GlyphId {
     /// The id of a space without modifiers, in every table.
-    pub(crate) const SPACE: Self = Self(0);
+    const SPACE: Self = Self(0);
     /// The id of an upper half block without modifiers, in every table.
     pub(crate) const UPPER_HALF: Self = Self(1);
     /// The maximum number of glyphs in a table.
@@ -360,7 +358,7 @@ impl GlyphTable {
 
     /// The id of `glyph` if it was looked up recently.
     #[inline]
-    pub(crate) fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
+    fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
         let (recent, id) = self.recent[glyph.place()];
         (recent == glyph).then_some(id)
     }
@@ -409,20 +407,9 @@ enum Symbol {
 }
 
 impl Symbol {
-    /// The text of `cell`.
+    /// Measures the `width` of `text` only if it has no control character, since ratatui cannot measure these.
     #[inline]
-    pub(crate) fn of(cell: &Cell) -> Self {
-        Self::classify(cell.symbol(), |_| cell.cell_width())
-    }
-
-    /// A text without a cell.
-    pub(crate) fn of_text(text: &str) -> Self {
-        Self::classify(text, CellWidth::cell_width)
-    }
-
-    /// Measures `text` only if it has no control character, since ratatui cannot measure these.
-    #[inline]
-    fn classify(text: &str, width: impl FnOnce(&str) -> u16) -> Self {
+    fn of(text: &str, width: impl FnOnce(&str) -> u16) -> Self {
         let mut characters = text.chars();
         let (first, second) = (characters.next(), characters.next());
         match (first, second) {

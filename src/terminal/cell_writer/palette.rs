@@ -91,7 +91,7 @@ impl Palette {
         self.quantizer.is_some()
     }
 
-    /// Replaces the colours of all targets by those of entries, if all colours are told as entries.
+    /// Replaces the colours of all targets by entries, if all colours are told as entries.
     /// Returns the definitions of entries that the terminal must receive before them.
     pub(crate) fn quantize(&mut self, screen: &mut Screen) -> Option<Bytes> {
         let mut definitions = Bytes::default();

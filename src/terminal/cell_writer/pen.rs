@@ -87,12 +87,12 @@ impl Pen {
         }
     }
 
-    /// Replaces the colours of all targets by those of the palette's entries, if the terminal shows no
-    /// others, and defines these.
+    /// If the terminal shows only the palette's entries, defines these and replaces the colours of all targets by
+    /// them.
     pub(crate) fn quantize(&mut self, screen: &mut Screen) {
         if let Some(definitions) = self.palette.quantize(screen) {
             self.frame().push_text(definitions.as_slice());
-            // Its colours may be those of entries that have changed.
+            // Its colours may be entries that have changed.
             self.style = None;
         }
     }
@@ -184,8 +184,8 @@ impl Pen {
         }
     }
 
-    /// Draws a block at a position on the screen: a shape as `element` draws it, that of the halves if it has one
-    /// colour.
+    /// Draws a block at a position on the screen: a shape as `element` draws it. A block of one colour has the shape
+    /// of halves.
     pub(crate) fn draw_block(
         &mut self,
         position: Position,
@@ -307,7 +307,7 @@ impl Pen {
         piece.finish();
     }
 
-    /// Draws these columns of row `y`, and has `draw_other` draw those that cannot be drawn as pixels now.
+    /// Draws these columns of row `y`. Has `draw_other` draw the ones that cannot be drawn as pixels now.
     #[inline]
     pub(crate) fn draw_pixels(
         &mut self,

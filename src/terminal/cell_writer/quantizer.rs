@@ -76,7 +76,7 @@ impl Quantizer {
         }
     }
 
-    /// Replaces the colours of all targets by those of entries. Definitions of entries, which the
+    /// Replaces the colours of all targets by entries. Definitions of entries, which the
     /// terminal must receive before the frame, are added to `bytes`.
     pub(crate) fn quantize(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
         self.frame += 1;

@@ -111,7 +111,7 @@ impl Refinement {
 }
 
 impl Inexact {
-    /// Adds those of a row.
+    /// Adds the inexact cells of a row.
     fn add(&mut self, row: &Row) {
         self.cells.extend(errors(row, &mut self.inks));
     }

@@ -1,8 +1,8 @@
 //! Makes a row look like its targets: exactly, or within a tolerance for fewer bytes.
 //!
-//! Within a tolerance, two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both blocks
-//! or both the same character without modifiers. A shade (░▒▓) is compared as a block of its mean colour. All other
-//! cells are drawn exactly.
+//! Within a tolerance, two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both
+//! blocks or both the same character without modifiers. A shade (░▒▓) is compared as a block of its mean colour. All
+//! other cells are drawn exactly.
 //!
 //! Rejected: another character in place of the wanted one, such as its neighbour on a ramp of brightness. In ascii mode
 //! the character also identifies the surface, and most of the bytes are colours.
@@ -205,7 +205,7 @@ fn notation(targets: &[PackedCell], has_palette: bool) -> Notation {
     }
 }
 
-/// The loss of this number of bytes, at most that of a cell.
+/// The loss of this number of bytes, at most [`CELL`].
 #[inline]
 fn loss(bytes: f32) -> Loss {
     /// The sum of this and a small number has the rounded number in its lowest bits.

@@ -239,7 +239,6 @@ impl Screen {
     }
 
     /// The mosaic that a shown cell is, if it is one.
-    #[cfg(feature = "lab")]
     pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;
@@ -315,7 +314,7 @@ impl Screen {
     }
 }
 
-/// Replaces the colours of `cells`. A cell of which one becomes [`Shade::NONE`] is then unknown.
+/// Replaces the colours of `cells`. A cell is then unknown if one of its colours becomes [`Shade::NONE`].
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {

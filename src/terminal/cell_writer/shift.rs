@@ -70,8 +70,8 @@ pub(crate) struct Shifts {
 }
 
 impl Shifts {
-    /// Begins a row with these targets and the marks of the previous ones. `lose` adds the losses of showing the cells that are now at the first column
-    /// and after it, at the second column and after it.
+    /// Begins a row with these targets and the marks of the previous ones. `lose` adds the losses of showing the
+    /// cells that are now at the first column and after it, at the second column and after it.
     pub(crate) fn begin(
         &mut self,
         targets: &[PackedCell],

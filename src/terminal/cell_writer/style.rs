@@ -143,8 +143,8 @@ impl Style {
     }
 }
 
-/// A colour in the form that SGR writes, of which ratatui has several names. It has few bits, since
-/// most operations on colours are comparisons.
+/// A colour in the form that SGR writes, in few bits: most operations on colours are comparisons. Ratatui has several
+/// names for some colours.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shade(u32);
 
@@ -300,8 +300,8 @@ impl Shade {
         }
     }
 
-    /// Adds the change of the text colour and the background from `current` to `new`, of which at least one
-    /// differs; `told` maps colours to the ones to send.
+    /// Adds the change of the text colour and the background from `current` to `new`; at least one of them must
+    /// differ; `told` maps colours to the ones to send.
     #[inline]
     pub(crate) fn push_change(
         new: [Self; 2],

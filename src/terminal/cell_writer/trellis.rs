@@ -26,7 +26,7 @@ use super::style::{Shade, Style};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
     pub(crate) inks: [Ink; 2],
-    /// The shape of a block; that of the halves for a character.
+    /// The shape of a block; [`Shape::HALF`] for a character.
     pub(crate) shape: Shape,
     /// The bytes of its only glyph; `None` if any block element will do.
     pub(crate) character: Option<u8>,
@@ -255,7 +255,7 @@ const UPPER: u8 = 0;
 const LOWER: u8 = 1;
 const BOTH: u8 = 2;
 
-/// The bytes of a sequence that sets one colour, without the parameters, and of one that sets both.
+/// The bytes of the sequences that set one colour and both, without the parameters.
 const ONE_COLOR: f32 = 3.0;
 const TWO_COLORS: f32 = 4.0;
 /// The fewest bytes of a colour's parameters.

@@ -208,7 +208,7 @@ struct Line {
 
 /// The weight of the past after one more frame.
 const FORGETTING_FACTOR: f64 = 0.97;
-/// The weight of the point at the origin, relative to that of the latest frame.
+/// The weight of the point at the origin, relative to the latest frame's.
 const ORIGIN_WEIGHT: f64 = 0.25;
 
 impl Fit {
@@ -249,8 +249,8 @@ impl Fit {
     }
 }
 
-/// The minimum of recent round-trip times, of this half of a window and of the one before it: the delay of the link in both
-/// directions, without queues.
+/// The minimum of recent round-trip times, of this half of a window and of the one before it: the delay of the link
+/// in both directions, without queues.
 ///
 /// The minimum of all times would stay wrong after the route has become longer. This is the windowed minimum filter of
 /// BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`").

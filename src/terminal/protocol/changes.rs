@@ -10,7 +10,7 @@ use crossterm::terminal::{
 use crate::terminal::event::MouseUnits;
 use crate::terminal::sequence;
 
-/// What the program has changed in the terminal, and which answers may still arrive.
+/// The program's changes to the terminal, and the answers that may still arrive.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Changes {
     pub(crate) key_flags: KeyFlags,
@@ -23,8 +23,7 @@ pub(crate) struct Changes {
     pub(crate) palette_defined: bool,
 }
 
-/// What is known about keyboard flags of the program's own, with which keys are reported in the kitty
-/// protocol.
+/// The state of the program's own keyboard flags, with which the terminal reports keys in the kitty protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum KeyFlags {
     /// There are none.
@@ -178,7 +177,7 @@ impl Fences {
     }
 
     /// Whether the terminal has ever answered a fence.
-    pub(crate) fn are_answered(&self) -> bool {
+    fn are_answered(&self) -> bool {
         self.are_answered
     }
 

@@ -355,7 +355,8 @@ proptest! {
     }
 }
 
-/// A simulated keyboard at a terminal that reports no releases: the bytes that it sends. One key repeats at a time: the one pressed last, until it is released.
+/// A simulated keyboard at a terminal that reports no releases: the bytes that it sends. One key repeats at a time:
+/// the one pressed last, until it is released.
 #[derive(Clone, Debug)]
 pub(crate) struct Keyboard<K> {
     delay: Duration,

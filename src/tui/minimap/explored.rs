@@ -22,8 +22,7 @@ use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// The cells of a map that a player has seen so far, for a [`Minimap`](super::Minimap).
 ///
-/// A value belongs to one level. A world of another size is another level, of which nothing has
-/// been seen.
+/// A value belongs to one level. A world of another size counts as another level, where nothing has been seen.
 ///
 /// ```
 /// use cellcaster::tui::{Explored, Minimap};
@@ -44,7 +43,7 @@ pub struct Explored {
     size: (u32, u32),
     /// A bit for each cell, row by row; each row begins with a new word.
     words: Vec<u32>,
-    /// The number of cells that are not walls, and the number of those that have been seen.
+    /// The number of cells that are not walls, and how many of them have been seen.
     open: u32,
     open_seen: u32,
     /// The cell of a generated level at which the world begins.
@@ -122,7 +121,7 @@ impl Explored {
         SeenRow(self.words.chunks_exact(words.max(1)).nth(row as usize).unwrap_or_default())
     }
 
-    /// The share of cells seen, from 0 to 1, among those that are not walls.
+    /// The seen share of the cells that are not walls, from 0 to 1.
     pub fn share(&self) -> f64 {
         f64::from(self.open_seen) / f64::from(self.open.max(1))
     }
@@ -204,7 +203,7 @@ struct Observer<'a> {
     clear_to: f64,
     /// The gap around the eye in the observer's cell.
     own_gap: Gap,
-    /// What each tile is for a ray that has been in cells with that gap only.
+    /// For each tile, how it continues a ray that has only been in cells with that gap.
     passages: [Passage; TileId::MOST],
 }
 
@@ -404,7 +403,7 @@ struct Entered {
     shows_face: bool,
 }
 
-/// What a tile is for a ray that has been in cells with the observer's own gap only.
+/// How a tile continues a ray that has only been in cells with the observer's own gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Passage {
     /// The same gap, in which nothing opaque stands: the ray sees the cell.
@@ -418,7 +417,7 @@ enum Passage {
 const NEAR: f64 = 1e-9;
 const FARTHER: f64 = 1.0 + 1e-9;
 
-/// What rounded distances of a walk, in its unit, say for certain.
+/// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
 struct Certain {
     /// A distance up to which fog hides nothing, or less.
     clear_to: f64,
@@ -430,7 +429,7 @@ impl Certain {
     fn new(unit: f64, clear_to: f64) -> Self {
         // More than enough for the errors of both distances.
         const MARGIN: f64 = 1.0 + 1e-9;
-        /// The units of which no product has underflowed or overflowed.
+        /// Units in this range are products that have neither underflowed nor overflowed.
         const SOUND: std::ops::Range<f64> = 1e-150..1e150;
         if SOUND.contains(&unit) {
             Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }

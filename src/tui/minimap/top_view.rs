@@ -3,9 +3,9 @@
 //! The appearance of tiles is computed once per picture, and the things in a row once per row of pixels, so that most
 //! pixels need only a table lookup.
 //!
-//! The brightness of walls is between two limits, floors are darker, and the player's arrow is brighter than both. With
-//! 16 colours, which users redefine, and without colour, each kind of point has its own colour or pattern. Rejected: the
-//! nearest of 16 colours, which would make walls and floors equal.
+//! The brightness of walls is between two limits, floors are darker, and the player's arrow is brighter than both.
+//! With 16 colours, which users redefine, and without colour, each kind of point has its own colour or pattern.
+//! Rejected: the nearest of 16 colours, which would make walls and floors equal.
 
 use glam::DVec2;
 
@@ -254,7 +254,7 @@ pub(crate) enum MapPoint {
     InView(Floor),
     Exit,
     Key,
-    /// What the player can take or read.
+    /// Something that the player can take or read.
     Item,
     Ornament,
 }
@@ -270,7 +270,7 @@ pub(crate) struct Floor {
 
 /// The kinds of floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FloorKind {
+enum FloorKind {
     /// At the height of the map's own floor.
     Base,
     /// Above it.

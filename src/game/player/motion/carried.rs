@@ -8,7 +8,7 @@ use crate::world::{Cell, World};
 
 impl Motion {
     /// Refuses a place outside of `world`, and a stance and turns that are none.
-    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+    pub fn check(&self, world: &World) -> Result<(), Unrestorable> {
         check_on_map(world, self.body.position)?;
         self.stance.check()?;
         self.turning.check()

@@ -1,3 +1,0 @@
-//! The stores of a host.
-
-pub mod host;
