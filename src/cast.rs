@@ -42,11 +42,11 @@ pub use dyn_caster::DynCaster;
 pub(crate) use exact::{CommonOrder, ExactOnLevel};
 pub use exact::{Exact, ExactOrder, RoundedOrder};
 pub(crate) use major_axis::MajorAxisTraversal;
-pub(crate) use ray::HitFace;
 #[cfg(feature = "tui")]
 pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
+pub(crate) use ray::{HitFace, cell_before};
 pub(crate) use through::Passage;
 #[cfg(feature = "tui")]
 pub(crate) use walk::WalkFromInside;

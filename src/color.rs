@@ -17,7 +17,7 @@ use std::str::FromStr;
 /// An opaque sRGB colour with 8 bits a channel.
 ///
 /// It is stored as `0x00RRGGBB` in one word: writing a pixel is one store, and halving all channels
-/// is one shift and one mask. Three separate bytes were refused: they take three of each.
+/// is one shift and one mask. Rejected: three separate bytes, which take three of each.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Rgb(u32);
 

@@ -7,7 +7,7 @@
 //! - Every pixel's texel is computed in fixed point from its own row or column.
 //! - The target counts pixels and texels where they are written.
 //!
-//! One loop that selects the kind of surface for each pixel was refused: these loops omit the kinds
+//! Rejected: one loop that selects the kind of surface for each pixel. These loops omit the kinds
 //! of item that a scene lacks, without a branch.
 
 mod band;

@@ -8,8 +8,8 @@
 //! Drawing by one thread allocates nothing once both have grown to the size of the frame. The same
 //! world, camera and time give the same pixels, in any number of bands.
 //!
-//! A single pass that finishes each column before the next was refused: two stages leave out a kind
-//! of item that a scene lacks, while a single pass would branch on it in the innermost loop.
+//! Rejected: one pass that finishes each column before the next. It would branch in the innermost
+//! loop on features that the scene does not have.
 
 mod frame;
 mod renderable;

@@ -3,9 +3,9 @@
 //!
 //! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable
 //! Pseudorandom Number Generators", 2014): a counter, and a finalizer that maps 64 bits one to one,
-//! so that each bit of the input changes half of the output on average. A crate was refused: the
-//! generator has ten lines, which never change. The standard library's hasher was refused, too: it
-//! may change.
+//! so that each bit of the input changes half of the output on average. Rejected: a crate, since
+//! the generator has ten lines, which never change; and the standard library's hasher, which may
+//! change.
 
 use serde::{Deserialize, Serialize};
 

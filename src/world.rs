@@ -20,6 +20,7 @@ mod grid;
 mod lamplight;
 mod light;
 mod mission;
+pub(crate) mod scene;
 pub mod sprite;
 #[cfg(any(test, fuzzing))]
 mod tests;
@@ -72,7 +73,7 @@ pub struct World {
     title: String,
     goal: Option<String>,
     grid: Grid,
-    /// The same as rays see it that end at what is not level, where anything is not.
+    /// The grid as seen by rays that stop at uneven cells (only if the map has any).
     level_grid: Option<Grid>,
     tiles: Vec<Tile>,
     textures: Arc<[Texture]>,
@@ -101,6 +102,33 @@ pub struct Start {
     pub heading: Heading,
 }
 
+/// The pieces of a world, before they are known to fit together.
+pub(crate) struct Parts {
+    pub(crate) title: String,
+    pub(crate) goal: Option<String>,
+    pub(crate) grid: Grid,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) floor: Covering,
+    pub(crate) ceiling: Ceiling,
+    pub(crate) sky: Sky,
+    pub(crate) fog: Option<Fog>,
+    pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) keys: Vec<String>,
+    pub(crate) mission: Mission,
+}
+
+/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
+/// lamps.
+pub(crate) struct Changes<'a> {
+    pub(crate) things: &'a [Thing],
+    pub(crate) figures: &'a [Figure],
+    /// Whether lamps have ever added light.
+    pub(crate) is_lamplit: bool,
+}
+
 impl World {
     /// The name of the level; empty if the map has none.
     pub fn title(&self) -> &str {
@@ -117,8 +145,8 @@ impl World {
         &self.grid
     }
 
-    /// The grid as rays see it that end at what is not level: that is solid in it. `None` where everything
-    /// is level.
+    /// The grid as seen by rays that stop at uneven cells, which are solid in it. `None` if all tiles are
+    /// level.
     pub(crate) fn level_grid(&self) -> Option<&Grid> {
         self.level_grid.as_ref()
     }
@@ -153,7 +181,7 @@ impl World {
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
     }
 
-    /// What lamps add to the light in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
     pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
         self.lamplight.at(cell)
@@ -302,27 +330,7 @@ impl World {
         let sprite = self.sprite(thing.sprite);
         sprite.base(self.room_in(thing.cell)) + sprite.height.cells() > height
     }
-}
 
-/// The pieces of a world, before they are known to fit together.
-pub(crate) struct Parts {
-    pub(crate) title: String,
-    pub(crate) goal: Option<String>,
-    pub(crate) grid: Grid,
-    pub(crate) tiles: Vec<Tile>,
-    pub(crate) textures: Vec<Texture>,
-    pub(crate) floor: Covering,
-    pub(crate) ceiling: Ceiling,
-    pub(crate) sky: Sky,
-    pub(crate) fog: Option<Fog>,
-    pub(crate) start: Start,
-    pub(crate) sprites: Vec<Sprite>,
-    pub(crate) things: Vec<Thing>,
-    pub(crate) keys: Vec<String>,
-    pub(crate) mission: Mission,
-}
-
-impl World {
     /// A world of `parts` that fit together:
     ///
     /// - Every tile of the grid and every texture is in its list.
@@ -335,45 +343,29 @@ impl World {
     /// - Switches and notes are in their lists. Guards and their waypoints are on open floor.
     ///
     /// The map reader establishes all of that, and tests verify it.
-    pub(crate) fn from_parts(parts: Parts) -> Self {
-        let Parts {
-            title,
-            goal,
-            mut grid,
-            tiles,
-            textures,
-            floor,
-            ceiling,
-            sky,
-            fog,
-            start,
-            sprites,
-            things,
-            keys,
-            mission,
-        } = parts;
-        let moving = &mission.moving_tiles;
-        clear(&mut grid, &tiles, moving);
-        let level_grid = level_grid(&grid, &tiles, moving);
+    pub(crate) fn from_parts(mut parts: Parts) -> Self {
+        let moving = &parts.mission.moving_tiles;
+        clear(&mut parts.grid, &parts.tiles, moving);
+        let level_grid = level_grid(&parts.grid, &parts.tiles, moving);
         let mut world = Self {
-            title,
-            goal,
-            grid,
+            title: parts.title,
+            goal: parts.goal,
+            grid: parts.grid,
             level_grid,
-            tiles,
-            textures: textures.into(),
-            floor,
-            ceiling,
-            sky,
-            fog,
-            start,
-            sprites: sprites.into(),
-            things: Things::new(things),
+            tiles: parts.tiles,
+            textures: parts.textures.into(),
+            floor: parts.floor,
+            ceiling: parts.ceiling,
+            sky: parts.sky,
+            fog: parts.fog,
+            start: parts.start,
+            sprites: parts.sprites.into(),
+            things: Things::new(parts.things),
             figures: Vec::new(),
             lamplight: Lamplight::default(),
             light_varies: false,
-            keys,
-            mission,
+            keys: parts.keys,
+            mission: parts.mission,
             ajar: Ajar::default(),
         };
         world.light_up();
@@ -396,63 +388,13 @@ impl World {
         self.light_up();
         self.ajar = Ajar::default();
     }
-}
 
-/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
-fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
-    let first_solid = grid.first_solid();
-    let changing = that_may_become(tiles.len(), moving, |state| state >= first_solid);
-    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    // A level grid has a tile of its own for what is not level.
-    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
-    grid.clear(|id| is_doorway(id) || may_change(id));
-}
-
-/// `grid` as rays see it that end at what is not level; `None` where everything is.
-fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
-    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
-    if tiles.iter().all(Tile::is_level) {
-        return None;
-    }
-    let first_solid = grid.first_solid();
-    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
-    let changing = that_may_become(tiles.len(), moving, ends_rays);
-    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
-    let mut level = grid.ending_at_others(is_level);
-    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
-    Some(level)
-}
-
-/// For each tile, whether it is among the states of a moving tile any of whose states `is_it`.
-fn that_may_become(
-    tile_count: usize,
-    moving: &[MovingTile],
-    is_it: impl Fn(TileId) -> bool,
-) -> Vec<bool> {
-    let mut may_become = vec![false; tile_count];
-    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
-    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
-        may_become[usize::from(index)] = true;
-    }
-    may_become
-}
-
-/// What a game changes in its world, but for the tiles and openings that its doors and mechanisms know, and
-/// the light of lamps.
-pub(crate) struct Changes<'a> {
-    pub(crate) things: &'a [Thing],
-    pub(crate) figures: &'a [Figure],
-    /// Whether lamps have ever added light.
-    pub(crate) is_lamplit: bool,
-}
-
-impl World {
-    /// What a game has changed.
+    /// The changes of a game so far.
     pub(crate) fn changes(&self) -> Changes<'_> {
         let Self {
             title: _,
             goal: _,
-            // Doors and mechanisms give the tiles that have changed.
+            // The tiles that have changed follow from doors and mechanisms.
             grid: _,
             level_grid: _,
             tiles: _,
@@ -471,14 +413,14 @@ impl World {
             light_varies: _,
             keys: _,
             mission: _,
-            // Doors give it.
+            // It follows from doors.
             ajar: _,
         } = self;
         Changes { things: things.all(), figures, is_lamplit: !lamplight.is_dark() }
     }
 
-    /// Replaces the things by those that are left of them, which may show other frames, and computes all
-    /// lamplight anew, without lamps that move. Returns `false`, and changes nothing, if the things are not
+    /// Replaces the things by those of them that are `left`, which may show other frames, and computes all
+    /// lamplight again, without moving lamps. Returns `false`, and changes nothing, if the things are not
     /// in their order, were not all there, or have sprites without such a frame.
     pub(crate) fn leave_things(&mut self, left: Vec<Thing>) -> bool {
         let place = |cell: Cell| (cell.row, cell.column);
@@ -505,4 +447,43 @@ impl World {
     pub(crate) fn key_count(&self) -> usize {
         self.keys.len()
     }
+}
+
+/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
+fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
+    let first_solid = grid.first_solid();
+    let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    // A level grid has a tile of its own for what is not level.
+    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
+    grid.clear(|id| is_doorway(id) || may_change(id));
+}
+
+/// `grid` as seen by rays that stop at uneven cells; `None` if all tiles are level.
+fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
+    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
+    if tiles.iter().all(Tile::is_level) {
+        return None;
+    }
+    let first_solid = grid.first_solid();
+    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
+    let changing = may_become(tiles.len(), moving, ends_rays);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    let mut level = grid.ending_at_others(is_level);
+    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
+    Some(level)
+}
+
+/// For each tile, whether it is a state of a moving tile that has a state for which `is_it` is true.
+fn may_become(
+    tile_count: usize,
+    moving: &[MovingTile],
+    is_it: impl Fn(TileId) -> bool,
+) -> Vec<bool> {
+    let mut marked = vec![false; tile_count];
+    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
+    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
+        marked[usize::from(index)] = true;
+    }
+    marked
 }

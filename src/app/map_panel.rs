@@ -96,7 +96,7 @@ impl MapPanel {
     /// presses are needed to come back from outside.
     pub(crate) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
         let grid = game.world().grid();
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let size = grid.extent();
         self.extent = extent.min(size);
         let half = self.extent / 2.0;
         let center = (camera.position() + self.offset).clamp(half, size - half);

@@ -61,8 +61,7 @@ impl Caster for Exact {
     }
 }
 
-/// Casts as [`Exact`] does, and ends where a ray enters what is not level: in `grid`, which has that for
-/// solid.
+/// Casts as [`Exact`] does, and also hits uneven cells, which are solid in `grid`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExactOnLevel<'a> {
     pub(crate) grid: &'a Grid,
@@ -110,10 +109,7 @@ pub struct ExactOrder {
 impl ExactOrder {
     /// The order for `ray` in `grid`.
     pub fn new(grid: &Grid, ray: &Ray) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let rounded = RoundedOrder::new(ray);
-        let furthest = size + ray.origin().abs();
-        Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
+        Self::from_rounded(grid, ray, RoundedOrder::new(ray))
     }
 
     /// The same order for a ray of a camera, which is not scaled: where a product overflows, the difference
@@ -121,9 +117,17 @@ impl ExactOrder {
     #[cfg(feature = "tui")]
     #[inline]
     pub(crate) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let rounded = RoundedOrder::of_direction(ray.origin(), ray.direction(), ray.direction());
-        let furthest = size + ray.origin().abs();
+        let direction = ray.direction();
+        Self::from_rounded(
+            grid,
+            ray,
+            RoundedOrder::of_direction(ray.origin(), direction, direction),
+        )
+    }
+
+    #[inline]
+    fn from_rounded(grid: &Grid, ray: &Ray, rounded: RoundedOrder) -> Self {
+        let furthest = grid.extent() + ray.origin().abs();
         Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
     }
 
@@ -154,8 +158,7 @@ pub(crate) struct CommonOrder {
 impl CommonOrder {
     /// The order for rays from `origin` in `grid`, with at most this number of reflections.
     pub(crate) fn new(grid: &Grid, origin: DVec2, most_bounces: u32) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let furthest = size * f64::from(most_bounces + 1) + origin.abs();
+        let furthest = grid.extent() * f64::from(most_bounces + 1) + origin.abs();
         Self { origin, furthest }
     }
 
@@ -219,7 +222,7 @@ impl RoundedOrder {
 
     /// The order for rays from `origin` along `direction`, which is also `scaled`.
     #[inline]
-    pub(crate) fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
+    fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
         let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
         let weight = DVec2::new(weight(direction.x, scaled.y), weight(direction.y, scaled.x));
         Self { origin, weight }

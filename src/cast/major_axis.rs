@@ -69,8 +69,12 @@ struct Path {
     block_strides: [i64; 2],
 }
 
+/// The most lines for which units are fine enough.
+const MAX_LINES: u32 = 1 << 16;
+/// The units of a cell.
+const UNITS: i64 = 1 << FRACTION_BITS;
 /// A bound on the rounding of a position, in units: one for each line, and eight for the start.
-const UNCERTAINTY: i64 = MOST_LINES as i64 + 8;
+const UNCERTAINTY: i64 = MAX_LINES as i64 + 8;
 /// Where a block is this far from anything solid, the cell's own distance is not looked up.
 const FAR: i64 = 6;
 
@@ -233,109 +237,9 @@ impl Path {
         }
     }
 
-    /// The band at the crossing with `line`, at that position.
-    #[inline]
-    fn band_at(self, position: i64, line: i64) -> i64 {
-        let band = position >> FRACTION_BITS;
-        if (position as u32) < 2 * UNCERTAINTY as u32 {
-            let line = self.start + self.step * line + i64::from(self.step < 0);
-            decide_band(self.origin, self.direction, self.side, line, band)
-        } else {
-            band
-        }
-    }
-
-    #[inline]
-    fn cell_in(self, grid: &Grid, line: i64, band: i64) -> Option<(Cell, TileId)> {
-        let along = self.start + self.step * line;
-        let (column, row) = match self.side {
-            Side::X => (along, band),
-            Side::Y => (band, along),
-        };
-        grid.cell(column, row)
-    }
-}
-
-/// The band in which a ray crosses `line`: the one that begins at the line `edge`, or the one that ends
-/// there.
-///
-/// Not a method, because a reference would force the path into memory.
-#[cold]
-#[inline(never)]
-fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64) -> i64 {
-    let (line_at, edge_at) = (line as f64, edge as f64);
-    let (x, y, origin_across, direction_across) = match side {
-        Side::X => (line_at, edge_at, origin.y, direction.y),
-        Side::Y => (edge_at, line_at, origin.x, direction.x),
-    };
-    let is_beyond = if direction_across == 0.0 {
-        origin_across >= edge_at
-    } else {
-        let is_across = decide(origin, direction, x, y) != side;
-        is_across == (direction_across > 0.0)
-    };
-    if is_beyond { edge } else { edge - 1 }
-}
-
-/// A ray and a map along one axis.
-#[derive(Clone, Copy)]
-pub(crate) struct Axis {
-    /// The column or row in which the ray starts; the one before, if it starts on a line that it crosses.
-    pub(crate) start: i64,
-    /// The position of the start, in units.
-    pub(crate) position: i64,
-    pub(crate) direction: f64,
-    /// The strides of cells and of blocks in the distance field.
-    pub(crate) stride: i64,
-    pub(crate) block_stride: i64,
-}
-
-/// The most lines for which units are fine enough.
-pub(crate) const MOST_LINES: u32 = 1 << 16;
-/// The units of a cell.
-pub(crate) const UNITS: i64 = 1 << FRACTION_BITS;
-
-impl Axis {
-    /// `None` if the ray does not start on the map.
-    #[inline]
-    pub(crate) fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
-        /// More than the rounding of a position.
-        const NEAR: u32 = 2;
-        let position = units(origin);
-        let is_near_line = (position as u32).wrapping_add(NEAR) < 2 * NEAR;
-        let start = if is_near_line {
-            start_near_line(origin, direction)
-        } else {
-            position >> FRACTION_BITS
-        };
-        let is_on_map = (start as u64) < u64::from(count) && count <= MOST_LINES;
-        let [stride, block_stride] = strides;
-        is_on_map.then_some(Self { start, position, direction, stride, block_stride })
-    }
-}
-
-/// The column or row in which a ray starts, where that is on a line or close to one.
-#[cold]
-#[inline(never)]
-fn start_near_line(origin: f64, direction: f64) -> i64 {
-    let start = origin.floor();
-    let is_before = start == origin && direction > 0.0;
-    // A start far off the map may exceed an integer.
-    (start as i64).saturating_sub(i64::from(is_before))
-}
-
-/// A position in units, rounded. A position far off every map is far off in units.
-#[inline]
-pub(crate) fn units(position: f64) -> i64 {
-    // Doubles of this size have a spacing of one unit, so that the addition rounds to units.
-    const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
-    (position + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
-}
-
-impl Path {
     /// As [`Path::leap`], and across everything that a beam says is clear.
     #[inline]
-    pub(crate) fn leap_along_beams(
+    fn leap_along_beams(
         self,
         distance_field: &DistanceField,
         [along_rows, along_columns]: &[BeamTable; 2],
@@ -399,6 +303,99 @@ impl Path {
             position += self.slope * STRIP;
         }
     }
+
+    /// The band at the crossing with `line`, at that position.
+    #[inline]
+    fn band_at(self, position: i64, line: i64) -> i64 {
+        let band = position >> FRACTION_BITS;
+        if (position as u32) < 2 * UNCERTAINTY as u32 {
+            let line = self.start + self.step * line + i64::from(self.step < 0);
+            decide_band(self.origin, self.direction, self.side, line, band)
+        } else {
+            band
+        }
+    }
+
+    #[inline]
+    fn cell_in(self, grid: &Grid, line: i64, band: i64) -> Option<(Cell, TileId)> {
+        let along = self.start + self.step * line;
+        let (column, row) = match self.side {
+            Side::X => (along, band),
+            Side::Y => (band, along),
+        };
+        grid.cell(column, row)
+    }
+}
+
+/// The band in which a ray crosses `line`: the one that begins at the line `edge`, or the one that ends
+/// there.
+///
+/// Not a method, because a reference would force the path into memory.
+#[cold]
+#[inline(never)]
+fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64) -> i64 {
+    let (line_at, edge_at) = (line as f64, edge as f64);
+    let (x, y, origin_across, direction_across) = match side {
+        Side::X => (line_at, edge_at, origin.y, direction.y),
+        Side::Y => (edge_at, line_at, origin.x, direction.x),
+    };
+    let is_beyond = if direction_across == 0.0 {
+        origin_across >= edge_at
+    } else {
+        let is_across = decide(origin, direction, x, y) != side;
+        is_across == (direction_across > 0.0)
+    };
+    if is_beyond { edge } else { edge - 1 }
+}
+
+/// A ray and a map along one axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    /// The column or row in which the ray starts; the one before, if it starts on a line that it crosses.
+    start: i64,
+    /// The position of the start, in units.
+    position: i64,
+    direction: f64,
+    /// The strides of cells and of blocks in the distance field.
+    stride: i64,
+    block_stride: i64,
+}
+
+impl Axis {
+    /// `None` if the ray does not start on the map.
+    #[inline]
+    fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
+        /// More than the rounding of a position.
+        const NEAR: u32 = 2;
+        let position = units(origin);
+        let is_near_line = (position as u32).wrapping_add(NEAR) < 2 * NEAR;
+        let start = if is_near_line {
+            start_near_line(origin, direction)
+        } else {
+            position >> FRACTION_BITS
+        };
+        let is_on_map = (start as u64) < u64::from(count) && count <= MAX_LINES;
+        let [stride, block_stride] = strides;
+        is_on_map.then_some(Self { start, position, direction, stride, block_stride })
+    }
+}
+
+/// The column or row in which a ray starts, where that is on a line or close to one.
+#[cold]
+#[inline(never)]
+fn start_near_line(origin: f64, direction: f64) -> i64 {
+    let start = origin.floor();
+    let is_before = start == origin && direction > 0.0;
+    // A start far off the map may exceed an integer.
+    (start as i64).saturating_sub(i64::from(is_before))
+}
+
+/// A position in units, rounded. A position far off every map is far off in units.
+#[inline]
+fn units(position: f64) -> i64 {
+    // Doubles of this size have a spacing of one unit, so that the addition rounds to units.
+    const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
+    (position + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
 }
 
 #[cfg(test)]

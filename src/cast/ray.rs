@@ -143,7 +143,7 @@ impl Hit {
     #[inline]
     pub(crate) fn face(&self, origin: DVec2) -> HitFace {
         let &Self { cell, side, .. } = self;
-        let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
+        let corner = cell.corner();
         // From the west or the north, the ray enters at the start of the cell, which is ahead.
         let (is_ahead, to_far_side) = match side {
             Side::X => (corner.x >= origin.x, DVec2::X),
@@ -241,7 +241,7 @@ pub(crate) fn distance_on_entry(ray: &Ray, cell: Cell, side: Side) -> f64 {
     // Both, because a division of two numbers takes less time than a branch on the side.
     let direction = ray.direction();
     let to_far_side = DVec2::select(direction.cmplt(DVec2::ZERO), DVec2::ONE, DVec2::ZERO);
-    let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row)) + to_far_side;
+    let corner = cell.corner() + to_far_side;
     let along = (corner - ray.origin()) / direction;
     match side {
         Side::X => along.x.abs(),
@@ -302,6 +302,17 @@ fn corner_of_face(direction: DVec2, cell: Cell, side: Side) -> DVec2 {
         Side::X if direction.x < 0.0 => DVec2::new(column + 1.0, row),
         Side::Y if direction.y < 0.0 => DVec2::new(column, row + 1.0),
         Side::X | Side::Y => DVec2::new(column, row),
+    }
+}
+
+/// The column and the row of the cell that a ray along `direction` leaves where it enters `cell` by a line
+/// of kind `side`.
+pub(crate) fn cell_before(direction: DVec2, cell: Cell, side: Side) -> [i64; 2] {
+    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
+    let (column, row) = (i64::from(cell.column), i64::from(cell.row));
+    match side {
+        Side::X => [column + back(direction.x), row],
+        Side::Y => [column, row + back(direction.y)],
     }
 }
 

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::ray::{meeting, texture_coordinate};
+use super::ray::{cell_before, meeting, texture_coordinate};
 use super::{Crossing, Hit, Ray, Side};
 use crate::numeric::{DoubleDouble, cross, sign_of_cross};
 use crate::world::{Cell, Grid, Line, Opening, Outline, PillarRadius, TileId, TileKind, World};
@@ -74,13 +74,8 @@ pub(crate) fn cast(
 
 /// The tile of the cell that `ray` leaves by a crossing.
 fn tile_before(world: &World, ray: &Ray, crossing: Crossing) -> Option<TileId> {
-    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
-    let (columns, rows) = match crossing.side {
-        Side::X => (back(ray.direction().x), 0),
-        Side::Y => (0, back(ray.direction().y)),
-    };
-    let (column, row) = (i64::from(crossing.cell.column), i64::from(crossing.cell.row));
-    world.grid().tile(column + columns, row + rows)
+    let [column, row] = cell_before(ray.direction(), crossing.cell, crossing.side);
+    world.grid().tile(column, row)
 }
 
 /// The hit of `ray`, which passes through `cell`, on the leaf of the door there. `None` if it
@@ -185,7 +180,7 @@ impl Passage {
 
 /// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
 /// it misses.
-pub(crate) fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
     Passage::new(ray, cell, outline).hit
 }
 

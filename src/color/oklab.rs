@@ -1,9 +1,9 @@
 //! Oklab, a colour space in which distance is perceived difference.
 //!
 //! Source: Björn Ottosson, "A perceptual color space for image processing" (2020),
-//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more. CIE
-//! L\*a\*b\* was refused for choosing among few colours: its blues turn purple when they are mixed
-//! with grey.
+//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more.
+//! Rejected for choosing among few colours: CIE L\*a\*b\*, whose blues turn purple when they are
+//! mixed with grey.
 
 use super::srgb::linear;
 use super::{Rgb, product};
@@ -36,7 +36,7 @@ pub(crate) fn cones(light: [f64; 3]) -> [f64; 3] {
 }
 
 /// The matrix from the cube roots of cone responses to Oklab.
-pub(crate) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
+const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
     [0.210_454_26, 0.793_617_8, -0.004_072_05],
     [1.977_998_5, -2.428_592_2, 0.450_593_7],
     [0.025_904_04, 0.782_771_77, -0.808_675_77],

@@ -113,7 +113,7 @@ pub(crate) type Palette = Vec<(u8, Oklab)>;
 /// a program that draws one picture.
 ///
 /// It is zeros at first, and the palette is no part of it, so that the program's file has no bytes for it.
-pub(crate) struct NearestColors {
+struct NearestColors {
     entries: [AtomicU16; 1 << (3 * BITS)],
 }
 

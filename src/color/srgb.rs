@@ -1,7 +1,7 @@
 //! The transfer function of sRGB: from stored channels to linear light, and back.
 //!
 //! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is computed at compile
-//! time, and all other tables derive from it. A power function at run time was refused: millions of
+//! time, and all other tables derive from it. Rejected: a power function at run time. Millions of
 //! texels are averaged in linear light.
 
 use super::Rgb;

@@ -1,7 +1,7 @@
 //! TOML with the place of each key and value.
 //!
-//! Deserializing into structs with serde was refused: it stops at the first fault, and its values
-//! have no places.
+//! Rejected: deserializing into structs with serde. It stops at the first fault, and only the values
+//! that are asked for as `Spanned` have places.
 //!
 //! The parser keeps each token several times, at up to 150 bytes, and a file of 64 MiB can have as
 //! many tokens as bytes. The lexer alone needs no memory, so tokens are counted before they are parsed.
@@ -15,7 +15,7 @@ use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-use super::{Fault, nearest, quoted};
+use super::{Fault, nearest_or_all, quoted};
 use crate::sort;
 
 /// The largest number of tokens of a document, white space and line breaks included: some twenty for
@@ -195,30 +195,45 @@ impl<'a, 't> Entry<'a, 't> {
         }
     }
 
-    /// The value as a list of two, each as an entry with the same key; reports a fault where it is
-    /// not one.
-    pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
-        let DeValue::Array(list) = self.value else {
-            self.faults.push(self.wrong_type("a list of two", example));
-            return None;
-        };
-        let mut entries = list.iter().map(|value| Self {
+    /// The elements of the value, each as an entry with the same key; `None` if it is no list.
+    pub(crate) fn list(&self) -> Option<Vec<Self>> {
+        let DeValue::Array(list) = self.value else { return None };
+        let entry = |value: &'a Spanned<DeValue<'t>>| Self {
             key: self.key,
             key_place: self.key_place.clone(),
             value: value.get_ref(),
             value_place: value.span(),
             faults: self.faults,
-        });
-        if let (Some(first), Some(second), None) = (entries.next(), entries.next(), entries.next())
-        {
-            return Some([first, second]);
-        }
-        let message = format!("{} must be a list of two", quoted(self.key));
-        self.faults.push(
-            Fault::new(self.value_place.clone(), message)
-                .label(format!("this is a list of {}", list.len()))
-                .help(format!("write {example}")),
-        );
+        };
+        Some(list.iter().map(entry).collect())
+    }
+
+    /// The value as a list of two, each as in [`Entry::list`]; reports a fault where it is not one.
+    pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
+        let Some(list) = self.list() else {
+            self.faults.push(self.wrong_type("a list of two", example));
+            return None;
+        };
+        let count = list.len();
+        list.try_into().ok().or_else(|| {
+            let message = format!("{} must be a list of two", quoted(self.key));
+            self.reject(message, format!("this is a list of {count}"), format!("write {example}"))
+        })
+    }
+
+    /// The entry `key` of `table`, which has this entry, too.
+    pub(crate) fn beside(&self, table: &'a DeTable<'t>, key: &str) -> Option<Self> {
+        self.entries(table).find(|entry| entry.key == key)
+    }
+
+    /// Reports a fault of the value. The label and the help may be empty.
+    pub(crate) fn reject<T>(
+        &self,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.faults.push(Fault::new(self.value_place.clone(), message).label(label).help(help));
         None
     }
 
@@ -240,12 +255,8 @@ impl<'a, 't> Entry<'a, 't> {
 
     /// The fault that the key is not one of `known`, the keys of `owner`.
     pub fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
-        let fault =
-            Fault::new(self.key_place.clone(), format!("{owner} has no key {}", quoted(self.key)))
-                .label("unknown key");
-        match nearest(self.key, known) {
-            Some(name) => fault.help(format!("the nearest key is {}", quoted(name))),
-            None => fault.help(format!("known keys: {}", known.join(", "))),
-        }
+        let message = format!("{owner} has no key {}", quoted(self.key));
+        let help = nearest_or_all(self.key, known, "the nearest key is", "known keys:");
+        Fault::new(self.key_place.clone(), message).label("unknown key").help(help)
     }
 }

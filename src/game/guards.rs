@@ -21,7 +21,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::collision::overlaps;
-use super::multiplayer::MOST_PLAYERS;
+use super::rules::MOST_PLAYERS;
 use super::rules::Rules;
 use super::scratch::Scratch;
 use super::sight::{Cloud, Point, is_in_sight};

@@ -5,7 +5,7 @@
 //! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
 //!   second time on.
 //! - Spikes are heard half a second before they come out, and hurt once for each time.
-//! - A blow from outside the view does not kill before it has [warned](super::warnings). The view
+//! - A blow from outside the view does not kill before it has [warned](super::health). The view
 //!   is that of the default field of view, whatever the player has chosen: a game does not depend on
 //!   how it is shown.
 

@@ -7,7 +7,7 @@ use super::Game;
 use super::doors::door_ahead;
 use super::intent::{Intent, Intents};
 use super::noise::reach;
-use super::notice::Notice;
+use super::player::Notice;
 use super::sound::SoundKind;
 use crate::world::{Cell, Door};
 

@@ -13,9 +13,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::multiplayer::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
+use super::rules::MOST_PLAYERS;
 use super::sound::SoundKind;
 use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;
@@ -112,7 +113,7 @@ impl Mechanisms {
             check(moving.is_possible(world), "a moving tile")?;
             let (cell, shown) = (moving.cell, moving.shown(world));
             if world.grid().tile_in(cell) != Some(shown) {
-                world.set_state(cell, shown);
+                world.set_tile(cell, shown);
             }
         }
         self.recollect(world);
@@ -395,10 +396,10 @@ impl Game {
         for (index, player) in self.playing() {
             stood[index] = player.motion.stands(&self.world);
         }
-        self.world.set_state(cell.cell, state);
+        self.world.set_tile(cell.cell, state);
         let carries = cell.driver(&self.world) != Driver::Weight;
         if self.is_crushing(cell, state, carries) {
-            self.world.set_state(cell.cell, before);
+            self.world.set_tile(cell.cell, before);
             self.tell_who_blocks(cell);
             return cell.blocked();
         }

@@ -4,8 +4,7 @@
 use super::Game;
 use super::guards::Alarm;
 use super::health::Flash;
-use super::player::Player;
-use super::tools::Supplies;
+use super::player::{Player, Supplies};
 use crate::world::{Cell, Difficulty, Supply, ThingKind};
 
 /// The least worth of a cup and of a crown.

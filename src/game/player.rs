@@ -4,19 +4,16 @@ mod motion;
 
 use std::collections::BTreeSet;
 
+pub use motion::FRICTION;
+pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
 use serde::{Deserialize, Serialize};
 
-use super::health::{Cause, Flash, Health};
+use super::health::{Cause, Flash, Health, Warnings};
 use super::intent::Intents;
-use super::notice::Notice;
 use super::sound::Hearing;
 use super::stored::{Unrestorable, check};
 use super::tally::Counts;
-use super::tools::Supplies;
-use super::warnings::Warnings;
-use crate::world::{KeyId, World};
-pub use motion::FRICTION;
-pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+use crate::world::{KeyId, Supply, World};
 
 /// More than a player ever counts: it grows for years before it overflows.
 const MOST_COUNT: u32 = u32::MAX / 2;
@@ -120,5 +117,110 @@ impl Player {
         let before = shown(self.flash);
         self.flash = self.flash.and_then(|flash| flash.after(short));
         self.notice.wait(steps) | (shown(self.flash) != before)
+    }
+}
+
+/// The duration of a message in steps: 3 seconds.
+const DURATION: u64 = 180;
+
+/// The tools that a player carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Supplies([u8; Supply::ALL.len()]);
+
+impl Supplies {
+    /// The most of each that a player carries.
+    pub(crate) const MOST: u8 = 9;
+
+    /// Those of a player at the start.
+    pub(crate) const AT_START: Self = Self([3, 0, 0]);
+
+    /// Whether a player can carry them.
+    pub(crate) fn are_possible(self) -> bool {
+        self.0.iter().all(|&count| count <= Self::MOST)
+    }
+
+    /// The number of `supply`.
+    pub(crate) fn count(self, supply: Supply) -> u8 {
+        self.0[supply as usize]
+    }
+
+    /// Adds `more` of `supply`, as many as the player can carry.
+    pub(crate) fn add(&mut self, supply: Supply, more: u8) {
+        let count = &mut self.0[supply as usize];
+        *count = count.saturating_add(more).min(Self::MOST);
+    }
+
+    /// The larger number of each.
+    #[must_use]
+    pub(crate) fn or_more(mut self, other: Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
+        self
+    }
+
+    /// Takes one of `supply`; returns whether there was one.
+    pub(crate) fn take(&mut self, supply: Supply) -> bool {
+        let count = &mut self.0[supply as usize];
+        let has_one = *count > 0;
+        *count -= u8::from(has_one);
+        has_one
+    }
+}
+
+/// A message that is shown for some more steps.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Notice {
+    text: String,
+    steps_left: u64,
+}
+
+impl Notice {
+    /// Shows `text` from now on.
+    pub(crate) fn new(text: String) -> Self {
+        Self { text, steps_left: DURATION }
+    }
+
+    /// The current message.
+    pub(crate) fn text(&self) -> Option<&str> {
+        (self.steps_left > 0).then_some(&self.text)
+    }
+
+    /// The number of steps until the message ends; `None` if there is none.
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        self.steps_left.checked_sub(1)
+    }
+
+    /// Advances by `steps` steps, and returns whether the message ended.
+    pub(crate) fn wait(&mut self, steps: u64) -> bool {
+        let was_said = self.steps_left > 0;
+        self.steps_left = self.steps_left.saturating_sub(steps);
+        if self.steps_left == 0 {
+            self.text.clear();
+        }
+        was_said && self.steps_left == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nobody_carries_more_than_nine_or_less_than_nothing(
+            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
+        ) {
+            let mut supplies = Supplies::AT_START;
+            for (supply, more) in changes {
+                let before = supplies.count(supply);
+                if let Some(more) = more {
+                    supplies.add(supply, more);
+                } else {
+                    prop_assert_eq!(supplies.take(supply), before > 0);
+                }
+                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
+            }
+        }
     }
 }

@@ -1,8 +1,4 @@
-//! Stored games: the whole state of a game as bytes, and back; and checksums, which are hashes of these bytes.
-//!
-//! Only what changes is stored. A game at its start, of the same level and rules, gives the rest: the
-//! map, the posts of guards, sprites and textures. What is computed from the stored state is not stored
-//! either: the openings of doors and the states of moving tiles in the grid, and the light of lamps.
+//! The format of stored games, and checksums, which are hashes of stored bytes.
 //!
 //! The first line says who can read the rest:
 //!
@@ -23,7 +19,6 @@
 pub(crate) mod tests;
 
 use std::fmt;
-use std::sync::Arc;
 
 use glam::DVec2;
 use postcard::ser_flavors::Flavor;
@@ -31,13 +26,10 @@ use serde::de::{
     DeserializeOwned, DeserializeSeed, EnumAccess, Error as _, IntoDeserializer, MapAccess,
     SeqAccess, VariantAccess, Visitor,
 };
-use serde::{Deserialize, Deserializer, Serialize, Serializer, forward_to_deserialize_any};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 
-use super::checkpoint::Checkpoint;
-use super::multiplayer::Members;
-use super::{Game, MultiplayerRules, Rules};
 use crate::rng::hash;
-use crate::world::{Cell, Changes, Thing, World};
+use crate::world::World;
 
 /// The version of the rules. It grows with every change after which the same intents may give another
 /// game.
@@ -45,8 +37,6 @@ pub const RULES_VERSION: u32 = 2;
 
 /// The version of the format.
 const FORMAT_VERSION: u32 = 2;
-/// What the first line calls a game.
-const KIND: &str = "game";
 /// The most bytes that are read.
 pub const MOST_BYTES: usize = 1 << 20;
 /// The largest real number that a game has anywhere: above twice the greatest height of a map.
@@ -93,169 +83,6 @@ impl std::error::Error for Unrestorable {}
 impl serde::de::Error for Unrestorable {
     fn custom<T: fmt::Display>(_: T) -> Self {
         Self::Damaged("a value")
-    }
-}
-
-impl Game {
-    /// The whole state between two steps as bytes, without what the level gives. `None` in a generated
-    /// level, which is not the same at each start.
-    ///
-    /// ```
-    /// use cellcaster::game::{Game, Intent};
-    /// use cellcaster::map::builtin;
-    ///
-    /// let world = builtin::LEVELS[0].world()?;
-    /// let mut game = Game::new(world.clone());
-    /// (0..60).for_each(|_| game.step([Intent::Forward].into_iter().collect()));
-    /// let bytes = game.stored().expect("the level is built in");
-    /// assert_eq!(Game::new(world).restored(&bytes), Ok(game));
-    /// # Ok::<(), cellcaster::fault::Faults>(())
-    /// ```
-    pub fn stored(&self) -> Option<Vec<u8>> {
-        self.window.is_none().then(|| written(KIND, &State(self)))
-    }
-
-    /// The game that `bytes` were stored from. This one is at its start, of the same level and
-    /// rules.
-    ///
-    /// # Errors
-    /// If the bytes are not those of such a game, or are damaged. That they pass does not mean that the
-    /// game was ever played.
-    pub fn restored(self, bytes: &[u8]) -> Result<Self, Unrestorable> {
-        let grid = self.world.grid();
-        let mut input = Reader::new(KIND, bytes, (grid.width(), grid.height()))?;
-        let game = self.read(&mut input, true)?;
-        if input.rest().is_empty() { Ok(game) } else { Err(Unrestorable::Longer) }
-    }
-
-    /// A number that depends on the whole state: of the world, the player, the guards and all that
-    /// moves. Games in different states very likely have different ones, on every machine.
-    pub fn checksum(&self) -> u64 {
-        let rows = self.world.grid().rows();
-        let tiles = rows.map(|row| hash(0, row.iter().map(|tile| u64::from(tile.0))));
-        hash(checksum(&State(self)), tiles)
-    }
-
-    /// Reads a game, of which this is the start, and the game at the checkpoint of its player, if it may
-    /// have one.
-    fn read(mut self, input: &mut Reader, has_checkpoint: bool) -> Result<Self, Unrestorable> {
-        let start = (has_checkpoint && self.members.is_none()).then(|| self.clone());
-        if input.read::<[u8; 8]>()? != self.level_hash().to_le_bytes() {
-            return Err(Unrestorable::OtherLevel);
-        }
-        (self.steps, self.revision, self.figure_revision) = input.read()?;
-        if input.read()? {
-            self.sprites.add_player(&mut self.world);
-        }
-        let is_lamplit = input.read()?;
-        let things = input.read()?;
-        let figures: Vec<_> = input.read()?;
-        self.doors = input.read()?;
-        self.mechanisms = input.read_with(self.mechanisms)?;
-        self.spikes = input.read_with(self.spikes)?;
-        (self.missiles, self.smoke) = input.read()?;
-        self.guards = input.read_with(self.guards)?;
-        self.player = input.read()?;
-        let members: Option<Members> = input.read()?;
-        self.members = match (members, self.members) {
-            (Some(members), Some(start)) => Some(Box::new(members.of_level(*start)?)),
-            (None, None) => None,
-            _ => return Err(Unrestorable::OtherLevel),
-        };
-        self.check()?;
-        self.show_changes(things, is_lamplit)?;
-        self.world.set_figures(figures.into_iter());
-        let cell: Option<Cell> = input.read()?;
-        let saved = if input.read()? {
-            let start = start.ok_or(Unrestorable::Damaged("a checkpoint"))?;
-            Some(Arc::new(start.read(input, false)?))
-        } else {
-            None
-        };
-        if cell.is_some() {
-            self.checkpoint = Checkpoint::new(saved, cell);
-        }
-        Ok(self)
-    }
-
-    /// Refuses a state in which a step could fail.
-    fn check(&self) -> Result<(), Unrestorable> {
-        self.missiles.check()?;
-        self.smoke.check()?;
-        self.guards.check(&self.world)?;
-        self.player.check(&self.world, self.steps)?;
-        self.members.as_ref().map_or(Ok(()), |members| members.check(&self.world, self.steps))
-    }
-
-    /// Shows in the world of the start what has changed in it since.
-    fn show_changes(&mut self, things: Vec<Thing>, is_lamplit: bool) -> Result<(), Unrestorable> {
-        self.doors.show(&mut self.world)?;
-        self.mechanisms.show(&mut self.world)?;
-        check(self.world.leave_things(things), "a thing")?;
-        if is_lamplit {
-            self.world.make_room_for_light();
-        }
-        self.show_lamps();
-        Ok(())
-    }
-
-    /// A number that differs, almost certainly, between levels, rules and companies.
-    fn level_hash(&self) -> u64 {
-        let Rules { difficulty, seed } = self.rules;
-        let multiplayer = self.multiplayer_rules().map_or(0, |rules| {
-            let MultiplayerRules { collides, respawns, sees, strikes } = rules;
-            1 | u64::from(collides) << 1
-                | u64::from(respawns) << 2
-                | (sees as u64) << 8
-                | (strikes as u64) << 16
-        });
-        let world = &self.world;
-        let place = |cell: Cell| u64::from(cell.row) << 32 | u64::from(cell.column);
-        let title = world.title().bytes().map(u64::from);
-        let posts = world.guards().iter().flat_map(|it| [it.kind as u64, place(it.cell)]);
-        let size = [world.grid().width(), world.grid().height(), world.tiles().len() as u32];
-        let words = [difficulty as u64, seed, multiplayer, place(world.start().cell)];
-        hash(0, words.into_iter().chain(size.map(u64::from)).chain(title).chain(posts))
-    }
-}
-
-/// The part of a game that the level does not give.
-struct State<'a>(&'a Game);
-
-impl Serialize for State<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Game {
-            rules: _,
-            world,
-            is_mission: _,
-            window: _,
-            player,
-            members,
-            doors,
-            mechanisms,
-            spikes,
-            missiles,
-            smoke,
-            guards,
-            sprites,
-            // Empty between steps.
-            sounds: _,
-            checkpoint,
-            steps,
-            revision,
-            figure_revision,
-            // Counted in each step.
-            work: _,
-        } = self.0;
-        let Changes { things, figures, is_lamplit } = world.changes();
-        let level = self.0.level_hash().to_le_bytes();
-        let world = (sprites.has_player(), is_lamplit, things, figures);
-        let moving = (doors, mechanisms, spikes, missiles, smoke, guards);
-        let cell = checkpoint.cell();
-        // Without a cell it is the start, which is known.
-        let saved = checkpoint.game().filter(|_| cell.is_some()).map(State);
-        let revisions = (steps, revision, figure_revision);
-        (level, revisions, world, moving, player, members, cell, saved).serialize(to)
     }
 }
 
@@ -378,7 +205,7 @@ where
 ///   first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
 /// - A real number is the eight bytes of its bits. It is finite, and at most [`MOST_REAL`].
 /// - A list is its length and its elements, each of at least one byte.
-/// - A [`Cell`] is on the map.
+/// - A [`Cell`](crate::world::Cell) is on the map.
 #[derive(Clone, Debug)]
 pub struct Reader<'de> {
     bytes: &'de [u8],
@@ -406,7 +233,7 @@ impl<'de> Reader<'de> {
     }
 
     /// Reads a value of which `start`, the one at the start of the level, gives a part.
-    fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
+    pub(crate) fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
         self.read::<T>()?.of_level(start)
     }
 

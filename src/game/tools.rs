@@ -6,8 +6,6 @@
 mod missiles;
 mod smoke;
 
-use serde::{Deserialize, Serialize};
-
 use super::Game;
 use super::intent::{Intent, Intents};
 use super::multiplayer::playing;
@@ -32,49 +30,6 @@ const AFTER_PUSH: u16 = 90;
 const STUNNED: u16 = 1200;
 const HOUND_STUNNED: u16 = 480;
 const WARDEN_SHOT: u16 = 300;
-
-/// The tools that a player carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub(crate) struct Supplies([u8; Supply::ALL.len()]);
-
-impl Supplies {
-    /// The most of each that a player carries.
-    pub(crate) const MOST: u8 = 9;
-
-    /// Those of a player at the start.
-    pub(crate) const AT_START: Self = Self([3, 0, 0]);
-
-    /// Whether a player can carry them.
-    pub(crate) fn are_possible(self) -> bool {
-        self.0.iter().all(|&count| count <= Self::MOST)
-    }
-
-    /// The number of `supply`.
-    pub(crate) fn count(self, supply: Supply) -> u8 {
-        self.0[supply as usize]
-    }
-
-    /// Adds `more` of `supply`, as many as the player can carry.
-    pub(crate) fn add(&mut self, supply: Supply, more: u8) {
-        let count = &mut self.0[supply as usize];
-        *count = count.saturating_add(more).min(Self::MOST);
-    }
-
-    /// The larger number of each.
-    #[must_use]
-    pub(crate) fn or_more(mut self, other: Self) -> Self {
-        self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
-        self
-    }
-
-    /// Takes one of `supply`; returns whether there was one.
-    fn take(&mut self, supply: Supply) -> bool {
-        let count = &mut self.0[supply as usize];
-        let has_one = *count > 0;
-        *count -= u8::from(has_one);
-        has_one
-    }
-}
 
 impl Game {
     /// Uses the tools that the player begins to want.
@@ -220,27 +175,7 @@ fn title(kind: GuardKind) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
-
-    proptest! {
-        #[test]
-        fn nobody_carries_more_than_nine_or_less_than_nothing(
-            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
-        ) {
-            let mut supplies = Supplies::AT_START;
-            for (supply, more) in changes {
-                let before = supplies.count(supply);
-                if let Some(more) = more {
-                    supplies.add(supply, more);
-                } else {
-                    prop_assert_eq!(supplies.take(supply), before > 0);
-                }
-                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
-            }
-        }
-    }
 
     #[test]
     fn a_dart_finds_what_is_within_15_degrees() {

@@ -8,8 +8,7 @@
 //! gate in each of its sides. The place of a gate depends on the position of the side only, so that
 //! all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be reached.
 
-use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, every_cell};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain, every_cell};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 

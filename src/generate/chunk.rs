@@ -1,10 +1,10 @@
 //! Chunks: squares in which a level is generated.
 //!
 //! A chunk is a function of the seed and its own position, so that the level does not depend on the
-//! player's way. What two neighbours must agree about, such as a passage between them, is a
-//! function of the position of their common side. A function of single cells was refused: a cave of
-//! several generations would be computed again for every cell, and structures larger than a cell,
-//! such as rooms or spanning trees, would not be possible.
+//! player's way. Features that two neighbours share, such as a passage between them, are a function
+//! of the position of their common side. Rejected: a function of single cells. A cave of several
+//! generations would be computed again for every cell, and structures larger than a cell, such as
+//! rooms or spanning trees, would not be possible.
 //!
 //! Positions wrap around: after the last cell that a number can name comes the first one, so that
 //! no arithmetic on them overflows.
@@ -147,6 +147,35 @@ impl ChunkArea {
     /// Whether a cell is in the area.
     pub fn contains(&self, column: usize, row: usize) -> bool {
         self.columns.contains(&column) && self.rows.contains(&row)
+    }
+}
+
+/// The contents of a level, as a function of the position.
+///
+/// The same area always has the same chunk, whatever was generated before.
+pub trait Terrain: fmt::Debug + Send + Sync {
+    /// The seed for decisions outside the terrain, such as the place of the exit.
+    fn seed(&self) -> u64;
+
+    /// A map file that defines the characters of the chunks: its grid has each of them at least
+    /// once. It has no keys; its walls include `#`; it has an exit. Patterns of floors and ceilings
+    /// must have a scale that is a power of two up to 16: others would jump when the window moves.
+    fn legend(&self) -> String;
+
+    /// The cells of a chunk. Cells outside `area` do not matter: they become wall.
+    ///
+    /// Doors stand between solid cells, with open floor before and behind them. Chunks whose areas
+    /// have a [hub](Terrain::hub) are connected with their neighbours that have one.
+    fn chunk(&self, area: &ChunkArea) -> Chunk;
+
+    /// An open cell of the chunk from which the player can reach the neighbours; `None` if the area
+    /// is too small to have one.
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)>;
+
+    /// The cell of the chunk at which the player starts by default: its corner, unless the terrain
+    /// knows a better one. If there is no way out of that cell, the hub is used.
+    fn start(&self, _plot: &ChunkArea) -> (usize, usize) {
+        (0, 0)
     }
 }
 

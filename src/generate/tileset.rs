@@ -1,4 +1,4 @@
-//! The tileset: the meanings of the characters of chunks, read from a map that has each of them.
+//! The tileset: the meanings of the characters of chunks, read from a map that draws each of them.
 //!
 //! Tiles, textures, sprites, sky and fog of a level are therefore parsed and checked like those of
 //! any map. The map is read once; chunks refer to its tiles by their number.

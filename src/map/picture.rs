@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 
 use png::{ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
-use super::textures::TextureFileError;
+use super::files::TextureFileError;
 use crate::color::Rgb;
 use crate::world::Texture;
 
@@ -85,13 +85,14 @@ impl fmt::Display for PictureError {
 }
 
 impl PictureError {
-    /// What to do about it. `use_of_file` says what the picture is for.
-    pub(crate) fn help(&self, use_of_file: &'static str) -> &'static str {
+    /// The remedy. The map uses the picture as a `use_of_file`.
+    pub(crate) fn help(&self, use_of_file: &str) -> String {
+        let size = "64×64 texels are plenty in a terminal";
         match self {
-            Self::Unreadable(_) => use_of_file,
-            Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG",
-            Self::TooLarge { .. } => "scale it down: 64×64 texels are plenty in a terminal",
-            Self::OneTooMany => "scale them down: 64×64 texels are plenty in a terminal",
+            Self::Unreadable(_) => format!("a {use_of_file} is a PNG file beside the map"),
+            Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG".to_owned(),
+            Self::TooLarge { .. } => format!("scale it down: {size}"),
+            Self::OneTooMany => format!("scale them down: {size}"),
         }
     }
 }
@@ -99,12 +100,6 @@ impl PictureError {
 impl From<DecodingError> for PictureError {
     fn from(error: DecodingError) -> Self {
         Self::Broken(error)
-    }
-}
-
-impl From<TextureFileError> for PictureError {
-    fn from(error: TextureFileError) -> Self {
-        Self::Unreadable(error)
     }
 }
 

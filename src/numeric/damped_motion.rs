@@ -2,8 +2,8 @@
 //!
 //! The velocity v obeys dv/dt = rate · (target − v), so that the difference decays exponentially.
 //! Velocity and displacement at the end of a step are the analytic solution of that equation: steps
-//! may be of any length and rates of any size, and two steps equal one step of their sum. The
-//! explicit Euler method was refused: it overshoots as soon as `rate * dt` exceeds 1.
+//! may be of any length and rates of any size, and two steps equal one step of their sum. Rejected:
+//! the explicit Euler method, which overshoots as soon as `rate * dt` exceeds 1.
 
 use glam::DVec2;
 

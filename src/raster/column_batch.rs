@@ -18,7 +18,7 @@ use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// The most columns that are drawn together.
-const MOST_COLUMNS: usize = 15 * LANES;
+const MAX_COLUMNS: usize = 15 * LANES;
 /// The number of rows of some columns that are drawn before those of the columns beside them.
 const ROWS_AT_ONCE: u32 = 8;
 
@@ -51,8 +51,8 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
         batch.clear();
         // Enough for any later view of a wall.
-        batch.memory.columns.reserve(MOST_COLUMNS);
-        batch.memory.lanes.reserve(MOST_COLUMNS / LANES);
+        batch.memory.columns.reserve(MAX_COLUMNS);
+        batch.memory.lanes.reserve(MAX_COLUMNS / LANES);
         batch
     }
 
@@ -130,7 +130,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MOST {
+        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MAX {
             self.draw_at_once(x, rows, texels, stepper, lighting);
             return;
         }
@@ -157,7 +157,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        let most = ShadedTexels::MOST.min(2 * rows.len()) as i64;
+        let most = ShadedTexels::MAX.min(2 * rows.len()) as i64;
         let places = stepper.places(&rows).filter(|places| places.end - places.start <= most);
         let Some(places) = places else {
             self.draw_at_once(x, rows, texels, stepper, lighting);
@@ -200,7 +200,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     #[inline]
     fn make_room_for(&mut self, x: u32, texels: usize) {
         let BatchMemory { shaded, columns, .. } = &self.memory;
-        let is_full = columns.len() == MOST_COLUMNS || !shaded.have_room_for(texels);
+        let is_full = columns.len() == MAX_COLUMNS || !shaded.have_room_for(texels);
         if is_full || x < self.next {
             self.draw();
         }
@@ -258,22 +258,22 @@ impl BatchMemory {
 }
 
 /// The number of columns whose loop variables fit in registers.
-pub(crate) const LANES: usize = 8;
+const LANES: usize = 8;
 
 /// A queued column of pixels.
 #[derive(Clone, Debug)]
-pub(crate) struct QueuedColumn {
-    pub(crate) x: u32,
-    pub(crate) rows: Range<u32>,
+struct QueuedColumn {
+    x: u32,
+    rows: Range<u32>,
     /// The address of the texel of the first row, and the step from each row to the next.
-    pub(crate) address: TexelAddress,
-    pub(crate) step: u64,
+    address: TexelAddress,
+    step: u64,
 }
 
 impl QueuedColumn {
     /// Draws the part of the column in `rows`.
     #[inline]
-    pub(crate) fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let mut address = self.address_in(rows.start);
         for pixel in band.column_mut(self.x, rows) {
             *pixel = shaded.at(address);
@@ -289,9 +289,9 @@ impl QueuedColumn {
 
 /// Neighbouring columns, in the rows that all of them have.
 #[derive(Clone, Debug)]
-pub(crate) struct Lanes {
+struct Lanes {
     x: u32,
-    pub(crate) rows: Range<u32>,
+    rows: Range<u32>,
     /// The address of each column's texel in the next row to be drawn.
     addresses: [TexelAddress; LANES],
     /// The step of each column from one row to the next.
@@ -301,7 +301,7 @@ pub(crate) struct Lanes {
 impl Lanes {
     /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
     #[inline]
-    pub(crate) fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
+    fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
         let [QueuedColumn { x, .. }, .., last] = columns;
         let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
         // No two columns have the same `x`.
@@ -316,7 +316,7 @@ impl Lanes {
 
     /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
     #[inline]
-    pub(crate) fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+    fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
         let Self { x, mut addresses, steps, .. } = *self;
         band.for_each_in_block(x, common(rows, self.rows.clone()), |pixels: &mut [Rgb; LANES]| {
             for lane in 0..LANES {

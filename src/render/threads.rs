@@ -1,7 +1,7 @@
 //! Threads: how many draw a frame, and how they share it.
 //!
 //! Each frame that is large enough starts its own threads. Starting one takes tens of microseconds,
-//! and drawing such a frame takes milliseconds. A thread pool was refused: it would need a shutdown
+//! and drawing such a frame takes milliseconds. Rejected: a thread pool. It would need a shutdown
 //! and sharing between renderers, and save little.
 
 use std::num::{NonZero, NonZeroU32};
@@ -68,7 +68,7 @@ impl Threads {
 
     /// The number of rows of a band, for a frame of this height: all rows for one thread, else few
     /// enough that a thread which finishes early takes bands from another.
-    pub(crate) fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
+    fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
         match self {
             Self::One(_) => height,
             Self::Bands(count) => {

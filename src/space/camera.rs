@@ -1,56 +1,11 @@
 //! The camera: a position, a heading, and an elevation.
 
-use std::f64::consts::FRAC_PI_2;
-
 use glam::DVec3;
 
-use super::FARTHEST;
 use super::ray::Ray;
 use crate::render::{FrameSize, PixelAspect};
+use crate::world::scene::{Elevation, Scene, Start, is_near};
 use crate::world::{FieldOfView, Heading};
-
-/// The distance that the player's eye keeps from all bodies, in cells.
-pub const EYE_CLEARANCE: f64 = 0.25;
-
-/// The angle by which a camera looks up or down, between straight down and straight up.
-///
-/// Beyond these limits the picture would be upside down, and left and right would be swapped.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Elevation {
-    radians: f64,
-}
-
-impl Elevation {
-    /// Neither up nor down.
-    pub const LEVEL: Self = Self { radians: 0.0 };
-
-    /// An elevation in degrees, from −90 (straight down) to 90 (straight up). `None` outside that
-    /// range.
-    pub fn from_degrees(degrees: f64) -> Option<Self> {
-        let is_within = (-90.0..=90.0).contains(&degrees);
-        is_within.then(|| Self::LEVEL.raised(degrees.to_radians()))
-    }
-
-    /// The elevation in degrees; positive is up.
-    pub fn degrees(self) -> f64 {
-        self.radians.to_degrees()
-    }
-
-    /// The elevation in radians; positive is up.
-    pub fn radians(self) -> f64 {
-        self.radians
-    }
-
-    /// The elevation changed by `radians`, clamped to the limits; negative values lower it. A NaN
-    /// changes nothing.
-    #[must_use]
-    pub fn raised(self, radians: f64) -> Self {
-        if radians.is_nan() {
-            return self;
-        }
-        Self { radians: (self.radians + radians).clamp(-FRAC_PI_2, FRAC_PI_2) }
-    }
-}
 
 /// A position with a viewing direction and a field of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +20,10 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`].
+    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`](super::FARTHEST).
     pub fn new(position: DVec3, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
-        let is_near = position.is_finite() && position.abs().max_element() <= FARTHEST;
         let elevation = Elevation::LEVEL;
-        is_near.then_some(Self { position, heading, elevation, field_of_view })
+        is_near(position).then_some(Self { position, heading, elevation, field_of_view })
     }
 
     /// The same camera with another elevation.
@@ -93,13 +47,24 @@ impl Camera {
     /// The unit vectors to the right, to the top and into the picture.
     pub fn axes(&self) -> Axes {
         let level = self.heading.direction();
-        let radians = self.elevation.radians;
+        let radians = self.elevation.radians();
         let (sin, cos) = (libm::sin(radians), libm::cos(radians));
         Axes {
             right: level.perp().extend(0.0),
             up: (level * -sin).extend(cos),
             forward: (level * cos).extend(sin),
         }
+    }
+}
+
+impl Scene {
+    /// A camera at the player's start.
+    #[expect(clippy::missing_panics_doc, reason = "a start is where a camera can be")]
+    pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
+        let Start { heading, elevation, .. } = self.start;
+        Camera::new(self.start.position(), heading, field_of_view)
+            .expect("a start is where a camera can be")
+            .with_elevation(elevation)
     }
 }
 
@@ -165,6 +130,8 @@ impl Projection {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     #[test]
@@ -182,14 +149,5 @@ mod tests {
             // To the right of a camera that looks east is the south.
             assert!(right.dot(heading.turned(FRAC_PI_2).direction().extend(0.0)) > 0.999);
         }
-    }
-
-    #[test]
-    fn elevation_ends_at_straight_up() {
-        let up = Elevation::from_degrees(90.0).unwrap();
-        assert_eq!(Elevation::LEVEL.raised(f64::INFINITY), up);
-        assert_eq!(up.raised(f64::NAN), up);
-        assert_eq!(Elevation::from_degrees(90.5), None);
-        assert_eq!(Elevation::from_degrees(f64::NAN), None);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A loop over lanes that has no branches and calls no function is compiled to instructions that
 //! calculate several lanes each. This is why the functions here select instead of branching, and round by
-//! addition: the oldest x86-64 processors have no instruction to round a double.
+//! addition, as [`rounding`](crate::numeric::rounding) explains.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 
@@ -100,72 +100,9 @@ pub(crate) fn are_finite(lanes: &Lanes, others: &Lanes) -> bool {
     even + odd == 0.0
 }
 
-/// The largest integer not above `number`.
-#[inline(always)]
-pub(crate) fn floor(number: f64) -> f64 {
-    // From here on, doubles are integers. The sum is rounded to one.
-    const INTEGERS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
-    let shift = INTEGERS.copysign(number);
-    let near = (number + shift) - shift;
-    let below = near - if near > number { 1.0 } else { 0.0 };
-    if number.abs() < INTEGERS { below } else { number }
-}
-
-/// The same for numbers of at most 2⁵⁰, positive or negative.
-#[inline(always)]
-pub(crate) fn floor_of_small(number: f64) -> f64 {
-    const INTEGERS: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
-    let near = (number + INTEGERS) - INTEGERS;
-    near - if near > number { 1.0 } else { 0.0 }
-}
-
-/// The integer nearest to `number`, which is from 0 to 2³¹; the upper one for ties. 0 for a NaN.
-#[inline(always)]
-pub(crate) fn rounded(number: f64) -> u32 {
-    const INTEGERS: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
-    let sum = number + INTEGERS;
-    // The addition rounds ties to even.
-    let is_rounded_down = number - (sum - INTEGERS) == 0.5;
-    sum.to_bits() as u32 + u32::from(is_rounded_down)
-}
-
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
-
-    /// Halves of integers, neighbours of integers, and any other double.
-    fn number() -> impl Strategy<Value = f64> {
-        let integer =
-            || (-1_i64 << 54..1 << 54, 0..54_u32).prop_map(|(it, bits)| (it >> bits) as f64);
-        prop_oneof![
-            integer().prop_map(|it| it / 2.0),
-            integer().prop_map(f64::next_up),
-            integer().prop_map(f64::next_down),
-            -3.0..3.0,
-            any::<f64>().prop_filter("a number", |number| !number.is_nan()),
-        ]
-    }
-
-    proptest! {
-        #[test]
-        fn numbers_are_rounded_as_by_the_standard_library(number in number()) {
-            prop_assert_eq!(floor(number), number.floor());
-            if number.abs() <= 2.0_f64.powi(50) {
-                prop_assert_eq!(floor_of_small(number), number.floor());
-            }
-            if (0.0..2.0_f64.powi(31)).contains(&number) {
-                prop_assert_eq!(rounded(number), number.round() as u32);
-            }
-        }
-    }
-
-    #[test]
-    fn a_nan_stays_one_and_is_rounded_to_zero() {
-        assert!(floor(f64::NAN).is_nan() && floor_of_small(f64::NAN).is_nan());
-        assert_eq!(rounded(f64::NAN), 0);
-    }
 
     #[test]
     fn the_least_and_the_greatest_are_found_in_any_lane() {

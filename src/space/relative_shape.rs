@@ -10,9 +10,9 @@
 
 use glam::{BVec3, DVec3};
 
-use super::body::{Block, Plane, Shape, Sphere};
 use super::lanes::{Lanes, Vectors};
 use crate::numeric::{two_product, two_sum};
+use crate::world::scene::{Block, Plane, Shape, Sphere};
 
 /// A shape relative to an eye.
 #[derive(Clone, Copy, Debug)]

@@ -8,18 +8,17 @@
 //! axis perpendicular to the light. Only bodies whose interval overlaps that of the rays of
 //! neighbouring pixels are tested: first by boxes around the body and the pixels, and then exactly for
 //! each ray. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
-//! layout. A grid perpendicular to the light, as in the light buffer of Haines and Greenberg
-//! (1986), was refused: a few huge bodies would fill all its cells.
+//! layout. Rejected: a grid perpendicular to the light, as in the light buffer of Haines and
+//! Greenberg (1986), since a few huge bodies would fill all its cells.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
 
 use glam::DVec3;
 
-use super::body::{Body, Shape};
 use super::lanes::{Lanes, Vectors, greatest};
-use super::light::Sun;
 use super::relative_shape::RelativeBlock;
+use crate::world::scene::{Body, Shape, Sun};
 
 /// A bound on the rounding of a position, as a fraction of it.
 const MARGIN: f64 = 1e-9;

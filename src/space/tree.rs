@@ -4,8 +4,8 @@
 //! Each node has a box around its bodies (Rubin and Whitted, "A 3-Dimensional Representation for Fast
 //! Rendering of Complex Scenes", 1980). A ray visits the nearer box first, and skips boxes that begin
 //! beyond the nearest hit so far. A node is split at the median of its centers along the axis on which
-//! they differ most. The surface area heuristic was refused: the tree is built for each frame, and
-//! that takes longer to build.
+//! they differ most. Rejected: the surface area heuristic. The tree is built for each frame, and that
+//! takes longer to build.
 
 use std::ops::Range;
 

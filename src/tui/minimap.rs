@@ -296,7 +296,7 @@ impl Window {
     fn new(area: Rect, glyphs: GlyphSet, world: &World, center: DVec2, zoom: i32) -> Self {
         let pixels_per_cell = glyphs.pixels_per_cell();
         let size = pixels_within(area.as_size(), glyphs);
-        let map = map_size(world);
+        let map = world.grid().extent();
         let scale = scale(world, size, glyphs, zoom);
         let spare = size - map * scale;
         let corner_along = |spare: f64, center: f64, size: f64| {
@@ -355,15 +355,10 @@ impl Window {
 #[cfg(feature = "terminal")]
 fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
     let pixels = pixels_within(room, glyphs);
-    let needed = map_size(world) * scale(world, pixels, glyphs, zoom);
+    let needed = world.grid().extent() * scale(world, pixels, glyphs, zoom);
     let needed = needed.ceil().min(pixels);
     let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
     Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
-}
-
-/// The width and the height of the map in cells.
-fn map_size(world: &World) -> DVec2 {
-    DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()))
 }
 
 fn pixels_within(cells: Size, glyphs: GlyphSet) -> DVec2 {
@@ -378,7 +373,7 @@ fn scale(world: &World, pixels: DVec2, glyphs: GlyphSet, zoom: i32) -> DVec2 {
     // A cell is about twice as high as wide.
     let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
     let smallest = DVec2::new(2.0 * columns / rows, 1.0);
-    let exact = (pixels / (map_size(world) * smallest)).min_element();
+    let exact = (pixels / (world.grid().extent() * smallest)).min_element();
     let fit = exact.floor().max(1.0);
     smallest
         * match zoom {

@@ -94,7 +94,7 @@ pub(crate) struct DrawnPlane {
 /// Memory for making spans, one for each thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpanMemory {
-    pub(crate) plane_rows: Vec<PlaneRow>,
+    plane_rows: Vec<PlaneRow>,
     /// The first column of the current span of each row.
     pub(crate) starts: Vec<usize>,
 }

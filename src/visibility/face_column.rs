@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Column;
-use crate::cast::{Hit, Side};
+use crate::cast::{Hit, Side, cell_before};
 use crate::world::{Cell, Glass, Grid, Light, Outline, Paint, TextureId, TileId};
 
 /// The visible part of an upright face that is as wide as a pixel, with a material of this kind.
@@ -95,18 +95,8 @@ impl Facing {
     }
 }
 
-/// The column and the row of the cell from which a ray along `direction` sees the side of `hit`.
-pub(crate) fn cell_before(direction: DVec2, hit: &Hit) -> [i64; 2] {
-    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
-    let (column, row) = (i64::from(hit.cell.column), i64::from(hit.cell.row));
-    match hit.side {
-        Side::X => [column + back(direction.x), row],
-        Side::Y => [column, row + back(direction.y)],
-    }
-}
-
-/// That cell on the map and its tile; `None` off the map.
+/// The cell from which a ray along `direction` sees the side of `hit`, and its tile; `None` off the map.
 pub(crate) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
-    let [column, row] = cell_before(direction, hit);
+    let [column, row] = cell_before(direction, hit.cell, hit.side);
     grid.cell(column, row)
 }

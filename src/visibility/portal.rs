@@ -19,7 +19,6 @@ mod met;
 mod ray_segments;
 mod spans;
 mod start;
-mod surroundings;
 mod tile_gaps;
 mod walk;
 
@@ -28,15 +27,15 @@ use std::ops::Range;
 use super::runs::{IMAGES_AT_ONCE, ImageId};
 use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
 use crate::world::World;
+use bundle::Surroundings;
 use layers::{Finder, LayerMemory};
 pub(crate) use spans::for_each_span;
 pub(crate) use start::PortalStart;
-use surroundings::Surroundings;
 use tile_gaps::TileGaps;
 use walk::{BundleWalk, WalkMemory};
 
 /// The number of things in view for which memory is reserved in advance.
-const MOST_THINGS: usize = 4096;
+const MAX_THINGS: usize = 4096;
 
 /// The memory of the portal way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -107,7 +106,7 @@ impl PortalMemory {
         self.finder.make_room(world, width);
         list.clear();
         list.make_room_for_portals(width);
-        let billboards = world.things().len().min(MOST_THINGS) + world.figures().len();
+        let billboards = world.things().len().min(MAX_THINGS) + world.figures().len();
         list.billboards.reserve(2 * billboards + IMAGES_AT_ONCE);
         self.layers.make_room(list);
     }

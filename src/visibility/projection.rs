@@ -10,8 +10,9 @@ use std::ops::{Range, RangeInclusive};
 use glam::DVec2;
 
 use super::SpanMapping;
-use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels, ceil, ceil_within};
+use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels};
 use crate::cast::{HitFace, Ray, Side};
+use crate::numeric::rounding::{ceil, ceil_within};
 use crate::world::{Camera, Heights};
 
 /// The mapping from the world to the pixels of one frame.
@@ -269,7 +270,7 @@ impl Projection {
 const NEAREST: f64 = 1.0 / 64.0;
 
 /// An eye further up or down has the same view as from here: no height is so far.
-const FARTHEST: f64 = 4.0 * Heights::MOST;
+const FARTHEST: f64 = 4.0 * Heights::MAX;
 
 /// The number of rows from the middle of the picture down to the horizon: an integer, so that a
 /// change of pitch moves the picture by whole rows.
@@ -410,17 +411,17 @@ impl PixelAspect {
     pub const SQUARE: Self = Self(1.0);
     /// The greatest ratio of the longer side to the shorter one. Far beyond it, the slopes of rays
     /// would not be finite.
-    pub const MOST: f64 = 1e6;
+    pub const MAX: f64 = 1e6;
 
-    /// The aspect with this ratio; `None` unless it is between 1 / [`PixelAspect::MOST`] and
-    /// [`PixelAspect::MOST`].
+    /// The aspect with this ratio; `None` unless it is between 1 / [`PixelAspect::MAX`] and
+    /// [`PixelAspect::MAX`].
     pub fn new(height_over_width: f64) -> Option<Self> {
-        let is_possible = (1.0 / Self::MOST..=Self::MOST).contains(&height_over_width);
+        let is_possible = (1.0 / Self::MAX..=Self::MAX).contains(&height_over_width);
         is_possible.then_some(Self(height_over_width))
     }
 
-    /// The height of a pixel over its width, from 1 / [`PixelAspect::MOST`] to
-    /// [`PixelAspect::MOST`].
+    /// The height of a pixel over its width, from 1 / [`PixelAspect::MAX`] to
+    /// [`PixelAspect::MAX`].
     pub fn height_over_width(self) -> f64 {
         self.0
     }

@@ -16,7 +16,7 @@
 //! side; at 4096 they take 1.25 bytes. Only maps of at least that size with few solid cells have
 //! them: among rooms, rays end before they gain by it.
 //!
-//! Storing for each block of cells how far it is clear in many directions was refused: a ray may be
+//! Rejected: storing for each block of cells how far it is clear in many directions. A ray may be
 //! anywhere in a wedge that widens with distance, and the same void is stored once for each block
 //! in it. By estimate, leaps would be half as long for the same memory.
 

@@ -3,7 +3,7 @@
 //! Looking up or down shears the picture: it moves by whole rows of pixels. Rejected: a rotation. Walls
 //! would lean, a column of pixels would no longer be one ray, and every stage would pay for it. The shear
 //! is the picture of a camera that looks straight ahead with its image plane shifted, as in architectural
-//! photography. It looks distorted at large angles, so it is limited to [`Pitch::MOST_DEGREES`].
+//! photography. It looks distorted at large angles, so it is limited to [`Pitch::MAX_DEGREES`].
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
@@ -17,8 +17,8 @@ use super::Cell;
 ///
 /// It is stored as a number of quarter turns and an angle of at most an eighth of a turn. Therefore
 /// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
-/// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
-/// each step was refused, since its length drifts.
+/// error in length: sine and cosine are computed from that angle. Rejected: a unit vector that is
+/// rotated in each step, since its length drifts.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 #[serde(try_from = "(u8, f64)")]
 pub struct Heading {
@@ -196,18 +196,18 @@ pub struct Pitch {
     slope: f64,
 }
 
-/// The tangent of [`Pitch::MOST_DEGREES`].
+/// The tangent of [`Pitch::MAX_DEGREES`].
 const STEEPEST: f64 = 0.577_350_269_189_625_7;
 
 impl Pitch {
     /// Straight ahead.
     pub const LEVEL: Self = Self { slope: 0.0 };
     /// The limit, in degrees. Beyond it the horizon is far out of view, and walls look stretched.
-    pub const MOST_DEGREES: f64 = 30.0;
+    pub const MAX_DEGREES: f64 = 30.0;
 
-    /// A pitch in degrees, positive for up. `None` beyond ±[`Pitch::MOST_DEGREES`].
+    /// A pitch in degrees, positive for up. `None` beyond ±[`Pitch::MAX_DEGREES`].
     pub fn from_degrees(degrees: f64) -> Option<Self> {
-        let is_within = degrees.abs() <= Self::MOST_DEGREES;
+        let is_within = degrees.abs() <= Self::MAX_DEGREES;
         is_within.then(|| Self::LEVEL.tilted(libm::tan(degrees.to_radians())))
     }
 
@@ -309,14 +309,9 @@ mod tests {
             assert_eq!(FieldOfView::from_degrees(degrees), None);
         }
     }
-}
-
-#[cfg(test)]
-mod pitch_tests {
-    use super::*;
 
     #[test]
-    fn degrees_come_back() {
+    fn degrees_of_a_pitch_come_back() {
         for degrees in [-30.0, -12.5, 0.0, 1.0, 29.999, 30.0] {
             let pitch = Pitch::from_degrees(degrees).unwrap();
             assert!((pitch.degrees() - degrees).abs() < 1e-12, "{degrees}");

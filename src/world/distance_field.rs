@@ -15,8 +15,8 @@
 //! ahead is clear.
 //!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
-//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Skipping only empty
-//! blocks, and blocks of blocks, was refused: a ray would stop at the edge of each block, and one
+//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Rejected: skipping
+//! only empty blocks, and blocks of blocks. A ray would stop at the edge of each block, and one
 //! pillar fills all blocks that contain it.
 
 use std::fmt;
@@ -55,10 +55,10 @@ impl Coded {
     const ONE: Self = Self(1);
     const EXACT: u16 = 128;
     const STEP: u16 = 32;
-    const MOST: u16 = Self::EXACT + (u8::MAX as u16 - Self::EXACT) * Self::STEP;
+    const MAX: u16 = Self::EXACT + (u8::MAX as u16 - Self::EXACT) * Self::STEP;
 
     fn new(lines: u16) -> Self {
-        let beyond = lines.min(Self::MOST).saturating_sub(Self::EXACT);
+        let beyond = lines.min(Self::MAX).saturating_sub(Self::EXACT);
         Self((lines.min(Self::EXACT) + beyond / Self::STEP) as u8)
     }
 
@@ -117,7 +117,7 @@ impl DistanceField {
     /// The nearest solid cell comes before the cell in reading order, or after it.
     pub(crate) fn measured(&self) -> Self {
         let width = self.width;
-        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MOST };
+        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MAX };
         let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
         for end in (2 * width..=cells.len()).step_by(width) {
             let (before, row) = cells[..end].split_at_mut(end - width);

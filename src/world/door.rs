@@ -4,8 +4,8 @@
 //! [`Door`](super::TileKind::Door), which is solid, while any part of it is in the way, and
 //! [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, when it is fully
 //! open. So an open door costs no more than floor, a closed one no more than a wall, and collision
-//! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
-//! the leaf would be inside it when it closes.
+//! need not know of doors. Rejected: a door that is solid only at its leaf. A player beside the
+//! leaf would be inside it when it closes.
 
 use serde::{Deserialize, Serialize};
 
@@ -81,10 +81,6 @@ impl World {
         };
         if let Some(id) = id {
             self.set_tile(cell, id);
-            let is_level = self.tile(id).is_level();
-            if let Some(grid) = self.level_grid.as_mut().filter(|_| is_level) {
-                grid.set(cell, id);
-            }
             self.ajar.set(cell, opening);
         }
     }

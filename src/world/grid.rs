@@ -21,9 +21,15 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The corner in the north-west.
+    #[inline]
+    pub(crate) fn corner(self) -> DVec2 {
+        DVec2::new(f64::from(self.column), f64::from(self.row))
+    }
+
     /// The middle of the cell.
     pub fn center(self) -> DVec2 {
-        DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
+        self.corner() + 0.5
     }
 
     /// The cell that contains `point`; `None` in the west or north of the map.
@@ -61,7 +67,7 @@ pub struct TileId(pub u8);
 impl TileId {
     /// The largest number of tiles in a world.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
-    pub(crate) const MOST: usize = 1 << u8::BITS;
+    pub(crate) const MAX: usize = 1 << u8::BITS;
 }
 
 /// The tile of each cell, and which tiles are solid.
@@ -164,6 +170,12 @@ impl Grid {
         self.height.get()
     }
 
+    /// The number of columns and of rows: the corner of the map in the south-east.
+    #[inline]
+    pub(crate) fn extent(&self) -> DVec2 {
+        DVec2::new(f64::from(self.width()), f64::from(self.height()))
+    }
+
     /// The tile at a column and a row; `None` outside the map.
     #[inline]
     pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
@@ -186,9 +198,7 @@ impl Grid {
         Some((Cell { column: column as u32, row: row as u32 }, tile))
     }
 
-    /// The same cells, where those are solid as well whose tile is not among `level`.
-    ///
-    /// The tiles of these cells are not known from it.
+    /// The same cells, of which those with uneven tiles are solid, too. Their tiles are not stored.
     pub(crate) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
         let tile = |&tile: &TileId| if is_level(tile) { tile } else { TileId(u8::MAX) };
         Self { cells: self.cells.iter().map(tile).collect(), ..self.clone() }

@@ -6,7 +6,7 @@
 //! for a small difference. A lamp that moves shines through doors that are fully open, because the
 //! player carries one.
 //!
-//! The sum of all lamps is stored for each cell, without a limit. What one lamp adds is therefore
+//! The sum of all lamps is stored for each cell, without a limit. The share of one lamp is therefore
 //! taken away exactly when it moves, goes out, or has a wall moved before it, and the other lamps
 //! are not computed again. Maps in which lamps change nothing store nothing.
 //!
@@ -31,7 +31,7 @@ use crate::sort;
 /// The light of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// What it adds in its own cell.
+    /// The light that it adds in its own cell.
     pub light: Light,
     /// How far its light reaches.
     pub reach: Reach,
@@ -43,11 +43,11 @@ pub struct Reach(f64);
 
 impl Reach {
     /// The longest reach, in cells.
-    const MOST: f64 = 32.0;
+    const MAX: f64 = 32.0;
 
     /// A reach from 1 to 32 cells. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
-        (1.0..=Self::MOST).contains(&cells).then_some(Self(cells))
+        (1.0..=Self::MAX).contains(&cells).then_some(Self(cells))
     }
 
     /// The reach in cells.
@@ -73,7 +73,7 @@ impl Default for Reach {
 }
 
 impl Lamp {
-    /// What it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
+    /// The light that it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
     /// reach)²)²`, which ends smoothly at the reach.
     pub(crate) fn light_at(&self, distance: f64) -> Light {
         let part = (distance / self.reach.0).min(1.0);
@@ -82,7 +82,7 @@ impl Lamp {
     }
 }
 
-/// What lamps add in each cell.
+/// The light that lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Lamplight {
     width: usize,
@@ -102,7 +102,7 @@ impl Lamplight {
         self.sums.is_empty()
     }
 
-    /// What lamps add in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
     pub(crate) fn at(&self, cell: Cell) -> Light {
         let is_on_map = (cell.column as usize) < self.width;
@@ -136,8 +136,8 @@ impl Lamplight {
 
 /// The cells that a kind of lamp lights where nothing stands around it.
 #[derive(Debug)]
-pub(crate) struct Glow {
-    /// What it adds in its own cell.
+struct Glow {
+    /// The light that it adds in its own cell.
     light: Light,
     /// The cells as a tree: each comes before those behind it.
     branches: Vec<Branch>,
@@ -149,7 +149,7 @@ pub(crate) struct Glow {
 struct Branch {
     /// Columns to the east of the lamp, and rows to the south, each at most the longest reach.
     offset: (i8, i8),
-    /// What the lamp adds there; nothing, if its light only passes through.
+    /// The light that the lamp adds there; none if its light only passes through.
     light: Light,
     /// The index of the first cell whose line does not lead through this one.
     next_beside: u32,
@@ -256,7 +256,7 @@ pub(crate) enum Change {
     TakeAway,
 }
 
-/// What carries a lamp: it decides which tiles the light passes.
+/// The carrier of a lamp, which decides the tiles that the light passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Carrier {
     Thing,
@@ -264,9 +264,9 @@ enum Carrier {
     Mover,
 }
 
-/// The glow of each kind of lamp that was needed so far. Worlds that differ in it are equal.
+/// The glow of each kind of lamp that has been needed. Worlds that differ in it are equal.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Glows {
+struct Glows {
     list: Vec<(Lamp, Arc<Glow>)>,
 }
 
@@ -333,8 +333,8 @@ impl World {
         }
     }
 
-    /// Sets the tile of `cell`, which must be on the map. Lamplight passes it from now on, or no
-    /// longer does.
+    /// Sets the tile of `cell` to a state of the door or of the moving tile that is there. Lamplight passes
+    /// it from now on, or no longer does.
     pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
         let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
         let before = self.grid.tile_in(cell).map(kind);
@@ -348,6 +348,10 @@ impl World {
             self.shine_around(cell, carrier, Change::TakeAway);
         }
         self.grid.set(cell, tile);
+        let is_level = self.tile(tile).is_level();
+        if let Some(grid) = &mut self.level_grid {
+            grid.set(cell, if is_level { tile } else { TileId(u8::MAX) });
+        }
         for &carrier in changed.iter().flatten() {
             self.shine_around(cell, carrier, Change::Add);
         }
@@ -392,7 +396,7 @@ impl World {
         };
         match carrier {
             Carrier::Thing => {
-                let most = Reach::MOST as u32;
+                let most = Reach::MAX as u32;
                 let around = |index: u32| index.saturating_sub(most)..=index.saturating_add(most);
                 let (rows, columns) = (around(cell.row), around(cell.column));
                 let things =

@@ -62,7 +62,7 @@ impl Light {
 ///
 /// At distance `t`, the share of a surface's own colour is `1 / (1 + (t / distance)²)`: nearly 1
 /// nearby, a half at `distance`, a fifth at twice that. The function is smooth and costs one
-/// division. An exponential was refused: it looks much the same, and needs a table to be as cheap.
+/// division. Rejected: an exponential, which looks much the same and needs a table to be as cheap.
 /// `t` is the distance to the camera plane, which is the same for a whole row of the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {

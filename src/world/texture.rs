@@ -183,14 +183,14 @@ impl fmt::Debug for Texture {
 
 /// The picture itself, and what is computed from all of it.
 #[derive(Clone)]
-pub(crate) struct Picture {
-    pub(crate) level: MipLevel,
-    pub(crate) mean: Rgb,
+struct Picture {
+    level: MipLevel,
+    mean: Rgb,
 }
 
 /// Where a texture has its picture from.
 #[derive(Clone)]
-pub(crate) enum Source {
+enum Source {
     Made(Picture),
     OnDemand { paint: Arc<Paint>, made: OnceLock<Picture> },
 }
@@ -200,7 +200,7 @@ type Paint = dyn Fn() -> Picture + Send + Sync;
 
 impl Picture {
     /// The picture with the texel `texel(x, y)` at `(x, y)`, and its alpha.
-    pub(crate) fn from_fn(
+    fn from_fn(
         width: NonZeroU32,
         height: NonZeroU32,
         mut texel: impl FnMut(u32, u32) -> (Rgb, u8),
@@ -219,19 +219,19 @@ impl Picture {
 
 impl Source {
     /// The picture that `paint` makes when it is first read.
-    pub(crate) fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
+    fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
         Self::OnDemand { paint: Arc::new(paint), made: OnceLock::new() }
     }
 
     #[inline]
-    pub(crate) fn picture(&self) -> &Picture {
+    fn picture(&self) -> &Picture {
         match self {
             Self::Made(picture) => picture,
             Self::OnDemand { paint, made } => made.get_or_init(&**paint),
         }
     }
 
-    pub(crate) fn is_made(&self) -> bool {
+    fn is_made(&self) -> bool {
         match self {
             Self::Made(_) => true,
             Self::OnDemand { made, .. } => made.get().is_some(),
@@ -239,7 +239,7 @@ impl Source {
     }
 
     /// Whether both are painted by the same function.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
+    fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::OnDemand { paint: one, .. }, Self::OnDemand { paint: other, .. }) => {
                 Arc::ptr_eq(one, other)

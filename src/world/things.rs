@@ -33,7 +33,7 @@ pub struct Thing {
     pub cell: Cell,
     /// Its sprite.
     pub sprite: SpriteId,
-    /// The frame of the sprite that it shows; `None` for that of the time.
+    /// The frame of the sprite that it shows; `None` if time selects it.
     pub frame: Option<u8>,
 }
 
@@ -69,7 +69,7 @@ pub enum ThingKind {
 pub enum Supply {
     /// Thrown, to make a noise elsewhere.
     Pebbles,
-    /// Shot; a guard whom one hits is stunned.
+    /// Shot; a guard who is hit is stunned.
     Darts,
     /// Thrown; makes smoke.
     Flasks,
@@ -113,6 +113,31 @@ impl Rhythm {
         let steps = |seconds: f64| (seconds * Self::STEPS_PER_SECOND).round() as u16;
         let rhythm = Self { period: steps(period), delay: steps(delay) };
         (is_in_range && rhythm.delay < rhythm.period).then_some(rhythm)
+    }
+}
+
+/// A sprite at any place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Its sprite, among those of the world; a figure with any other is not drawn.
+    pub sprite: SpriteId,
+    /// The place of its middle, on the map.
+    pub position: DVec2,
+    /// The height of its lower edge, in cells.
+    pub base: f64,
+    /// The direction of its front.
+    pub heading: Heading,
+    /// The frame of the sprite that it shows; the last one, if there is no such frame.
+    pub frame: u8,
+    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
+    /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
+    pub opacity: u8,
+}
+
+impl Figure {
+    /// The cell that it is in; `None` west or north of the map, where there are no cells.
+    pub fn cell(&self) -> Option<Cell> {
+        Cell::containing(self.position)
     }
 }
 
@@ -160,6 +185,37 @@ impl World {
     /// If `id` comes from another world that has more notes.
     pub fn note(&self, id: NoteId) -> &str {
         &self.mission.notes[usize::from(id.0)]
+    }
+
+    /// The figures, in the order in which they were set.
+    pub fn figures(&self) -> &[Figure] {
+        &self.figures
+    }
+
+    /// Replaces all figures.
+    pub fn set_figures(&mut self, figures: impl Iterator<Item = Figure>) {
+        self.figures.clear();
+        self.figures.extend(figures);
+    }
+
+    /// Adds a sprite, for figures to refer to.
+    pub(crate) fn add_sprite(&mut self, sprite: Sprite) -> SpriteId {
+        let id = SpriteId(self.sprites.len() as u16);
+        self.sprites = self.sprites.iter().cloned().chain([sprite]).collect();
+        id
+    }
+
+    /// The greatest height that a figure reaches; 0 if there is none.
+    pub(crate) fn top_of_figures(&self) -> f64 {
+        let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
+        let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
+        self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
+    }
+
+    /// The light on `figure`; off the map, that of the map's own floor.
+    pub(crate) fn light_on(&self, figure: &Figure) -> Light {
+        let off_map = self.ground().light.unwrap_or(Light::FULL);
+        figure.cell().map_or(off_map, |cell| self.light_in(cell))
     }
 }
 
@@ -247,64 +303,6 @@ fn worth(kind: ThingKind) -> u64 {
 
 fn place(thing: &Thing) -> (u32, u32) {
     (thing.cell.row, thing.cell.column)
-}
-
-/// A sprite at any place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
-    /// Its sprite, among those of the world; a figure with any other is not drawn.
-    pub sprite: SpriteId,
-    /// The place of its middle, on the map.
-    pub position: DVec2,
-    /// The height of its lower edge, in cells.
-    pub base: f64,
-    /// The direction of its front.
-    pub heading: Heading,
-    /// The frame of the sprite that it shows; the last one, if there is no such frame.
-    pub frame: u8,
-    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
-    /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
-    pub opacity: u8,
-}
-
-impl Figure {
-    /// The cell that it is in; `None` west or north of the map, where there are no cells.
-    pub fn cell(&self) -> Option<Cell> {
-        Cell::containing(self.position)
-    }
-}
-
-impl World {
-    /// The figures, in the order in which they were set.
-    pub fn figures(&self) -> &[Figure] {
-        &self.figures
-    }
-
-    /// Replaces all figures.
-    pub fn set_figures(&mut self, figures: impl Iterator<Item = Figure>) {
-        self.figures.clear();
-        self.figures.extend(figures);
-    }
-
-    /// Adds a sprite, for figures to refer to.
-    pub(crate) fn add_sprite(&mut self, sprite: Sprite) -> SpriteId {
-        let id = SpriteId(self.sprites.len() as u16);
-        self.sprites = self.sprites.iter().cloned().chain([sprite]).collect();
-        id
-    }
-
-    /// The greatest height that a figure reaches; 0 if there is none.
-    pub(crate) fn top_of_figures(&self) -> f64 {
-        let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
-        let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
-        self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
-    }
-
-    /// The light on `figure`; off the map, that of the map's own floor.
-    pub(crate) fn light_on(&self, figure: &Figure) -> Light {
-        let off_map = self.ground().light.unwrap_or(Light::FULL);
-        figure.cell().map_or(off_map, |cell| self.light_in(cell))
-    }
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub struct Tile {
     /// The surface of the sides above its ceiling, seen from below a higher ceiling; and of its
     /// roof.
     pub lintel: Paint,
-    /// What happens to those who stand on it.
+    /// The effect on anyone who stands on it.
     pub effect: Option<TileEffect>,
 }
 
@@ -175,7 +175,7 @@ pub enum Ceiling {
     Covered(Covering),
 }
 
-/// The heights of a tile, in cells above the map's own floor: finite, and at most [`Heights::MOST`]
+/// The heights of a tile, in cells above the map's own floor: finite, and at most [`Heights::MAX`]
 /// in absolute value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heights {
@@ -199,11 +199,11 @@ impl Heights {
     /// The same as a solid wall.
     pub const LEVEL_WALL: Self = Self { floor: 1.0, ..Self::LEVEL };
     /// The largest absolute value of a height.
-    pub const MOST: f64 = 1e9;
+    pub const MAX: f64 = 1e9;
 
     /// Heights of a floor, a ceiling and a roof. `None` if one of them is out of range.
     pub fn new(floor: f64, ceiling: f64, roof: f64) -> Option<Self> {
-        let is_in_range = |height: f64| height.abs() <= Self::MOST;
+        let is_in_range = |height: f64| height.abs() <= Self::MAX;
         // Adding zero removes the sign of a negative zero.
         let heights = Self { floor: floor + 0.0, ceiling: ceiling + 0.0, roof: roof + 0.0 };
         [floor, ceiling, roof].into_iter().all(is_in_range).then_some(heights)
@@ -313,14 +313,14 @@ pub struct Shape {
 }
 
 /// The height of a shape above the floor that it stands on, in cells: above 0, at most
-/// [`Heights::MOST`].
+/// [`Heights::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHeight(f64);
 
 impl ShapeHeight {
     /// A height in cells. `None` outside that range.
     pub const fn new(cells: f64) -> Option<Self> {
-        if cells > 0.0 && cells <= Heights::MOST { Some(Self(cells)) } else { None }
+        if cells > 0.0 && cells <= Heights::MAX { Some(Self(cells)) } else { None }
     }
 
     /// The height in cells.
@@ -397,7 +397,7 @@ impl Line {
             Self::EastWest => DVec2::new(0.0, 0.5),
             Self::NorthSouth => DVec2::new(0.5, 0.0),
         };
-        DVec2::new(f64::from(cell.column), f64::from(cell.row)) + within
+        cell.corner() + within
     }
 
     /// The vector from its start to its end, with components of −1, 0 or 1.

@@ -149,7 +149,7 @@ proptest! {
             let index = characters.iter().position(|&known| known == character).unwrap();
             let states = &world.moving_tiles()[index].states;
             let state = states[state.index(states.len())];
-            world.set_state(cell, state);
+            world.set_tile(cell, state);
         }
         let ray = Ray::new(DVec2::from(share) * f64::from(HALL), direction.into());
         prop_assume!(ray.is_ok());

@@ -245,7 +245,7 @@ impl MirrorTransform {
     }
 
     /// Whether lines of kind `side` are mirrored along themselves.
-    pub(crate) fn is_mirrored_along(self, side: Side) -> bool {
+    fn is_mirrored_along(self, side: Side) -> bool {
         match side {
             Side::X => self.y.is_mirrored,
             Side::Y => self.x.is_mirrored,

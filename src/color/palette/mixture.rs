@@ -28,7 +28,7 @@ use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 use crate::color::srgb::linear;
 
-/// What a cell shows.
+/// The look of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Look {
     /// Each part in its own palette colour.
@@ -290,7 +290,7 @@ impl Mixtures {
     }
 }
 
-/// What a cell should look like.
+/// The look that a cell should have.
 struct Wanted {
     parts: [Place; 2],
     /// The place of the mean light.

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::{PlayerId, Sees};
 use crate::game::player::{Motion, Player};
+use crate::game::rules::{PlayerId, Sees};
 use crate::game::sight::{Point, is_in_sight};
 use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
@@ -231,7 +231,7 @@ impl<'a> PlayerView<'a> {
         is_in_sight(&game.world, game.smoke.clouds(), eye, middle)
     }
 
-    fn member(&self) -> Option<&'a super::members::Member> {
+    fn member(&self) -> Option<&'a super::Member> {
         self.game.members.as_deref()?.member(self.id.index())
     }
 }

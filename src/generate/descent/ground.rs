@@ -11,7 +11,7 @@ use crate::world::{Cell, Flood};
 pub(crate) struct Ground {
     /// The characters, row by row.
     cells: Vec<Vec<u8>>,
-    /// What is in each cell, row by row.
+    /// The kind of each cell, row by row.
     kinds: Vec<Kind>,
     start: Cell,
     /// The steps from the start to each cell, row by row; `None` if there is no way.
@@ -20,7 +20,7 @@ pub(crate) struct Ground {
     reachable: Vec<Cell>,
 }
 
-/// What is in a cell, as far as ways and sight are concerned.
+/// The properties of a cell that matter for ways and for sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 struct Kind {

@@ -204,7 +204,7 @@ struct Observer<'a> {
     /// The gap around the eye in the observer's cell.
     own_gap: Gap,
     /// For each tile, how it continues a ray that has only been in cells with that gap.
-    passages: [Passage; TileId::MOST],
+    passages: [Passage; TileId::MAX],
 }
 
 /// The range of slopes at which a ray still sees, in height per distance.
@@ -238,7 +238,7 @@ impl<'a> Observer<'a> {
         let tile = world.grid().tile(place.x as i64, place.y as i64);
         let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
         let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(LEAST_CLEARNESS));
-        let passages = [Passage::Other; TileId::MOST];
+        let passages = [Passage::Other; TileId::MAX];
         let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
         observer.find_passages();
         observer

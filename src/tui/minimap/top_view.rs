@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::explored::{Explored, SeenRow};
 use crate::color::Rgb;
+use crate::numeric::rounding::floor_short;
 use crate::render::Column;
 use crate::world::{
     Camera, Cell, Paint, Shape, Thing, ThingKind, Tile, TileEffect, TileId, TileKind, World,
@@ -22,7 +23,7 @@ pub(crate) struct TopView<'a> {
     visible_floor: VisibleFloor<'a>,
     explored: Option<&'a Explored>,
     /// The appearance of each tile.
-    tiles: [TileAppearance; TileId::MOST],
+    tiles: [TileAppearance; TileId::MAX],
     /// The width of a pixel in cells.
     pixel: f64,
 }
@@ -51,7 +52,7 @@ impl<'a> TopView<'a> {
         (columns, explored): (&'a [Column], Option<&'a Explored>),
         pixel: f64,
     ) -> Self {
-        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MOST];
+        let mut tiles = [TileAppearance::Wall(Rgb::BLACK); TileId::MAX];
         for (appearance, tile) in tiles.iter_mut().zip(world.tiles()) {
             *appearance = appearance_of(tile, world, camera.eye());
         }
@@ -60,7 +61,7 @@ impl<'a> TopView<'a> {
 
     /// The row of points at the distance `y` from the map's northern edge.
     pub(crate) fn row(&self, y: f64) -> Row<'_> {
-        let row = u32::try_from(cell_at(y)).ok();
+        let row = u32::try_from(floor_short(y)).ok();
         Row {
             view: self,
             seen: self.explored.map(|explored| explored.row(row.unwrap_or(u32::MAX))),
@@ -104,7 +105,7 @@ impl Row<'_> {
     /// pixel.
     #[inline]
     pub(crate) fn point(&self, x: f64) -> MapPoint {
-        let column = cell_at(x) as usize;
+        let column = floor_short(x) as usize;
         let Some(&tile) = self.tiles.get(column) else { return MapPoint::Void };
         if self.seen.is_some_and(|seen| !seen.contains(column as u32)) {
             return MapPoint::Void;
@@ -228,17 +229,6 @@ impl<'a> VisibleFloor<'a> {
         index >= 0.0
             && self.columns.get(index as usize).is_some_and(|column| distance <= column.distance)
     }
-}
-
-/// The column or row of a position within 2³¹ cells; negative west or north of the map. Rounding down is a
-/// function call on older processors, and a conversion takes twice as long as adding a large number, whose
-/// lower bits are then the nearest whole number.
-#[inline]
-fn cell_at(position: f64) -> i64 {
-    const LARGE: f64 = 6_755_399_441_055_744.0;
-    let sum = position + LARGE;
-    let nearest = sum.to_bits() as i32;
-    i64::from(nearest) - i64::from(sum - LARGE > position)
 }
 
 /// The content of a point of the map.

@@ -1,9 +1,9 @@
 //! The rows of a billboard that no ceiling hides.
 //!
-//! A thing may be taller than its room, and a figure may be partly above it. What is higher than the
-//! ceilings shows only where the sky is over the cells in front of it. The flat way finds the ceiling of each
-//! such pixel as it does for the ceiling's spans. Clip ranges from cell to cell, as the portal way has them,
-//! were refused: few things are that tall, and all others would pay for the walk.
+//! A thing may be taller than its room, and a figure may be partly above it. What is higher than the ceilings
+//! shows only where the sky is over the cells in front of it. The flat way finds the ceiling of each such
+//! pixel as it does for the ceiling's spans. Rejected: clip ranges from cell to cell, as the portal way has
+//! them. Few things are that tall, and all others would pay for the walk.
 
 use std::ops::Range;
 

@@ -7,7 +7,7 @@
 //! as a grate, is painted before the first thing that is nearer. Rejected: a depth for each pixel. One for each
 //! column is equivalent.
 //!
-//! Colours are mixed as sRGB values, as in the frame. Mixing linear light was refused: it needs a
+//! Colours are mixed as sRGB values, as in the frame. Rejected: mixing linear light. It needs a
 //! table in each direction for every pixel, and tints looked no more like glass.
 
 use std::cmp::Ordering;
@@ -27,7 +27,7 @@ use crate::world::{Cell, Heights, Light, Thing, Tile, TileKind};
 
 /// The number of things in view for which memory is reserved in advance, so that a turn of the
 /// camera towards more of them allocates nothing.
-const MOST_AT_FIRST: usize = 4096;
+const MAX_AT_FIRST: usize = 4096;
 
 /// The height of everything solid in a level scene, in cells.
 const WALL_TOP: f64 = Heights::LEVEL.ceiling();
@@ -48,7 +48,7 @@ pub(crate) struct FlatMemory {
 /// The hits that all rays of a frame passed: column by column from the left, and in each from near
 /// to far.
 ///
-/// In reverse they are in the order of painting. A list for each column was refused: each list
+/// In reverse they are in the order of painting. Rejected: a list for each column, each of which
 /// would be an allocation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PassedHits {
@@ -132,7 +132,7 @@ fn find_billboards(
     let world = scene.world;
     let first = list.billboards.len();
     if first == 0 {
-        let things = world.things().len().min(MOST_AT_FIRST);
+        let things = world.things().len().min(MAX_AT_FIRST);
         list.billboards.reserve(things + world.figures().len());
     }
     let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;

@@ -296,7 +296,7 @@ impl PlaneRow {
 
 /// Calls `emit` for every stretch of `columns` that shows a row of a plane. A column shows the first
 /// `visible` rows, counted from the edge of the picture. `row_at` makes a row with its span's start.
-pub(crate) fn for_each_stretch(
+fn for_each_stretch(
     columns: &[Column],
     visible: impl Fn(&Column) -> u32,
     memory: &mut Vec<PlaneRow>,
@@ -330,7 +330,7 @@ pub(crate) fn for_each_stretch(
 impl Plane<'_> {
     /// The tile of the cell with this north-west corner, and the light that lamps add to it; `None`
     /// off the map.
-    pub(crate) fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
+    fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
         let world = self.scene.world;
         // Casts saturate, and convert NaN to 0.
         let is_a_place = corner.is_finite();
@@ -341,7 +341,7 @@ impl Plane<'_> {
 
     /// The same, where walls are blended over planes: the centre of a pixel at the foot of a wall may be inside
     /// the wall. The pixel that is nearer to the eye by a row then tells the ground.
-    pub(crate) fn ground_before_walls(
+    fn ground_before_walls(
         &self,
         corner: DVec2,
         (row, x): (u32, usize),

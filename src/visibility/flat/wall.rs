@@ -7,8 +7,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::cast::{Hit, Side};
-use crate::visibility::face_column::cell_before;
+use crate::cast::{Hit, Side, cell_before};
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallRun, WallSink};
 use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileKind, World};
 
@@ -208,7 +207,7 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
 /// The cell from which the ray of column `x` sees its hit; `None` off the north and west of the
 /// map.
 fn place_before(scene: Scene<'_>, x: u32, hit: &Hit) -> Option<Cell> {
-    let [column, row] = cell_before(scene.projection.direction_of(x), hit);
+    let [column, row] = cell_before(scene.projection.direction_of(x), hit.cell, hit.side);
     let is_known = column >= 0 && row >= 0;
     is_known.then_some(Cell { column: column as u32, row: row as u32 })
 }

@@ -1,11 +1,15 @@
-//! Bundles: neighbouring columns whose rays have crossed the same lines.
+//! Bundles: neighbouring columns whose rays have crossed the same lines, and the values that all rays of a
+//! frame share.
 
 use std::ops::Range;
 
-use super::surroundings::Place;
-use super::tile_gaps::GapId;
-use crate::cast::Course;
+use super::tile_gaps::{GapId, Place, TileGaps};
+use crate::cast::{CommonOrder, Course};
+use crate::visibility::Scene;
+use crate::visibility::projection::Rise;
 use crate::visibility::runs::ImageId;
+use crate::world::sprite::builtin;
+use crate::world::{Camera, Tile};
 
 /// Rays that are followed in one gap, one for each of some neighbouring columns.
 #[derive(Clone, Debug)]
@@ -55,6 +59,45 @@ impl Bundle {
     /// The bundle of these of its `columns`.
     pub(crate) fn part(&self, columns: Range<u32>) -> Self {
         Self { first_clip: self.clip(columns.start), columns, ..self.clone() }
+    }
+}
+
+/// The most reflections of a ray. The mirror after the last one shows only its tint.
+pub(crate) const MAX_BOUNCES: u32 = 8;
+
+/// The values that all rays of a frame share.
+pub(crate) struct Surroundings<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) gaps: &'a TileGaps,
+    /// The rise above which there is only sky.
+    pub(crate) top: Rise,
+    /// Whether there is any thing or figure, or the player in a mirror.
+    pub(crate) has_things: bool,
+    pub(crate) order: CommonOrder,
+}
+
+impl<'a> Surroundings<'a> {
+    pub(crate) fn new(scene: Scene<'a>, gaps: &'a TileGaps) -> Self {
+        let world = scene.world;
+        let has_figures = !world.figures().is_empty();
+        let has_things = !world.things().is_empty() || has_figures || world.has_mirrors();
+        let mut top = world.tiles().iter().map(Tile::top).fold(world.top_of_figures(), f64::max);
+        if !world.things().is_empty() {
+            top = top.max(world.limit_of_things());
+        }
+        if world.has_mirrors() {
+            let feet = scene.projection.eye() - Camera::STANDING;
+            top = top.max(feet + builtin::PLAYER_HEIGHT);
+        }
+        let top = scene.projection.rise_to(top);
+        let most_bounces = if world.has_mirrors() { MAX_BOUNCES } else { 0 };
+        let order = CommonOrder::new(world.grid(), scene.projection.origin(), most_bounces);
+        Self { scene, gaps, top, has_things, order }
+    }
+
+    pub(crate) fn tile(&self, place: Place) -> Option<&'a Tile> {
+        let (_, id) = place?;
+        self.scene.world.tiles().get(usize::from(id.0))
     }
 }
 

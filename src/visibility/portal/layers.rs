@@ -78,7 +78,7 @@ pub(crate) struct RayPart {
     pub(crate) to: f64,
     pub(crate) gap: GapId,
     /// The height of the top of a pillar below it, which hides what is lower.
-    pub(crate) top_below: Option<f64>,
+    top_below: Option<f64>,
     pub(crate) image: ImageId,
 }
 

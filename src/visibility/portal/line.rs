@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::bundle::{Bundle, Clip};
+use super::bundle::{Bundle, Clip, MAX_BOUNCES};
 use super::met::Met;
-use super::surroundings::{MOST_BOUNCES, Place};
-use super::tile_gaps::{BOTTOMLESS, Holds, VisibleGap};
+use super::tile_gaps::{BOTTOMLESS, Holds, Place, VisibleGap};
 use super::walk::{BundleWalk, WalkMemory};
 use crate::cast::{Crossed, CrossedFace, Hit, Side};
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
@@ -158,7 +157,7 @@ impl BundleWalk<'_> {
         if lower.is_none()
             && let TileKind::Mirror(tint) = tile.kind
             && !tint.is_opaque()
-            && bundle.course.bounces() < MOST_BOUNCES
+            && bundle.course.bounces() < MAX_BOUNCES
         {
             self.reflect(bundle, line, tint);
             return;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::bundle::Bundle;
 use super::layers::{Passed, RayPart};
 use super::line::Line;
-use super::surroundings::Place;
+use super::tile_gaps::Place;
 use super::walk::BundleWalk;
 use crate::cast::{Hit, Passage, Side};
 use crate::visibility::face_column::place_before;

@@ -3,7 +3,7 @@
 //! The contents of an image lie along the parts of rays that are in it. Each such segment is
 //! followed on the map, and extends the interval of each row of cells that it crosses. A thing that
 //! extends into a ray is at most half its width from it, so that the area between two rays need not
-//! be considered. The rectangle around all segments was refused: for a diagonal view it contains
+//! be considered. Rejected: the rectangle around all segments. For a diagonal view it contains
 //! everything on both sides.
 
 use glam::DVec2;

@@ -5,9 +5,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::bundle::{Bundle, Clip};
-use super::surroundings::{Place, Surroundings};
-use super::tile_gaps::GapId;
+use super::bundle::{Bundle, Clip, Surroundings};
+use super::tile_gaps::{GapId, Place};
 use super::walk::BundleWalk;
 use crate::cast::{Course, Hit};
 use crate::visibility::face_column::place_before;

@@ -1,16 +1,17 @@
 //! Tile gaps: the values of a tile that a ray needs in every cell.
 //!
-//! They are made once a frame, for the height of the eye. Reading the tile itself in each cell was
-//! refused: it is a large value of many cases, and a ray mostly needs only the positions of its
-//! gaps.
+//! They are made once a frame, for the height of the eye. Rejected: reading the tile itself in each
+//! cell. It is a large value of many cases, and a ray mostly needs only the positions of its gaps.
 
 use std::ops::Range;
 
-use super::surroundings::Place;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
-use crate::world::{Gap, Heights, Tile, TileKind, World};
+use crate::world::{Cell, Gap, Heights, Tile, TileId, TileKind, World};
+
+/// The location of a ray: in a cell, or off the map.
+pub(crate) type Place = Option<(Cell, TileId)>;
 
 /// The gaps of all tiles.
 #[derive(Clone, Debug, Default)]
@@ -156,4 +157,4 @@ impl Holds {
 const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
 
 /// A gap that contains all heights.
-pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };
+pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MAX, top: 2.0 * Heights::MAX };

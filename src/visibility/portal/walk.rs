@@ -6,17 +6,16 @@
 //! different kinds, it is divided: all rays have one origin, so that those which pass a corner on one side
 //! are neighbours.
 //!
-//! A walk for each column was refused: it looks up every cell and every gap once for each column.
+//! Rejected: a walk for each column, which looks up every cell and every gap once for each column.
 
 use std::mem;
 use std::ops::Range;
 
 use glam::DVec2;
 
-use super::bundle::{Bundle, Clip};
+use super::bundle::{Bundle, Clip, Surroundings};
 use super::layers::{Passed, RayPart};
 use super::ray_segments::RaySegment;
-use super::surroundings::Surroundings;
 use super::tile_gaps::{Holds, VisibleGap};
 use crate::cast::{Crossed, Ray, Side};
 use crate::visibility::runs::{Chains, FlatSurface, ImageId, Part, Shown};

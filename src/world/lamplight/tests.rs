@@ -120,7 +120,7 @@ proptest! {
                 Event::Wall(cell, stands) if world.door(cell).is_none() => {
                     let kind = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_)) == stands;
                     let state = world.tiles().iter().position(kind).unwrap();
-                    world.set_state(cell, TileId(state as u8));
+                    world.set_tile(cell, TileId(state as u8));
                 }
                 Event::Wall(..) => {}
                 Event::Door(opens) => {

@@ -1,8 +1,8 @@
 //! Masonry: brick, stone, mossy stone, sandstone, flagstones.
 
 use super::block::{Bond, Course};
+use super::noise::Patch;
 use super::noise::{Noise, hash};
-use super::patch::Patch;
 use super::shade::{mix, pick, shade};
 use crate::color::Rgb;
 

@@ -7,6 +7,7 @@
 use std::sync::Weak;
 use std::time::Duration;
 
+use cellcaster::app::parts::of_steps;
 use tokio::time::sleep;
 
 use super::results::Recorder;
@@ -14,7 +15,6 @@ use super::{Shared, unix_time};
 use crate::accounts::{HostStore, Late, WaitingResults};
 use crate::lock::locked;
 use crate::ops::logging::events;
-use cellcaster::app::parts::of_steps;
 
 /// The time from one round to the next.
 const PERIOD: Duration = Duration::from_secs(2);
