@@ -3,17 +3,17 @@
 //!
 //! The predicate [`is_clear`] says where the circle may be, and no position that fails it is ever
 //! accepted. If rounding puts a contact slightly inside, the circle is moved back along its path to
-//! a position that passes. So the circle is clear after a step because it was clear before. Moving
-//! first and pushing out of walls afterwards was refused: it picks the wrong side of a wall at
-//! speed, and jitters in corners.
+//! a position that passes. So the circle is clear after a step because it was clear before. Rejected: to
+//! move first and push out of walls afterwards, which picks the wrong side of a wall at speed, and jitters
+//! in corners.
 //!
 //! The sweep says how far a circle moves along a straight path before it touches something.
 //! Its centre traverses the grid from cell to cell, so that the longest path costs at most the
 //! columns and rows of the map. In each open cell the problem is small. A solid neighbour beside
 //! the cell is a wall, moved inwards by the radius. A solid neighbour across a corner is a quarter
-//! disc around that corner, unless a wall beside it covers the disc. Rounding every solid cell by
-//! itself was refused: each joint of a straight wall would have a quarter disc, at which rounding
-//! errors could stop the player.
+//! disc around that corner, unless a wall beside it covers the disc. Rejected: to round every
+//! solid cell by itself. Each joint of a straight wall would have a quarter disc, at which rounding errors
+//! could stop the player.
 //!
 //! A shape is a disc around a pillar, or a line with round ends.
 //! Along a line, the centre stays [`SKIN`] farther away than the radius. A position at exactly that
@@ -26,8 +26,8 @@
 //! cells block and the others do not, and the sweep needs nothing else.
 //!
 //! A thing that blocks fills its cell up to its height: a player can jump onto it or over it.
-//! Nobody walks up onto one, however low it is; use a floor for that. A box as wide as the picture
-//! was refused: a map says for each cell whether it is free, and the author sees that in the grid.
+//! Nobody walks up onto one, however low it is; use a floor for that. Rejected: a box as wide as
+//! the picture. A map says for each cell whether it is free, and the author sees that in the grid.
 
 use std::array::IntoIter;
 use std::iter::{self, Flatten};
@@ -66,7 +66,7 @@ impl Radius {
     }
 }
 
-/// What may block a circle.
+/// Anything that can block a circle.
 pub(crate) trait Obstacles {
     /// Whether a cell is solid. Cells outside the map are: nobody leaves the map.
     fn blocks(&self, column: i64, row: i64) -> bool;

@@ -4,7 +4,7 @@
 //! cells: at most 6 % off the true length of a diagonal. Distances are whole numbers, so that cells
 //! are sorted into one bucket for each distance (R. B. Dial, "Algorithm 360: Shortest-Path Forest
 //! with Topological Ordering", 1969). The search stops after any number of cells and continues
-//! later. A binary heap was refused: it costs a logarithm for each cell, and gives the same order.
+//! later. Rejected: a binary heap, which costs a logarithm for each cell, and gives the same order.
 //!
 //! Distances carry the number of the search that has found them, so that a new search need not
 //! clear those of the last one.
@@ -22,7 +22,7 @@ pub(crate) const STRAIGHT: u16 = 2;
 /// The cost of a step to a diagonal neighbour, in half cells.
 pub(crate) const DIAGONAL: u16 = 3;
 /// The largest cost of one step.
-pub(crate) const MOST_COST: u16 = 15;
+const MOST_COST: u16 = 15;
 
 /// One bucket for each distance that may still be open.
 const BUCKETS: usize = MOST_COST as usize + 1;
@@ -31,15 +31,15 @@ const REACH: u32 = 160;
 
 /// The columns and rows from a cell to its neighbours, clockwise from the north: straight ones at
 /// even places.
-pub(crate) const NEIGHBORS: [(i32, i32); 8] =
+const NEIGHBORS: [(i32, i32); 8] =
     [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
 
 /// The costs of steps in a search.
 pub(crate) trait Costs {
-    /// What all steps found from one cell have in common.
+    /// Facts shared by all steps found from one cell.
     type Origin;
 
-    /// What the steps found from `cell` have in common.
+    /// The facts shared by the steps found from `cell`.
     fn origin(&self, cell: Cell) -> Self::Origin;
 
     /// The cost of a straight step between neighbours, found from `from` to `to`, at most
@@ -153,7 +153,7 @@ impl Distances {
         self.known_at(self.place(cell)?)
     }
 
-    /// What is known of the cell at a place of the list.
+    /// The distance of the cell at a place of the list, if it has been found.
     fn known_at(&self, place: usize) -> Option<u16> {
         self.distance_in(self.cells[place])
     }
@@ -299,7 +299,7 @@ const NONE: u32 = u32::MAX;
 /// the same cells in the same order are equal.
 ///
 /// All buckets are linked lists in one vector, which grows to the most cells that ever waited at
-/// once. A vector for each bucket was refused: every one of them grows for itself, so that guards
+/// once. Rejected: a vector for each bucket. Each would grow for itself, and guards
 /// who had walked for a minute still allocated memory.
 #[derive(Clone, Debug)]
 struct Buckets<const COUNT: usize> {

@@ -2,12 +2,12 @@
 //!
 //! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
 //! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
-//! closing door that is opened turns back. A door with a switch stays open while the switch is on. Its position is computed from the number of steps, not
-//! from its last position.
+//! closing door that is opened turns back. A door with a switch stays open while the switch is on. The
+//! position is computed from the number of steps, not from the last position.
 //!
 //! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
-//! not begin to close while anybody touches the cell. A door that pushes players away was refused:
-//! there may be no room for them.
+//! not begin to close while anybody touches the cell. Rejected: a door that pushes players away.
+//! There may be no room for them.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -115,20 +115,15 @@ impl Doors {
         });
     }
 
-    /// The number of steps in which no door moves; `None` if none ever will.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        let waiting = self.moving.iter().filter(|door| !door.is_kept_open());
-        let quiet = waiting.map(|door| match door.phase {
-            Phase::Open(steps) => u64::from(steps),
-            Phase::Opening(_) | Phase::Closing(_) => 0,
-        });
-        quiet.min()
+    /// Whether no door moves until it is opened or a switch lets it go.
+    pub(crate) fn are_at_rest(&self) -> bool {
+        self.moving.iter().all(MovingDoor::is_kept_open)
     }
 
     /// Opens the doors of `world`, in which all are closed, as far as they are open.
     ///
     /// # Errors
-    /// If that are no doors of `world`.
+    /// If they are not doors of `world`.
     pub(crate) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
@@ -140,15 +135,6 @@ impl Doors {
             world.set_opening(door.cell, door.phase.opening());
         }
         Ok(())
-    }
-
-    /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
-    pub(crate) fn wait(&mut self, steps: u64) {
-        for door in self.moving.iter_mut().filter(|door| !door.is_kept_open()) {
-            if let Phase::Open(left) = &mut door.phase {
-                *left = left.saturating_sub(u32::try_from(steps).unwrap_or(u32::MAX));
-            }
-        }
     }
 }
 

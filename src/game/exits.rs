@@ -10,7 +10,7 @@
 //! lever or a plate of it is reached; a plate counts as reached where a guard may step on it. An
 //! exit that asks for treasure needs as much of it in reach.
 //!
-//! Random play was refused: not finding a way proves little.
+//! Rejected: random play. Not finding a way proves little.
 
 use std::collections::BTreeSet;
 
@@ -214,7 +214,7 @@ fn highest(from: Place, cell: Cell) -> f64 {
     from.height + JUMP_HEIGHT - GRAVITY / 2.0 * falling * falling
 }
 
-/// What the player has found that opens doors and moves tiles.
+/// The keys and switches that the player has found.
 #[derive(Clone, PartialEq, Default)]
 struct Openers {
     keys: BTreeSet<KeyId>,

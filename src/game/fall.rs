@@ -2,8 +2,8 @@
 //!
 //! The times of landing, of hitting the ceiling and of the highest point are known in closed form.
 //! A step is solved up to the first of them, and on from there. Therefore the result does not
-//! depend on the length of steps, and nobody falls through a floor. Adding `gravity * dt` to the
-//! speed was refused: the height of a jump would depend on the step, and a fast fall would have to
+//! depend on the length of steps, and nobody falls through a floor. Rejected: to add
+//! `gravity * dt` to the speed. The height of a jump would depend on the step, and a fast fall would have to
 //! be stopped after going too far.
 
 /// Cells per second squared.

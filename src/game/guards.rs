@@ -1,11 +1,11 @@
 //! Guards: they stand, patrol, notice, search, chase, strike, give up and fall.
 //!
-//! A step of all guards depends on the world, on what can be perceived of the players, on the
-//! sounds of the step, and on nothing else. Guards share what they know about ways, and call each
-//! other by sounds that spread as all others do.
+//! A step of all guards depends only on the world, on what can be perceived of the players, and on the
+//! sounds of the step. Guards share their knowledge of ways, and call each other by sounds that spread
+//! like any other.
 //!
-//! Guards far from all players take [`FAR_STRIDE`] steps at once. Simulating only those who are in
-//! view was refused: a patrol would stop whenever the player looks away.
+//! Guards far from all players take [`FAR_STRIDE`] steps at once. Rejected: to simulate only guards in
+//! view. A patrol would stop whenever the player looks away.
 
 mod behavior;
 mod context;
@@ -96,13 +96,13 @@ pub(crate) struct Guards {
 /// Guards who have woken never sleep again. The list is therefore found anew where somebody wakes or
 /// the level changes, and not in each step.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Awake {
+struct Awake {
     /// The guards who do not sleep, from the lowest index to the highest.
-    pub(crate) indices: Vec<usize>,
+    indices: Vec<usize>,
     /// Whether there are hounds, awake or asleep.
-    pub(crate) has_hounds: bool,
+    has_hounds: bool,
     /// The number of guards who have a sprite.
-    pub(crate) figures: usize,
+    figures: usize,
 }
 
 impl Guards {
@@ -204,7 +204,7 @@ impl Guards {
         self.has_changed |= (guard.mover, guard.frame()) != before;
     }
 
-    /// The number of steps that a guard takes at once now: 0 for those who wait for their turn.
+    /// The number of steps that a guard takes at once now: 0 while they wait for their turn.
     fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
@@ -226,7 +226,7 @@ impl Guards {
         }
     }
 
-    /// Lets all guards hear `sound` whom it reaches.
+    /// Lets all guards within reach hear `sound`.
     fn spread(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], sound: &Sound) {
         let told = match sound.by {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
@@ -315,7 +315,7 @@ impl Guards {
 
 impl Guards {
     /// Finds the guards who are awake.
-    pub(crate) fn find_awake(&mut self) {
+    fn find_awake(&mut self) {
         let guards = self.list.iter().enumerate();
         let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
         let indices = &mut self.awake.indices;
@@ -331,7 +331,7 @@ impl Guards {
     }
 
     /// Records where all guards are. Those who sleep have not moved since the last step.
-    pub(crate) fn look_at_others(&mut self) {
+    fn look_at_others(&mut self) {
         if self.others.len() != self.list.len() {
             self.others.clear();
             self.others.extend(self.list.iter().map(Guard::as_other));
@@ -343,35 +343,30 @@ impl Guards {
     }
 }
 
-/// What the rest of the game asks of guards, and does to them.
+/// Queries and effects for the rest of the game.
 impl Guards {
     /// Whether there are none.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// What guards have done in the last step, by its place in their order.
+    /// The act of the last step at this place in the order of acts.
     pub(crate) fn act(&self, index: usize) -> Option<Act> {
         self.acts.get(index).copied()
     }
 
-    /// The number of steps in which no guard does anything, if nothing is perceived: 0 if anybody
-    /// is awake, `None` if all sleep.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+    /// Whether no guard does anything until they perceive something: all sleep.
+    pub(crate) fn are_at_rest(&self) -> bool {
         // Only a step fills what guards remember of each other and of the players.
         let has_begun = self.steps > 0 || self.list.is_empty();
-        if !has_begun || self.has_changed || !self.acts.is_empty() || !self.spoken.is_empty() {
-            return Some(0);
-        }
-        let quiet = self.awake().filter_map(|guard| match guard.state {
-            State::Asleep if guard.stagger == 0 => None,
-            State::Down { left } => Some(u64::from(left) - 1),
-            _ => Some(0),
-        });
-        quiet.min()
+        has_begun
+            && !self.has_changed
+            && self.acts.is_empty()
+            && self.spoken.is_empty()
+            && self.awake().all(Guard::is_asleep)
     }
 
-    /// Advances the clocks by `steps`, at most [`Guards::quiet_steps`].
+    /// Advances the clocks by `steps` in which all guards are at rest.
     pub(crate) fn wait(&mut self, steps: u64) {
         if self.list.is_empty() {
             return;
@@ -380,11 +375,6 @@ impl Guards {
         self.steps += steps;
         self.ways.wait(steps);
         self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
-        for guard in &mut self.list {
-            if let State::Down { left } = &mut guard.state {
-                *left = left.saturating_sub(u16::try_from(steps).unwrap_or(u16::MAX)).max(1);
-            }
-        }
     }
 
     /// Whether anything that a picture shows of guards has changed in the last step.

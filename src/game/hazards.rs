@@ -6,8 +6,8 @@
 //!   second time on.
 //! - Spikes are heard half a second before they come out, and hurt once for each time.
 //! - A blow from outside the view does not kill before it has [warned](super::health). The view
-//!   is that of the default field of view, whatever the player has chosen: a game does not depend on
-//!   how it is shown.
+//!   has the default field of view, whatever the player has chosen: a game does not depend on how it
+//!   is shown.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ const SPIKES: u8 = 2;
 const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
-    /// What the floor does to the player in this step, which began at `before`.
+    /// The effects of the floor on the player in this step, which began at `before`.
     pub(crate) fn meet_hazards(&mut self, before: &Motion) {
         self.fall();
         if self.is_mission {
@@ -81,13 +81,6 @@ impl Game {
         }
     }
 
-    /// The number of steps in water in which it does not hurt; `None` outside water.
-    pub(crate) fn quiet_steps_in_water(&self) -> Option<u64> {
-        let steps = self.player.in_water;
-        let next = COLD * 2.max(steps / COLD + 1);
-        (self.is_mission && self.is_in_water()).then(|| u64::from(next - steps - 1))
-    }
-
     fn step_on_spikes(&mut self) {
         *self.work += self.spikes.count() as u64;
         let Self { spikes, world, sounds, steps, .. } = self;
@@ -96,7 +89,7 @@ impl Game {
         }
         let motion = self.player.motion;
         let thrust = self.spikes.thrust_in(motion.cell(), self.steps);
-        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + HEIGHT;
+        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + SPIKES_HEIGHT;
         if thrust.is_some() && is_touched && thrust != self.player.last_thrust {
             self.player.last_thrust = thrust;
             self.hurt(Harm { points: SPIKES, bearing: None, spares: false, cause: Cause::Spikes });
@@ -158,7 +151,7 @@ fn is_cold_after(steps: u32) -> bool {
 const WARNING: u64 = 30;
 const OUT: u64 = 24;
 /// How high they come out, in cells.
-pub(crate) const HEIGHT: f64 = 0.4;
+const SPIKES_HEIGHT: f64 = 0.4;
 
 /// All spikes of a level.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -177,7 +170,7 @@ impl OfLevel for Spikes {
 struct Spike {
     cell: Cell,
     rhythm: Rhythm,
-    /// What they show.
+    /// The phase that they show.
     phase: Phase,
 }
 
@@ -237,18 +230,9 @@ impl Spikes {
 
     /// The step in which the spikes in `cell` came out that are out in the step `now`; `None` if
     /// there are none.
-    pub(crate) fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
+    fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
         (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
-    }
-
-    /// The number of steps from `now` in which no spikes change; `None` if there are none.
-    pub(crate) fn quiet_steps(&self, now: u64) -> Option<u64> {
-        let quiet = self.each.iter().map(|spike| {
-            let is_shown = spike.phase == spike.rhythm.phase(now);
-            if is_shown { spike.rhythm.steps_left(now) } else { 0 }
-        });
-        quiet.min()
     }
 }
 
@@ -286,16 +270,6 @@ impl Rhythm {
             _ => Phase::In,
         }
     }
-
-    /// The number of steps from `now` in which the phase stays the same; at least one.
-    fn steps_left(self, now: u64) -> u64 {
-        let (age, period) = (self.age(now), u64::from(self.period));
-        match self.phase(now) {
-            Phase::Out => OUT - age,
-            Phase::In => period - WARNING - age,
-            Phase::Rising => period - age,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -306,20 +280,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn spikes_warn_before_they_come_out_and_say_how_long_they_rest(
+        fn spikes_warn_before_they_come_out(
             period in 60..=3600_u16,
             delay in 0..3600_u16,
             now in 3600..9000_u64,
         ) {
             let rhythm = Rhythm { period, delay: delay % period };
-            let phase = rhythm.phase(now);
-            let left = rhythm.steps_left(now);
-            prop_assert!((0..left).all(|step| rhythm.phase(now + step) == phase));
-            prop_assert!(rhythm.phase(now + left) != phase);
-            if phase == Phase::Out {
-                let thrust = now - rhythm.age(now);
-                prop_assert!((1..=24).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
-            }
+            let thrust = now + u64::from(period) - rhythm.age(now);
+            prop_assert!((1..=WARNING).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
+            prop_assert!(rhythm.phase(thrust - WARNING - 1) != Phase::Rising);
+            prop_assert!((0..OUT).all(|step| rhythm.phase(thrust + step) == Phase::Out));
+            prop_assert!(rhythm.phase(thrust + OUT) != Phase::Out);
         }
 
         #[test]

@@ -166,8 +166,8 @@ impl Mechanisms {
         self.moving.push(MovingCell::new(cell, tile));
     }
 
-    /// Finds out anew what is kept from step to step: which plates are down, which cells do not rest,
-    /// and which secrets have been found.
+    /// Derives the facts kept from step to step again: which plates are down, which cells do not rest, and
+    /// which secrets have been found.
     fn recollect(&mut self, world: &World) {
         let plates = self.plates.iter().enumerate().filter(|(_, plate)| plate.is_down);
         self.down = plates.map(|(index, _)| index).collect();
@@ -193,7 +193,7 @@ impl Mechanisms {
         state.is_turned
     }
 
-    /// The secret walls, and those of them that have been found.
+    /// The number of secret walls, and of those found.
     pub(crate) fn secrets(&self) -> Share {
         self.secrets
     }
@@ -242,7 +242,7 @@ impl Mechanisms {
 }
 
 impl Game {
-    /// Moves what is driven by switches, hands and weights.
+    /// Moves everything that switches, hands and weights drive.
     pub(crate) fn move_mechanisms(&mut self) {
         let bodies = self.cells_of_all().count();
         *self.work += (bodies + self.mechanisms.down.len()) as u64;
@@ -490,7 +490,7 @@ struct MovingCell {
     is_blocked: bool,
 }
 
-/// What a moving cell does in a step.
+/// The effect of a step on a moving cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     after: MovingCell,

@@ -1,7 +1,7 @@
 //! Noise: the sounds that players make by moving.
 //!
-//! Walking is heard close by, by those who listen; running from afar. Ducking makes a walk silent, at half the speed. A
-//! sound for each step rather than a steady one was chosen, because guards notice events.
+//! Walking is heard close by, and by listeners only; running from afar. Ducking makes a walk silent, at half the
+//! speed. Each step is a sound of its own, because guards notice events. Rejected: a steady sound.
 
 use super::Game;
 use super::intent::{Intent, Intents};

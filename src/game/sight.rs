@@ -5,8 +5,8 @@
 //! covers, and shapes what is behind them; glass and masks hide nothing. Smoke hides what is in it
 //! and behind it.
 //!
-//! The rays of the casters were refused: they end at the first solid cell whatever its height, and
-//! do not know where the line ends.
+//! Rejected: the rays of the casters. They end at the first solid cell whatever its height, and do not know
+//! where the line ends.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};

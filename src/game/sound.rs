@@ -1,11 +1,9 @@
 //! Sounds: where they are made, how far they reach, and who hears them.
 //!
 //! A sound spreads over open cells, around corners and through open doors. A closed door weakens
-//! it, and walls stop it. A straight line from ear to source was refused: sounds would pass
-//! through walls, and a guard behind a wall would know what happens on its other side.
-//!
-//! Sound goes around corners, over low walls, and through the holes of masks. Solid walls stop it.
-//! A closed door or glass is as far as [`DAMPING`] more cells.
+//! it, and walls stop it. It also passes over low walls and through the holes of
+//! masks; a closed door or glass counts as [`DAMPING`] more half cells. Rejected: a straight line from ear to source.
+//! Sounds would pass through walls, and a guard would know what happens behind one.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -260,7 +258,7 @@ impl Hearing {
         has_faded || has_heard
     }
 
-    /// Refuses what cannot be heard.
+    /// Refuses a state that no sounds lead to.
     pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
         let map = (world.grid().width(), world.grid().height());
         check(self.field.is_possible(map), "the search of a sound")?;

@@ -24,7 +24,7 @@ const LOST: u16 = 150;
 const BAFFLED: u16 = 300;
 /// The steps after which guards search who do not see a player any more.
 const FORGOTTEN: u16 = 600;
-/// The steps for which they overlook a player whom they could not reach.
+/// The steps for which they overlook a player out of their reach.
 const OVERLOOKS: u16 = 240;
 /// The distances that guards keep who do not strike, in cells.
 const KEEPS: (f64, f64) = (4.0, 9.0);
@@ -113,7 +113,7 @@ impl Guard {
 
 /// Duty: while nothing disturbs them.
 impl Guard {
-    pub(crate) fn do_duty(&mut self, context: &mut Context) {
+    fn do_duty(&mut self, context: &mut Context) {
         if self.pause > 0 {
             self.pause = self.pause.saturating_sub(context.stride);
             self.look_aside();
@@ -130,7 +130,7 @@ impl Guard {
         }
     }
 
-    pub(crate) fn return_to_duty(&mut self, context: &mut Context) {
+    fn return_to_duty(&mut self, context: &mut Context) {
         let home = match &self.duty {
             Duty::Patrol(stops) => stops.get(self.stop).copied().unwrap_or(self.post),
             Duty::Stand | Duty::Sleep | Duty::Wander(_) => self.post,
@@ -189,12 +189,7 @@ impl Guard {
     }
 
     /// A cell at most `reach` from `around` where guards walk; `None` if a few tries find none.
-    pub(crate) fn random_cell(
-        &mut self,
-        context: &Context,
-        around: Cell,
-        reach: i32,
-    ) -> Option<Cell> {
+    fn random_cell(&mut self, context: &Context, around: Cell, reach: i32) -> Option<Cell> {
         let gait = self.gait();
         (0..6).find_map(|_| {
             let mut offset = || self.random.whole(-reach, reach) as i32;
@@ -490,7 +485,7 @@ impl Guard {
 
 /// Blows and shots.
 impl Guard {
-    pub(crate) fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
+    fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
         let target = self.quarry.and_then(|quarry| context.target(quarry.target).copied());
         let Some(target) = target else { return self.give_up(context) };
         let left = left.saturating_sub(context.stride);

@@ -32,7 +32,7 @@ pub(crate) struct Context<'a> {
     pub(crate) woken: &'a mut Vec<usize>,
 }
 
-/// What guards know of each other.
+/// A guard as other guards know them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Other {
     pub(crate) position: DVec2,
@@ -40,7 +40,7 @@ pub(crate) struct Other {
     pub(crate) is_down: bool,
 }
 
-/// What guards can perceive of a player.
+/// A player as guards can perceive them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Target {
     /// The position, in cells.
@@ -69,7 +69,7 @@ impl Target {
     }
 }
 
-/// What a guard does to the rest of the game in a step.
+/// An effect of a guard on the rest of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Act {
     /// Hits the player with index `target`; the blow comes from `from`.

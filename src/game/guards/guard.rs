@@ -18,7 +18,7 @@ use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading, World}
 pub(crate) const WONDERS: u16 = 300;
 pub(crate) const ALARMED: u16 = 1000;
 
-/// The steps for which a guard knows where a player has gone whom they do not see any more.
+/// For so many steps, a guard still knows where a player who left their sight has gone.
 pub(crate) const GUESSES: u16 = 45;
 /// The steps for which a guard stands and shouts before they run.
 const FRIGHT: u16 = 24;
@@ -71,7 +71,7 @@ pub(crate) struct Guard {
     pub(crate) rest: u16,
     pub(crate) stagger: u16,
     pub(crate) blind: u16,
-    /// The steps for which they have not reached a player whom they follow.
+    /// The steps for which they have followed a player in vain.
     pub(crate) baffled: u16,
     /// Whether a floor under them has moved.
     pub(crate) is_unsettled: bool,
@@ -134,7 +134,7 @@ pub(crate) enum Phase {
     Recovery,
 }
 
-/// What a guard knows about the player whom they look for.
+/// A guard's knowledge of the player they look for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Quarry {
     /// The index of the player.

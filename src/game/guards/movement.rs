@@ -1,7 +1,7 @@
 //! The body of a guard: turning, walking, climbing and falling.
 //!
-//! A guard collides with the world as the player does, and moreover with what they avoid: the edges
-//! of drops that are too high, water, spikes. In the middle of level floor, where nothing can be in
+//! A guard collides with the world as the player does, and also with everything they avoid: edges of high
+//! drops, water, spikes. In the middle of level floor, where nothing can be in
 //! the way, a step is an addition; elsewhere it is a [`slide`].
 
 use glam::DVec2;
@@ -223,7 +223,7 @@ impl Ground<'_> {
         })
     }
 
-    /// Whether a circle is over floors that are one step from that of its middle.
+    /// Whether all floors under a circle are at most one step from the floor of its middle.
     fn has_room(&self, at: DVec2, middle: Cell, radius: f64) -> bool {
         let Some(floor) = self.terrain.footing(self.world, middle) else { return false };
         let (low, high) = (at - radius, at + radius);
@@ -252,7 +252,7 @@ impl Ground<'_> {
     }
 }
 
-/// The obstacles of a guard: those of the place, and if they are careful, what they avoid.
+/// The obstacles of a guard: the place, and for a careful guard also everything they avoid.
 struct Careful<'a> {
     place: Place<'a>,
     ground: &'a Ground<'a>,

@@ -15,10 +15,10 @@ use crate::game::sound::{Sound, SoundKind, Source, half_cells};
 use crate::world::{Cell, Difficulty, GuardKind};
 
 /// A guard looks around in every fourth step.
-pub(crate) const LOOK_EACH: u64 = 4;
+const LOOK_EACH: u64 = 4;
 /// The most that one look adds to awareness.
 const MOST_GAIN: u32 = 80;
-/// What awareness loses where nobody is seen.
+/// The loss of awareness in a look that finds nobody.
 const LOSS: u16 = 8;
 /// At this distance in front of a guard, a player is noticed at once, in cells.
 const FACE_TO_FACE: f64 = 1.2;
@@ -71,7 +71,7 @@ impl Guard {
         }
     }
 
-    /// What a look at `target` adds to awareness; [`ALARMED`] where it is noticed at once.
+    /// The gain of awareness by a look at `target`; [`ALARMED`] if it is noticed at once.
     fn gain(&self, context: &Context, target: &Target) -> u16 {
         let way = target.position - self.mover.position();
         let distance = way.length();
@@ -124,7 +124,7 @@ impl Guard {
     }
 
     /// Wonders, or is alarmed.
-    pub(crate) fn react(&mut self, context: &mut Context) {
+    fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
             State::Asleep
@@ -174,7 +174,7 @@ impl Guard {
     }
 }
 
-/// The most that sounds alone add up to for those who see.
+/// The most awareness that sounds alone give a guard who sees.
 const MOST_BY_EAR: u16 = 700;
 
 impl Guard {
@@ -196,7 +196,7 @@ impl Guard {
         if self.state == State::Asleep { reach / 2 } else { reach }
     }
 
-    /// Hears `sound` at this distance of the `earshot`. `told` is what the guard knows who calls.
+    /// Hears `sound` at this distance of the `earshot`. `told` is the quarry of the guard who calls.
     pub(crate) fn hear(
         &mut self,
         context: &mut Context,
@@ -292,7 +292,7 @@ fn is_call(sound: &Sound) -> bool {
         && matches!(sound.kind, SoundKind::Shout | SoundKind::Bell | SoundKind::Bark)
 }
 
-/// What a sound from nearby adds to awareness.
+/// The gain of awareness by a sound from nearby.
 fn startle(kind: SoundKind) -> u32 {
     match kind {
         SoundKind::Walking => 200,

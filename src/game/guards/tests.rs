@@ -131,7 +131,7 @@ fn on(difficulty: Difficulty) -> Rules {
     Rules { difficulty, seed: 0 }
 }
 
-// What guards see.
+// Seeing.
 
 /// A corridor of sixteen cells, with a warden at its west end.
 fn corridor(heading: u32) -> Scene {
@@ -250,16 +250,15 @@ fn who_is_stunned_gets_up_alone() {
     let mut scene = corridor(0);
     scene.target.is_alive = false;
     scene.guards.stun(0, 100);
-    scene.steps_until(5, |scene| scene.guards.quiet_steps() != Some(0)).unwrap();
-    let quiet = scene.guards.quiet_steps().unwrap();
-    assert!((90..100).contains(&quiet), "{quiet}");
-    scene.guards.wait(quiet);
+    (0..95).for_each(|_| scene.step(&[]));
+    assert!(scene.guard(0).is_down);
+    scene.steps_until(10, |scene| !scene.guard(0).is_down).unwrap();
     assert!(scene.guard(0).is_down);
     scene.step(&[]);
     assert_eq!(scene.mood(0), Mood::Searching);
 }
 
-// What guards hear, and what they tell each other.
+// Hearing, and telling each other.
 
 const GUARDS: &str = r#"
 "W" = { guard = "warden", heading = 180 }
@@ -324,7 +323,7 @@ fn a_guard_turns_to_a_noise_first_and_then_goes_there_and_comes_back() {
 fn sleepers_are_woken_by_noise_nearby_only_and_rest_until_then() {
     let mut scene = rooms('S', '.');
     scene.target.is_alive = false;
-    scene.steps_until(5, |scene| scene.guards.quiet_steps().is_none()).unwrap();
+    scene.steps_until(5, |scene| scene.guards.are_at_rest()).unwrap();
     scene.step(&[scene.sound(SoundKind::Running, 7)]);
     assert_eq!(scene.mood(0), Mood::Asleep);
     scene.put(7.5, 3.5);
@@ -393,7 +392,7 @@ fn what_a_player_hears_of_guards_is_weaker_behind_doors() {
     }
 }
 
-// Where guards walk.
+// Walking.
 
 #[test]
 fn a_patrol_goes_round_and_returns_to_it() {
@@ -591,7 +590,7 @@ proptest! {
     }
 }
 
-// Guards who follow and strike.
+// Chasing and striking.
 
 const WARDEN: &str = r#""W" = { guard = "warden", heading = 0 }"#;
 

@@ -123,7 +123,7 @@ impl Guard {
         point.unwrap_or_else(|| self.middle_first(from, first))
     }
 
-    /// The middle of the next cell; but first that of their own, where they are far off the line.
+    /// The centre of the next cell, or of the guard's own cell first if the guard has strayed from the line.
     fn middle_first(&self, from: Cell, next: Cell) -> DVec2 {
         let (middle, position) = (from.center(), self.mover.position());
         let way = next.center() - middle;

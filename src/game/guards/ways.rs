@@ -6,14 +6,14 @@
 //! floor has moved, may leave it.
 //!
 //! For each goal, all guards who go there share the distances of the cells around it.
-//! A search begins at the goal and ends when it has found those who ask. Guards who follow the same
+//! A search begins at the goal and ends when it has found the guards who ask. Guards who follow the same
 //! player have the same goal, so that twenty of them cost hardly more than one. All searches
 //! together find at most [`MOST_CELLS`] cells in a step and go on in the next; a guard without a
-//! way yet walks on where they went before. A search for each guard (A*) was refused: it finds
-//! fewer cells for one guard, and all of them again for the next.
+//! way yet walks on where they went before. Rejected: a search for each guard
+//! (A*), which finds fewer cells for one guard, and all of them again for the next.
 //!
-//! Doors and moving floors change ways. A step that is not possible any more begins the search
-//! anew, and so does a search that has become old.
+//! Doors and moving floors change ways. A search begins again when a step of it has become
+//! impossible, and when it is old.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub(crate) const DROP: f64 = 1.0;
 /// Going through a closed door takes as long as walking so much farther, in half cells.
 const DOOR: u16 = 6;
 
-/// What guards know about the tiles and the things of a world.
+/// The facts about tiles and things that guards need.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Terrain {
     /// For each tile of the world.
@@ -214,7 +214,7 @@ impl Footing {
     }
 }
 
-/// The costs of a search from the goal of a way back to those who walk there.
+/// The costs of a search from a goal back to the guards who walk there.
 pub(crate) struct Backwards<'a> {
     pub(crate) terrain: &'a Terrain,
     pub(crate) world: &'a World,
@@ -268,7 +268,7 @@ fn tile(world: &World, cell: Cell) -> Option<TileId> {
 }
 
 /// The cost of the step between two neighbours, in half cells.
-pub(crate) fn cost_between(one: Cell, other: Cell) -> u16 {
+fn cost_between(one: Cell, other: Cell) -> u16 {
     if one.column == other.column || one.row == other.row { STRAIGHT } else { DIAGONAL }
 }
 
