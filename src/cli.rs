@@ -4,27 +4,28 @@
 //! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
-mod arguments;
+pub mod arguments;
 mod asciicast;
 mod cast;
 mod check;
 mod completions;
-mod config;
-mod data_folder;
-mod error;
+pub mod config;
+pub mod data_folder;
+pub mod error;
 mod external;
-mod level;
+pub mod level;
 mod levels;
 mod manual;
-mod output_file;
+pub mod output_file;
 mod own_maps;
+pub mod parse;
 mod play;
 mod recording;
 mod replay;
-mod script;
-mod snapshot;
-mod today;
-mod verify;
+pub mod script;
+pub mod snapshot;
+pub mod today;
+pub mod verify;
 mod watch;
 
 use std::ffi::OsString;

@@ -12,7 +12,7 @@ use crate::app::store::private;
 use crate::fault::printable;
 
 /// The largest configuration, in bytes.
-pub(crate) const LARGEST: u64 = 1 << 20;
+pub const LARGEST: u64 = 1 << 20;
 
 /// The configuration in force, and the path of its file.
 pub(crate) struct InForce {
@@ -61,7 +61,7 @@ pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
 }
 
 /// A file in `cellcaster` in the platform's folder for configuration.
-pub(crate) fn configuration_file(name: &str) -> Option<PathBuf> {
+pub fn configuration_file(name: &str) -> Option<PathBuf> {
     let folder = choose_base_strategy().ok()?.config_dir();
     Some(folder.join("cellcaster").join(name))
 }

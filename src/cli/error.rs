@@ -33,12 +33,12 @@ enum Cause {
 
 impl Error {
     /// An invalid request, described by `sentence`.
-    pub(crate) fn mistake(sentence: impl Into<String>) -> Self {
+    pub fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
     }
 
     /// Faults of several files: `text` has a line with the place of each.
-    pub(crate) fn report_of(text: String) -> Self {
+    pub fn report_of(text: String) -> Self {
         Self { cause: Cause::Report(text) }
     }
 
@@ -53,7 +53,7 @@ impl Error {
     }
 
     /// The error of writing to standard output.
-    pub(crate) fn of_output(error: &io::Error) -> Self {
+    pub fn of_output(error: &io::Error) -> Self {
         let cause = match error.kind() {
             io::ErrorKind::BrokenPipe => Cause::ClosedPipe,
             _ => Cause::Machine(format!("standard output can't be written: {error}")),
@@ -62,12 +62,12 @@ impl Error {
     }
 
     /// A failure of the system, described by `sentence`.
-    pub(crate) fn machine(sentence: impl Into<String>) -> Self {
+    pub fn machine(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Machine(sentence.into()) }
     }
 
     /// Prints the message of a command that continues.
-    pub(crate) fn warn(&self) {
+    pub fn warn(&self) {
         self.print();
     }
 

@@ -15,7 +15,7 @@ use crate::map::{self, Folder, Level, builtin};
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.
-pub(crate) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
+pub fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
     grid_of(load(argument)?, &argument.unwrap_or_default().to_string_lossy())
 }
 
@@ -75,7 +75,7 @@ const NOTHING_TO_WATCH: &str =
     "--watch needs a map file, as in \"cellcaster play my.toml --watch\": nothing else changes";
 
 /// The level that `argument` names; if it is built in, followed by the later ones.
-pub(crate) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
+pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     if let Some(levels) = argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
         return Ok(levels);
     }

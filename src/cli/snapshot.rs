@@ -66,7 +66,7 @@ pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
 }
 
 /// The error of `command`, which writes a PNG, if the output is a terminal.
-pub(crate) fn no_png_here(command: &str) -> Error {
+pub fn no_png_here(command: &str) -> Error {
     Error::mistake(format!(
         "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
          \"cellcaster {command} --format png > picture.png\""

@@ -123,7 +123,7 @@ impl Flavor for Hash {
 }
 
 /// The first line of what is stored as `kind`.
-pub(crate) fn first_line(kind: &str) -> String {
+pub fn first_line(kind: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("cellcaster-{kind} {FORMAT_VERSION} rules {RULES_VERSION} version {version}\n")
 }

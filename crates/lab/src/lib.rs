@@ -9,5 +9,7 @@
 pub mod accuracy;
 pub mod casters;
 pub mod cli;
+#[cfg(target_os = "linux")]
+mod load;
 pub mod speed;
 pub mod wire;

@@ -39,7 +39,7 @@ pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As those of [`read`]; [`io::ErrorKind::InvalidData`] if it is no UTF-8.
 #[cfg(feature = "cli")]
-pub(crate) fn read_text(file: &Path, most: u64) -> io::Result<String> {
+pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
     let content = read(file, most)?;
     String::from_utf8(content)
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))

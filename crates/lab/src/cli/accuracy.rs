@@ -1,4 +1,4 @@
-//! `cellcaster accuracy`: errors of everything that has a truth, against what it costs.
+//! `cellcaster-lab accuracy`: errors of everything that has a truth, against what it costs.
 
 mod csv;
 mod json;
@@ -12,9 +12,9 @@ mod text;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 
-use cellcaster::cli::arguments::{Accuracy, ReportFormat};
-use cellcaster::cli::{Error, level, snapshot};
+use super::arguments::{Accuracy, ReportFormat};
 use crate::accuracy::{Plan, RaySource, Table, report, set_names};
+use cellcaster::cli::{Error, level, snapshot};
 use progress::Progress;
 use run::Run;
 

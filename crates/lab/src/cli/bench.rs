@@ -1,4 +1,4 @@
-//! `cellcaster bench`: the speed on this machine.
+//! `cellcaster-lab bench`: the speed on this machine.
 
 mod footprint;
 mod json;
@@ -12,13 +12,13 @@ use std::time::Duration;
 
 use ratatui::layout::Size;
 
-use cellcaster::cli::arguments::{Bench, BenchFormat};
+use super::arguments::{Bench, BenchFormat};
+use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
+use crate::wire::{PipelineRow, measure_pipeline};
+use cellcaster::app::{Replay, Settings};
 use cellcaster::cli::output_file::OutputFile;
 use cellcaster::cli::script::SHOWCASE;
 use cellcaster::cli::{Error, level};
-use cellcaster::app::{Replay, Settings};
-use crate::speed::{DrawingRow, Growth, measure_drawing, measure_growth};
-use crate::wire::{PipelineRow, measure_pipeline};
 use footprint::Footprint;
 
 /// The results.

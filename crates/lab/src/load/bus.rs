@@ -16,9 +16,9 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
-use crate::plan::Plan;
-use crate::process::between;
-use crate::report::percentile;
+use super::plan::Load;
+use super::process::between;
+use super::report::percentile;
 
 const STREAM: &str = "CELLCASTER_LOAD";
 const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
@@ -33,12 +33,12 @@ const KEPT: usize = 150;
 const WARM_UP: Duration = Duration::from_secs(2);
 
 /// Runs so many rooms.
-pub(crate) fn run(rooms: usize, plan: &Plan) -> Result<(), Box<dyn Error>> {
+pub(crate) fn run(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
     Builder::new_current_thread().enable_all().build()?.block_on(load(rooms, plan))
 }
 
-async fn load(rooms: usize, plan: &Plan) -> Result<(), Box<dyn Error>> {
-    let address = plan.option("--cluster").ok_or("--bus needs --cluster")?;
+async fn load(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
+    let address = plan.cluster.as_deref().ok_or("--bus needs --cluster")?;
     let (client, listener) = (connect(address).await?, connect(address).await?);
     let context = jetstream::new(client.clone());
     let config = stream::Config {

@@ -11,9 +11,9 @@ use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key
 use russh::{Channel, ChannelMsg, Error};
 use tokio::time::{Instant, sleep_until};
 
-use crate::lamp::Lamp;
-use crate::report::Tally;
-use crate::server::Access;
+use super::lamp::Lamp;
+use super::report::Tally;
+use super::server::Access;
 
 /// Believes every server.
 pub(crate) struct Anyone;

@@ -1,77 +1,77 @@
-//! What a run does, by the arguments of this process.
+//! The options of a load.
 
-use std::error::Error;
+use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::process::Usage;
+use clap::Args;
 
-/// What to do.
-pub(crate) struct Plan {
+use super::process::Usage;
+
+/// Play by real SSH sessions on one server or several, and print what they cost
+#[derive(Args, Debug)]
+pub(crate) struct Load {
+    /// How many sessions play
+    #[arg(long, value_name = "N", default_value_t = 20)]
     pub(crate) sessions: usize,
-    /// Sessions that never read.
+    /// How many more sessions never read
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) silent: usize,
+    /// Measure OpenSSH's server with a game for each session, in place of cellcaster-server
+    #[arg(long = "sshd")]
     pub(crate) uses_sshd: bool,
+    /// How long to measure, in seconds
+    #[arg(long, value_name = "N", default_value_t = 10)]
     pub(crate) seconds: u64,
-    /// The program of the servers.
-    pub(crate) server: String,
-    pub(crate) answer_delay: Duration,
+    /// The server's program, or the game's with --sshd [default: the one beside this program]
+    #[arg(long, value_name = "FILE")]
+    server: Option<PathBuf>,
+    /// How long each client waits before it answers a query of the server, in milliseconds
+    #[arg(long, value_name = "MS", default_value_t = 0)]
+    answer_delay: u64,
+    /// How many hosts of a cluster there are; more than one needs --cluster and --store
+    #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) hosts: usize,
-    /// The rooms of a load on the bus alone.
+    /// Measure the bus of a cluster alone, with this number of rooms
+    #[arg(long = "bus", value_name = "ROOMS")]
     pub(crate) rooms: Option<usize>,
-    /// For each server, as they are.
-    pub(crate) options: Vec<String>,
-    /// Further processes that are measured.
-    pub(crate) beside: Vec<u32>,
+    /// The NATS servers of the cluster
+    #[arg(long, value_name = "URL")]
+    pub(crate) cluster: Option<String>,
+    /// The database of the cluster
+    #[arg(long, value_name = "URL")]
+    pub(crate) store: Option<String>,
+    /// Measure another process, too, such as that of the NATS server; may be repeated
+    #[arg(long, value_name = "PID")]
+    beside: Vec<u32>,
+    /// Let clients come, walk, talk, resize their windows and leave for a long time
+    #[arg(long)]
+    pub(crate) soak: bool,
+    /// The seed of a soak
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
 }
 
-impl Plan {
-    /// What the arguments say.
-    pub(crate) fn parse() -> Result<Self, Box<dyn Error>> {
-        let mut plan = Self {
-            sessions: 20,
-            silent: 0,
-            uses_sshd: false,
-            seconds: 10,
-            server: "target/release/cellcaster".to_owned(),
-            answer_delay: Duration::ZERO,
-            hosts: 1,
-            rooms: None,
-            options: Vec::new(),
-            beside: Vec::new(),
-        };
-        let mut arguments = std::env::args().skip(1);
-        while let Some(name) = arguments.next() {
-            if name == "--sshd" {
-                plan.uses_sshd = true;
-                continue;
-            }
-            let value = arguments.next().ok_or_else(|| format!("{name} needs a value"))?;
-            match name.as_str() {
-                "--sessions" => plan.sessions = value.parse()?,
-                "--silent" => plan.silent = value.parse()?,
-                "--seconds" => plan.seconds = value.parse()?,
-                "--server" => plan.server = value,
-                "--answer-delay" => plan.answer_delay = Duration::from_millis(value.parse()?),
-                "--bus" => plan.rooms = Some(value.parse()?),
-                "--hosts" => plan.hosts = value.parse()?,
-                "--cluster" | "--store" => plan.options.extend([name, value]),
-                "--beside" => plan.beside.push(value.parse()?),
-                _ => return Err(format!("there is no option {name}").into()),
-            }
-        }
-        if plan.hosts > 1 && plan.options.len() != 4 {
-            return Err("several hosts need --cluster and --store".into());
-        }
-        Ok(plan)
+impl Load {
+    /// The program that is measured.
+    pub(crate) fn program(&self) -> String {
+        let name = if self.uses_sshd { "cellcaster" } else { "cellcaster-server" };
+        let beside = || std::env::current_exe().unwrap_or_default().with_file_name(name);
+        self.server.clone().unwrap_or_else(beside).display().to_string()
     }
 
-    /// What an option for the servers says.
-    pub(crate) fn option(&self, name: &str) -> Option<&str> {
-        let pair = self.options.chunks(2).find(|pair| pair[0] == name)?;
-        Some(&pair[1])
+    /// The time before a client answers a query.
+    pub(crate) fn answer_delay(&self) -> Duration {
+        Duration::from_millis(self.answer_delay)
     }
 
-    /// What each of the other processes has used so far.
+    /// The options for each server.
+    pub(crate) fn server_options(&self) -> Vec<String> {
+        let named = [("--cluster", &self.cluster), ("--store", &self.store)];
+        let given = named.iter().filter_map(|(name, value)| Some([*name, value.as_deref()?]));
+        given.flatten().map(str::to_owned).collect()
+    }
+
+    /// The processor time of each of the other processes.
     pub(crate) fn others(&self) -> Vec<Usage> {
         self.beside.iter().map(|&process| Usage::of(process)).collect()
     }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::thread::available_parallelism;
 
-use crate::process::Usage;
+use super::process::Usage;
 
 /// A server that runs until this is dropped.
 pub(crate) struct ServerProcess {
@@ -28,7 +28,7 @@ pub(crate) struct Setup<'a> {
     pub(crate) connections: usize,
     /// Its number among the servers of this run, which is also that of its processor.
     pub(crate) number: usize,
-    /// Further options of `cellcaster serve`.
+    /// Further options of `cellcaster-server`.
     pub(crate) options: &'a [String],
 }
 

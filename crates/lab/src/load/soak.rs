@@ -12,16 +12,9 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use crate::server::{ServerProcess, Setup};
-use crate::wanderer::{self, Leaving};
-
-/// What to do.
-struct Plan {
-    clients: u64,
-    seconds: u64,
-    seed: u64,
-    server: String,
-}
+use super::plan::Load;
+use super::server::{ServerProcess, Setup};
+use super::wanderer::{self, Leaving};
 
 /// How the visits have ended so far; `None` for those with a fault.
 type Ends = Arc<Mutex<BTreeMap<Option<Leaving>, u64>>>;
@@ -33,23 +26,22 @@ const LONGEST: Duration = Duration::from_secs(20);
 /// The time in which the server closes the last connections and rooms.
 const AFTERWARDS: Duration = Duration::from_secs(90);
 
-/// Runs a soak with the arguments of this process.
-pub(crate) fn run() -> Result<(), Box<dyn Error>> {
-    let plan = plan()?;
-    let connections = 2 * plan.clients as usize;
-    let setup = Setup { program: &plan.server, connections, number: 0, options: &[] };
+/// Lets clients come and go.
+pub(crate) fn run(plan: &Load) -> Result<(), Box<dyn Error>> {
+    let (program, connections) = (plan.program(), 2 * plan.sessions);
+    let setup = Setup { program: &program, connections, number: 0, options: &[] };
     let server = ServerProcess::start(&setup)?;
-    Builder::new_current_thread().enable_all().build()?.block_on(soak(&plan, &server))
+    Builder::new_current_thread().enable_all().build()?.block_on(soak(plan, &server))
 }
 
-async fn soak(plan: &Plan, server: &ServerProcess) -> Result<(), Box<dyn Error>> {
+async fn soak(plan: &Load, server: &ServerProcess) -> Result<(), Box<dyn Error>> {
     let begun = Instant::now();
     let time = Duration::from_secs(plan.seconds);
     let ends = Ends::default();
     let mut clients = JoinSet::new();
     println!("  time  memory MB  tasks  sessions  rooms  members  files    visits");
     report(server, begun, &ends)?;
-    for client in 0..plan.clients {
+    for client in 0..plan.sessions as u64 {
         let (address, ends) = (server.address, Arc::clone(&ends));
         let seed = plan.seed << 48 | client << 32;
         clients.spawn(async move {
@@ -101,21 +93,4 @@ fn figures(server: &ServerProcess) -> Result<BTreeMap<String, f64>, Box<dyn Erro
     stream.read_to_string(&mut text)?;
     let samples = text.lines().filter_map(|line| line.rsplit_once(' '));
     Ok(samples.filter_map(|(name, value)| Some((name.to_owned(), value.parse().ok()?))).collect())
-}
-
-fn plan() -> Result<Plan, Box<dyn Error>> {
-    let server = "target/release/cellcaster".to_owned();
-    let mut plan = Plan { clients: 40, seconds: 600, seed: 1, server };
-    let mut arguments = std::env::args().skip(1).filter(|it| it != "--soak");
-    while let Some(name) = arguments.next() {
-        let value = arguments.next().ok_or_else(|| format!("{name} needs a value"))?;
-        match name.as_str() {
-            "--sessions" => plan.clients = value.parse()?,
-            "--seconds" => plan.seconds = value.parse()?,
-            "--seed" => plan.seed = value.parse()?,
-            "--server" => plan.server = value,
-            _ => return Err(format!("there is no option {name} of a soak").into()),
-        }
-    }
-    Ok(plan)
 }

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::server::{Access, ServerProcess};
+use super::server::{Access, ServerProcess};
 
 const PATIENCE: Duration = Duration::from_secs(10);
 

@@ -1,4 +1,4 @@
-//! `cellcaster admin`: what an operator asks a host.
+//! `cellcaster-server admin`: what an operator asks a host.
 //!
 //! Bans are written to the store, whether a server runs or not. A server that runs then ends the
 //! sessions to which they apply.
@@ -9,12 +9,15 @@ mod table;
 use std::io::{self, Write};
 use std::path::Path;
 
-use cellcaster::cli::Error;
-use cellcaster::cli::arguments::{Admin, AdminAction, Database};
-use cellcaster::cli::data_folder::data_folder;
+use super::arguments::{Admin, AdminAction};
+use super::database::Database;
 use crate::cli::host_store;
+use crate::ops::admin::{
+    AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
+};
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
 use cellcaster::rng;
-use crate::ops::admin::{AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask};
 use table::{table, time};
 
 /// Does the action, and writes what came of it.
@@ -42,11 +45,11 @@ fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String
             let count = host.counts(&AdminRequest::Drain);
             count.map(|count| format!("the server ends; it waits for {}\n", visitors(count)))
         }
-        AdminAction::Kick { target, reason } => host.kicks(target, reason),
-        AdminAction::Ban { target, time, reason } => {
-            bans::ban(&mut host, database, &target, time, &reason)
+        AdminAction::Kick { player, session, reason } => host.kicks(player.target(session), reason),
+        AdminAction::Ban { player, time, reason } => {
+            bans::ban(&mut host, database, &player.target(None), time, &reason)
         }
-        AdminAction::Unban { target } => bans::unban(database, &target),
+        AdminAction::Unban { player } => bans::unban(database, &player.target(None)),
         AdminAction::Bans => bans::list(database),
     };
     for remark in host.remarks {
@@ -117,7 +120,9 @@ impl RunningHost<'_> {
 
     fn kicks(&mut self, target: Target, reason: String) -> Result<String, Error> {
         match self.counts(&AdminRequest::Remove { target, reason, banned: false })? {
-            0 => Err(Error::mistake("nobody there is on; \"cellcaster admin who\" lists who is")),
+            0 => Err(Error::mistake(
+                "nobody there is on; \"cellcaster-server admin who\" lists who is",
+            )),
             count => Ok(format!("ended {}\n", sessions(count))),
         }
     }

@@ -5,10 +5,10 @@
 
 use std::env;
 
-use cellcaster::cli::Error;
-use cellcaster::cli::arguments::Database;
 use crate::accounts::PostgresStore;
 use crate::accounts::{HostStore, SqliteStore, StoreFailure};
+use crate::cli::database::Database;
+use cellcaster::cli::Error;
 
 /// The store that `option` names, or else the environment.
 pub(crate) fn named(option: Option<Database>) -> Option<Database> {
@@ -69,5 +69,3 @@ fn open_address(address: &str) -> Result<Box<dyn HostStore>, StoreFailure> {
 fn open_address_to_read(address: &str) -> Result<Option<Box<dyn HostStore>>, StoreFailure> {
     Ok(PostgresStore::open_to_read(address)?.map(|store| Box::new(store) as _))
 }
-
-

@@ -1,17 +1,18 @@
-//! `cellcaster scores`: the leaderboards of a host.
+//! `cellcaster-server scores`: the leaderboards of a host.
 
 use std::io::{self, Write};
 
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;
 
-use cellcaster::cli::arguments::{Database, Scores, ScoresFormat};
-use cellcaster::cli::data_folder::data_folder;
+use super::arguments::{Scores, ScoresFormat};
+use super::database::Database;
+use crate::accounts::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 use crate::cli::host_store::{self, failed};
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
 use cellcaster::game::STEPS_PER_SECOND;
-use crate::accounts::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 
 /// The entries of a board that are listed.
 const MOST: usize = 100;
@@ -25,9 +26,10 @@ enum Boards {
 /// Writes the boards that `options` request.
 pub(crate) fn run(options: &Scores) -> Result<(), Error> {
     let folder = || options.data.clone().or_else(data_folder).map(Database::Folder);
-    let database = host_store::named(options.store.clone()).or_else(folder).ok_or_else(|| {
-        Error::mistake("there is no folder for data files: name the one of the host by --data")
-    })?;
+    let database =
+        host_store::named(options.store.store.clone()).or_else(folder).ok_or_else(|| {
+            Error::mistake("there is no folder for data files: name the one of the host by --data")
+        })?;
     let boards = find(&database, options)?;
     let text = match options.format {
         ScoresFormat::Table => table(&boards),

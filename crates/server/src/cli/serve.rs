@@ -1,4 +1,4 @@
-//! `cellcaster serve`: the SSH server.
+//! `cellcaster-server`: the SSH server.
 
 mod cluster;
 mod configuration;
@@ -13,20 +13,21 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
-use cellcaster::cli::Error;
-use cellcaster::cli::arguments::{Database, Serve};
-use cellcaster::cli::data_folder::data_folder;
+use super::arguments::Serve;
+use super::database::Database;
+use crate::accounts::{HostStore, StoreFailure, WaitingResults};
 use crate::cli::host_store::{self, failed};
 #[cfg(unix)]
 use crate::ops::admin::AdminSocket;
 use crate::ops::config::Config;
-use crate::sessions::driver::{GameHost, HostParts};
-use crate::ssh::host_key::HostKey;
 use crate::ops::logging::{LogFormat, Logging, events};
 use crate::ops::metrics::{Metrics, respond};
-use crate::ssh::Server;
+use crate::sessions::driver::{GameHost, HostParts};
 use crate::sessions::visitors::Visitors;
-use crate::accounts::{HostStore, StoreFailure, WaitingResults};
+use crate::ssh::Server;
+use crate::ssh::host_key::HostKey;
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 
@@ -34,10 +35,12 @@ use signals::{Hangups, Signals};
 pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
     let (configuration, config) = Configuration::begin(&options)?;
     let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
-        Error::mistake("there is no folder for data; name one, as in \"serve --data FOLDER\"")
+        Error::mistake(
+            "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
+        )
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::named(options.store.take());
+    let database = host_store::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let cluster = cluster::pending(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
@@ -141,7 +144,7 @@ fn waiting(folder: &Path) -> Result<WaitingResults, Error> {
     Ok(waiting)
 }
 
-/// The socket for `cellcaster admin`. Without one the server runs, too, as in a folder with a name
+/// The socket for `cellcaster-server admin`. Without one the server runs, too, as in a folder with a name
 /// that is too long for a socket.
 #[cfg(unix)]
 fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
@@ -152,7 +155,8 @@ fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
             Err(Error::mistake(format!("another server runs with the data in {folder}")))
         }
         Err(error) => {
-            Error::machine(format!("\"cellcaster admin\" can't reach this server: {error}")).warn();
+            Error::machine(format!("\"cellcaster-server admin\" can't reach this server: {error}"))
+                .warn();
             Ok(None)
         }
     }

@@ -122,7 +122,7 @@ fn configuration(folder: &Path, port: u16) -> String {
 
 /// Plays, and then reads what a shell would find typed.
 fn script(folder: &Path, game: &str) -> String {
-    let (folder, program) = (folder.display(), env!("CARGO_BIN_EXE_cellcaster-server"));
+    let (folder, program) = (folder.display(), game_program().display().to_string());
     format!(
         "export HOME={folder}\n\
          sh -c 'echo $$ > {folder}/game; exec {program} {game}'; status=$?\n\
@@ -130,4 +130,10 @@ fn script(folder: &Path, game: &str) -> String {
          printf 'the shell has read: \"%s\"\\r\\n' \"$(dd bs=100 count=1 2>/dev/null | od -An -c)\"\n\
          exit $status\n"
     )
+}
+
+/// The game's program, which is built beside the server's.
+fn game_program() -> PathBuf {
+    let server = PathBuf::from(env!("CARGO_BIN_EXE_cellcaster-server"));
+    server.with_file_name("cellcaster")
 }

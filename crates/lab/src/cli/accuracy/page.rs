@@ -10,9 +10,9 @@ use std::path::Path;
 
 use super::run::Run;
 use super::{markdown, plot};
+use crate::accuracy::Table;
 use cellcaster::cli::Error;
 use cellcaster::cli::output_file::OutputFile;
-use crate::accuracy::Table;
 
 /// Replaces `tables` in the page at `path`, and writes their plots.
 pub(crate) fn update(path: &Path, run: &Run, tables: &[Table]) -> Result<(), Error> {

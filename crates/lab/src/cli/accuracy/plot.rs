@@ -12,8 +12,8 @@ use std::io::{self, Write};
 use super::csv;
 use super::run::Run;
 use super::text::heading;
-use crate::cli::plot::{self, Align, Mark, Page, PlotColor};
 use crate::accuracy::{Diagram, Table};
+use crate::cli::plot::{self, Align, Mark, Page, PlotColor};
 use panel::Panel;
 
 /// Writes the plots as an SVG file.

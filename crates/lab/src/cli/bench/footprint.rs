@@ -11,10 +11,10 @@ use ratatui::backend::Backend;
 use ratatui::layout::Size;
 
 use super::begin;
+use crate::speed::median;
 use cellcaster::cli::Error;
 use cellcaster::cli::script::SHOWCASE;
 use cellcaster::game::{Intents, STEPS_PER_SECOND};
-use crate::speed::median;
 use cellcaster::terminal::CellWriter;
 
 /// The costs; `None` if this system does not report them.

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, Write};
 
 use serde_json::{Value, json};
 
-use cellcaster::cli::arguments::{Wire, WireFormat};
+use crate::cli::arguments::{Wire, WireFormat};
 use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
 use crate::wire::{GlyphRow, report_glyphs};
 use cellcaster::map::builtin;
@@ -12,7 +12,7 @@ use cellcaster::tui::GlyphSet;
 
 pub(crate) fn run(options: &Wire) -> io::Result<()> {
     let levels = builtin::LEVELS.iter().filter_map(|level| level.world().ok());
-    let rows = report_glyphs(options.size.cells(), options.frames_per_second.get(), levels);
+    let rows = report_glyphs(options.size, options.frames_per_second, levels);
     let mut output = BufWriter::new(io::stdout().lock());
     match options.format {
         WireFormat::Table => write_table(&rows, &mut output)?,

@@ -4,17 +4,14 @@ use std::io::{self, BufWriter, Write};
 
 use serde_json::{Value, json};
 
-use cellcaster::cli::arguments::{Wire, WireFormat};
-use cellcaster::color::palette::ColorDepth;
+use crate::cli::arguments::{Wire, WireFormat};
 use crate::wire::{PalettePlan, PaletteRow, report_palettes};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::map::builtin;
 
 pub(crate) fn run(depth: ColorDepth, options: &Wire) -> io::Result<()> {
-    let plan = PalettePlan {
-        depth,
-        size: options.size.cells(),
-        frames_per_second: options.frames_per_second.get(),
-    };
+    let plan =
+        PalettePlan { depth, size: options.size, frames_per_second: options.frames_per_second };
     let levels = builtin::LEVELS.iter().filter_map(|level| Some((level.name, level.world().ok()?)));
     let rows = report_palettes(&plan, levels);
     let mut output = BufWriter::new(io::stdout().lock());

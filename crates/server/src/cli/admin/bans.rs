@@ -5,10 +5,10 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::table::{table, time as shown_time};
 use super::{Error, RunningHost, sessions};
-use cellcaster::cli::arguments::Database;
+use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
+use crate::cli::database::Database;
 use crate::cli::host_store::{self, failed};
 use crate::ops::admin::{AdminFailure, AdminReply, AdminRequest, Target};
-use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
 
 /// Bans, and ends the sessions to which the ban applies.
 pub(crate) fn ban(
@@ -52,7 +52,9 @@ pub(crate) fn unban(database: &Database, target: &Target) -> Result<String, Erro
         }
     }
     if ended.is_empty() {
-        return Err(Error::mistake("there is no such ban; \"cellcaster admin bans\" lists them"));
+        return Err(Error::mistake(
+            "there is no such ban; \"cellcaster-server admin bans\" lists them",
+        ));
     }
     Ok(format!("{} may come back\n", ended.join(" and ")))
 }

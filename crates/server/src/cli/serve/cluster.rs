@@ -3,9 +3,9 @@
 use std::net::SocketAddr;
 
 use super::{Database, Error, Serve};
+use crate::accounts::{HostNotice, PostgresStore};
 use crate::cluster::Cluster;
 use crate::sessions::driver::HostParts;
-use crate::accounts::{HostNotice, PostgresStore};
 
 /// A cluster that the host is going to join.
 pub(crate) struct PendingCluster {
@@ -15,10 +15,9 @@ pub(crate) struct PendingCluster {
     presence: PostgresStore,
 }
 
-
 /// The cluster that `options` name. The store is that of all hosts.
 pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
-    let Some(address) = &options.cluster else { return Ok(None) };
+    let Some(address) = options.cluster() else { return Ok(None) };
     let Database::Address(store) = store else {
         return Err(Error::mistake(
             "a cluster needs a database that all hosts share: name it, as in \
@@ -29,9 +28,8 @@ pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<Pendin
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
     let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
-    Ok(Some(PendingCluster { address: address.0.clone(), leases: open()?, presence: open()? }))
+    Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
 }
-
 
 impl PendingCluster {
     /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
@@ -50,7 +48,6 @@ impl PendingCluster {
         let cluster = Cluster::join(&self.address, leases, presence, notice).await;
         Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
     }
-
 }
 
 /// The name of this machine with the port, which operators know, and a number that no other start of a host has.

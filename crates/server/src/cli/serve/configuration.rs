@@ -6,13 +6,13 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use super::signals::Hangups;
-use cellcaster::cli::Error;
-use cellcaster::cli::arguments::Serve;
-use cellcaster::cli::config::{LARGEST, configuration_file};
+use crate::cli::arguments::Serve;
 use crate::ops::config::{Config, LiveConfig};
-use crate::rooms::maps::{HostMaps, MapsError};
 use crate::ops::logging::{Logging, events};
+use crate::rooms::maps::{HostMaps, MapsError};
 use cellcaster::app::store::private;
+use cellcaster::cli::Error;
+use cellcaster::cli::config::{LARGEST, configuration_file};
 
 /// Where the configuration comes from.
 pub(crate) struct Configuration {

@@ -10,7 +10,7 @@ use crate::support::server;
 use crate::transport::folder;
 
 fn document(name: &str) -> String {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     fs::read_to_string(docs.join(name)).unwrap()
 }
 
@@ -41,16 +41,20 @@ fn commands_in_the_documents_are_right() {
     let commands: Vec<String> = blocks(&text, "sh")
         .iter()
         .flat_map(|block| block.lines())
-        .filter_map(|line| line.strip_prefix("cellcaster ").map(str::to_owned))
+        .filter_map(|line| line.strip_prefix("cellcaster-server").map(str::to_owned))
         .collect();
-    assert!(commands.iter().any(|line| line.starts_with("admin")), "{commands:?}");
-    assert!(commands.iter().any(|line| line.starts_with("serve")), "{commands:?}");
+    assert!(commands.iter().any(|line| line.trim().starts_with("admin")), "{commands:?}");
+    assert!(commands.iter().any(|line| line.trim().starts_with("--listen")), "{commands:?}");
     for line in commands {
         let line = line.split(" #").next().unwrap().trim();
         let words: Vec<String> = words(line);
         // A server would run on: its options are read before the help is written.
-        let help = if words[0] == "serve" { &["--help"][..] } else { &[] };
-        let output = cellcaster(&words.iter().map(String::as_str).collect::<Vec<_>>())
+        let help = if words.first().is_none_or(|word| word.starts_with("--")) {
+            &["--help"][..]
+        } else {
+            &[]
+        };
+        let output = server(&words.iter().map(String::as_str).collect::<Vec<_>>())
             .args(help)
             .env("CELLCASTER_DATA", &data)
             .output()
@@ -79,10 +83,10 @@ fn unit() -> Option<PathBuf> {
     has_systemd.then(|| {
         let program = env!("CARGO_BIN_EXE_cellcaster-server");
         let text = document("hosting/cellcaster.service");
-        assert!(text.contains("/usr/local/bin/cellcaster"));
+        assert!(text.contains("/usr/local/bin/cellcaster-server"));
         let folder = folder();
         let file = folder.join("cellcaster.service");
-        fs::write(&file, text.replace("/usr/local/bin/cellcaster", program)).unwrap();
+        fs::write(&file, text.replace("/usr/local/bin/cellcaster-server", program)).unwrap();
         // What makes it a host of a cluster.
         let additions = folder.join("cellcaster.service.d");
         fs::create_dir(&additions).unwrap();
@@ -105,11 +109,12 @@ fn the_unit_is_what_systemd_takes() {
 #[test]
 fn the_unit_starts_the_program_with_options_that_there_are() {
     let text = document("hosting/cellcaster.service");
-    let starts =
-        text.lines().filter_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/cellcaster "));
+    let starts = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/cellcaster-server "));
     let starts: Vec<&str> = starts.collect();
     assert_eq!(starts.len(), 1);
-    let output = cellcaster(&words(starts[0]).iter().map(String::as_str).collect::<Vec<_>>())
+    let output = server(&words(starts[0]).iter().map(String::as_str).collect::<Vec<_>>())
         .arg("--help")
         .output()
         .unwrap();
@@ -119,7 +124,7 @@ fn the_unit_starts_the_program_with_options_that_there_are() {
 #[cfg(feature = "system-tests")]
 #[test]
 fn the_configuration_of_nats_is_what_it_takes() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     let output = Command::new("nats-server")
         // The package puts it where the superuser looks.
         .env("PATH", format!("{}:/usr/sbin", std::env::var("PATH").unwrap_or_default()))

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
 use rustix::process::Signal;
 
@@ -10,7 +10,7 @@ use super::killed::user_key;
 use super::running::Running;
 use crate::play::enter_room;
 use crate::player::Player;
-use crate::support::server;
+use crate::support::{game_program, server};
 use crate::transport::{folder, wait_until};
 
 /// A hall whose exit is a few steps ahead.

@@ -1,8 +1,8 @@
 //! A panel: the diagram of one problem.
 
 use super::{CHARACTER, LINE, PANEL_HEIGHT, color, methods, radius, title};
-use crate::cli::plot::{Align, Axis, Mark, PlotColor};
 use crate::accuracy::{Diagram, Table, Value};
+use crate::cli::plot::{Align, Axis, Mark, PlotColor};
 use cellcaster::sort;
 
 /// The margins of a panel.

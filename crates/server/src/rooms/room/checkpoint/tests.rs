@@ -1,16 +1,19 @@
 //! Restored rooms are the rooms that they were, and damaged checkpoints are refused or a room.
 
+#[path = "../../../../../../tests/support/crowd.rs"]
+mod crowd;
+
+use std::fs;
 use std::time::Instant;
 
 use proptest::prelude::*;
 
+use self::crowd::Crowd;
 use super::*;
 use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
 use crate::simulation;
 use cellcaster::game::stored::first_line;
-use cellcaster::game::stored::tests::crowd::Crowd;
-use cellcaster::game::stored::tests::winning;
-use cellcaster::game::{PlayerColor, RULES_VERSION};
+use cellcaster::game::{Intents, PlayerColor, RULES_VERSION, Script};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Difficulty;

@@ -1,19 +1,20 @@
-//! Real SSH sessions that play on one server or on several, and what they cost.
+//! `cellcaster-lab load`: real SSH sessions that play on one server or on several, and what they cost.
 //!
 //! ```text
-//! cargo run --release --features serve --example load -- --sessions 100 --seconds 20
+//! cargo build --release --workspace
+//! target/release/cellcaster-lab load --sessions 100 --seconds 20
 //! ```
 //!
 //! The server is a process of its own on processor 0, and all clients are in this process on
 //! processor 1. Each client walks about a room, answers the terminal's queries, counts frames and
 //! bytes, and measures the time from a key to the frame that answers it. `--silent N` adds connections that never
-//! read. `--server PATH` is the program, `target/release/cellcaster` otherwise. `--sshd` measures OpenSSH's
-//! server with one process of the game for each session in place of `cellcaster serve`.
+//! read. `--server PATH` is the program, `cellcaster-server` beside this one otherwise. `--sshd` measures OpenSSH's
+//! server with one process of the game for each session in place of `cellcaster-server`.
 //!
 //! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster, which take turns on the
 //! processors, while the clients are on all of them. Clients are spread over the hosts in turn, so that each
 //! room has members on all of them: no room costs more. `--beside PID` measures another process, such as that of
-//! the NATS server, and may be there several times. The program needs the feature `cluster`.
+//! the NATS server, and may be there several times.
 //!
 //! `--bus ROOMS --cluster NATS` writes the logs of rooms without hosts and players, and measures how long the bus takes
 //! for a message.
@@ -23,6 +24,7 @@
 
 mod bus;
 mod client;
+#[path = "../../server/tests/support/lamp.rs"]
 mod lamp;
 mod plan;
 mod process;
@@ -30,9 +32,9 @@ mod report;
 mod server;
 mod soak;
 mod sshd;
+#[path = "../../server/tests/support/wanderer.rs"]
 mod wanderer;
 
-use std::error::Error;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -41,7 +43,8 @@ use tokio::runtime::Builder;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-use plan::Plan;
+use cellcaster::cli::Error;
+pub(crate) use plan::Load;
 use process::Usage;
 use report::{Report, Tally};
 use server::{ServerProcess, Setup};
@@ -51,42 +54,53 @@ const PAUSE: Duration = Duration::from_millis(25);
 /// The time that the sessions have for entering their rooms.
 const WARM_UP: Duration = Duration::from_secs(8);
 
-fn main() -> Result<(), Box<dyn Error>> {
-    if std::env::args().any(|it| it == "--soak") {
-        return soak::run();
+/// Measures what `plan` says.
+///
+/// # Errors
+/// If a server cannot be started, or a client cannot connect.
+pub(crate) fn run(plan: Load) -> Result<(), Error> {
+    measure(&plan).map_err(|error| Error::machine(error.to_string()))
+}
+
+fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
+    if plan.soak {
+        return soak::run(plan);
     }
-    let plan = Plan::parse()?;
     if let Some(rooms) = plan.rooms {
-        return bus::run(rooms, &plan);
+        return bus::run(rooms, plan);
     }
-    let servers = start(&plan)?;
+    if plan.hosts > 1 && (plan.cluster.is_none() || plan.store.is_none()) {
+        return Err("several hosts need --cluster and --store".into());
+    }
+    let servers = start(plan)?;
     if servers.len() == 1 {
         process::pin(std::process::id(), 1);
     }
     let runtime = Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(run(&plan, &servers))
+    runtime.block_on(play(plan, &servers))
 }
 
-fn start(plan: &Plan) -> Result<Vec<ServerProcess>, Box<dyn Error>> {
+fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> {
     if plan.uses_sshd {
-        return Ok(vec![sshd::start(&plan.server)?]);
+        return Ok(vec![sshd::start(&plan.program())?]);
     }
+    let (program, options) = (plan.program(), plan.server_options());
     let setup = |number| Setup {
-        program: &plan.server,
+        program: &program,
         connections: plan.sessions + plan.silent,
         number,
-        options: &plan.options,
+        options: &options,
     };
     (0..plan.hosts).map(|number| ServerProcess::start(&setup(number))).collect()
 }
 
-async fn run(plan: &Plan, servers: &[ServerProcess]) -> Result<(), Box<dyn Error>> {
+async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std::error::Error>> {
     let counts = Arc::new(AtomicBool::new(false));
     let mut clients = JoinSet::new();
     let empty = usage(servers);
     for (number, server) in (0..plan.sessions).zip(servers.iter().cycle()) {
         let counts = counts.clone();
-        let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay);
+        let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay());
         clients.spawn(async move {
             let played = client::play(address, &access, number as u64, delay, &counts);
             played.await.map_err(|it| it.to_string())

@@ -1,10 +1,10 @@
-//! The option of all commands that need the store of a host.
+//! Where the store of a host is: in a folder, or in a database.
 
 use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 
-use cellcaster::cli::arguments::option::{Parser, ValueOption};
+use cellcaster::cli::parse::Takes;
 
 /// Where the store of a host is.
 #[derive(Clone, PartialEq)]
@@ -15,23 +15,13 @@ pub(crate) enum Database {
     Address(String),
 }
 
-pub(crate) const STORE: ValueOption<Database> = ValueOption {
-    name: "store",
-    value: "URL|FOLDER",
-    takes: "a folder, or an address such as postgres://user@host/database",
-    help: "Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share \
-           [default: $CELLCASTER_STORE, or the folder for data]",
-    default: "",
-    choices: &[],
-    read: Parser::Optional(|text| {
-        // What is not UTF-8 has come as this character. The folder would be another one.
-        let is_named = !text.is_empty() && !text.contains(char::REPLACEMENT_CHARACTER);
-        is_named.then(|| Database::of(text.into()))
-    }),
-    repeats: false,
-};
-
 impl Database {
+    /// Reads the value of `--store`.
+    pub(crate) fn parse(text: &str) -> Result<Self, Takes> {
+        const TAKES: Takes = Takes("a folder, or an address such as postgres://user@host/database");
+        if text.is_empty() { Err(TAKES) } else { Ok(Self::of(text.into())) }
+    }
+
     /// What a word of the command line or of the environment names.
     pub(crate) fn of(word: OsString) -> Self {
         match word.to_str() {
