@@ -5,12 +5,12 @@
 //! tries after its end are practice. A descent that is left is saved, and goes on from there as the same
 //! try: its saved game is removed then, so that a death cannot be undone.
 
-use super::goal::Goal;
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
-use super::panels::whole_seconds;
 use super::saved::save_of_descent;
+use super::status::Goal;
+use super::time::whole_seconds;
 use super::{App, Levels, STEP, Screen};
 use crate::app::store::{Descent, Reached};
 use crate::game::Rules;

@@ -7,9 +7,8 @@ use ratatui::layout::{Constraint, Flex, Layout, Rect};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Padding, Paragraph};
 
-use super::App;
+use super::panels::wrapped;
 use super::panels::{BORDERS, PADDING, framed, key_names};
-use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings, MapChange};
 use crate::game::Intent;
 use crate::terminal::Key;
@@ -27,18 +26,6 @@ pub struct HelpScroll {
 
 /// The number of blank columns between two columns of text.
 const GAP: usize = 3;
-
-impl App {
-    /// Scrolls the help if `key` does that. Returns whether it does.
-    pub(crate) fn scroll_help(&mut self, key: Key) -> bool {
-        let before = self.help.first;
-        let scrolls = self.help.scroll(key);
-        if self.help.first != before {
-            self.shown = None;
-        }
-        scrolls
-    }
-}
 
 impl HelpScroll {
     /// Scrolls if `key` does that. Returns whether it does.

@@ -1,15 +1,31 @@
-//! The levels of a game, in order.
+//! The levels of a game, in order, and the way from one to the next: beginning, going on, beginning
+//! again, dying, and returning to the title.
+//!
+//! A level may change while it is played, because its author edits the map. The game checks for changes
+//! a few times a second. Rejected: file events of the system. A library for them needs a thread, wakes
+//! the loop, and has to follow files that editors replace.
 
-use std::{fmt, iter};
+use std::time::Duration;
+use std::{fmt, iter, mem};
 
-use super::OwnLevel;
-use super::played::Played;
-use super::reload::Changes;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Text};
+
+use crate::app::App;
+use crate::app::panels::{self, wrapped};
+use crate::app::played::Played;
+use crate::app::recording::{Ghost, RunLog};
+use crate::app::screen::Screen;
+use crate::app::status::Goal;
+use crate::app::steps::Watch;
+use crate::app::store::Reached;
+use crate::app::title::{Demo, OwnLevel};
 use crate::fault::Faults;
-use crate::game::{Game, Rules};
+use crate::game::{Game, Intent, Intents, Rules};
 use crate::generate::descent;
 use crate::map::{Level, builtin};
 use crate::space::Scene;
+use crate::tui::canvas::Canvas;
 use crate::world::Difficulty;
 
 /// The levels of a game, in order. Each but the first is created when it is reached.
@@ -197,5 +213,175 @@ impl fmt::Display for LevelNumber {
 impl fmt::Debug for Levels {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Levels").finish_non_exhaustive()
+    }
+}
+
+impl App {
+    /// Begins the first of `levels`; asks first if a game in it is saved.
+    pub(crate) fn begin(&mut self, levels: Levels) {
+        // A recorded script is about what the program began with.
+        self.script = None;
+        self.set_up(levels);
+        self.ask_about_saved();
+    }
+
+    /// Begins the first of `levels`.
+    pub(crate) fn set_up(&mut self, levels: Levels) {
+        let Levels { first, rest, number, changes, course } = levels;
+        let Some(game) = first.begin(self.difficulty) else { return };
+        self.later_levels = rest;
+        self.level = number;
+        self.reload = changes.map(Reload::from);
+        self.earlier = 0.0;
+        self.course = course;
+        self.reached = Reached::default();
+        self.demo = None;
+        self.log = RunLog::default();
+        self.begin_level(first, game);
+        self.tell_whether_it_counts();
+    }
+
+    /// Begins the next level. After the last one comes the end.
+    pub(crate) fn next_level(&mut self) {
+        let Some(stage) = self.later_levels.next() else { return self.show(Screen::End) };
+        let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
+        self.earlier += self.game.elapsed();
+        self.level = self.level.next();
+        if !self.is_descent() {
+            self.log = RunLog::default();
+        }
+        self.begin_level(stage, game);
+        self.ask_about_saved();
+    }
+
+    /// Begins the level again. A script that is recorded ends here: in a script, a level begins
+    /// once.
+    pub(crate) fn restart_level(&mut self) {
+        self.script = None;
+        self.begin_again();
+    }
+
+    /// Returns to the start of the level.
+    pub(crate) fn begin_again(&mut self) {
+        let Some(game) = self.stage.begin(self.difficulty) else { return };
+        self.log = RunLog::default();
+        let stage = mem::replace(&mut self.stage, Stage::nothing());
+        self.begin_level(stage, game);
+    }
+
+    /// Goes on from the last checkpoint after a death.
+    pub(crate) fn retry(&mut self) {
+        let retry: Intents = [Intent::Retry].into_iter().collect();
+        self.game.step(retry);
+        self.record(retry, 1);
+        self.watch = Watch::begin(self.game.grid());
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+
+    /// Leaves the game for the title.
+    pub(crate) fn return_to_title(&mut self) {
+        let not_saved = self.leave_game();
+        self.show_title();
+        if let Some(sentence) = not_saved {
+            self.say_in_menu(&sentence);
+        }
+    }
+
+    /// Shows the title, over a level that plays itself.
+    pub(crate) fn show_title(&mut self) {
+        self.script = None;
+        self.reload = None;
+        self.ghost = None;
+        match Demo::begin() {
+            Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
+            None => self.game = Played::nothing(),
+        }
+        self.release_keys();
+        self.show(Screen::Title);
+    }
+
+    fn begin_level(&mut self, stage: Stage, game: Played) {
+        self.ghost = match (self.best_run(&stage), game.grid()) {
+            (Some(cursor), Some(game)) => Some(Ghost::new(game.clone(), cursor)),
+            _ => None,
+        };
+        self.watch = Watch::begin(game.grid());
+        self.stage = stage;
+        self.game = game;
+        self.result = None;
+        self.notice = None;
+        self.goal = Goal::of(&self.game, self.settings.minimap);
+        self.map.begin_level();
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+}
+
+/// The time between two checks.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Returns the level or its faults, if it has changed.
+pub(crate) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
+
+/// The source of changes, and the faults of the last one.
+pub(crate) struct Reload {
+    changes: Changes,
+    next_check: Duration,
+    fault: Option<String>,
+}
+
+impl Reload {
+    pub(crate) fn from(changes: Changes) -> Self {
+        Self { changes, next_check: INTERVAL, fault: None }
+    }
+}
+
+impl App {
+    /// Checks for a change when it is time, and continues in the changed level.
+    pub(crate) fn reload(&mut self, now: Duration) {
+        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
+            return;
+        };
+        reload.next_check = now + INTERVAL;
+        match (reload.changes)() {
+            None => {}
+            Some(Ok(level)) => {
+                reload.fault = None;
+                self.game = self.game.begun_again_in(level.clone());
+                self.stage.change(level);
+                self.goal = Goal::of(&self.game, self.settings.minimap);
+                self.map.begin_level();
+                if self.shows_result() {
+                    self.show(Screen::Playing);
+                }
+                self.shown = None;
+            }
+            Some(Err(faults)) => {
+                reload.fault = Some(faults.summary());
+                self.shown = None;
+            }
+        }
+    }
+
+    /// The time of the next check; `None` for never.
+    pub(crate) fn next_reload(&self) -> Option<Duration> {
+        self.reload.as_ref().map(|reload| reload.next_check)
+    }
+
+    /// Draws the faults of the level, if any, over the bottom of the picture.
+    pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
+        let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
+        let Some(fault) = fault else { return };
+        let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));
+        let height = (lines.len() as u16).saturating_add(2).min(picture.height);
+        let area = Rect { y: picture.bottom() - height, height, ..picture };
+        let inside = panels::framed(canvas, area, "the map has faults");
+        let text: Text = lines.into_iter().map(Line::from).collect();
+        let padded = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        for side in [inside.x, inside.right().saturating_sub(1)] {
+            canvas.draw_widget(Text::default(), Rect { x: side, width: 1, ..inside });
+        }
+        canvas.draw_widget(text, padded);
     }
 }

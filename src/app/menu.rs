@@ -11,8 +11,8 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span, Text};
 use ratatui::widgets::{Block, Padding, Paragraph};
 
+use super::panels::wrapped;
 use super::panels::{BORDERS, PADDING, framed};
-use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings};
 use crate::game::Intent;
 use crate::terminal::Key;

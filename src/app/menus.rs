@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use super::menu::Menu;
-use super::panels::{key_names, time, whole_seconds};
-use super::settings_screen::Setting;
-use super::{App, Levels, STEP, Screen};
+use super::panels::key_names;
+use super::time::{of_steps, whole_seconds};
+use super::{App, Levels, Screen};
 use crate::app::bindings::Action;
-use crate::app::store::{Preferences, SaveId};
+use crate::app::store::SaveId;
 use crate::map::builtin;
 use crate::world::Difficulty;
 
@@ -38,8 +38,8 @@ pub(crate) enum Choice {
     Daily,
     /// Begins an endless descent.
     Endless,
-    /// Changes a setting.
-    Change(Setting),
+    /// Changes the setting in that row of the settings page.
+    Change(usize),
     /// Goes on with the game.
     GoOn,
     /// Goes on from the last checkpoint.
@@ -82,13 +82,12 @@ impl App {
 
     /// Does what the selected entry says.
     pub(crate) fn choose(&mut self) {
-        let Some(choice) = self.menu.choice() else { return };
+        let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
             Choice::Open(screen) => self.open(screen),
             Choice::Begin(difficulty) => {
                 self.difficulty = difficulty;
-                let preferences = self.store.preferences();
-                self.set_preferences(Preferences { difficulty, ..preferences });
+                self.prefer(|it| it.difficulty = difficulty);
                 self.begin_builtin(0);
             }
             Choice::Level(index) => {
@@ -99,7 +98,7 @@ impl App {
             Choice::Daily => self.begin_daily(),
             Choice::Endless => self.begin_endless(),
             Choice::Continue(id) => {
-                if self.screen != Screen::Daily {
+                if self.screen() != Screen::Daily {
                     // A recorded script is about what the program began with.
                     self.script = None;
                 }
@@ -135,9 +134,7 @@ impl App {
                 self.begin(Levels::own(level));
             }
             Err(fault) => {
-                let selected = self.menu.selected();
-                self.menu = self.map_menu().line(fault).selecting(selected);
-                self.shown = None;
+                self.say_in_menu(&fault);
             }
         }
     }
@@ -172,7 +169,7 @@ impl App {
     fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
         self.store.best(name, difficulty).map_or_else(
             || "-".to_owned(),
-            |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+            |best| format!("{} {:>7}", of_steps(best.tally.steps), best.rank),
         )
     }
 

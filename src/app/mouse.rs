@@ -8,9 +8,6 @@
 //! Positions are converted to angles first, and then subtracted: rounding errors do not add up, and
 //! a pointer that returns to its position has turned the player by nothing.
 
-use std::time::Duration;
-
-use super::{App, Screen};
 use crate::game::{Intent, Intents, Look, STEPS_PER_SECOND};
 use crate::terminal::{MouseButton, MouseEvent, MouseEventKind};
 
@@ -149,23 +146,6 @@ impl Pointer {
             let left = u64::from(left).saturating_sub(steps) as u32;
             (left > 0).then_some((edge, left))
         });
-    }
-}
-
-impl App {
-    /// Handles an event of the mouse at time `now`.
-    pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
-        self.advance(now);
-        self.pointer.handle(event, self.screen == Screen::Playing);
-    }
-
-    /// The player's intents for the next step, by keys and mouse.
-    pub(crate) fn wanted(&self) -> Intents {
-        let keys = self.intents();
-        keys.iter()
-            .chain(self.pointer.clicked().iter())
-            .collect::<Intents>()
-            .with_look(self.pointer.look())
     }
 }
 

@@ -1,6 +1,4 @@
-//! Panels on the picture: the minimap's frame, and messages.
-
-use std::fmt::{self, Display};
+//! Panels on the picture: frames, messages, and lines wrapped to fit.
 
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::Color;
@@ -109,27 +107,32 @@ pub(crate) fn key_names(bindings: &Bindings, action: Action) -> String {
     names.join(" ")
 }
 
-/// Formats minutes and seconds.
-pub fn whole_seconds(seconds: f64) -> impl Display {
-    let seconds = seconds as u64;
-    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
-}
-
-struct WholeSeconds {
-    minutes: u64,
-    seconds: u64,
-}
-
-impl Display for WholeSeconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{:02}", self.minutes, self.seconds)
+/// Wraps `text` into lines of up to `width` characters, between words, and within words that are
+/// longer.
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut room = width;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if room < width {
+            if length < room {
+                lines[..].last_mut().into_iter().for_each(|line| line.push(' '));
+                room -= 1;
+            } else {
+                lines.push(String::new());
+                room = width;
+            }
+        }
+        for character in word.chars() {
+            if room == 0 {
+                lines.push(String::new());
+                room = width;
+            }
+            lines[..].last_mut().into_iter().for_each(|line| line.push(character));
+            room -= 1;
+        }
     }
-}
-
-/// Formats minutes, seconds and tenths.
-pub fn time(seconds: f64) -> String {
-    let tenths = (seconds * 10.0) as u64;
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+    lines
 }
 
 #[cfg(test)]
@@ -137,9 +140,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_minutes_seconds_and_tenths() {
-        assert_eq!(time(0.0), "0:00.0");
-        assert_eq!(time(61.26), "1:01.2");
-        assert_eq!(time(3600.0), "60:00.0");
+    fn lines_are_filled_to_the_width() {
+        for (text, width, lines) in [
+            ("", 5, &[""][..]),
+            ("one two three", 7, &["one two", "three"]),
+            ("one two three", 13, &["one two three"]),
+            ("abcdefgh i", 3, &["abc", "def", "gh", "i"]),
+            ("ä ö", 1, &["ä", "ö"]),
+        ] {
+            assert_eq!(wrapped(text, width), lines, "{text} in {width}");
+        }
     }
 }

@@ -28,10 +28,10 @@ impl Replay {
 
     /// Advances by one step with `intents`.
     pub fn step(&mut self, intents: Intents) {
-        if self.app.screen == Screen::LevelDone {
+        if self.app.screen() == Screen::LevelDone {
             self.app.next_level();
         }
-        if self.app.screen == Screen::Playing {
+        if self.app.screen() == Screen::Playing {
             self.app.game.step(intents);
             self.app.goal.moved(u64::from(!intents.is_empty()));
             if self.app.game.is_finished() {

@@ -12,10 +12,10 @@
 use super::descents::date_of;
 use super::menu::Menu;
 use super::menus::{Choice, capitalized};
-use super::panels::whole_seconds;
+use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
-use super::run_log::RunLog;
-use super::watch::Watch;
+use super::steps::Watch;
+use super::time::whole_seconds;
 use super::{App, Levels, STEP, Screen};
 use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};
@@ -110,7 +110,7 @@ impl App {
 
     /// Asks how to begin a level if a game in it is saved, or if there is no room to save another.
     pub(crate) fn ask_about_saved(&mut self) {
-        let is_at_start = self.screen == Screen::Playing && self.log.is_empty();
+        let is_at_start = self.screen() == Screen::Playing && self.log.is_empty();
         let Some(save) = self.as_save().filter(|_| is_at_start) else { return };
         if self.store.has_saved(save.id()) {
             self.show(Screen::HasSaved);
@@ -156,7 +156,7 @@ impl App {
         if let Some(id) = self.store.saves().last().map(Save::id) {
             self.store.remove_saved(id);
         }
-        if self.screen == Screen::Daily {
+        if self.screen() == Screen::Daily {
             self.renew_menu();
         } else {
             self.show(Screen::Playing);
@@ -248,13 +248,6 @@ impl App {
         let saved = self.store.saved(id).ok_or("The saved game can't be read.")?;
         let script = Script::parse(&saved.script, "the saved game");
         Ok((saved, script.map_err(|_| "The saved game is damaged.")?))
-    }
-
-    /// Shows a sentence above the entries of the menu.
-    pub(crate) fn say_in_menu(&mut self, sentence: &str) {
-        let selected = self.menu.selected();
-        self.menu = self.menu_of(self.screen).line(sentence).selecting(selected);
-        self.shown = None;
     }
 
     /// Begins the level of a saved game, or the first floor of its descent.

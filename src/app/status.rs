@@ -4,12 +4,14 @@
 //! is allocated. Its time is therefore that of the last frame: while nothing moves, no frame is
 //! drawn to show another second.
 //!
-//! Parts that do not fit are left out as a whole, the least important first. Cutting the line at
-//! its end was refused: in a narrow window, the key for help would be lost.
+//! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
+//! line at its end. In a narrow window, the key for help would be lost.
+//!
+//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
+//! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
+//! steps in which only guards move do not count.
 
-mod write;
-
-use std::fmt;
+use std::fmt::{self, Write};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -17,12 +19,16 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 
-use super::goal::Goal;
-use super::levels::LevelNumber;
-use super::played::Played;
-use super::stats::Stats;
-use super::vitals::HealthSigns;
-use crate::app::bindings::Bindings;
+use crate::app::bindings::{Action, Bindings};
+use crate::app::levels::LevelNumber;
+use crate::app::played::Played;
+use crate::app::settings::MapDisplay;
+use crate::app::stats::Stats;
+use crate::app::time::whole_seconds;
+use crate::color::palette::ColorDepth;
+use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, STEPS_PER_SECOND, Share};
+use crate::tui::GlyphSet;
+use crate::world::{FieldOfView, Supply};
 
 /// The modes of motion that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
@@ -215,6 +221,258 @@ fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
 /// A line with a hint instead of the game's state.
 pub fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
+}
+
+impl StatusLine {
+    pub(crate) fn write(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, level, share_seen, toggles, mouse, stats, bindings, .. } = *values;
+        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        if let Some((game, player)) = mission {
+            self.write_vitals(game, &player, values.health_signs)?;
+        }
+        self.both(Part::Title, format_args!("{}", game.title()))?;
+        if level.is_one_of_several() {
+            let [short, long] = &mut self.texts[Part::Level as usize];
+            level.write_short(short)?;
+            write!(long, "{level}")?;
+        }
+        if let Some(site) = game.site() {
+            self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
+        }
+        self.write_modes(toggles, mouse, mission.is_some_and(|it| it.1.lamp_is_lit()))?;
+        self.write_keys(game.keys())?;
+        self.write_notice(values)?;
+        if let Some(stats) = stats {
+            self.write_stats(stats)?;
+        }
+        if let Some(share) = share_seen {
+            self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
+        }
+        self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
+        self.write_help(bindings)
+    }
+
+    /// Writes what a key has done, the message of the game, or the goal.
+    fn write_notice(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, goal, notice, .. } = *values;
+        let notice = notice.filter(|notice| notice.is_shown());
+        if let (None, Some(message)) = (notice, game.message()) {
+            return self.both(Part::Notice, format_args!("{message}"));
+        }
+        if let Some(line) = notice.or(Some(goal)).filter(|line| line.is_shown()) {
+            let [short, long] = self.forms(Part::Notice);
+            short.push_str(line.short());
+            long.push_str(line.text());
+        }
+        Ok(())
+    }
+
+    /// Writes the modes that are switched on.
+    pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
+        let modes = [
+            (toggles.runs, "running"),
+            (toggles.ducks, "ducking"),
+            (toggles.keeps_walking, "walking on"),
+            (mouse, "mouse"),
+            (lamp, "lamp"),
+        ];
+        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the figures of frames and the link.
+    pub fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
+        let [short, long] = self.forms(Part::Stats);
+        write!(short, "{}", stats.rates)?;
+        write!(long, "{stats}")
+    }
+
+    /// Writes the names of the keys that the player has.
+    pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
+        for (index, key) in keys.enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the keys that show the help.
+    pub fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
+        let [short, long] = &mut self.texts[Part::Help as usize];
+        for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
+            let blank = if index > 0 { " " } else { "" };
+            write!(long, "{blank}{key}")?;
+        }
+        short.push_str(long);
+        long.push_str(" help");
+        Ok(())
+    }
+
+    /// The short and the long form of `part`.
+    pub fn forms(&mut self, part: Part) -> &mut [String; 2] {
+        &mut self.texts[part as usize]
+    }
+
+    /// Appends to both forms of `part`.
+    pub fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+        self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
+    }
+}
+
+/// How health is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HealthSigns {
+    Hearts,
+    Digits,
+}
+
+/// Visibility below which the player is in the dark, and below which the light is dim.
+const DARK: u8 = 64;
+const DIM: u8 = 144;
+
+impl HealthSigns {
+    /// The signs that a picture of that kind shows best.
+    pub fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
+        let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
+        if has_hearts { Self::Hearts } else { Self::Digits }
+    }
+}
+
+impl StatusLine {
+    /// Writes health, alarm, light, supplies and treasure.
+    pub fn write_vitals(
+        &mut self,
+        game: &Game,
+        player: &PlayerView,
+        signs: HealthSigns,
+    ) -> fmt::Result {
+        self.write_health(player.health(), signs)?;
+        self.write_alarm(game, player)?;
+        let light = match player.visibility() {
+            0..DARK => "dark",
+            DARK..DIM => "dim",
+            DIM.. => "lit",
+        };
+        self.both(Part::Light, format_args!("{light}"))?;
+        self.write_supplies(player)?;
+        let Share { found, total } = game.treasure();
+        if total > 0 {
+            let needed = game.world().treasure_needed();
+            let [short, long] = self.forms(Part::Treasure);
+            write!(long, "{found} of {total} gold")?;
+            match needed {
+                0 => {}
+                _ if found >= needed => long.push_str(", enough"),
+                _ if needed == total => long.push_str(", all needed"),
+                _ => write!(long, ", {needed} needed")?,
+            }
+            if found < needed && needed < total {
+                write!(short, "{found}/{total} need {needed}")?;
+            } else {
+                write!(short, "{found}/{total} gold")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the alarm, and the kind of the nearest guard who has raised it.
+    fn write_alarm(&mut self, game: &Game, player: &PlayerView) -> fmt::Result {
+        let alarm = match game.alarm() {
+            Alarm::Calm => return Ok(()),
+            Alarm::Wary => "wary",
+            Alarm::Raised => "ALARM",
+        };
+        let position = player.camera(FieldOfView::default()).position();
+        let distance = |guard: &GuardView| guard.position.distance_squared(position);
+        let guards = game.guards().filter(|guard| guard.mood.alarm() == game.alarm());
+        let nearest = guards.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [short, long] = self.forms(Part::Alarm);
+        short.push_str(alarm);
+        match nearest {
+            Some(guard) => write!(long, "{alarm}: {}", guard.kind.name()),
+            None => long.write_str(alarm),
+        }
+    }
+
+    fn write_health(&mut self, health: Health, signs: HealthSigns) -> fmt::Result {
+        let Health { points, most } = health;
+        match signs {
+            HealthSigns::Digits => self.both(Part::Health, format_args!("HP {points}/{most}")),
+            HealthSigns::Hearts => (0..most).try_for_each(|index| {
+                let heart = if index < points { '♥' } else { '♡' };
+                self.both(Part::Health, format_args!("{heart}"))
+            }),
+        }
+    }
+
+    /// Writes what the player carries: the first letters, or the names.
+    fn write_supplies(&mut self, player: &PlayerView) -> fmt::Result {
+        let carried = Supply::ALL.map(|supply| (supply.name(), player.supplies(supply)));
+        let [short, long] = self.forms(Part::Supplies);
+        for (index, (name, count)) in carried.iter().filter(|(_, count)| *count > 0).enumerate() {
+            let (blank, comma) = if index > 0 { (" ", ", ") } else { ("", "") };
+            let letter = &name[..1];
+            let name = if *count == 1 { &name[..name.len() - 1] } else { name };
+            write!(short, "{blank}{count}{letter}")?;
+            write!(long, "{comma}{count} {name}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The number of steps with intents for which the goal is shown: four seconds.
+const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
+
+/// A goal, and how much longer it is shown.
+#[derive(Clone, Debug)]
+pub(crate) struct Goal {
+    text: String,
+    short: String,
+    steps_left: u64,
+}
+
+impl Goal {
+    /// The goal of `game`, from its map if that has one.
+    pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
+        let (text, short) = match game.goal() {
+            Some(own) => (own, own),
+            None if game.has_exit() && display == MapDisplay::Off => {
+                ("Find the way out", "Find the exit")
+            }
+            None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
+            None => ("Roam as you like: no exit here", "Roam around"),
+        };
+        Self::new(text, short)
+    }
+
+    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
+    pub(crate) fn new(text: &str, short: &str) -> Self {
+        Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
+    }
+
+    /// A sentence without its full stop.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A shorter form for narrow windows.
+    pub(crate) fn short(&self) -> &str {
+        &self.short
+    }
+
+    /// Whether the goal is still shown.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.steps_left > 0
+    }
+
+    /// Counts `steps` steps in which the player wanted something.
+    pub(crate) fn moved(&mut self, steps: u64) {
+        self.steps_left = self.steps_left.saturating_sub(steps);
+    }
 }
 
 #[cfg(test)]

@@ -30,30 +30,25 @@
 //! text that the player can read and copy. So was one file that is locked while the game runs: the
 //! second game would keep nothing.
 
-mod best;
-mod change;
-pub mod disk;
-mod home;
+pub mod home;
 mod names;
+pub(crate) mod preferences;
 pub mod private;
 mod progress;
-mod read;
-#[cfg(feature = "cli")]
-pub mod replayed;
-pub mod values;
-mod write;
+mod results;
+mod text;
 
 use std::path::Path;
 
-pub use best::{Best, Improved, Reached, Run};
-use change::Change;
 use home::{Home, LARGEST_SCRIPT};
 pub use names::map_key;
 pub use names::name_in_map_key;
-use progress::Progress;
-pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Preferences, Save, SaveId, SavedGame};
+pub use preferences::Preferences;
+use progress::{Change, Progress};
+pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
+pub use results::{Best, Improved, Reached, Run};
 #[cfg(feature = "cli")]
-pub use replayed::{DescentRun, replayed};
+pub use results::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 
@@ -84,7 +79,7 @@ impl Store {
     /// The store in `folder`, which is created with the first change; and a sentence if something
     /// in it is damaged, or can't be used.
     pub fn open(folder: &Path) -> (Self, Option<String>) {
-        Self::at(Home::new(folder.to_owned(), Box::new(disk::Real)))
+        Self::at(Home::new(folder.to_owned(), Box::new(home::Real)))
     }
 
     fn at(mut home: Home) -> (Self, Option<String>) {

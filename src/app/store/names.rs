@@ -7,7 +7,7 @@
 
 use std::fmt::Write;
 
-use super::best::Reached;
+use super::results::Reached;
 use crate::rng;
 use crate::world::Difficulty;
 

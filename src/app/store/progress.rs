@@ -1,14 +1,13 @@
-//! Progress: the content of the store's file.
+//! Progress: the content of the store's file, and changes of it, which are applied to whatever the file
+//! holds at that time.
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::num::NonZeroU32;
+use std::{fmt, mem};
 
-use super::best::{Best, Improved, Reached, Run};
-use super::names;
-use crate::color::palette::ColorDepth;
+use crate::app::store::names;
+use crate::app::store::preferences::Preferences;
+use crate::app::store::results::{Best, Improved, Reached, Run};
 use crate::game::Rules;
-use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
 /// The content of `progress.toml`.
@@ -86,46 +85,6 @@ pub(crate) struct SavedEntry {
     pub(crate) save: Save,
     /// The name of the script's file.
     pub(crate) script: String,
-}
-
-/// What the player has chosen in the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
-pub struct Preferences {
-    /// Whether a dot marks the middle of the picture.
-    pub crosshair: bool,
-    /// Whether a strip shows the directions.
-    pub compass: bool,
-    /// Whether the terminal's bell rings at sounds.
-    pub bell: bool,
-    /// Whether the best run walks along.
-    pub ghost: bool,
-    /// The difficulty of new games.
-    pub difficulty: Difficulty,
-    /// The glyph set; `None` for the best that the terminal can show.
-    pub glyphs: Option<GlyphSet>,
-    /// The colour depth; `None` for that of the terminal.
-    pub colors: Option<ColorDepth>,
-    /// How pictures are changed for the player's eyes.
-    pub correction: Correction,
-    /// The most frames per second; `None` for the default.
-    pub frames_per_second: Option<NonZeroU32>,
-}
-
-impl Default for Preferences {
-    fn default() -> Self {
-        Self {
-            crosshair: false,
-            compass: false,
-            bell: false,
-            ghost: true,
-            difficulty: Difficulty::Normal,
-            glyphs: None,
-            colors: None,
-            correction: Correction::None,
-            frames_per_second: None,
-        }
-    }
 }
 
 /// A daily run that was tried.
@@ -217,5 +176,85 @@ impl Descent {
 impl SavedEntry {
     pub(crate) fn of(game: &SavedGame) -> Self {
         Self { save: game.save.clone(), script: names::of_saved(&game.script) }
+    }
+}
+
+/// A change.
+#[derive(Clone, Debug)]
+pub(crate) enum Change {
+    /// A run reached the exit.
+    Won { level: String, difficulty: Difficulty, run: Run },
+    /// A game was saved.
+    Saved(SavedGame),
+    /// A saved game was removed.
+    Removed(SaveId),
+    /// The player has chosen what differs.
+    Preferences { before: Preferences, after: Preferences },
+    /// The daily run of a date has come this far.
+    Daily { date: u32, reached: Reached, script: String },
+    /// A descent has come this far.
+    Descent { reached: Reached, script: String },
+}
+
+impl Change {
+    /// The name and the text of the script that belongs to the change.
+    pub(crate) fn written(&self) -> Option<(String, &str)> {
+        match self {
+            Self::Won { level, difficulty, run } => {
+                Some((names::of_run(level, *difficulty, run.tally.steps), &run.script))
+            }
+            Self::Saved(game) => Some((names::of_saved(&game.script), &game.script)),
+            Self::Daily { date, reached, script } => {
+                Some((names::of_daily(*date, *reached)?, script))
+            }
+            Self::Descent { reached, script } => Some((names::of_descent(*reached)?, script)),
+            Self::Removed(_) | Self::Preferences { .. } => None,
+        }
+    }
+
+    /// The text of the script `name`, if it belongs to the change.
+    pub(crate) fn script(&self, name: &str) -> Option<&str> {
+        self.written().filter(|(own, _)| own == name).map(|(_, text)| text)
+    }
+}
+
+impl Progress {
+    /// Applies a change. The better result wins, whichever came first.
+    pub(crate) fn apply(&mut self, change: &Change) {
+        match change {
+            Change::Won { level, difficulty, run } => {
+                self.add_best((level.clone(), *difficulty), Best::of(run));
+            }
+            Change::Saved(game) => self.add_save(SavedEntry::of(game)),
+            Change::Removed(id) => self.remove_save(*id),
+            Change::Preferences { before, after } => self.preferences.choose(*before, *after),
+            Change::Daily { date, reached, .. } => {
+                self.add_daily(*date, Daily { reached: *reached });
+            }
+            Change::Descent { reached, .. } => self.descent = self.descent.max(Some(*reached)),
+        }
+    }
+
+    /// Adds from `known` what a damaged file has lost.
+    pub(crate) fn complete(&mut self, known: &Self) {
+        known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
+        known.dailies.iter().for_each(|(date, daily)| self.add_daily(*date, *daily));
+        self.descent = self.descent.max(known.descent);
+        let readable = mem::replace(&mut self.saves, known.saves.clone());
+        for entry in readable {
+            self.add_save(entry);
+        }
+        self.preferences.choose(Preferences::default(), known.preferences);
+    }
+
+    fn add_best(&mut self, key: (String, Difficulty), best: Best) {
+        let known = self.bests.get(&key);
+        let best = known.map_or(best, |known| known.and(best));
+        self.bests.insert(key, best);
+    }
+
+    fn add_daily(&mut self, date: u32, daily: Daily) {
+        let known = self.dailies.entry(date).or_insert(daily);
+        known.reached = known.reached.max(daily.reached);
     }
 }

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::titles::titled;
 use super::*;
-use crate::app::run_log::RunLog;
+use crate::app::recording::RunLog;
 use crate::app::store::{Run, map_key};
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
@@ -52,7 +52,7 @@ pub(crate) fn playing_own(text: &'static str, store: Store) -> Rig {
     let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
     rig.choose("danger.toml");
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     rig
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn dead() -> Rig {
     }
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
-        if rig.app.screen == Screen::Dead {
+        if rig.app.screen() == Screen::Dead {
             return rig;
         }
         rig.wait(1);
@@ -92,11 +92,11 @@ fn the_dead_say_what_happened_and_go_on_at_once() {
     assert!(shown.contains("killed by spikes") && shown.contains("> Try again"), "{shown}");
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Dead, "nothing counts in the first half second");
+    assert_eq!(rig.app.screen(), Screen::Dead, "nothing counts in the first half second");
     rig.wait(700);
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     assert_eq!((rig.position().x, rig.game().tally().deaths), (1.5, 1));
 }
 
@@ -105,12 +105,12 @@ fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Restart the level");
-    assert_eq!((rig.app.screen, rig.game().tally().deaths), (Screen::Playing, 0));
+    assert_eq!((rig.app.screen(), rig.game().tally().deaths), (Screen::Playing, 0));
     assert!(rig.game().elapsed() < 1.0);
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Leave to the title");
-    assert_eq!(rig.app.screen, Screen::Title);
+    assert_eq!(rig.app.screen(), Screen::Title);
     let left = rig.app.left.as_ref().unwrap();
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
 }
@@ -123,13 +123,13 @@ pub(crate) fn won() -> Rig {
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
         rig.wait(1);
-        if rig.app.screen == Screen::Dead {
+        if rig.app.screen() == Screen::Dead {
             rig.wait(700);
             rig.tap(Key::Enter, 30);
             rig.wait(300);
             rig.tap(Key::Char('g'), 30);
         }
-        if rig.app.screen == Screen::LevelDone {
+        if rig.app.screen() == Screen::LevelDone {
             return rig;
         }
     }
@@ -224,7 +224,7 @@ fn settings_change_by_enter_and_arrows_and_are_kept() {
     assert!(!rig.app.store.preferences().ghost);
     for (label, depth) in [("Colours", ColorDepth::True), ("Colours", ColorDepth::Indexed256)] {
         rig.choose(label);
-        assert_eq!(rig.app.depth, depth);
+        assert_eq!(rig.app.depth(), depth);
     }
     rig.choose("Frames a second");
     assert_eq!(rig.app.settings.frame_time, Duration::from_secs(1) / 60);

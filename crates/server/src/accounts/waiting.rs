@@ -24,7 +24,7 @@ use super::{
     Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun,
     verify_with,
 };
-use cellcaster::app::store::disk::{Disk, Real};
+use cellcaster::app::store::home::{Disk, Real};
 use cellcaster::app::store::private;
 use cellcaster::fault::printable_path;
 use cellcaster::world::World;

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
 
+use cellcaster::app::parts::of_steps;
 use cellcaster::cli::Error;
-use cellcaster::cli::verify::clock;
 
 use super::arguments::Replay;
 use crate::rooms::maps::HostMaps;
@@ -34,7 +34,7 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     let mut lines = String::new();
     for round in rounds {
         // Memory accepts every byte.
-        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, clock(round.steps));
+        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, of_steps(round.steps));
         for (name, points) in round.standings {
             _ = writeln!(lines, "  {name}  {points}");
         }

@@ -9,8 +9,14 @@ use super::arguments::{Scores, ScoresFormat};
 use super::database::Database;
 use crate::accounts::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 use crate::cli::host_store::{self, failed};
+<<<<<<< HEAD
 use cellcaster::cli::data_folder::data_folder;
 use cellcaster::cli::{Error, verify};
+=======
+use cellcaster::app::parts::of_steps;
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
+>>>>>>> integration
 use cellcaster::game::STEPS_PER_SECOND;
 
 /// The entries of a board that are listed.
@@ -74,7 +80,7 @@ fn table(boards: &Boards) -> String {
                     ["time", "rank"],
                     scores.iter().map(|score| {
                         let rank = score.rank.name().to_owned();
-                        (score.name.as_str(), [verify::clock(score.tally.steps), rank])
+                        (score.name.as_str(), [of_steps(score.tally.steps), rank])
                     }),
                 )
             });
@@ -85,7 +91,7 @@ fn table(boards: &Boards) -> String {
             ["floors", "treasure", "time"],
             scores.iter().map(|score| {
                 let reached = score.reached;
-                let time = verify::clock(reached.steps);
+                let time = of_steps(reached.steps);
                 let values = [reached.floors.to_string(), reached.treasure.to_string(), time];
                 (score.name.as_str(), values)
             }),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
 use super::*;
-use crate::app::store::disk::{Disk, Real};
+use crate::app::store::home::{Disk, Real};
 
 /// The real disk, up to an operation.
 #[derive(Clone, Debug)]

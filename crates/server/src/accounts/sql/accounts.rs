@@ -8,8 +8,8 @@ use crate::accounts::{
     Account, AccountId, AccountKey, AccountSettings, Identity, NAME_HELD, Name, Origin,
     RENAME_WAIT, Refusal, StoreFailure, UnixTime, ban,
 };
+use cellcaster::app::parts::Choice;
 use cellcaster::app::store::Preferences;
-use cellcaster::app::store::values::{self as words, COLORS, CORRECTIONS, GLYPHS, name_of};
 use cellcaster::world::Difficulty;
 
 const COLUMNS: &str = "id, key, name, named_at, created_at, seen_at";
@@ -110,11 +110,9 @@ pub(crate) fn settings(
         bell: row.get(2)?,
         ghost: row.get(3)?,
         difficulty: Difficulty::named(&difficulty).unwrap_or_default(),
-        glyphs: glyphs.and_then(|name| words::named(&GLYPHS, &name)),
-        colors: colors.and_then(|name| words::named(&COLORS, &name)),
-        correction: correction
-            .and_then(|name| words::named(&CORRECTIONS, &name))
-            .unwrap_or_default(),
+        glyphs: glyphs.and_then(|name| Choice::named(&name)),
+        colors: colors.and_then(|name| Choice::named(&name)),
+        correction: correction.and_then(|name| Choice::named(&name)).unwrap_or_default(),
         frames_per_second: frames.and_then(NonZeroU32::new),
     };
     Ok(AccountSettings { preferences, configuration: row.get(8)? })
@@ -127,10 +125,8 @@ pub(crate) fn set_settings(
 ) -> Result<(), StoreFailure> {
     let AccountSettings { preferences, configuration } = settings;
     let Preferences { crosshair, compass, bell, ghost, difficulty, .. } = *preferences;
-    let [glyphs, colors] = [
-        preferences.glyphs.map(|mode| name_of(&GLYPHS, mode)),
-        preferences.colors.map(|depth| name_of(&COLORS, depth)),
-    ];
+    let [glyphs, colors] =
+        [preferences.glyphs.map(Choice::name), preferences.colors.map(Choice::name)];
     let frames = preferences.frames_per_second.map(NonZeroU32::get);
     let sql = "INSERT INTO settings (account, crosshair, compass, bell, ghost, difficulty, glyphs, \
                colors, frames_per_second, configuration, correction) \
@@ -151,7 +147,7 @@ pub(crate) fn set_settings(
         colors,
         frames,
         configuration.as_str(),
-        name_of(&CORRECTIONS, preferences.correction)
+        preferences.correction.name()
     ];
     database.execute(sql, values).map(|_| ())
 }

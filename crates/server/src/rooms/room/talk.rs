@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::{Finish, MemberId, Mode, Room, Said};
 use crate::sessions::line::Line;
-use cellcaster::app::parts::time;
-use cellcaster::game::{PlayerColor, STEP};
+use cellcaster::app::parts::of_steps;
+use cellcaster::game::PlayerColor;
 
 /// How many lines a room remembers.
 pub(crate) const SAID: usize = 8;
@@ -59,7 +59,7 @@ impl Finish {
 
     /// The time to the exit.
     pub(crate) fn time(self) -> String {
-        time(self.steps as f64 * STEP)
+        of_steps(self.steps)
     }
 }
 

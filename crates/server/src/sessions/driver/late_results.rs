@@ -7,9 +7,10 @@
 use std::sync::Weak;
 use std::time::Duration;
 
+use cellcaster::app::parts::of_steps;
 use tokio::time::sleep;
 
-use super::results::{Recorder, clock};
+use super::results::Recorder;
 use super::{Shared, unix_time};
 use crate::accounts::{HostStore, Late, WaitingResults};
 use crate::lock::locked;
@@ -75,7 +76,7 @@ impl Recorder {
                 let (level, steps) = (run.board().level(), run.tally().steps);
                 events::result_verified(account.name.as_str(), level, steps, run.rank().name());
                 let level = self.catalog.title(level);
-                let line = format!("your result in {level}, {}, is recorded now.", clock(steps));
+                let line = format!("your result in {level}, {}, is recorded now.", of_steps(steps));
                 self.visitors.say_to(&account.key, &line);
             }
             Some(Late::Refuted(result, reason)) => {

@@ -15,8 +15,8 @@ use crate::rooms::sequencer::FinishedRun;
 use crate::sessions::line::Line;
 use crate::sessions::session::BoardRow;
 use crate::sessions::visitors::Visitors;
+use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::Improved;
-use cellcaster::game::STEPS_PER_SECOND;
 use cellcaster::world::{Difficulty, World};
 
 /// The most entries of a board that are shown, and the places that are told.
@@ -83,7 +83,7 @@ impl Recorder {
         let (steps, rank) = (run.tally().steps, run.rank());
         events::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
         let what = if improved.time { "your best" } else { "not your best" };
-        let what = format!("{}, rank {rank}: {what}.", clock(steps));
+        let what = format!("{}, rank {rank}: {what}.", of_steps(steps));
         let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
             self.failed(&failure);
             Vec::new()
@@ -145,10 +145,4 @@ pub(crate) fn board(
         })
     };
     scores.into_iter().filter_map(row).collect()
-}
-
-/// Steps as minutes and seconds.
-pub(crate) fn clock(steps: u64) -> String {
-    let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

@@ -8,8 +8,7 @@ use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Emote, Mode};
 use crate::rooms::summary::RoomSummary;
 use crate::sessions::line::Line;
-use cellcaster::app::parts::{Menu, time};
-use cellcaster::game::STEP;
+use cellcaster::app::parts::{Menu, of_steps};
 
 /// The rooms that the lobby lists itself; the others are on a page of their own.
 const ROOMS_IN_LOBBY: usize = 5;
@@ -176,7 +175,7 @@ impl Visit {
             Some(rows) => rows.iter().enumerate().fold(menu, |menu, (index, row)| {
                 let own = if row.is_own { " (you)" } else { "" };
                 let label = format!("{:>2}. {}{own}", index + 1, row.name);
-                let value = format!("{}  {}", row.rank.name(), time(row.steps as f64 * STEP));
+                let value = format!("{}  {}", row.rank.name(), of_steps(row.steps));
                 menu.entry_with(label, value, Choice::Nothing)
             }),
         }

@@ -7,10 +7,7 @@ use super::choice::Choice;
 use super::messages::Request;
 use super::visit::{Visit, bindings_of};
 use crate::accounts::AccountSettings;
-use cellcaster::app::parts::{
-    COLORS, CORRECTIONS, GLYPHS, Menu, after, name, on_or_off, with_card,
-};
-use cellcaster::world::Difficulty;
+use cellcaster::app::parts::{Menu, Value, with_card};
 
 /// A setting on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,23 +75,16 @@ impl Visit {
         let preferences = &mut identity.preferences;
         match preference {
             Preference::Difficulty => {
-                let difficulty = preferences.difficulty;
-                preferences.difficulty = after(&Difficulty::ALL, |&it| it == difficulty, forward);
+                preferences.difficulty = preferences.difficulty.after(forward);
             }
             Preference::Crosshair => preferences.crosshair ^= true,
             Preference::Compass => preferences.compass ^= true,
             Preference::Ghost => preferences.ghost ^= true,
             Preference::Bell => preferences.bell ^= true,
-            Preference::Glyphs => {
-                preferences.glyphs = Some(after(&GLYPHS, |it| it.0 == look.glyphs, forward).0);
-            }
-            Preference::Colors => {
-                let colors = preferences.colors;
-                preferences.colors = after(&COLORS, |it| it.0 == colors, forward).0;
-            }
+            Preference::Glyphs => preferences.glyphs = Some(look.glyphs.after(forward)),
+            Preference::Colors => preferences.colors = preferences.colors.after(forward),
             Preference::Correction => {
-                let correction = preferences.correction;
-                preferences.correction = after(&CORRECTIONS, |it| it.0 == correction, forward).0;
+                preferences.correction = preferences.correction.after(forward);
             }
             Preference::Keys => self.change_keys(forward),
             Preference::Mouse => self.switch_mouse(),
@@ -129,18 +119,18 @@ impl Visit {
         let preferences = &self.identity.preferences;
         let stay = self.stay.as_ref();
         match preference {
-            Preference::Difficulty => preferences.difficulty.name().to_owned(),
-            Preference::Keys => self.identity.configuration.preset().to_owned(),
-            Preference::Mouse => on_or_off(self.pointer.is_on()),
-            Preference::Crosshair => on_or_off(preferences.crosshair),
-            Preference::Compass => on_or_off(preferences.compass),
-            Preference::Ghost => on_or_off(preferences.ghost),
-            Preference::Bell => on_or_off(preferences.bell),
-            Preference::Map => on_or_off(stay.is_some_and(|stay| stay.map.is_shown)),
-            Preference::Chat => on_or_off(stay.is_some_and(|stay| stay.talk.is_on())),
-            Preference::Glyphs => name(&GLYPHS, self.look.glyphs),
-            Preference::Colors => name(&COLORS, preferences.colors),
-            Preference::Correction => name(&CORRECTIONS, preferences.correction),
+            Preference::Difficulty => preferences.difficulty.label(),
+            Preference::Keys => self.identity.configuration.preset.label(),
+            Preference::Mouse => self.pointer.is_on().label(),
+            Preference::Crosshair => preferences.crosshair.label(),
+            Preference::Compass => preferences.compass.label(),
+            Preference::Ghost => preferences.ghost.label(),
+            Preference::Bell => preferences.bell.label(),
+            Preference::Map => stay.is_some_and(|stay| stay.map.is_shown).label(),
+            Preference::Chat => stay.is_some_and(|stay| stay.talk.is_on()).label(),
+            Preference::Glyphs => self.look.glyphs.label(),
+            Preference::Colors => preferences.colors.label(),
+            Preference::Correction => preferences.correction.label(),
         }
     }
 }

@@ -8,9 +8,8 @@ use unicode_width::UnicodeWidthStr;
 use super::overhead::style;
 use super::seconds_left;
 use crate::rooms::room::{Catalog, Finish, MemberView, Mode, NAME_COLUMNS, Role, RoomView};
-use cellcaster::app::parts::{message, time, whole_seconds};
+use cellcaster::app::parts::{message, of_steps, whole_seconds};
 use cellcaster::color::palette::ColorDepth;
-use cellcaster::game::STEP;
 use cellcaster::tui::canvas::Canvas;
 
 /// Draws who is in the room, and their points.
@@ -48,7 +47,7 @@ pub(crate) fn draw_standings(
         let all = member.points.saturating_add(standing.points);
         let place = member.finish.map_or(index + 1, |finish| finish.place);
         let place = standing.steps.map_or_else(String::new, |_| format!("{place}."));
-        let steps = standing.steps.map(|steps| time(steps as f64 * STEP));
+        let steps = standing.steps.map(of_steps);
         let steps = steps.unwrap_or_else(|| "did not finish".to_owned());
         let gained = format!("+{}", standing.points);
         let text = format!(" {steps:>width$} {gained:>3} {all:>3}");

@@ -167,7 +167,7 @@ fn a_preset_of_keys_is_chosen_and_kept() {
     let again = rig.connect(mara, Speaks::Plain, ColorDepth::Mono);
     rig.pump(300);
     let kept = rig.session(again, |session, _| session.visit.identity.configuration.clone());
-    assert_eq!((kept.preset(), kept.mouse), ("azerty", true));
+    assert!(kept.to_string().contains("preset = \"azerty\"") && kept.mouse, "{kept}");
 }
 
 #[test]

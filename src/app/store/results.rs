@@ -1,6 +1,8 @@
-//! Results: of a run, and the best of several.
+//! Results: of a run, the best of several, and those that a script leads to when it is played again.
 
-use crate::game::{Rank, Tally};
+use crate::game::{Game, Outcome, Rank, Rules, Script, Tally};
+use crate::generate::floors_below;
+use crate::world::World;
 
 /// A run that reached the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -84,5 +86,46 @@ impl Best {
     pub fn and(self, other: Self) -> Self {
         let fastest = if other.tally.steps < self.tally.steps { other } else { self };
         Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
+    }
+}
+
+/// The end of a descent.
+pub struct DescentRun {
+    /// The game on the last floor.
+    pub game: Game,
+    /// How far it came.
+    pub reached: Reached,
+}
+
+/// The game at the end of `script`, or at its first exit.
+pub fn replayed(world: World, rules: Rules, script: &Script) -> Game {
+    let mut game = Game::with_rules(world, rules);
+    for (_section, intents) in script.iter() {
+        if game.is_finished() {
+            break;
+        }
+        game.step(intents);
+    }
+    game
+}
+
+impl DescentRun {
+    /// The descent of `script` from `floor` on, whose world is `first`. As in a game, a descent ends
+    /// with the first death, and what is found counts once the exit is reached.
+    pub fn replayed(floor: u32, first: World, rules: Rules, script: &Script) -> Self {
+        let mut game = Game::with_rules(first, rules);
+        let mut later = floors_below(rules.seed, floor);
+        let mut reached = Reached::default();
+        for (_section, intents) in script.iter() {
+            if game.outcome() != Outcome::Playing {
+                let Some(world) = later.next().filter(|_| game.is_finished()) else { break };
+                game = Game::with_rules(world, rules);
+            }
+            game.step(intents);
+            if game.is_finished() {
+                reached = reached.and(&game.tally());
+            }
+        }
+        Self { game, reached }
     }
 }

@@ -1,18 +1,97 @@
-//! What lies over the picture of one player of a game: the map and the HUD.
+//! How the picture of one player is drawn, and the map and the HUD over it.
 //!
-//! It depends on the game and the player alone, so that a game at home and a room of several show the
-//! same.
+//! All of it depends on the game and the player alone, so that a game at home and a room of several
+//! show the same.
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 
-use super::map_panel::MapPanel;
-use super::{DrawOptions, hud, panels};
+use crate::app::map_panel::MapPanel;
 use crate::app::store::Preferences;
-use crate::color::palette::ColorDepth;
-use crate::game::{Game, PlayerId, PlayerView};
+use crate::app::{hud, panels};
+use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::game::{Flash, Game, PlayerId, PlayerView};
+use crate::render::{Filter, Frame, Renderable};
 use crate::tui::canvas::Canvas;
-use crate::tui::{MapMark, View};
+use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, MapMark, View};
+use crate::world::{FieldOfView, Heading};
+
+/// How a picture is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawOptions {
+    pub glyphs: GlyphSet,
+    pub depth: ColorDepth,
+    pub shade_ink: ShadeInk,
+    pub cell_aspect: CellAspect,
+    pub filter: Filter,
+    pub correction: Correction,
+    pub field_of_view: FieldOfView,
+    /// The flash at the edge, and the direction of view.
+    pub flash: Option<(Flash, Heading)>,
+    /// Whether a dot marks the middle.
+    pub marks_middle: bool,
+}
+
+impl DrawOptions {
+    /// Draws `scene` from `camera` at the time `seconds`.
+    pub fn draw<S: Renderable>(
+        &self,
+        scene: &S,
+        camera: &S::Camera,
+        seconds: f64,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        view: &mut View<S>,
+    ) {
+        let picture = self.picture(scene, camera, seconds);
+        self.render(&picture, area.as_size(), view, &mut || true);
+        picture.paint(view, 0, area, canvas);
+    }
+
+    /// The picture of `scene` from `camera` at the time `seconds`.
+    pub(crate) fn picture<'a, S: Renderable>(
+        &self,
+        scene: &'a S,
+        camera: &'a S::Camera,
+        seconds: f64,
+    ) -> FirstPerson<'a, S> {
+        FirstPerson::new(scene, camera)
+            .glyphs(self.glyphs)
+            .color_depth(self.depth)
+            .shade_ink(self.shade_ink)
+            .cell_aspect(self.cell_aspect)
+            .filter(self.filter)
+            .correction(self.correction)
+            .time(seconds)
+    }
+
+    /// Renders `picture` for an area of this size into `view`; may stop once `go_on` returns `false`.
+    /// Returns whether the picture is complete.
+    pub(crate) fn render<S: Renderable>(
+        &self,
+        picture: &FirstPerson<'_, S>,
+        size: Size,
+        view: &mut View<S>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let is_complete = picture.draw_while(size, view, go_on);
+        let has_pixels = size.width > 0 && size.height > 0;
+        if is_complete && has_pixels && self.depth != ColorDepth::Mono {
+            self.change_pixels(view.frame_mut());
+        }
+        is_complete
+    }
+
+    /// Tints and marks the pixels of a picture in colours.
+    fn change_pixels(&self, frame: &mut Frame) {
+        if let Some((flash, heading)) = &self.flash {
+            hud::tint(frame, flash, *heading);
+        }
+        if self.marks_middle && self.glyphs.has_blocks() {
+            hud::mark_middle(frame);
+        }
+    }
+}
 
 /// A player of a game, and how their picture is drawn.
 pub struct Overlay<'a> {
