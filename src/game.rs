@@ -72,6 +72,7 @@ pub use tally::{Rank, Share, Tally};
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
+/// The steps of a game in a second.
 pub const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.

@@ -63,6 +63,7 @@
 extern crate self as cellcaster;
 
 #[cfg(feature = "terminal")]
+#[allow(missing_docs, reason = "most fields of settings and panels are what their names say")]
 pub mod app;
 pub mod cast;
 #[cfg(feature = "cli")]

@@ -39,7 +39,7 @@ impl Clock {
 }
 
 /// The time `steps` steps after `time`.
-pub fn after(time: Duration, steps: u64) -> Duration {
+pub(crate) fn after(time: Duration, steps: u64) -> Duration {
     time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
 }
 

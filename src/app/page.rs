@@ -19,14 +19,14 @@ use crate::terminal::Key;
 use crate::tui::{HeldKeys, Press};
 
 /// A page, which has the keys of its kind.
-pub trait Page: Copy + PartialEq {
+pub(crate) trait Page: Copy + PartialEq {
     /// The kind of the page.
     fn kind(self) -> Kind;
 }
 
 /// A kind of pages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// The picture, or a page whose owner handles its keys.
     Bare,
     /// A menu. If it has values, keys to the left and the right change them.
@@ -41,7 +41,7 @@ pub enum Kind {
 
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
+pub(crate) enum Effect {
     /// Nothing.
     None,
     /// The page has changed.
@@ -60,7 +60,7 @@ pub enum Effect {
 
 /// The page that is shown, its menu, and the pages to return to.
 #[derive(Clone, Debug)]
-pub struct Pages<P, C> {
+pub(crate) struct Pages<P, C> {
     page: P,
     /// The menu of the page; empty if it has none.
     pub menu: Menu<C>,
@@ -74,7 +74,7 @@ pub struct Pages<P, C> {
 
 impl<P: Page, C: Copy> Pages<P, C> {
     /// A page without a menu.
-    pub fn new(page: P) -> Self {
+    pub(crate) fn new(page: P) -> Self {
         Self {
             page,
             menu: Menu::new(""),
@@ -86,24 +86,24 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The page that is shown.
-    pub fn page(&self) -> P {
+    pub(crate) fn page(&self) -> P {
         self.page
     }
 
     /// Shows `page`, from which there is no way back.
-    pub fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub(crate) fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.clear();
         self.enter(page, menu, now);
     }
 
     /// Opens `page` over the one that is shown.
-    pub fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub(crate) fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter(page, menu, now);
     }
 
     /// Returns to the page from which this one was opened, or to `home`.
-    pub fn close(&mut self, home: P, now: Duration) {
+    pub(crate) fn close(&mut self, home: P, now: Duration) {
         let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::new("")));
         self.enter(page, menu, now);
     }
@@ -115,13 +115,13 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// Replaces the menu, after something that it shows has changed. The selection stays.
-    pub fn renew(&mut self, menu: Menu<C>) {
+    pub(crate) fn renew(&mut self, menu: Menu<C>) {
         let selected = self.menu.selected();
         self.menu = menu.selecting(selected);
     }
 
     /// Handles a press of `key` while the keys in `held` are down.
-    pub fn press(
+    pub(crate) fn press(
         &mut self,
         (key, press): (Key, Press),
         bindings: &Bindings,
@@ -171,7 +171,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// Answers the question on the page by `key`, now or once it is certain that it does not repeat.
-    pub fn press_to_answer(
+    pub(crate) fn press_to_answer(
         &mut self,
         key: Key,
         press: Press,
@@ -183,7 +183,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The effect of a pending key that did not repeat until `now`.
-    pub fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
+    pub(crate) fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
         self.pending.settle(now).map_or(Effect::None, |key| self.answer(key, bindings))
     }
 
@@ -204,7 +204,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The time until which a key is pending.
-    pub fn pending_until(&self) -> Option<Duration> {
+    pub(crate) fn pending_until(&self) -> Option<Duration> {
         self.pending.until()
     }
 }

@@ -17,6 +17,7 @@ pub const SHOWCASE: Showcase =
 
 /// A compiled-in script, and its built-in level.
 pub struct Showcase {
+    /// The built-in level that it is played in.
     pub level: &'static str,
     script: &'static str,
 }

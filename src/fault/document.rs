@@ -138,9 +138,13 @@ fn too_many_tokens(place: Range<usize>) -> Fault {
 
 /// A key and its value.
 pub struct Entry<'a, 't> {
+    /// The key, without quotes.
     pub key: &'a str,
+    /// The bytes of the key in the text.
     pub key_place: Range<usize>,
+    /// The value.
     pub value: &'a DeValue<'t>,
+    /// The bytes of the value in the text.
     pub value_place: Range<usize>,
     /// The faults of its document.
     pub faults: &'a FaultList,

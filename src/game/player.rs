@@ -76,7 +76,7 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
         check(self.health.is_possible(), "the health")?;

@@ -35,7 +35,7 @@ pub(crate) struct Stance {
 
 impl Stance {
     /// Refuses a body that is neither standing, ducking nor between.
-    pub fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), Unrestorable> {
         check((0.0..=1.0).contains(&self.ducking), "a stance")
     }
 

@@ -147,10 +147,12 @@ impl<T: OfLevel> OfLevel for Vec<T> {
 pub mod bits {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+    /// Writes all 64 bits, whatever number they are.
     pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
         bits.to_le_bytes().serialize(to)
     }
 
+    /// Reads any 64 bits.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
         Deserialize::deserialize(from).map(u64::from_le_bytes)
     }

@@ -21,7 +21,7 @@ const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
-pub const FRICTION: f64 = 20.0;
+pub(crate) const FRICTION: f64 = 20.0;
 /// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
@@ -62,7 +62,7 @@ impl Turning {
     }
 
     /// Refuses more exact turns than may wait.
-    pub fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
         check(is_possible, "a turn")

@@ -49,6 +49,7 @@ pub struct Place {
 }
 
 impl Projection {
+    /// The projection of `camera` onto pictures of this size.
     pub fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let height = f64::from(size.height.get());

@@ -6,6 +6,8 @@
 //! - [`wire`]: bytes and colour errors of encoders for a game's frames.
 //! - [`cli`]: the command line, which reports the figures.
 
+#![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
+
 pub mod accuracy;
 pub mod casters;
 pub mod cli;

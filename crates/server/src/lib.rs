@@ -28,6 +28,8 @@
 //! Rejected: `russh`'s own accept loop. It has no limit of connections, no deadline before
 //! authentication, and its queue to a channel tells nothing about the socket.
 
+#![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
+
 pub mod accounts;
 mod bucket;
 pub mod cli;

@@ -72,7 +72,7 @@ impl Trail {
     }
 
     /// Refuses more marks than are remembered, and marks after the step `now`.
-    pub fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
         check(are_past && self.marks.len() <= MOST, "a trail")
     }

@@ -219,7 +219,7 @@ impl Missiles {
     }
 
     /// Refuses those that have flown for too long.
-    pub fn check(&self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
         check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
     }
 
