@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn exact_pictures_have_no_wrong_pixel_and_coarse_ones_have() {
-        let museum = include_str!("../../../tests/maps/museum.toml");
+        let museum = include_str!("../../../../tests/maps/museum.toml");
         let world = map::parse_str(museum).unwrap();
         let size = FrameSize::new(40, 24).unwrap();
         let gallery = Gallery::new(&world, size, 3, 7);
