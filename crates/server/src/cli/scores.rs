@@ -9,14 +9,9 @@ use super::arguments::{Scores, ScoresFormat};
 use super::database::Database;
 use crate::accounts::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreFailure};
 use crate::cli::host_store::{self, failed};
-<<<<<<< HEAD
-use cellcaster::cli::data_folder::data_folder;
-use cellcaster::cli::{Error, verify};
-=======
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::Error;
 use cellcaster::cli::data_folder::data_folder;
->>>>>>> integration
 use cellcaster::game::STEPS_PER_SECOND;
 
 /// The entries of a board that are listed.
