@@ -41,39 +41,32 @@ mod title;
 use std::time::Duration;
 
 pub use bindings::Bindings;
+use controls::{Clock, Controls};
+use detection::Detection;
 pub use levels::Levels;
-use levels::{Course, LevelNumber, Stage};
+use levels::{Course, LevelNumber, Reload, Stage};
 use map_panel::MapPanel;
 use menus::Choice;
-use recording::Ghost;
+use mouse::Pointer;
+use page::Pages;
+use played::{Goal, Played, Viewpoint, Views};
 pub use recording::Recording;
-use recording::RunLog;
+use recording::{Ghost, RunLog, ScriptRecorder};
 pub use replay::Replay;
 use results::LevelResult;
 pub use run::{Farewell, Opening, play};
 use screen::Screen;
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
-use status::Goal;
-use title::Demo;
-pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
-
-use crate::app::store::{Reached, Store};
-use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::game::STEP;
-use crate::tui::{CellAspect, GlyphSet, View};
-use crate::world::{Difficulty, FieldOfView, Figure};
-use controls::Clock;
-use controls::Controls;
-use detection::Detection;
-use levels::Reload;
-use mouse::Pointer;
-use page::Pages;
-use played::{Played, Viewpoint, Views};
-use recording::ScriptRecorder;
 use stats::Stats;
 use status::StatusLine;
 use steps::Watch;
-use title::TmuxOrder;
+use store::{Reached, Store};
+use title::{Demo, TmuxOrder};
+pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
+
+use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::tui::{CellAspect, GlyphSet, View};
+use crate::world::{Difficulty, Figure};
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,7 +120,6 @@ struct App {
     demo: Option<Demo>,
     settings: Settings,
     terminal: TerminalLook,
-    field_of_view: FieldOfView,
     controls: Controls,
     pointer: Pointer,
     map: MapPanel,
@@ -145,7 +137,6 @@ struct App {
     is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
-    shows_stats: bool,
     stats: Option<Stats>,
     status: StatusLine,
     /// The known properties of the terminal.
@@ -186,10 +177,8 @@ impl App {
             offers: None,
             own_maps: Vec::new(),
             demo: None,
-            field_of_view: settings.field_of_view,
             terminal: TerminalLook::default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
-            shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
             controls: Controls::default(),

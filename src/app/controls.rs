@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use crate::app::bindings::{Action, Bindings};
-use crate::app::status::Toggles;
 use crate::game::{Intent, Intents, STEP};
 use crate::terminal::{Key, KeyEvent, Phase};
 use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
@@ -57,6 +56,17 @@ pub(crate) fn step() -> Duration {
 
 /// The duration of a step in nanoseconds, rounded.
 const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
+
+/// The modes of motion that are switched on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Toggles {
+    /// Running.
+    pub runs: bool,
+    /// Ducking.
+    pub ducks: bool,
+    /// Walking on without a key.
+    pub keeps_walking: bool,
+}
 
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]

@@ -8,12 +8,11 @@
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
-use super::saved::save_of_descent;
-use super::status::Goal;
+use super::played::Goal;
 use super::time::whole_seconds;
-use super::{App, Levels, STEP, Screen};
-use crate::app::store::{Descent, Reached};
-use crate::game::Rules;
+use super::{App, Levels, Screen};
+use crate::app::store::{Descent, Reached, Save};
+use crate::game::{LevelName, Rules, STEP};
 use crate::world::Difficulty;
 
 /// What is said about a daily run that does not count.
@@ -141,6 +140,18 @@ impl App {
         };
         let best = self.store.best_descent().map_or_else(String::new, short);
         menu.entry_with("Endless", best, Choice::Endless)
+    }
+}
+
+/// The descent of that kind with these rules, as it is saved, without steps and checksum.
+pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
+    Save {
+        level: LevelName::of_floor(1).as_str().to_owned(),
+        file: None,
+        rules,
+        descent: Some(kind),
+        steps: None,
+        checksum: None,
     }
 }
 

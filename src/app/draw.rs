@@ -96,7 +96,7 @@ impl App {
             share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
             toggles: self.controls.toggles,
             mouse: self.pointer.is_on(),
-            stats: self.stats.as_ref().filter(|_| self.shows_stats),
+            stats: self.stats.as_ref().filter(|_| self.settings.shows_stats),
             bindings: &self.settings.bindings,
             health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth()),
         });
@@ -114,7 +114,7 @@ impl App {
 
     fn draw_options(&self) -> DrawOptions {
         let is_game = self.demo.is_none();
-        let heading = |game: &Game| game.camera(self.field_of_view).heading;
+        let heading = |game: &Game| game.camera(self.settings.field_of_view).heading;
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));
         DrawOptions {
             glyphs: self.settings.glyphs,
@@ -123,7 +123,7 @@ impl App {
             cell_aspect: self.settings.cell_aspect.or(self.terminal.aspect).unwrap_or_default(),
             filter: self.settings.filter,
             correction: self.store.preferences().correction,
-            field_of_view: self.field_of_view,
+            field_of_view: self.settings.field_of_view,
             flash: flash.filter(|_| is_game),
             marks_middle: is_game && self.store.preferences().crosshair,
         }
@@ -173,14 +173,14 @@ impl App {
     /// The viewpoint, and a number that grows with every visible change but those of figures.
     fn surroundings(&self) -> (Viewpoint, u64) {
         let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
-        (self.game.viewpoint(self.field_of_view), self.game.revision() + ghost)
+        (self.game.viewpoint(self.settings.field_of_view), self.game.revision() + ghost)
     }
 
     /// The figures that the last picture and its map would show if they were drawn now, in the same
     /// surroundings; and perhaps others.
     fn figures_in_view(&self) -> impl Iterator<Item = &Figure> {
         let figures = self.game.grid().into_iter().flat_map(|game| {
-            let camera = game.camera(self.field_of_view);
+            let camera = game.camera(self.settings.field_of_view);
             game.figures().map(move |figure| (game.world(), camera, figure))
         });
         let in_view = figures

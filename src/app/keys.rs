@@ -121,7 +121,7 @@ impl App {
             (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
             (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
             (_, Action::ToggleGhost) => self.toggle_ghost(),
-            (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
+            (_, Action::ToggleStats) => toggle(&mut self.settings.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
             }
@@ -199,9 +199,10 @@ impl App {
     }
 
     fn widen_view(&mut self, degrees: f64) {
-        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
+        let view =
+            (self.settings.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
         if let Some(view) = FieldOfView::from_degrees(view) {
-            self.field_of_view = view;
+            self.settings.field_of_view = view;
         }
     }
 }

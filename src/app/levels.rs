@@ -13,10 +13,9 @@ use ratatui::text::{Line, Text};
 
 use crate::app::App;
 use crate::app::panels::{self, wrapped};
-use crate::app::played::Played;
+use crate::app::played::{Goal, Played};
 use crate::app::recording::{Ghost, RunLog};
 use crate::app::screen::Screen;
-use crate::app::status::Goal;
 use crate::app::steps::Watch;
 use crate::app::store::Reached;
 use crate::app::title::{Demo, OwnLevel};

@@ -2,6 +2,10 @@
 //!
 //! [`Simulation`] is the interface of both, and [`Played::grid`] gives access to the rest of a game
 //! in a grid.
+//!
+//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
+//! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
+//! steps in which only guards move do not count.
 
 use std::ops::{Deref, DerefMut};
 
@@ -9,7 +13,8 @@ use glam::DVec3;
 use ratatui::layout::{Rect, Size};
 
 use crate::app::picture::DrawOptions;
-use crate::game::{Flight, Game, Intents, Outcome, Rules};
+use crate::app::settings::MapDisplay;
+use crate::game::{Flight, Game, Intents, Outcome, Rules, STEPS_PER_SECOND};
 use crate::generate::Site;
 use crate::map::Level;
 use crate::space;
@@ -318,5 +323,56 @@ impl Played {
                 picture.paint(&views.space, 0, area, canvas);
             }
         }
+    }
+}
+
+/// The number of steps with intents for which the goal is shown: four seconds.
+const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
+
+/// A goal, and how much longer it is shown.
+#[derive(Clone, Debug)]
+pub(crate) struct Goal {
+    text: String,
+    short: String,
+    steps_left: u64,
+}
+
+impl Goal {
+    /// The goal of `game`, from its map if that has one.
+    pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
+        let (text, short) = match game.goal() {
+            Some(own) => (own, own),
+            None if game.has_exit() && display == MapDisplay::Off => {
+                ("Find the way out", "Find the exit")
+            }
+            None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
+            None => ("Roam as you like: no exit here", "Roam around"),
+        };
+        Self::new(text, short)
+    }
+
+    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
+    pub(crate) fn new(text: &str, short: &str) -> Self {
+        Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
+    }
+
+    /// A sentence without its full stop.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A shorter form for narrow windows.
+    pub(crate) fn short(&self) -> &str {
+        &self.short
+    }
+
+    /// Whether the goal is still shown.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.steps_left > 0
+    }
+
+    /// Counts `steps` steps in which the player wanted something.
+    pub(crate) fn moved(&mut self, steps: u64) {
+        self.steps_left = self.steps_left.saturating_sub(steps);
     }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 use std::io::Write;
 
 use crate::app::App;
-use crate::app::status::Goal;
+use crate::app::played::Goal;
 use crate::game::{self, Game, Intents, Script, Stretch};
 use crate::terminal;
 use crate::tui::MapMark;

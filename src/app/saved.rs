@@ -9,16 +9,16 @@
 //! a checksum of the map alone. It would not notice a change of the rules, and would reject a map of which
 //! only a comment has changed.
 
-use super::descents::date_of;
+use super::descents::{date_of, save_of_descent};
 use super::menu::Menu;
 use super::menus::{Choice, capitalized};
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
 use super::steps::Watch;
 use super::time::whole_seconds;
-use super::{App, Levels, STEP, Screen};
+use super::{App, Levels, Screen};
 use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
-use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};
+use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
 use crate::world::Difficulty;
 
@@ -345,18 +345,6 @@ impl App {
 }
 
 const NO_MAP: &str = "The map of the saved game is not as it was.";
-
-/// The descent of that kind with these rules, as it is saved, without steps and checksum.
-pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
-    Save {
-        level: LevelName::of_floor(1).as_str().to_owned(),
-        file: None,
-        rules,
-        descent: Some(kind),
-        steps: None,
-        checksum: None,
-    }
-}
 
 /// The name of a saved game for the player.
 fn name_of(save: &Save) -> String {

@@ -42,7 +42,7 @@ pub struct Settings {
     pub bindings: Bindings,
     /// The time between two frames while something moves.
     pub frame_time: Duration,
-    /// The field of view at first.
+    /// The field of view. Keys change it.
     pub field_of_view: FieldOfView,
     /// The shape of a cell; `None` for that of the terminal.
     pub cell_aspect: Option<CellAspect>,
@@ -56,7 +56,7 @@ pub struct Settings {
     pub filter: Filter,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
-    /// Whether the status line shows the figures of frames and the link at first.
+    /// Whether the status line shows the figures of frames and the link. A key changes it.
     pub shows_stats: bool,
     /// The difficulty of levels that are played without the title; `None` for the one that the player
     /// has chosen before.

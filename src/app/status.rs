@@ -6,10 +6,6 @@
 //!
 //! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
 //! line at its end. In a narrow window, the key for help would be lost.
-//!
-//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
-//! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
-//! steps in which only guards move do not count.
 
 use std::fmt::{self, Write};
 
@@ -20,23 +16,15 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 
 use crate::app::bindings::{Action, Bindings};
+use crate::app::controls::Toggles;
 use crate::app::levels::LevelNumber;
-use crate::app::played::Played;
-use crate::app::settings::MapDisplay;
+use crate::app::played::{Goal, Played};
 use crate::app::stats::Stats;
 use crate::app::time::whole_seconds;
 use crate::color::palette::ColorDepth;
-use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, STEPS_PER_SECOND, Share};
+use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, Share};
 use crate::tui::GlyphSet;
 use crate::world::{FieldOfView, Supply};
-
-/// The modes of motion that are switched on.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Toggles {
-    pub runs: bool,
-    pub ducks: bool,
-    pub keeps_walking: bool,
-}
 
 /// The values that the line shows.
 pub(crate) struct StatusValues<'a> {
@@ -421,57 +409,6 @@ impl StatusLine {
             write!(long, "{comma}{count} {name}")?;
         }
         Ok(())
-    }
-}
-
-/// The number of steps with intents for which the goal is shown: four seconds.
-const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
-
-/// A goal, and how much longer it is shown.
-#[derive(Clone, Debug)]
-pub(crate) struct Goal {
-    text: String,
-    short: String,
-    steps_left: u64,
-}
-
-impl Goal {
-    /// The goal of `game`, from its map if that has one.
-    pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
-        let (text, short) = match game.goal() {
-            Some(own) => (own, own),
-            None if game.has_exit() && display == MapDisplay::Off => {
-                ("Find the way out", "Find the exit")
-            }
-            None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
-            None => ("Roam as you like: no exit here", "Roam around"),
-        };
-        Self::new(text, short)
-    }
-
-    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
-    pub(crate) fn new(text: &str, short: &str) -> Self {
-        Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
-    }
-
-    /// A sentence without its full stop.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// A shorter form for narrow windows.
-    pub(crate) fn short(&self) -> &str {
-        &self.short
-    }
-
-    /// Whether the goal is still shown.
-    pub(crate) fn is_shown(&self) -> bool {
-        self.steps_left > 0
-    }
-
-    /// Counts `steps` steps in which the player wanted something.
-    pub(crate) fn moved(&mut self, steps: u64) {
-        self.steps_left = self.steps_left.saturating_sub(steps);
     }
 }
 

@@ -26,7 +26,7 @@ use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
 use crate::tui::held::tests::Keyboard;
-use crate::world::World;
+use crate::world::{FieldOfView, World};
 
 const W: Key = Key::Char('w');
 const SPACE: Key = Key::Char(' ');
