@@ -15,16 +15,7 @@ const SUBCOMMANDS: &[&str] = &[
     "cast",
     "check",
     "levels",
-    "accuracy",
-    "bench",
     "replay",
-    "wire",
-    #[cfg(feature = "serve")]
-    "serve",
-    #[cfg(all(unix, feature = "serve"))]
-    "admin",
-    #[cfg(feature = "serve")]
-    "scores",
     "config",
     "completions",
     "man",

@@ -38,7 +38,6 @@ const DENY: ValueOption<()> = ValueOption {
     default: "",
     choices: &["remarks"],
     read: Parser::Optional(|text| (text == "remarks").then_some(())),
-    repeats: false,
 };
 
 fn read(mut matches: ArgMatches) -> Result<Command, Error> {

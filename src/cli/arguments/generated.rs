@@ -53,7 +53,6 @@ pub(crate) const GENERATE: ValueOption<Generator> = ValueOption {
     default: "",
     choices: &["maze", "cave", "office"],
     read: Parser::Optional(Generator::named),
-    repeats: false,
 };
 
 pub(crate) const SEED: ValueOption<u64> = ValueOption {
@@ -64,7 +63,6 @@ pub(crate) const SEED: ValueOption<u64> = ValueOption {
     default: "1",
     choices: &[],
     read: Parser::Optional(|text| text.parse().ok()),
-    repeats: false,
 };
 
 pub(crate) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
@@ -78,7 +76,6 @@ pub(crate) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
         let (columns, rows) = text.split_once('x')?;
         Extent::new(columns.parse().ok()?, rows.parse().ok()?)
     }),
-    repeats: false,
 };
 
 pub(crate) const START: ValueOption<Site> = ValueOption {
@@ -92,5 +89,4 @@ pub(crate) const START: ValueOption<Site> = ValueOption {
         let (column, row) = text.split_once(',')?;
         Some(Site { column: column.trim().parse().ok()?, row: row.trim().parse().ok()? })
     }),
-    repeats: false,
 };

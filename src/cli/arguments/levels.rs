@@ -45,5 +45,4 @@ const FORMAT: ValueOption<LevelsFormat> = ValueOption {
         "json" => Some(LevelsFormat::Json),
         _ => None,
     }),
-    repeats: false,
 };

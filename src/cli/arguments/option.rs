@@ -42,8 +42,6 @@ pub(crate) struct ValueOption<T> {
     /// The possible values, if they are a fixed list.
     pub(crate) choices: &'static [&'static str],
     pub(crate) read: Parser<T>,
-    /// Whether the option may be repeated for several values.
-    pub(crate) repeats: bool,
 }
 
 /// A parser of values.
@@ -62,11 +60,6 @@ where
     /// The given value; the last one if there are several.
     pub(crate) fn of(&self, matches: &mut ArgMatches) -> Option<T> {
         matches.remove_one(self.name)
-    }
-
-    /// All given values, in order.
-    pub(crate) fn all_of(&self, matches: &mut ArgMatches) -> Vec<T> {
-        matches.remove_many(self.name).map(Iterator::collect).unwrap_or_default()
     }
 }
 
@@ -97,7 +90,7 @@ where
     fn argument(&self) -> Arg {
         let Self { name, takes, choices, .. } = *self;
         let reader = ValueReader { name, takes, choices, read: self.read.clone() };
-        argument(name, self.value, self.help(), self.repeats, ValueParser::new(reader))
+        argument(name, self.value, self.help(), ValueParser::new(reader))
     }
 }
 
@@ -107,14 +100,13 @@ fn argument(
     name: &'static str,
     value: &'static str,
     help: String,
-    repeats: bool,
     parser: ValueParser,
 ) -> Arg {
     Arg::new(name)
         .long(name)
         .value_name(value)
         .help(help)
-        .action(if repeats { ArgAction::Append } else { ArgAction::Set })
+        .action(ArgAction::Set)
         // A value may be negative. A text that looks like an option is then refused as a value.
         .allow_hyphen_values(true)
         .value_parser(parser)

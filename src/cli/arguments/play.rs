@@ -153,7 +153,6 @@ const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
             .map(FidelityChoice::Fixed)
             .map_err(|error: UnknownFidelity| format!("--fidelity: {error}, or auto")),
     }),
-    repeats: false,
 };
 
 const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
@@ -164,7 +163,6 @@ const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
     default: "as chosen in the game, or normal",
     choices: &["easy", "normal", "hard"],
     read: Parser::Optional(Difficulty::named),
-    repeats: false,
 };
 
 const DAILY: Flag = Flag {

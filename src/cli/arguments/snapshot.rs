@@ -118,7 +118,6 @@ const CAMERA: ValueOption<(DVec2, Heading)> = ValueOption {
         let heading = Heading::from_degrees(numbers.next()??)?;
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
     }),
-    repeats: false,
 };
 
 const EYE: ValueOption<f64> = ValueOption {
@@ -129,7 +128,6 @@ const EYE: ValueOption<f64> = ValueOption {
     default: "0.5",
     choices: &[],
     read: Parser::Optional(|text| text.parse().ok().filter(|eye: &f64| eye.is_finite())),
-    repeats: false,
 };
 
 const PITCH: ValueOption<Pitch> = ValueOption {
@@ -140,7 +138,6 @@ const PITCH: ValueOption<Pitch> = ValueOption {
     default: "0",
     choices: &[],
     read: Parser::Optional(|text| Pitch::from_degrees(text.parse().ok()?)),
-    repeats: false,
 };
 
 const FORMAT: ValueOption<Format> = ValueOption {
@@ -158,7 +155,6 @@ const FORMAT: ValueOption<Format> = ValueOption {
         "png" => Some(Format::Png),
         _ => None,
     }),
-    repeats: false,
 };
 
 const EXPLAIN: Flag =

@@ -63,7 +63,6 @@ pub(crate) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
         let frames = text.parse::<NonZeroU32>().ok().filter(|frames| frames.get() <= 240);
         frames.map(FramesPerSecond)
     }),
-    repeats: false,
 };
 
 pub(crate) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
@@ -74,7 +73,6 @@ pub(crate) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     default: "66",
     choices: &[],
     read: Parser::Optional(|text| FieldOfView::from_degrees(text.parse().ok()?)),
-    repeats: false,
 };
 
 pub(crate) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
@@ -85,7 +83,6 @@ pub(crate) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     default: "2",
     choices: &[],
     read: Parser::Optional(|text| CellAspect::new(text.parse().ok()?)),
-    repeats: false,
 };
 
 pub(crate) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
@@ -105,7 +102,6 @@ pub(crate) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
         "ramp" => Some(GlyphSet::Ramp),
         _ => None,
     }),
-    repeats: false,
 };
 
 pub(crate) const FILTER: ValueOption<Filter> = ValueOption {
@@ -117,7 +113,6 @@ pub(crate) const FILTER: ValueOption<Filter> = ValueOption {
     default: "mip",
     choices: &["mip", "nearest", "area"],
     read: Parser::Optional(|text| Filter::ALL.into_iter().find(|filter| filter.name() == text)),
-    repeats: false,
 };
 
 pub(crate) const COLORS: ValueOption<ColorDepth> = ValueOption {
@@ -134,7 +129,6 @@ pub(crate) const COLORS: ValueOption<ColorDepth> = ValueOption {
         "mono" => Some(ColorDepth::Mono),
         _ => None,
     }),
-    repeats: false,
 };
 
 pub(crate) const SIZE: ValueOption<Size> = ValueOption {
@@ -145,7 +139,6 @@ pub(crate) const SIZE: ValueOption<Size> = ValueOption {
     default: "80x24",
     choices: &[],
     read: Parser::Optional(size),
-    repeats: false,
 };
 
 /// As [`SIZE`], but for a window: it is drawn for each frame of a game, and several buffers of it are
@@ -173,7 +166,6 @@ pub(crate) const CASTER: ValueOption<()> = ValueOption {
     default: "exact",
     choices: &[],
     read: Parser::Optional(|text| (text == "exact").then_some(())),
-    repeats: false,
 };
 
 pub(crate) const FIDELITY: ValueOption<Fidelity> = ValueOption {
@@ -187,7 +179,6 @@ pub(crate) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     read: Parser::Fallible(|text| {
         text.parse().map_err(|error: UnknownFidelity| format!("--fidelity: {error}"))
     }),
-    repeats: false,
 };
 
 pub(crate) const WATCH: Flag = Flag {

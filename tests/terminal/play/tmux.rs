@@ -25,7 +25,7 @@ impl Server {
     fn new() -> Option<Self> {
         let is_installed = Command::new("tmux").arg("-V").output().is_ok();
         assert!(
-            is_installed || std::env::var_os("CELLCASTER_SYSTEM_TESTS").is_none(),
+            is_installed || env::var_os("CELLCASTER_SYSTEM_TESTS").is_none(),
             "tmux is installed"
         );
         if !is_installed {

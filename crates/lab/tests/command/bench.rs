@@ -1,5 +1,4 @@
 //! `cellcaster bench`: its formats and their contents. Speed is not tested.
-#![cfg(feature = "cli")]
 
 use std::fs;
 

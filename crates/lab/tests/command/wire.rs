@@ -1,5 +1,4 @@
 //! Bytes and colour errors of a game on the wire.
-#![cfg(feature = "cli")]
 
 use std::num::NonZeroU32;
 
@@ -21,7 +20,7 @@ fn world(level: &str) -> World {
 }
 
 fn script() -> Script {
-    Script::parse(include_str!("../../maps/showcase.script"), "showcase").unwrap()
+    Script::parse(include_str!("../../../../maps/showcase.script"), "showcase").unwrap()
 }
 
 fn report(level: &str) -> Report {

@@ -116,11 +116,6 @@ impl Running {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The number of the process.
-    pub(crate) fn process(&self) -> u32 {
-        self.process.id()
-    }
-
     pub(crate) fn signal(&self, signal: Signal) {
         kill_process(Pid::from_child(&self.process), signal).unwrap();
     }
