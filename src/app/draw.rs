@@ -26,7 +26,7 @@ use crate::world::Figure;
 
 impl App {
     /// Draws the screen.
-    pub fn draw(&mut self, canvas: &mut impl Canvas) {
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas) {
         self.render(canvas.bounds().as_size(), &mut |_, _| true);
         self.paint(canvas);
     }

@@ -258,7 +258,7 @@ impl Sides {
 }
 
 /// Tints the pixels at the edge of `frame`.
-pub fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
+pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
     let (color, opacity) = match flash.kind {
         FlashKind::Hurt { .. } => (HURT, HURT_OPACITY),
         FlashKind::Gain => (GAIN, GAIN_OPACITY),

@@ -143,7 +143,7 @@ impl Stage {
     }
 
     /// The name under which results of the level are kept, if they are.
-    pub fn name(&self) -> Option<&str> {
+    pub(crate) fn name(&self) -> Option<&str> {
         match &self.content {
             Content::Builtin(level) => Some(level.name),
             Content::Own(own) => Some(&own.key),

@@ -144,7 +144,7 @@ impl Played {
     }
 
     /// The message for the player.
-    pub fn message(&self) -> Option<&str> {
+    pub(crate) fn message(&self) -> Option<&str> {
         self.grid()?.message()
     }
 
