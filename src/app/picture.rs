@@ -23,7 +23,7 @@ pub struct DrawOptions {
     pub glyphs: GlyphSet,
     /// The colour depth.
     pub depth: ColorDepth,
-    /// How dark the terminal shows shades.
+    /// How the terminal draws shades.
     pub shade_ink: ShadeInk,
     /// The shape of a cell.
     pub cell_aspect: CellAspect,
