@@ -71,7 +71,9 @@ pub struct Toggles {
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
+    /// The held keys.
     pub held: HeldKeys<Key>,
+    /// The modes.
     pub toggles: Toggles,
     /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,

@@ -7,11 +7,13 @@ use crate::terminal::{ColorSource, TmuxClient};
 /// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
 pub struct Detection {
+    /// The colour depth.
     pub depth: ColorDepth,
     /// The source of the colour depth; `None` if it is the command line or the configuration.
     pub source: Option<ColorSource>,
     /// Whether the terminal is tmux, and its client, if it has said which.
     pub is_tmux: bool,
+    /// The client of tmux, if it has said which.
     pub tmux: Option<TmuxClient>,
     /// Whether key releases are reported; `None` if that is not known yet.
     pub reports_releases: Option<bool>,

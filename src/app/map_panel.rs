@@ -11,6 +11,7 @@ use crate::world::Camera;
 /// The state of the minimap between frames.
 #[derive(Clone, Debug)]
 pub struct MapPanel {
+    /// Whether the map is shown.
     pub is_shown: bool,
     display: MapDisplay,
     explored: Explored,
@@ -27,6 +28,7 @@ const MOST_ZOOM: i32 = 6;
 const MOVED_BY: f64 = 0.25;
 
 impl MapPanel {
+    /// A panel with this content.
     pub fn new(display: MapDisplay) -> Self {
         Self {
             is_shown: display != MapDisplay::Off,

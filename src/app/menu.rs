@@ -41,11 +41,17 @@ struct Entry<C> {
 /// A movement of the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Selection {
+    /// The entry before.
     Previous,
+    /// The next entry.
     Next,
+    /// The entry a page above.
     PageUp,
+    /// The entry a page below.
     PageDown,
+    /// The first entry.
     First,
+    /// The last entry.
     Last,
 }
 

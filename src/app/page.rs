@@ -30,7 +30,10 @@ pub(crate) enum Kind {
     /// The picture, or a page whose owner handles its keys.
     Bare,
     /// A menu. If it has values, keys to the left and the right change them.
-    Menu { has_values: bool },
+    Menu {
+        /// Whether the entries have values.
+        has_values: bool,
+    },
     /// A menu that shows a result.
     Result,
     /// The help, which scrolls.
@@ -47,7 +50,10 @@ pub(crate) enum Effect {
     /// The page has changed.
     Redraw,
     /// Takes the next value of the selected entry, or the one before.
-    Change { forward: bool },
+    Change {
+        /// Whether to take the next one.
+        forward: bool,
+    },
     /// Chooses the selected entry.
     Choose,
     /// Answers the question whether to leave.

@@ -19,12 +19,19 @@ use crate::world::{FieldOfView, Heading};
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawOptions {
+    /// The glyph set.
     pub glyphs: GlyphSet,
+    /// The colour depth.
     pub depth: ColorDepth,
+    /// How the terminal draws shades.
     pub shade_ink: ShadeInk,
+    /// The shape of a cell.
     pub cell_aspect: CellAspect,
+    /// The texture filter.
     pub filter: Filter,
+    /// How pictures are changed for the player's eyes.
     pub correction: Correction,
+    /// The field of view.
     pub field_of_view: FieldOfView,
     /// The flash at the edge, and the direction of view.
     pub flash: Option<(Flash, Heading)>,

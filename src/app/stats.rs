@@ -8,9 +8,11 @@ use crate::terminal::Fidelity;
 /// The current figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stats {
+    /// The rates of frames and bytes.
     pub rates: Rates,
     /// The time from sending a frame to the terminal's answer, if it answers.
     pub round_trip: Option<Duration>,
+    /// The fidelity of frames.
     pub fidelity: Fidelity,
     /// Whether the link limits the fidelity, so that compression would help.
     pub wants_compression: bool,

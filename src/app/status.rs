@@ -52,20 +52,35 @@ pub struct StatusLine {
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
+    /// The health.
     Health,
+    /// The alarm of the guards.
     Alarm,
+    /// How lit the player is.
     Light,
+    /// What the player carries.
     Supplies,
+    /// The level's title.
     Title,
+    /// The level's number.
     Level,
+    /// The place in a generated level.
     Site,
+    /// The modes of motion.
     Modes,
+    /// The keys that the player has.
     Keys,
+    /// What has just happened, or the goal.
     Notice,
+    /// The figures of frames and the link.
     Stats,
+    /// The treasure found.
     Treasure,
+    /// The share of the level that was seen.
     Seen,
+    /// The time played.
     Time,
+    /// The key for help.
     Help,
 }
 
@@ -314,7 +329,9 @@ impl StatusLine {
 /// How health is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HealthSigns {
+    /// A heart for each point.
     Hearts,
+    /// Numbers.
     Digits,
 }
 
