@@ -19,14 +19,14 @@ use crate::terminal::Key;
 use crate::tui::{HeldKeys, Press};
 
 /// A page, which has the keys of its kind.
-pub(crate) trait Page: Copy + PartialEq {
+pub trait Page: Copy + PartialEq {
     /// The kind of the page.
     fn kind(self) -> Kind;
 }
 
 /// A kind of pages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// The picture, or a page whose owner handles its keys.
     Bare,
     /// A menu. If it has values, keys to the left and the right change them.
@@ -44,7 +44,7 @@ pub(crate) enum Kind {
 
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effect {
+pub enum Effect {
     /// Nothing.
     None,
     /// The page has changed.
@@ -66,7 +66,7 @@ pub(crate) enum Effect {
 
 /// The page that is shown, its menu, and the pages to return to.
 #[derive(Clone, Debug)]
-pub(crate) struct Pages<P, C> {
+pub struct Pages<P, C> {
     page: P,
     /// The menu of the page; empty if it has none.
     pub menu: Menu<C>,

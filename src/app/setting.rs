@@ -19,7 +19,7 @@ use crate::tui::{Correction, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
 
 /// A setting that `C` contains.
-pub(crate) struct Setting<C: 'static> {
+pub struct Setting<C: 'static> {
     /// The key in a file.
     pub key: &'static str,
     /// Its meaning in lines of a comment, or its label on a settings page.
@@ -29,7 +29,7 @@ pub(crate) struct Setting<C: 'static> {
 }
 
 /// The value of a setting in `C`.
-pub(crate) trait Field<C>: Sync {
+pub trait Field<C>: Sync {
     /// Reads the value of `entry`, or reports a fault.
     fn read(&self, entry: &Entry<'_, '_>, into: &mut C);
 

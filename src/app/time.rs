@@ -22,7 +22,7 @@ impl Display for WholeSeconds {
 }
 
 /// Formats minutes, seconds and tenths.
-pub(crate) fn tenths(seconds: f64) -> String {
+pub fn tenths(seconds: f64) -> String {
     let all = (seconds * 10.0) as u64;
     format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
 }

@@ -96,12 +96,7 @@ where
 
 /// An argument with a value of any type. It is apart from [`ValueOption`], so that there is one copy of it.
 #[inline(never)]
-fn argument(
-    name: &'static str,
-    value: &'static str,
-    help: String,
-    parser: ValueParser,
-) -> Arg {
+fn argument(name: &'static str, value: &'static str, help: String, parser: ValueParser) -> Arg {
     Arg::new(name)
         .long(name)
         .value_name(value)

@@ -1,5 +1,6 @@
 //! Restored rooms are the rooms that they were, and damaged checkpoints are refused or a room.
 
+#[allow(dead_code, reason = "the game's tests use the rest")]
 #[path = "../../../../../../tests/support/crowd.rs"]
 mod crowd;
 
