@@ -33,31 +33,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Modules
-//!
-//! From the bottom up; a module knows only those above its line.
-//!
-//! | module | is | feature |
-//! |---|---|---|
-//! | `sort`, `numeric`, [`color`], [`rng`] | sorting; exact arithmetic and damped motion; sRGB, L\*a\*b\*, Oklab, palettes; seeded random numbers | |
-//! | [`world`] | grid, tiles, things, sprites, textures, cameras | |
-//! | [`fault`], [`map`] | diagnostics; the map file: read, validate, diagnose | |
-//! | [`cast`] | a ray and a grid: where it hits, exactly | |
-//! | `visibility`, `raster`, [`render`] | world and camera to a draw list, the list to pixels, both in turn | |
-//! | [`space`] | bodies and camera to pixels, a ray for each pixel | |
-//! | [`game`] | rules in fixed steps: player, collision, doors, goals | |
-//! | [`generate`] | levels as a function of seed and place | |
-//! | `tui` | cells, and what can be drawn on; ratatui widgets, held keys | `tui` |
-//! | `terminal` | capabilities, bytes to events, cells to bytes, flow control | `terminal` |
-//! | `app::store` | what a player keeps: progress, best runs, preferences | `terminal` |
-//! | `app` | the game as a program: screens, settings, keys to intents, the loop | `terminal` |
-//! | `lab` | measurements: casters compared, accuracy, speed, wire | `lab` |
-//! | `cli` | the command line | `cli` |
+//! ARCHITECTURE.md in the repository lists the modules from the bottom up, and what code may rely on.
 //!
 //! # Features
 //!
-//! Each feature needs the one before it: `tui`, `terminal`, `lab`, `cli`. `cli` is the default. Without features there is
-//! the engine, which uses no terminal crate.
+//! Each feature needs the one before it: `tui` (the ratatui widgets), `terminal` (the terminal, and the game in it) and
+//! `cli` (the command line), which is the default. Without features there is the engine, which uses no terminal crate.
 
 #[cfg(test)]
 extern crate self as cellcaster;
@@ -77,13 +58,13 @@ pub mod numeric;
 mod raster;
 pub mod render;
 pub mod rng;
-pub mod sort;
+mod sort;
 pub mod space;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 #[cfg(feature = "tui")]
 pub mod tui;
-pub mod visibility;
+mod visibility;
 pub mod world;
 
 /// The examples of the README, compiled and run as tests.

@@ -22,7 +22,8 @@ use std::num::NonZero;
 
 pub use crate::visibility::{
     CeilingLoop, Column, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect,
-    PlaneLoop, PortalStats, RayLoop, SkyLoop, Surface, ThingLoop, Visibility, WallLoop, WhyPortals,
+    PlaneLoop, PortalStats, Projection, RayLoop, SkyLoop, Surface, ThingLoop, Visibility, WallLoop,
+    WhyPortals,
 };
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};
@@ -31,7 +32,7 @@ pub use threads::{Threads, WhyOne};
 pub use crate::cast::DynCaster;
 use crate::cast::{Caster, Exact};
 use crate::raster::{self, RasterMemory, SkyColumn, SkyView, SurfaceBuffer};
-use crate::visibility::{self, DrawList, Projection, Scene, Stats, VisibilityMemory};
+use crate::visibility::{self, DrawList, Scene, Stats, VisibilityMemory};
 #[cfg(feature = "terminal")]
 use crate::world::Figure;
 use crate::world::{Camera, World};

@@ -12,8 +12,10 @@ use ratatui::layout::Size;
 use super::Error;
 use super::asciicast::Asciicast;
 use super::output_file::unwritable;
+use crate::app;
 use crate::app::store::private;
-use crate::{app, game, terminal};
+use crate::game;
+use crate::terminal;
 
 /// The content of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -43,6 +43,7 @@ pub(crate) fn more() -> String {
     for subcommand in SUBCOMMANDS.iter().filter(|it| it.name != play::SUBCOMMAND.name) {
         push_details(&mut text, subcommand);
     }
+    text.push_str(OTHER_PROGRAMS);
     push_keys(&mut text);
     text.push_str("Examples:\n");
     for line in SUBCOMMANDS.iter().flat_map(|subcommand| subcommand.examples.lines()) {
@@ -58,6 +59,15 @@ pub(crate) fn examples(subcommand: &Subcommand) -> String {
         subcommand.examples.lines().map(|line| format!("  {line}\n")).collect();
     format!("Examples:\n{}", lines.concat())
 }
+
+const OTHER_PROGRAMS: &str = "\
+Other programs: cellcaster NAME runs cellcaster-NAME, which is beside this
+program or on the PATH.
+  cellcaster server       an SSH server in which people play together;
+                          also as serve, admin and scores
+  cellcaster lab          measurements: accuracy, bench, wire, load
+
+";
 
 const EXIT_STATUS: &str = "
 Exit status: 0; 2 for a mistake in the arguments, a map or a script; 1 where the

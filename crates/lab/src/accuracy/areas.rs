@@ -28,7 +28,6 @@ use super::table::{Column, Diagram, Row, Table, Value};
 use super::timing::time_in_rounds;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::sort;
 use cellcaster::tui::GlyphSet;
 use cellcaster::world::{Camera, World};
 use cells::Window;
@@ -111,7 +110,7 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
             rows.push(Row { keys, values });
         }
     }
-    sort::by_key(&mut rows, |row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
+    rows.sort_by_key(|row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
     Table {
         name: "areas",
         title: "What a window shows, compared with the mean light over each half of a cell (64 samples)",

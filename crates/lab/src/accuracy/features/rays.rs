@@ -10,7 +10,6 @@ use super::Feature;
 use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::map;
 use cellcaster::rng::SplitMix64;
-use cellcaster::sort;
 use cellcaster::world::{Cell, Grid, Line, Opening, Outline, TileKind, World};
 
 const RAYS: usize = 2000;
@@ -79,7 +78,7 @@ struct Truth {
 
 impl Truth {
     fn new(mut places: Vec<Met>) -> Self {
-        sort::by(&mut places, |one, other| one.t.cmp(&other.t));
+        places.sort_by(|one, other| one.t.cmp(&other.t));
         let certain = places.iter().position(|met| !met.is_end);
         if let Some(certain) = certain {
             let equal = places[certain..].iter().take_while(|met| met.t == places[certain].t);

@@ -7,14 +7,12 @@ use serde_json::{Map, Value as Json, json};
 use super::run::Run;
 use super::text::heading;
 use crate::accuracy::{Row, Table, Timing, Value};
-use cellcaster::sort;
 
 pub(crate) fn write(run: &Run, tables: &[Table], output: &mut impl Write) -> io::Result<()> {
-    let run: Map<String, Json> = sort::gathered(
-        run.parts().into_iter().map(|(name, value)| (name.to_owned(), value.into())),
-    );
+    let run: Map<String, Json> =
+        run.parts().into_iter().map(|(name, value)| (name.to_owned(), value.into())).collect();
     let tables: Map<String, Json> =
-        sort::gathered(tables.iter().map(|table| (table.name.to_owned(), object(table))));
+        tables.iter().map(|table| (table.name.to_owned(), object(table))).collect();
     serde_json::to_writer_pretty(&mut *output, &json!({ "run": run, "tables": tables }))?;
     output.write_all(b"\n")
 }
@@ -30,7 +28,7 @@ fn fields(table: &Table, row: &Row) -> Json {
     let keys = keys.map(|(heading, key)| ((*heading).to_owned(), Json::from(key.as_str())));
     let figures = table.columns.iter().zip(&row.values);
     let figures = figures.map(|(column, value)| (heading(column), figure(*value)));
-    sort::gathered::<_, Map<String, Json>>(keys.chain(figures)).into()
+    keys.chain(figures).collect::<Map<String, Json>>().into()
 }
 
 fn figure(value: Value) -> Json {

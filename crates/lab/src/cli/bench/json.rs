@@ -9,7 +9,6 @@ use super::footprint::Footprint;
 use super::{LINKS, Report, frames_per_second, share_of_stock};
 use crate::speed::{CrowdRow, DrawingRow, MapRow, Scene};
 use crate::wire::PipelineRow;
-use cellcaster::sort;
 
 pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
     let value = json!({
@@ -84,6 +83,6 @@ fn pipeline(report: &Report, row: &PipelineRow) -> Value {
         "microseconds": row.time.as_secs_f64() * 1e6,
         "ratio": share_of_stock(report, row),
         "bytes": row.bytes,
-        "frames_per_second_over_megabits": sort::gathered::<_, Map<_, _>>(LINKS.into_iter().map(rate)),
+        "frames_per_second_over_megabits": LINKS.into_iter().map(rate).collect::<Map<_, _>>(),
     })
 }

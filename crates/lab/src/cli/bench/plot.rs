@@ -8,7 +8,6 @@ use super::{Report, WINDOWS};
 use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
 use crate::speed::{DrawingRow, Ground, SIDES, Scene};
 use crate::wire::PipelineRow;
-use cellcaster::sort;
 
 /// Writes the page as an SVG file.
 pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
@@ -154,7 +153,7 @@ impl Plot {
 
 /// The names of lines beside their ends, from the top, without overlaps.
 fn names(mut ends: Vec<(f64, &Line)>, x: f64) -> Vec<Mark> {
-    sort::by(&mut ends, |one, other| one.0.total_cmp(&other.0));
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut free = f64::NEG_INFINITY;
     let name = |(end, line): (f64, &Line)| {
         let y = free.max(end);

@@ -3,7 +3,6 @@
 use super::{CHARACTER, LINE, PANEL_HEIGHT, color, methods, radius, title};
 use crate::accuracy::{Diagram, Table, Value};
 use crate::cli::plot::{Align, Axis, Mark, PlotColor};
-use cellcaster::sort;
 
 /// The margins of a panel.
 const LEFT: f64 = 70.0;
@@ -48,7 +47,7 @@ impl Panel {
             })
             .collect();
         // Lines join the points of a method, which a table may list by parameter.
-        sort::by_key(&mut points, |point| point.method);
+        points.sort_by_key(|point| point.method);
         let cost = Axis::around(points.iter().map(|point| point.cost));
         let error = Axis::around(points.iter().map(|point| point.error));
         let (problem, title) = (problem.to_owned(), title(table, diagram));

@@ -12,9 +12,9 @@ use cellcaster::app::parts::DrawOptions;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::{OtherPlayer, PlayerColor, PlayerView};
 use cellcaster::render::FrameSize;
+use cellcaster::render::Projection;
 use cellcaster::tui::canvas::Canvas;
 use cellcaster::tui::color_at;
-use cellcaster::visibility::Projection;
 use cellcaster::world::Figure;
 
 /// The distance in which names are shown, in cells.
