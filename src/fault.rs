@@ -169,6 +169,7 @@ impl Fault {
     }
 
     /// The fault with a remedy.
+    #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
@@ -179,6 +180,7 @@ impl Fault {
     }
 }
 
+#[expect(clippy::naive_bytecount, reason = "a crate for it would be larger than the time it saves")]
 fn line_breaks(text: &[u8]) -> usize {
     text.iter().filter(|&&byte| byte == b'\n').count()
 }

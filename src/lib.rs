@@ -44,10 +44,16 @@
 extern crate self as cellcaster;
 
 #[cfg(feature = "terminal")]
-#[allow(missing_docs, reason = "most fields of settings and panels are what their names say")]
+#[allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    clippy::return_self_not_must_use,
+    reason = "much is public for the server alone, and is what its name says"
+)]
 pub mod app;
 pub mod cast;
 #[cfg(feature = "cli")]
+#[allow(clippy::missing_errors_doc, reason = "each error is a sentence for the user")]
 pub mod cli;
 pub mod color;
 pub mod fault;

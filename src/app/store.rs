@@ -47,7 +47,6 @@ pub use preferences::Preferences;
 use progress::{Change, Progress};
 pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 pub use results::{Best, Improved, Reached, Run};
-#[cfg(feature = "cli")]
 pub use results::{DescentRun, replayed};
 
 use crate::world::Difficulty;

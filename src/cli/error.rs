@@ -77,11 +77,7 @@ impl Error {
             Cause::ClosedPipe => ExitCode::SUCCESS,
             Cause::Reported => ExitCode::from(2),
             Cause::Failed => ExitCode::FAILURE,
-            Cause::Mistake(_) | Cause::Faults(_) => {
-                self.print();
-                ExitCode::from(2)
-            }
-            Cause::Report(_) => {
+            Cause::Mistake(_) | Cause::Faults(_) | Cause::Report(_) => {
                 self.print();
                 ExitCode::from(2)
             }
@@ -101,8 +97,7 @@ impl Error {
     fn printable(&self) -> String {
         let message = self.to_string();
         match self.cause {
-            Cause::Faults(_) => printable_lines(&message),
-            Cause::Report(_) => printable_lines(&message),
+            Cause::Faults(_) | Cause::Report(_) => printable_lines(&message),
             _ => printable(&message),
         }
     }

@@ -8,7 +8,9 @@
 //! weighted distance of red, green and blue. At the same mean ΔE the encoder took a third more bytes,
 //! most of them for dark colours.
 
-use super::srgb::{LINEAR_16, linear};
+#[cfg(feature = "terminal")]
+use super::srgb::LINEAR_16;
+use super::srgb::linear;
 use super::{Rgb, product};
 
 /// A colour in L\*a\*b\*.
@@ -50,12 +52,15 @@ const fn response(light: f64, cube_root: f64) -> f64 {
 }
 
 /// A colour in L\*a\*b\*, in 64ths.
+#[cfg(feature = "terminal")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PackedLab([i16; 3]);
 
 /// The number of steps in a ΔE of 1.
+#[cfg(feature = "terminal")]
 const STEPS: f32 = 64.0;
 
+#[cfg(feature = "terminal")]
 impl PackedLab {
     /// Converts an sRGB colour.
     #[inline]
@@ -79,13 +84,16 @@ impl PackedLab {
 }
 
 /// The matrix from linear light to XYZ relative to white, in 65536ths; each row sums to one.
+#[cfg(feature = "terminal")]
 const LIGHT_TO_XYZ: [[u32; 3]; 3] =
     [[28_440, 24_656, 12_440], [13_938, 46_868, 4_730], [1_164, 7_174, 57_198]];
 
 /// The amount of light between two entries of [`RESPONSE`], in 65535ths.
+#[cfg(feature = "terminal")]
 const SPACING: u32 = 64;
 
 /// The nonlinear function of L\*a\*b\* at every multiple of [`SPACING`], in 32768ths.
+#[cfg(feature = "terminal")]
 static RESPONSE: [u16; 1025] = {
     let mut table = [0; 1025];
     let mut index = 0;
@@ -100,6 +108,7 @@ static RESPONSE: [u16; 1025] = {
 
 /// The nonlinear function of L\*a\*b\* at `light` 65536ths, with 21 fractional bits, interpolated
 /// between two entries of [`RESPONSE`].
+#[cfg(feature = "terminal")]
 #[inline]
 fn packed_response(light: u32) -> i32 {
     let index = (light / SPACING) as usize;
@@ -108,6 +117,7 @@ fn packed_response(light: u32) -> i32 {
 }
 
 /// The cube root of a number between 0.001 and 2, by Newton's method, at compile time.
+#[cfg(feature = "terminal")]
 const fn cube_root(number: f64) -> f64 {
     let mut root = 1.0;
     let mut step = 0;
@@ -118,6 +128,7 @@ const fn cube_root(number: f64) -> f64 {
     root
 }
 
+#[cfg(feature = "terminal")]
 const NEWTON_STEPS: u32 = 32;
 
 #[cfg(test)]

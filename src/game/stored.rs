@@ -87,12 +87,18 @@ impl serde::de::Error for Unrestorable {
 }
 
 /// The first line of `kind`, and `value`.
+///
+/// # Panics
+/// If a list of `value` does not know its length, which is so for no type of the game.
 pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
     let line = first_line(kind).into_bytes();
     postcard::to_extend(value, line).expect("all lists have a length, and memory takes all bytes")
 }
 
 /// The hash of the bytes that are stored of `value`.
+///
+/// # Panics
+/// As [`written`].
 pub fn checksum(value: &impl Serialize) -> u64 {
     postcard::serialize_with_flavor(value, Hash::default()).expect("all lists have a length")
 }
@@ -148,17 +154,26 @@ pub mod bits {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     /// Writes all 64 bits, whatever number they are.
+    ///
+    /// # Errors
+    /// As `to`.
     pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
         bits.to_le_bytes().serialize(to)
     }
 
     /// Reads any 64 bits.
+    ///
+    /// # Errors
+    /// As `from`.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
         Deserialize::deserialize(from).map(u64::from_le_bytes)
     }
 }
 
-/// An error that names `what`, unless it holds.
+/// Checks a part of what is restored.
+///
+/// # Errors
+/// Names `what`, unless it holds.
 pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
     if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
 }
@@ -216,6 +231,9 @@ pub struct Reader<'de> {
 
 impl<'de> Reader<'de> {
     /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
+    ///
+    /// # Errors
+    /// If the bytes are too many, or of another kind or version.
     pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
         if bytes.len() > MOST_BYTES {
             return Err(Unrestorable::TooLong);
@@ -230,6 +248,9 @@ impl<'de> Reader<'de> {
     }
 
     /// Reads a value.
+    ///
+    /// # Errors
+    /// If the bytes end too early, or a part is out of its range.
     pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
         T::deserialize(self)
     }

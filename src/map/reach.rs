@@ -148,7 +148,9 @@ impl<'l> Reach<'l> {
             for opener in self.found.get(cell).into_iter().chain(at_levers) {
                 if taken.insert(opener) {
                     let doors = waiting.remove(&opener).unwrap_or_default();
-                    doors.into_iter().for_each(|door| flood.enter(door));
+                    for door in doors {
+                        flood.enter(door);
+                    }
                 }
             }
         }

@@ -1,6 +1,5 @@
 //! Shading: the colours of neighbouring pixels that show the same body, or the sky.
 
-#![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
 
 use glam::DVec3;

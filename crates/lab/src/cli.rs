@@ -29,7 +29,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Bench(options) => bench::run(&options),
         Command::Wire(options) => wire::run(&options),
         #[cfg(target_os = "linux")]
-        Command::Load(options) => load::run(options),
+        Command::Load(options) => load::run(&options),
         Command::Cast(words) => return forward("cast", words.words),
         Command::Snapshot(words) => return forward("snapshot", words.words),
         Command::Play(words) => return forward("play", words.words),
@@ -75,12 +75,9 @@ fn without_caster(words: Vec<OsString>) -> Result<(Method, Vec<OsString>), Error
                 break;
             }
             Some("--caster") => words.next().unwrap_or_default(),
-            Some(text) => match text.strip_prefix("--caster=") {
-                Some(value) => value.into(),
-                None => {
-                    others.push(word);
-                    continue;
-                }
+            Some(text) => if let Some(value) = text.strip_prefix("--caster=") { value.into() } else {
+                others.push(word);
+                continue;
             },
             None => {
                 others.push(word);

@@ -58,8 +58,8 @@ const WARM_UP: Duration = Duration::from_secs(8);
 ///
 /// # Errors
 /// If a server cannot be started, or a client cannot connect.
-pub(crate) fn run(plan: Load) -> Result<(), Error> {
-    measure(&plan).map_err(|error| Error::machine(error.to_string()))
+pub(crate) fn run(plan: &Load) -> Result<(), Error> {
+    measure(plan).map_err(|error| Error::machine(error.to_string()))
 }
 
 fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {

@@ -92,7 +92,9 @@ fn read_saves(section: &Entry<'_, '_>, progress: &mut Progress) {
             saves.insert(number, save);
         }
     }
-    saves.into_values().for_each(|save| progress.add_save(save));
+    for save in saves.into_values() {
+        progress.add_save(save);
+    }
 }
 
 fn read_bests(section: &Entry<'_, '_>, progress: &mut Progress) {

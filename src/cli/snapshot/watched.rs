@@ -34,7 +34,7 @@ pub(crate) fn run(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error
             }
             Some(Err(faults)) => output.report(faults)?,
             None if output.has_another_size(&options) => {
-                output.show(&level, &mut options, caster)?
+                output.show(&level, &mut options, caster)?;
             }
             None => {}
         }

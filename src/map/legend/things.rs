@@ -161,17 +161,14 @@ impl<'a> SpriteText<'a> {
     /// The sprite itself. Reports a fault where its sheet is missing or cannot be divided, once for
     /// all sprites that divide the sheet alike.
     pub(crate) fn sprite(&self, textures: &mut Textures<'_>) -> Option<Sprite> {
-        let mut sprite = match builtin::named(self.name) {
-            Some(sprite) => {
-                textures.faults.extend(self.cut_of_built_in());
-                sprite
-            }
-            None => {
-                let frames = self.frames.as_ref().map(|&(frames, _)| frames);
-                let facings = self.facings.as_ref().map(|(facings, _)| facings.count());
-                let key = (self.name.to_owned(), frames, facings);
-                textures.sheet(key, &self.place, |sheet, faults| self.cut(sheet, faults))?
-            }
+        let mut sprite = if let Some(sprite) = builtin::named(self.name) {
+            textures.faults.extend(self.cut_of_built_in());
+            sprite
+        } else {
+            let frames = self.frames.as_ref().map(|&(frames, _)| frames);
+            let facings = self.facings.as_ref().map(|(facings, _)| facings.count());
+            let key = (self.name.to_owned(), frames, facings);
+            textures.sheet(key, &self.place, |sheet, faults| self.cut(sheet, faults))?
         };
         sprite.anchor = self.anchor.unwrap_or(sprite.anchor);
         sprite.blocks = self.blocks.unwrap_or(sprite.blocks);

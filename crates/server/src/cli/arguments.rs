@@ -51,7 +51,7 @@ pub(crate) struct Serve {
     /// Where to listen; port 0 for a free one [default: 127.0.0.1:2222]
     #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
     pub(crate) listen: Option<SocketAddr>,
-    /// The folder for data [default: cellcaster in the folder for data, or $CELLCASTER_DATA]
+    /// The folder for data [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
@@ -60,7 +60,7 @@ pub(crate) struct Serve {
     #[arg(long)]
     pub(crate) accept_empty: bool,
     /// The NATS servers over which this host shares its rooms with others; the store must be a PostgreSQL database
-    /// [default: $CELLCASTER_CLUSTER, or none]
+    /// [default: $`CELLCASTER_CLUSTER`, or none]
     #[arg(long, value_name = "URL", value_parser = ClusterAddress::parse)]
     cluster: Option<ClusterAddress>,
     /// The configuration [default: cellcaster/serve.toml in the folder for configuration files]
@@ -91,7 +91,7 @@ impl Serve {
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Store {
     /// Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share
-    /// [default: $CELLCASTER_STORE, or the folder for data]
+    /// [default: $`CELLCASTER_STORE`, or the folder for data]
     #[arg(long, value_name = "URL|FOLDER", value_parser = Database::parse)]
     pub(crate) store: Option<Database>,
 }
@@ -106,10 +106,10 @@ pub(crate) struct Store {
     after_help = "Examples:\n  cellcaster-server admin who\n  cellcaster-server admin kick ada --reason \"let others play\"\n  cellcaster-server admin ban --address 203.0.113.0/24 --for 7d"
 )]
 pub(crate) struct Admin {
-    /// The data folder of the host [default: cellcaster in the folder for data, or $CELLCASTER_DATA]
+    /// The data folder of the host [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
     #[arg(long, global = true, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
-    /// Where the host's store is: a folder, or a PostgreSQL database [default: $CELLCASTER_STORE, or the folder for data]
+    /// Where the host's store is: a folder, or a PostgreSQL database [default: $`CELLCASTER_STORE`, or the folder for data]
     #[arg(long, global = true, value_name = "URL|FOLDER", value_parser = Database::parse)]
     pub(crate) store: Option<Database>,
     #[command(subcommand)]
@@ -197,7 +197,7 @@ impl Player {
     after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --day 2026-11-22 --format json"
 )]
 pub(crate) struct Scores {
-    /// The folder of the store [default: the folder for data files, or $CELLCASTER_DATA]
+    /// The folder of the store [default: the folder for data files, or $`CELLCASTER_DATA`]
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]

@@ -159,8 +159,8 @@ impl GameHost {
     /// An operator of this host, who notifies `drain` to end it.
     pub fn operator(&self, drain: Arc<Notify>) -> Operator {
         let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
-        let operator = operator.in_cluster(self.shared.cluster.clone());
-        operator
+        
+        operator.in_cluster(self.shared.cluster.clone())
     }
 
     /// Lists the rooms, for an operator.

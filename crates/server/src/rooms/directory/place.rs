@@ -76,8 +76,8 @@ impl Place {
     /// Why the room is closed, if it is: a sentence.
     pub(crate) fn closed(&self) -> Option<Arc<str>> {
         let closed = self.state.borrow().closed.clone();
-        let closed = closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()));
-        closed
+        
+        closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()))
     }
 
     /// Whether the member was removed from the room, which others have gone on with.

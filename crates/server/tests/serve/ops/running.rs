@@ -116,6 +116,12 @@ impl Running {
         String::from_utf8(output.stdout).unwrap()
     }
 
+    /// The number of the process.
+    #[cfg(all(target_os = "linux", feature = "system-tests"))]
+    pub(crate) fn process(&self) -> u32 {
+        self.process.id()
+    }
+
     pub(crate) fn signal(&self, signal: Signal) {
         kill_process(Pid::from_child(&self.process), signal).unwrap();
     }

@@ -80,7 +80,7 @@ fn a_connection_is_encrypted_if_the_certificate_is_trusted() {
     let (server, stranger) = (PostgresServer::start_encrypted(), PostgresServer::start_encrypted());
     let store = server.address_over_tcp();
     let asked = |store: &str, trusted: &PostgresServer| {
-        let mut command = server(&["scores", "--store", store]);
+        let mut command = crate::support::server(&["scores", "--store", store]);
         command.env("CELLCASTER_DATA", folder()).env("SSL_CERT_FILE", trusted.certificate());
         String::from_utf8(command.output().unwrap().stderr).unwrap()
     };
