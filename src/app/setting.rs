@@ -345,7 +345,9 @@ fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
     let text = entry.string(&format!("{} = \"{}\"", entry.key, known[0]))?;
     let name = known.iter().copied().find(|&name| name == text);
     if name.is_none() {
-        let help = if let Some(meant) = nearest(text, known) { format!("the nearest is {}", quoted(meant)) } else {
+        let help = if let Some(meant) = nearest(text, known) {
+            format!("the nearest is {}", quoted(meant))
+        } else {
             let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
             format!("write one of {}", all.join(", "))
         };

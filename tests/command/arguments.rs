@@ -163,7 +163,6 @@ fn mistakes_are_one_sentence_each() {
         &["check"],
         &["check", "-", "-"],
         &["cast", "-"],
-        &["bench", "cellar"],
         &["replay"],
         &["replay", "a", "b", "c"],
         &["completions"],

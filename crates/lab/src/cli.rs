@@ -75,10 +75,14 @@ fn without_caster(words: Vec<OsString>) -> Result<(Method, Vec<OsString>), Error
                 break;
             }
             Some("--caster") => words.next().unwrap_or_default(),
-            Some(text) => if let Some(value) = text.strip_prefix("--caster=") { value.into() } else {
-                others.push(word);
-                continue;
-            },
+            Some(text) => {
+                if let Some(value) = text.strip_prefix("--caster=") {
+                    value.into()
+                } else {
+                    others.push(word);
+                    continue;
+                }
+            }
             None => {
                 others.push(word);
                 continue;

@@ -60,7 +60,7 @@ mod tests {
             ("c --fov 9 snapshot m", "snapshot: c snapshot --fov 9 m"),
             ("c --fov=9 --explain snapshot", "snapshot: c snapshot --fov=9 --explain"),
             ("c -h check", "check: c check -h"),
-            ("c --script wire wire", "wire: c wire --script wire"),
+            ("c --record cast cast", "cast: c cast --record cast"),
             ("c --fov snapshot", "none: c --fov snapshot"),
             ("c m snapshot", "none: c m snapshot"),
             ("c - snapshot", "none: c - snapshot"),

@@ -159,7 +159,7 @@ impl GameHost {
     /// An operator of this host, who notifies `drain` to end it.
     pub fn operator(&self, drain: Arc<Notify>) -> Operator {
         let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
-        
+
         operator.in_cluster(self.shared.cluster.clone())
     }
 

@@ -76,7 +76,7 @@ impl Place {
     /// Why the room is closed, if it is: a sentence.
     pub(crate) fn closed(&self) -> Option<Arc<str>> {
         let closed = self.state.borrow().closed.clone();
-        
+
         closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()))
     }
 
