@@ -33,7 +33,8 @@ impl std::error::Error for Takes {}
 /// # Errors
 /// One sentence about the first mistake.
 pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Option<P>, Error> {
-    match P::try_parse_from(words) {
+    let matches = lenient(P::command()).try_get_matches_from(words);
+    match matches.and_then(|matches| P::from_arg_matches(&matches)) {
         Ok(arguments) => Ok(Some(arguments)),
         Err(error)
             if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) =>
@@ -43,6 +44,18 @@ pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Opt
         }
         Err(error) => Err(Error::mistake(sentence::<P>(&error))),
     }
+}
+
+/// The command, and its subcommands, with options that take values such as `-1`, and of which the last one counts.
+fn lenient(command: clap::Command) -> clap::Command {
+    command
+        .args_override_self(true)
+        .arg_required_else_help(false)
+        .mut_args(|argument| {
+            let takes_value = argument.get_long().is_some() && argument.get_action().takes_values();
+            if takes_value { argument.allow_hyphen_values(true) } else { argument }
+        })
+        .mut_subcommands(lenient)
 }
 
 fn sentence<P: Parser>(error: &clap::Error) -> String {
@@ -63,8 +76,8 @@ fn sentence<P: Parser>(error: &clap::Error) -> String {
         },
         ErrorKind::InvalidValue => {
             let choices = match error.get(ContextKind::ValidValue) {
-                Some(ContextValue::Strings(choices)) if !choices.is_empty() => choices.join(", "),
-                _ => "a value".to_owned(),
+                Some(ContextValue::Strings(choices)) if !choices.is_empty() => one_of(choices),
+                _ => argument.split_once(' ').map_or("a value", |(_, value)| value).to_owned(),
             };
             if value.is_empty() {
                 format!("{name} takes {choices}, and nothing follows it")
@@ -79,10 +92,16 @@ fn sentence<P: Parser>(error: &clap::Error) -> String {
             if argument.starts_with('-') {
                 format!("there is no option {argument}; {end}")
             } else {
-                format!("\"{argument}\" is one argument too many; {end}")
+                format!("\"{argument}\" is no command, and one argument too many; {end}")
             }
         }
-        ErrorKind::MissingRequiredArgument | ErrorKind::MissingSubcommand => {
+        ErrorKind::MissingSubcommand => match error.get(ContextKind::ValidSubcommand) {
+            Some(ContextValue::Strings(names)) => {
+                format!("{argument} takes one of {}", names.join(", "))
+            }
+            _ => format!("a command is missing; {help}"),
+        },
+        ErrorKind::MissingRequiredArgument => {
             let missing = match error.get(ContextKind::InvalidArg) {
                 Some(ContextValue::Strings(names)) => names.join(" and "),
                 _ => "a command".to_owned(),
@@ -99,6 +118,14 @@ fn sentence<P: Parser>(error: &clap::Error) -> String {
         }
         ErrorKind::TooManyValues => format!("{name} takes no value, and \"{value}\" is one"),
         _ => first_line(error),
+    }
+}
+
+/// The choices, as in "a, b or c".
+fn one_of(choices: &[String]) -> String {
+    match choices {
+        [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        _ => choices.concat(),
     }
 }
 

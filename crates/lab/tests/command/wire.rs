@@ -12,11 +12,12 @@ use cellcaster::world::World;
 use cellcaster_lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
 use ratatui::layout::Size;
 
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// Levels that stay as they are, unlike those of the campaign.
 const LEVELS: [&str; 5] = ["cellar", "museum", "citadel", "cistern", "observatory"];
 
 fn world(level: &str) -> World {
-    map::load(format!("tests/maps/{level}.toml").as_ref()).unwrap()
+    map::load(format!("{ROOT}/tests/maps/{level}.toml").as_ref()).unwrap()
 }
 
 fn script() -> Script {

@@ -180,7 +180,8 @@ fn cells(block: &str) -> Vec<Vec<String>> {
 
 /// Compares the figures of ACCURACY.md with those of the program, but for times.
 fn assert_page_is_current(part: &str) {
-    let page = fs::read_to_string("ACCURACY.md").unwrap();
+    let page =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../ACCURACY.md")).unwrap();
     let page = tables_of_page(&page);
     let arguments = ["accuracy", "--part", part, "--rounds", "0", "--format", "markdown"];
     let report = String::from_utf8(output_of(&arguments)).unwrap();

@@ -8,6 +8,7 @@ use cellcaster::render::{Filter, FrameSize};
 use cellcaster::world::{FieldOfView, World};
 use cellcaster_lab::accuracy::shimmer;
 
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// The largest allowed ratio.
 const MOST: f64 = 0.75;
 
@@ -23,7 +24,7 @@ fn share_left(world: &World) -> f64 {
 #[test]
 fn levels_turn_calmly() {
     for level in ["cellar", "museum", "citadel", "cistern", "observatory"] {
-        let world = map::load(format!("tests/maps/{level}.toml").as_ref()).unwrap();
+        let world = map::load(format!("{ROOT}/tests/maps/{level}.toml").as_ref()).unwrap();
         let share = share_left(&world);
         assert!(share < MOST, "{level}: {share}");
     }
@@ -32,7 +33,7 @@ fn levels_turn_calmly() {
 #[test]
 fn textures_far_away_turn_calmly() {
     for name in ["flat", "floor", "checker", "mip"] {
-        let world = map::load(Path::new(&format!("maps/gallery/{name}.toml"))).unwrap();
+        let world = map::load(Path::new(&format!("{ROOT}/maps/gallery/{name}.toml"))).unwrap();
         let share = share_left(&world);
         assert!(share < MOST, "{name}: {share}");
     }

@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 /// The program in an empty environment.
 pub(crate) fn lab(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cellcaster-lab"));
-    command.args(arguments).env_clear();
+    command.args(arguments).env_clear().current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     command
 }
 
