@@ -89,7 +89,7 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
+    /// A renderer that has drawn no frame, and finds walls by [`Exact`].
     pub fn new() -> Self {
         Self::default()
     }

@@ -4,7 +4,7 @@
 //!
 //! - A room takes [`STEPS_PER_SECOND`] steps a second. If a step is late, at most [`MOST_CAUGHT_UP`]
 //!   follow at once; further ones are left out, so that the room's time slips.
-//! - All that changes the room is an entry of its [`Log`], which is applied from the log. Commands
+//! - All that changes the room is an entry of its `Log`, which is applied from the log. Commands
 //!   that come too often are refused or delayed before they reach the log, see [`Inbox`].
 //! - A room without members takes no steps and has no timer. After a while it is closed, if it is no
 //!   standing room.
