@@ -5,92 +5,68 @@
 
 mod banner;
 mod bindings;
-mod clock;
 mod controls;
-mod demo;
 mod descents;
 mod detection;
 mod draw;
-mod draw_options;
-mod ghost;
-mod goal;
 mod help;
 mod hud;
-mod interruption;
 mod keys;
 mod levels;
 mod map_panel;
 mod menu;
 mod menus;
 mod mouse;
-mod offers;
-mod overlay;
+mod page;
 mod panels;
-#[cfg(feature = "serve")]
-pub(crate) mod parts;
+pub mod parts;
+mod picture;
 mod played;
-mod question;
 mod recording;
-mod redraw;
-mod reload;
 mod replay;
 mod results;
 mod run;
-mod run_log;
 mod saved;
 mod screen;
-mod script_cursor;
-mod series;
+pub(crate) mod setting;
 mod settings;
-mod settings_screen;
+mod settings_page;
 mod stats;
 mod status;
 mod steps;
-mod summary;
-mod time;
-mod tmux_offer;
-mod vitals;
-mod watch;
+pub mod store;
+pub(crate) mod time;
+mod title;
 
 use std::time::Duration;
 
 pub use bindings::Bindings;
-use demo::Demo;
-use draw_options::DrawOptions;
-use ghost::Ghost;
-use goal::Goal;
-use help::HelpScroll;
+use controls::{Clock, Controls};
+use detection::Detection;
 pub use levels::Levels;
-use levels::{Course, LevelNumber, Stage};
+use levels::{Course, LevelNumber, Reload, Stage};
 use map_panel::MapPanel;
-use menu::Menu;
 use menus::Choice;
-pub use offers::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
+use mouse::Pointer;
+use page::Pages;
+use played::{Goal, Played, Viewpoint, Views};
 pub use recording::Recording;
+use recording::{Ghost, RunLog, ScriptRecorder};
 pub use replay::Replay;
 use results::LevelResult;
 pub use run::{Farewell, Opening, play};
-use run_log::RunLog;
-use screen::{Screen, Shelved};
+use screen::Screen;
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
-
-use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::game::STEP;
-use crate::store::{Reached, Store};
-use crate::tui::{CellAspect, GlyphSet, View};
-use crate::world::{Difficulty, FieldOfView, Figure};
-use clock::Clock;
-use controls::Controls;
-use detection::Detection;
-use mouse::Pointer;
-use played::{Played, Viewpoint, Views};
-use question::PendingKey;
-use recording::ScriptRecorder;
-use reload::Reload;
 use stats::Stats;
 use status::StatusLine;
-use tmux_offer::TmuxOrder;
-use watch::Watch;
+use steps::Watch;
+use store::{Reached, Store};
+use title::{Demo, TmuxOrder};
+pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
+
+use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::tui::{CellAspect, GlyphSet, View};
+use crate::world::{Difficulty, Figure};
 
 /// The part of the game's state that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,31 +112,22 @@ struct App {
     watch: Watch,
     /// The seconds that the earlier levels took.
     earlier: f64,
-    screen: Screen,
-    menu: Menu<Choice>,
-    /// The screens to return to, the next one last.
-    behind: Vec<Shelved>,
+    pages: Pages<Screen, Choice>,
     /// What the title offers; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
     /// The level behind the title, while there is no game.
     demo: Option<Demo>,
     settings: Settings,
-    depth: ColorDepth,
     terminal: TerminalLook,
-    cell_aspect: CellAspect,
-    field_of_view: FieldOfView,
     controls: Controls,
     pointer: Pointer,
     map: MapPanel,
-    help: HelpScroll,
-    /// The time of the last event, and the time since which the screen is shown.
+    /// The time of the last event.
     now: Duration,
     /// The machine's clock, by which steps that take long are noticed; `None` to take as long as they
     /// need.
     machine_time: Option<fn() -> Duration>,
-    shown_since: Duration,
-    pending: PendingKey,
     has_left: bool,
     clock: Clock,
     views: Views,
@@ -170,7 +137,6 @@ struct App {
     is_interrupted: bool,
     /// The game time of the next change in the picture that the player does not cause.
     animates_at: Option<f64>,
-    shows_stats: bool,
     stats: Option<Stats>,
     status: StatusLine,
     /// The known properties of the terminal.
@@ -199,7 +165,6 @@ impl App {
             goal: Goal::of(&game, settings.minimap),
             notice: None,
             map: MapPanel::new(settings.minimap),
-            help: HelpScroll::default(),
             game,
             log: RunLog::default(),
             ghost: None,
@@ -208,24 +173,16 @@ impl App {
             store: Store::in_memory(),
             watch: Watch::default(),
             earlier: 0.0,
-            screen: Screen::Playing,
-            menu: Menu::new(""),
-            behind: Vec::new(),
+            pages: Pages::new(Screen::Playing),
             offers: None,
             own_maps: Vec::new(),
             demo: None,
-            field_of_view: settings.field_of_view,
-            depth: settings.depth.unwrap_or_default(),
             terminal: TerminalLook::default(),
-            cell_aspect: settings.cell_aspect.unwrap_or_default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
-            shows_stats: settings.shows_stats,
             pointer: Pointer::new(settings.mouse),
             settings,
             controls: Controls::default(),
             now: Duration::ZERO,
-            shown_since: Duration::ZERO,
-            pending: PendingKey::default(),
             has_left: false,
             clock: Clock::default(),
             shown: None,
@@ -281,16 +238,18 @@ impl App {
 
     /// Handles a new size or new properties of the terminal.
     fn terminal_changed(&mut self, terminal: TerminalLook) {
-        let TerminalLook { aspect, depth, glyphs, .. } = terminal;
         self.terminal = terminal;
-        self.cell_aspect = self.settings.cell_aspect.or(aspect).unwrap_or_default();
-        self.depth = self.settings.depth.unwrap_or(depth);
         let is_chosen =
             self.settings.given.glyphs.is_some() || self.store.preferences().glyphs.is_some();
         if !is_chosen && self.settings.glyphs.has_blocks() {
-            self.settings.glyphs = glyphs;
+            self.settings.glyphs = terminal.glyphs;
         }
         self.redraw_whole();
+    }
+
+    /// The colour depth of pictures.
+    fn depth(&self) -> ColorDepth {
+        self.settings.depth.unwrap_or(self.terminal.depth)
     }
 
     /// Continues after a suspension, whose time does not count.
@@ -310,4 +269,3 @@ impl App {
 
 #[cfg(test)]
 mod tests;
-mod wrap;

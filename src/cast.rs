@@ -30,34 +30,27 @@
 //!
 //! Callers for which speed counts are generic over the [`Caster`], and compiled for few of them.
 
-mod any;
-mod door;
+mod dyn_caster;
 mod exact;
-mod hit;
 mod major_axis;
 mod ray;
-mod rounded;
-mod shape;
 mod through;
 mod walk;
 
-pub(crate) use any::AnyCaster;
+pub(crate) use dyn_caster::AnyCaster;
+pub use dyn_caster::DynCaster;
 pub(crate) use exact::{CommonOrder, ExactOnLevel};
-pub use exact::{Exact, ExactOrder};
-pub(crate) use hit::HitFace;
-#[cfg(feature = "tui")]
-pub(crate) use hit::distance_on_entry;
-#[cfg(feature = "lab")]
-pub(crate) use hit::texture_coordinate;
-pub use hit::{Hit, Side};
+pub use exact::{Exact, ExactOrder, RoundedOrder};
 pub(crate) use major_axis::MajorAxisTraversal;
-pub use ray::{Ray, RayError};
-pub use rounded::RoundedOrder;
-pub(crate) use shape::Passage;
+#[cfg(feature = "tui")]
+pub(crate) use ray::distance_on_entry;
+pub use ray::texture_coordinate;
+pub use ray::{Hit, Ray, RayError, Side};
+pub(crate) use ray::{HitFace, cell_before};
+pub(crate) use through::Passage;
 #[cfg(feature = "tui")]
 pub(crate) use walk::WalkFromInside;
-#[cfg(feature = "lab")]
-pub(crate) use walk::first_line;
+pub use walk::first_line;
 pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Order, Walk};
 

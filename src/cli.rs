@@ -4,41 +4,29 @@
 //! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
-mod accuracy;
-#[cfg(all(unix, feature = "serve"))]
-mod admin;
-mod arguments;
+pub mod arguments;
 mod asciicast;
-mod bench;
 mod cast;
 mod check;
 mod completions;
-mod config;
-mod data_folder;
-mod error;
-#[cfg(feature = "serve")]
-mod host_store;
-mod level;
+pub mod config;
+pub mod data_folder;
+pub mod error;
+mod external;
+pub mod level;
 mod levels;
 mod manual;
-mod output_file;
+pub mod output_file;
 mod own_maps;
+pub mod parse;
 mod play;
-mod plot;
 mod recording;
 mod replay;
-#[cfg(feature = "serve")]
-mod room_recording;
-#[cfg(feature = "serve")]
-mod scores;
-mod script;
-#[cfg(feature = "serve")]
-mod serve;
-mod snapshot;
-mod today;
-mod verify;
+pub mod script;
+pub mod snapshot;
+pub mod today;
+pub mod verify;
 mod watch;
-mod wire;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -46,38 +34,49 @@ use std::process::ExitCode;
 
 use arguments::Command;
 pub use error::Error;
+use external::External;
+
+use crate::render::DynCaster;
 
 /// Runs the command that `arguments` request, and returns the exit status. The first argument is
 /// the program's own name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    match Command::parse(arguments).and_then(Command::run).and_then(|()| finish()) {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    match External::of(&words) {
+        Some(external) => exit_code(external.run()),
+        None => run_with_caster(words, &DynCaster::default()),
+    }
+}
+
+/// As [`run`], but walls are found by `caster`, and commands of other programs are unknown.
+pub fn run_with_caster(
+    arguments: impl IntoIterator<Item = OsString>,
+    caster: &DynCaster,
+) -> ExitCode {
+    exit_code(Command::parse(arguments).and_then(|command| command.run(caster)))
+}
+
+/// Reports the error of a command, if there is one, and returns the exit status. Writes what is left of the output.
+pub fn exit_code(result: Result<(), Error>) -> ExitCode {
+    match result.and_then(|()| finish()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }
 }
 
 impl Command {
-    fn run(self) -> Result<(), Error> {
+    fn run(self, caster: &DynCaster) -> Result<(), Error> {
         match self {
             Self::Text(text) => print(&text),
             Self::Completions(shell) => completions::run(shell),
             Self::Manual => manual::run(),
-            Self::Play(options) => play::run(options),
-            Self::Snapshot(options) => snapshot::run(options),
-            Self::Cast(options) => cast::run(&options),
+            Self::Play(options) => play::run(options, caster),
+            Self::Snapshot(options) => snapshot::run(options, caster),
+            Self::Cast(options) => cast::run(&options, caster),
             Self::Check(options) => check::run(&options),
             Self::Config(options) => config::run(options),
-            #[cfg(all(unix, feature = "serve"))]
-            Self::Admin(options) => admin::run(options),
-            Self::Accuracy(options) => accuracy::run(&options),
-            Self::Bench(options) => bench::run(&options),
             Self::Levels(options) => levels::run(&options),
             Self::Replay(options) => replay::run(&options),
-            #[cfg(feature = "serve")]
-            Self::Scores(options) => scores::run(&options),
-            #[cfg(feature = "serve")]
-            Self::Serve(options) => serve::run(options),
-            Self::Wire(options) => wire::run(&options),
         }
     }
 }

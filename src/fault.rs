@@ -1,25 +1,31 @@
-//! Faults in a text: what is wrong, where, and what to write instead.
+//! Faults in a text, each with its place and a remedy.
 //!
 //! A reader collects every fault that it finds and continues, so that one run reports all of them;
 //! [`Faults`] is its error. One cause makes one fault: consequences of an earlier fault are not
-//! reported. Stopping at the first fault was refused: correcting a file would take one run for
+//! reported. Rejected: stopping at the first fault, since correcting a file would take one run for
 //! each.
+//!
+//! Names of files and values of options may hold any character. All text on standard error goes
+//! through [`printable`] and its like, which show what a terminal would obey as an escape.
 
-pub(crate) mod document;
-mod excerpt;
-mod printable;
-mod words;
+pub mod document;
 
-use crate::sort;
 use std::fmt;
 use std::ops::Range;
-
-pub(crate) use printable::printable;
-#[cfg(feature = "cli")]
-pub(crate) use printable::printable_lines;
 #[cfg(feature = "terminal")]
-pub(crate) use printable::printable_path;
-pub(crate) use words::{nearest, quoted};
+use std::path::Path;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+use crate::sort;
+
+/// The largest number of faults in a report: more than anybody corrects in one go.
+const MAX_REPORTED: usize = 100;
+/// The longest line that a report shows, in bytes: four times the widest row of a map in the longest
+/// characters.
+const MAX_LINE: usize = 1 << 16;
+/// Longer than any misspelt name.
+const MAX_NAME: usize = 40;
 
 /// All faults of a file; there is at least one.
 ///
@@ -33,9 +39,21 @@ pub struct Faults {
     list: Vec<Fault>,
 }
 
+/// A fault in a text.
+pub struct Fault {
+    /// Bytes of the text; `None` if the whole file is at fault.
+    place: Option<Range<usize>>,
+    /// A sentence.
+    message: String,
+    /// A few words under the underlined place; may be empty.
+    label: String,
+    /// The remedy; may be empty.
+    help: String,
+}
+
 impl Faults {
     /// The faults of the file `name` with the contents `text`. `faults` is not empty.
-    pub(crate) fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+    pub fn new(name: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         debug_assert!(!faults.is_empty(), "an error has a cause");
         sort::by_key(&mut faults, |fault| {
             fault.place.as_ref().map(|place| (place.start, place.end))
@@ -54,10 +72,9 @@ impl Faults {
     ///
     /// # Errors
     /// A fault that names the first line that is not UTF-8.
-    pub(crate) fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
+    pub fn text_of(bytes: Vec<u8>, name: &str, what: &str) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let line = error.as_bytes()[..valid].split(|&byte| byte == b'\n').count();
+            let line = 1 + line_breaks(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
             let message = format!(
                 "{name} is not UTF-8 text: line {line} has a byte that is part of no character"
             );
@@ -70,9 +87,7 @@ impl Faults {
     pub fn len(&self) -> usize {
         self.list.len()
     }
-}
 
-impl Faults {
     /// The first fault in one line, with its place, and the number of further faults.
     pub fn summary(&self) -> String {
         let Some(fault) = self.list.first() else { return String::new() };
@@ -84,15 +99,51 @@ impl Faults {
         if fault.place.is_none() {
             return format!("{}{more}", fault.message);
         }
-        let before = &self.text.as_bytes()[..fault.start().min(self.text.len())];
-        let line = before.split(|&byte| byte == b'\n').count();
+        let line = 1 + line_breaks(&self.text.as_bytes()[..fault.start().min(self.text.len())]);
         format!("{}:{line}: {}{more}", self.name, fault.message)
     }
 }
 
 impl fmt::Display for Faults {
+    /// Shows only the first line of a place that spans several: a map's grid may have thousands.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        excerpt::report(f, &self.name, &self.text, &self.list)
+        let Self { name, text, list } = self;
+        let (shown, left_out) = list.split_at(list.len().min(MAX_REPORTED));
+        // Lines are counted in one pass over the text.
+        let (mut line_start, mut number) = (0, 1);
+        for (index, fault) in shown.iter().enumerate() {
+            if index > 0 {
+                f.write_str("\n\n")?;
+            }
+            let mut group = Group::with_title(Level::ERROR.primary_title(&fault.message));
+            if let Some(place) = &fault.place {
+                let start = text.floor_char_boundary(place.start);
+                let passed = &text[line_start..start];
+                number += line_breaks(passed.as_bytes());
+                line_start += passed.rfind('\n').map_or(0, |at| at + 1);
+                let line = text[line_start..].lines().next().unwrap_or_default();
+                let start = (start - line_start).min(line.len());
+                let end = text.floor_char_boundary(place.end).saturating_sub(line_start);
+                group = if line.len() > MAX_LINE {
+                    let column = line[..start].chars().count() + 1;
+                    group.element(Origin::path(name).line(number).char_column(column))
+                } else {
+                    let label = Some(fault.label.as_str()).filter(|label| !label.is_empty());
+                    let span = start..end.clamp(start, line.len());
+                    let underline = AnnotationKind::Primary.span(span).label(label);
+                    let source = Snippet::source(line).path(name).line_start(number);
+                    group.element(source.annotation(underline))
+                };
+            }
+            if !fault.help.is_empty() {
+                group = group.element(Level::HELP.message(&fault.help));
+            }
+            f.write_str(&Renderer::plain().render(&[group]))?;
+        }
+        if left_out.is_empty() {
+            return Ok(());
+        }
+        write!(f, "\n\nerror: {} more faults in {name} are not shown", left_out.len())
     }
 }
 
@@ -105,21 +156,9 @@ impl fmt::Debug for Faults {
 
 impl std::error::Error for Faults {}
 
-/// A fault in a text.
-pub(crate) struct Fault {
-    /// Bytes of the text; `None` if the fault is that of the whole file.
-    place: Option<Range<usize>>,
-    /// A sentence.
-    message: String,
-    /// A few words under the underlined place; may be empty.
-    label: String,
-    /// What to write instead; may be empty.
-    help: String,
-}
-
 impl Fault {
     /// A fault at `place`, a range of bytes of the text.
-    pub(crate) fn new(place: Range<usize>, message: impl Into<String>) -> Self {
+    pub fn new(place: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { place: Some(place), message, label: String::new(), help: String::new() }
     }
@@ -129,12 +168,80 @@ impl Fault {
         Self { label: label.into(), ..self }
     }
 
-    /// The fault with what to write instead.
-    pub(crate) fn help(self, help: impl Into<String>) -> Self {
+    /// The fault with a remedy.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
+
     /// The first byte of the place.
-    pub(crate) fn start(&self) -> usize {
+    fn start(&self) -> usize {
         self.place.as_ref().map_or(0, |place| place.start)
     }
 }
+
+#[expect(clippy::naive_bytecount, reason = "a crate for it would be larger than the time it saves")]
+fn line_breaks(text: &[u8]) -> usize {
+    text.iter().filter(|&&byte| byte == b'\n').count()
+}
+
+/// `text` on one line, with escapes such as `\u{1b}` for characters that do not print.
+pub(crate) fn printable(text: &str) -> String {
+    text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
+        if does_print(c) {
+            shown.push(c);
+        } else {
+            shown.extend(c.escape_debug());
+        }
+        shown
+    })
+}
+
+/// A path in a sentence, on one line and with escapes as in [`printable`].
+#[cfg(feature = "terminal")]
+pub fn printable_path(path: &Path) -> String {
+    printable(&path.display().to_string())
+}
+
+/// As [`printable`], with the line breaks of `text` as they are.
+#[cfg(feature = "cli")]
+pub(crate) fn printable_lines(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
+}
+
+/// Returns whether `c` is neither a control character nor changes the direction of the characters
+/// after it ("Trojan Source: Invisible Vulnerabilities", Boucher and Anderson, 2021).
+fn does_print(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The most similar of `known` to `word`, if any is similar: with at most one edit for every three
+/// letters.
+pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    if word.len() > MAX_NAME {
+        return None;
+    }
+    let slips_allowed = (word.chars().count() / 3).max(1);
+    let slips = |name: &&str| strsim::damerau_levenshtein(word, name);
+    let name = known.iter().copied().min_by_key(slips)?;
+    (slips(&name) <= slips_allowed && name.len() > slips_allowed).then_some(name)
+}
+
+/// A help: `meant` and the most similar of `known` to `word`, or else `otherwise` and all of them.
+pub(crate) fn nearest_or_all(word: &str, known: &[&str], meant: &str, otherwise: &str) -> String {
+    match nearest(word, known) {
+        Some(name) => format!("{meant} {}", quoted(name)),
+        None => format!("{otherwise} {}", known.join(", ")),
+    }
+}
+
+/// `word` in double quotes, with non-printing characters escaped, shortened if it is long.
+pub fn quoted(word: &str) -> String {
+    match word.char_indices().nth(MAX_NAME) {
+        Some((end, _)) => format!("{:?}…", &word[..end]),
+        None => format!("{word:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

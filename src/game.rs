@@ -9,27 +9,21 @@
 //! it, the player has no tools, and it costs nothing that a mission would cost.
 
 mod checkpoint;
-mod checksum;
 mod collision;
-mod crowding;
+mod distances;
 mod doors;
-mod encounter;
 mod exits;
 mod fall;
 mod flight;
-mod flood;
 mod guards;
 mod hazards;
 mod health;
 mod intent;
 mod locks;
-mod look;
 mod mechanisms;
 mod multiplayer;
 mod noise;
-mod notice;
 mod pickups;
-mod pitch_control;
 mod player;
 mod report;
 mod rest;
@@ -37,14 +31,15 @@ mod rules;
 mod scratch;
 mod script;
 mod show;
+mod sight;
 mod sound;
 mod stance;
-pub(crate) mod stored;
+mod state;
+mod step;
+pub mod stored;
 mod tally;
 mod tools;
-mod turn;
 mod turning;
-mod warnings;
 
 use crate::generate::{self, Site, Window};
 use crate::world::World;
@@ -54,25 +49,21 @@ use guards::Guards;
 use hazards::Spikes;
 use mechanisms::Mechanisms;
 use multiplayer::Members;
-use player::{Player, RUN, STILL, WALK};
+use player::{Player, RUN, STILL, Supplies, WALK};
 use scratch::Scratch;
 use show::Sprites;
-use tools::{Missiles, Smoke, Supplies};
+use tools::{Missiles, Smoke};
 
 pub use crate::world::sprite::builtin::PlayerColor;
 pub use exits::is_exit_out_of_reach;
 pub use flight::Flight;
 pub use guards::{Alarm, GuardView, Mood};
 pub use health::{Flash, FlashKind, Health};
-pub use intent::{Intent, Intents};
-pub use look::Look;
-pub use multiplayer::{
-    Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, OtherPlayer, PlayerId, PlayerView, Sees,
-    Strikes,
-};
-pub(crate) use player::FRICTION;
+pub use intent::{Intent, Intents, Look};
+pub use multiplayer::view::{OtherPlayer, PlayerView};
+pub use player::FRICTION;
 pub use report::Outcome;
-pub use rules::Rules;
+pub use rules::{Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules, Sees, Strikes};
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
 pub use stored::{RULES_VERSION, Unrestorable};
@@ -81,7 +72,8 @@ pub use tally::{Rank, Share, Tally};
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
-pub(crate) const STEPS_PER_SECOND: u32 = 60;
+/// The steps of a game in a second.
+pub const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.
 ///
@@ -197,35 +189,6 @@ impl Game {
             Some(game) if !game.is_finished() => game,
             _ => begun,
         }
-    }
-
-    /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing moves after
-    /// the exit; after death, nothing but what [`Intent::Retry`] does.
-    ///
-    /// In a game for several these are the intents of the first one, and the others want nothing.
-    pub fn step(&mut self, intents: Intents) {
-        if self.members.is_some() {
-            let seen = self.steps;
-            return self.step_all(&[Input { player: PlayerId::FIRST, intents, seen }]);
-        }
-        *self.work = 0;
-        if self.is_finished() {
-            return;
-        }
-        if self.is_dead() {
-            return self.step_after_death(intents);
-        }
-        let intents = self.move_one(intents);
-        self.thin_smoke();
-        self.move_doors();
-        self.act(intents);
-        self.move_others();
-        self.hear();
-        self.sounds.clear();
-        self.show();
-        self.move_window();
-        self.reach_checkpoint();
-        self.steps = self.steps.saturating_add(1);
     }
 }
 

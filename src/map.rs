@@ -22,36 +22,25 @@
 //! the grid uses. Each stage adds its faults to one list. A stage uses what the earlier ones could
 //! read, and reports nothing that follows from an earlier fault.
 //!
-//! Rows of unequal length are a fault. Padding short rows was refused: a lost character would
+//! Rows of unequal length are a fault. Rejected: padding short rows, since a lost character would
 //! silently move half a wall.
 
-mod air;
 pub mod builtin;
 mod checks;
-mod covering;
 mod definitions;
-mod doors;
 mod drawing;
-mod guards;
-mod heights;
-mod input;
-mod items;
-mod lamp_budget;
-mod layout;
+mod files;
+mod keys;
 mod legend;
-mod mechanisms;
-mod per_character;
 mod picture;
-mod reader;
+mod plan;
+mod reach;
 mod scene;
-mod see_through;
-mod shapes;
-mod sprites;
-mod supports;
-mod switches;
+mod surfaces;
 mod textures;
 mod things;
 mod tiles;
+mod values;
 
 use std::io::Read;
 use std::path::Path;
@@ -59,23 +48,27 @@ use std::path::Path;
 use crate::color::Rgb;
 use crate::fault::document::FaultList;
 use crate::fault::{Fault, Faults, document};
-use crate::space::Scene;
-use crate::world::{Ceiling, Covering, Heights, Mission, Paint, Parts, Sky, Tile, TileKind, World};
+use crate::world::scene::Scene;
+use crate::world::{
+    Ceiling, Covering, Grid, Heights, Mission, Paint, Parts, Sky, Start, Tile, TileId, TileKind,
+    World,
+};
+use checks::Cells;
 use definitions::Definitions;
-use drawing::Drawing;
-use heights::Faces;
-use input::{open, read_text, too_large};
-use layout::Layout;
-use reader::Reader;
-use textures::Surface;
-pub use textures::{Folder, NoFiles, TextureFileError, TextureFiles};
+pub use drawing::MAX_SIDE;
+use drawing::{Drawing, PerCharacter};
+pub use files::{Folder, MAX_BYTES, NoFiles, TextureFileError, TextureFiles};
+use files::{open, read_text, too_large};
+use legend::Meaning;
+use plan::{Names, Plan};
+use textures::{Surface, Textures};
+use things::ThingList;
+use tiles::{Common, Faces, TileList};
 
-/// The largest map file, in bytes: room for the largest grid in characters of three bytes.
-pub const MAX_BYTES: usize = 64 << 20;
-/// The largest number of columns, and of rows, of a grid.
-pub const MAX_SIDE: u32 = 4096;
+const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
+const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
 
-/// What a map describes.
+/// The level that a map describes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Level {
     /// A grid of tiles.
@@ -213,21 +206,31 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         faults.extend_by_broken_lines(not_toml, text);
         return None;
     }
-    let mut reader = Reader::new(text, faults, files);
-    let floor = definitions.floor.covering(&mut reader);
-    let ceiling = definitions.ceiling.ceiling(&mut reader);
-    let sky = definitions.sky.as_ref().map(|sky| sky.sky(&mut reader));
+    let mut textures = Textures::new(faults, files);
+    let plain = |color| Some(Covering::from(Paint::Color(color)));
+    let floor = match &definitions.floor {
+        Some(floor) => floor.covering(&mut textures),
+        None => plain(DEFAULT_FLOOR),
+    };
+    let ceiling = match &definitions.ceiling {
+        Some(ceiling) => ceiling.ceiling(&mut textures),
+        None => plain(DEFAULT_CEILING).map(Ceiling::Covered),
+    };
+    let sky = match &definitions.sky {
+        Some(sky) => sky.sky(&mut textures),
+        None => Some(Sky::default()),
+    };
     let Some(grid) = &definitions.grid else {
         faults.push(no_grid());
         return None;
     };
-    let drawing = Drawing::read(grid, reader.text)?;
+    let drawing = Drawing::read(grid, text)?;
     // After a fault in one of the two, tiles would only cause further faults.
-    let plain = Covering::from(Paint::Color(Rgb::BLACK));
-    let (floor, ceiling) = (floor.unwrap_or(plain), ceiling.unwrap_or(Ceiling::Covered(plain)));
-    let mut face = |surface: &Option<Surface<'_>>| reader.paint(surface.as_ref()?);
+    let black = Covering::from(Paint::Color(Rgb::BLACK));
+    let (floor, ceiling) = (floor.unwrap_or(black), ceiling.unwrap_or(Ceiling::Covered(black)));
+    let mut face = |surface: &Option<Surface<'_>>| textures.paint(surface.as_ref()?);
     let faces = Faces { riser: face(&definitions.riser), lintel: face(&definitions.lintel) };
-    let map_ceiling = definitions.ceiling_height;
+    let map_ceiling = definitions.ceiling_height.unwrap_or(Heights::LEVEL.ceiling());
     let ground = Tile {
         character: '.',
         kind: TileKind::Open,
@@ -239,30 +242,85 @@ fn read(text: &str, files: &dyn TextureFiles, faults: &FaultList) -> Option<Leve
         lintel: faces.lintel(floor, ceiling),
         effect: None,
     };
-    let layout = Layout::of(&drawing, &definitions.legend, ground, faces, &mut reader)?;
-    if let Some((needed, place)) = &definitions.treasure_needed {
-        reader.faults.extend(checks::missing_treasure(*needed, place, &layout.things));
+    let plan = Plan { drawing: &drawing, legend: &definitions.legend };
+    faults.extend(checks::faults_of_characters(plan));
+    let (keys, switches) = (Names::of(plan.locks()), Names::of(plan.driven()));
+    let common = Common { ground, faces, keys: &keys, switches: &switches };
+    let tile_list = TileList::of(plan, &common, &mut textures);
+    if !faults.is_empty() {
+        return None;
     }
+    let start = start(plan)?;
+    let mut grid = draw(plan, &tile_list)?;
+    let TileList { tiles, moving, .. } = tile_list;
+    let ThingList { things, sprites, notes, .. } =
+        ThingList::of(plan, &keys, &switches, &mut textures);
+    for thing in things.iter().filter(|thing| sprites[usize::from(thing.sprite.0)].blocks) {
+        grid.occupy(thing.cell);
+    }
+    let guards = things::posts(plan);
+    let cells =
+        Cells { grid: &grid, tiles: &tiles, moving: &moving, sprites: &sprites, things: &things };
+    faults.extend(checks::faults_of_cells(plan, cells, start, &guards));
+    if !faults.is_empty() {
+        return None;
+    }
+    let treasure_needed = definitions.treasure_needed;
+    if let Some((needed, place)) = &treasure_needed {
+        faults.extend(checks::missing_treasure(*needed, place, &things));
+    }
+    let mission = Mission {
+        par: definitions.par,
+        treasure_needed: treasure_needed.map_or(0, |(worth, _)| worth),
+        notes,
+        switches: switches.to_strings(),
+        moving_tiles: moving,
+        guards,
+    };
     Some(Level::from(World::from_parts(Parts {
         title: definitions.title,
         goal: definitions.goal,
-        grid: layout.grid,
-        tiles: layout.tiles,
-        textures: reader.textures.into_list(),
-        floor: ground.floor,
-        ceiling: ground.ceiling,
-        sky: sky.unwrap_or_else(|| Some(Sky::default()))?,
+        grid,
+        tiles,
+        textures: textures.into_list(),
+        floor,
+        ceiling,
+        sky: sky?,
         fog: definitions.fog,
-        start: layout.start,
-        sprites: layout.sprites,
-        things: layout.things,
-        keys: layout.keys,
-        mission: Mission {
-            par: definitions.par,
-            treasure_needed: definitions.treasure_needed.map_or(0, |(worth, _)| worth),
-            ..layout.mission
-        },
+        start,
+        sprites,
+        things,
+        keys: keys.to_strings(),
+        mission,
     })))
+}
+
+/// The start of a plan that has exactly one.
+fn start(plan: Plan<'_>) -> Option<Start> {
+    let is_start = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Start(_));
+    let (cell, character) = plan.drawing.cells_of(|it| plan.means(it, is_start)).next()?;
+    match plan.symbol(character)?.meaning {
+        Meaning::Start(heading) => Some(Start { cell, heading }),
+        _ => None,
+    }
+}
+
+/// The grid of a plan whose tiles are in `tiles`. Doors are closed.
+fn draw(plan: Plan<'_>, tiles: &TileList) -> Option<Grid> {
+    let drawing = plan.drawing;
+    let tile_of: PerCharacter<u8> = drawing
+        .characters()
+        .map(|character| {
+            let support = plan.symbol(character).and_then(|symbol| symbol.support.as_ref());
+            (character, tiles.drawn.get(support.map_or(character, |&(tile, _)| tile)))
+        })
+        .collect();
+    let (width, height) = (drawing.width, drawing.height);
+    let mut cells = Vec::with_capacity(width.get() as usize * height.get() as usize);
+    for row in drawing.rows() {
+        cells.extend(row.chars().map(|character| TileId(tile_of.get(character))));
+    }
+    Grid::new(width, height, tiles.first_solid, cells)
 }
 
 /// The rows of the grid that the map `text` draws, from the north; none if it has no grid.
@@ -279,3 +337,6 @@ fn no_grid() -> Fault {
         .label("a grid is missing")
         .help("draw it before [tiles]: grid = ''' on a line, the rows, and ''' again")
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,14 +1,11 @@
 //! Arithmetic for the other modules: sums and products without rounding error, a predicate with an
-//! exact sign, and damped motion in closed form.
+//! exact sign, rounding, and damped motion in closed form.
 //!
-//! Each method exists once and names its source. Crates were refused: the module needs about a
-//! hundred lines of them, and every picture depends on each bit of the results.
+//! Each method exists once and names its source. Rejected: crates. The module needs about a hundred
+//! lines of them, and every picture depends on each bit of the results.
 
-pub(crate) mod damped_motion;
-mod double_double;
-mod error_free;
-mod orientation;
+pub mod damped_motion;
+mod exact;
+pub(crate) mod rounding;
 
-pub(crate) use double_double::DoubleDouble;
-pub(crate) use error_free::{two_product, two_sum};
-pub(crate) use orientation::{cross, sign_of_cross};
+pub(crate) use exact::{DoubleDouble, cross, sign_of_cross, two_product, two_sum};

@@ -7,40 +7,33 @@
 //! - Every pixel's texel is computed in fixed point from its own row or column.
 //! - The target counts pixels and texels where they are written.
 //!
-//! One loop that selects the kind of surface for each pixel was refused: these loops omit the kinds
+//! Rejected: one loop that selects the kind of surface for each pixel. These loops omit the kinds
 //! of item that a scene lacks, without a branch.
 
 mod band;
 mod column_batch;
 mod direct_columns;
-mod lanes;
-mod masked;
+mod layers;
 mod pieces;
 mod sampling;
 mod shaded_texels;
 mod sky;
 mod span;
 mod span_pair;
-mod sprite;
-mod surface_buffer;
 mod target;
 mod texel_runs;
-mod translucent;
 mod wall_column;
-mod wall_level;
 mod wall_part;
 mod wall_run;
 
 pub(crate) use band::Band;
 use column_batch::BatchMemory;
 pub(crate) use sky::{SkyColumn, SkyView};
-pub(crate) use surface_buffer::SurfaceBuffer;
-pub(crate) use target::Target;
+pub(crate) use target::{SurfaceBuffer, Target};
 
-use crate::visibility::{DrawList, Filter, Layer, Material, Scene, Span, SpanMemory};
+use crate::visibility::{DrawList, Filter, Scene, Span, SpanMemory};
 use sampling::{Means, MipLevels, Sampling};
 use span_pair::SpanPairs;
-use translucent::Tints;
 
 /// The memory of a drawing thread, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +56,7 @@ pub(crate) fn draw(
         }
         Filter::Area => draw_surfaces::<Means>(scene, list, sky, memory, target),
     }
-    draw_layers(scene, list, target);
+    layers::draw(scene, list, target);
 }
 
 /// Draws what is behind the layers of `list`.
@@ -84,28 +77,4 @@ fn draw_surfaces<M: Sampling>(
         Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
     });
     M::draw_walls(scene, list, batch, target);
-}
-
-/// Paints the layers of `list` in their order.
-fn draw_layers(scene: Scene<'_>, list: &DrawList, target: &mut Target<'_>) {
-    let mut tints = Tints::default();
-    for layer in &list.layers {
-        match layer {
-            Layer::Billboard(column) => {
-                tints.draw_before(column.column, target);
-                sprite::draw(scene, list, column, target);
-            }
-            &Layer::SeeThrough(index) => {
-                let column = &list.see_through[index];
-                match column.material {
-                    Material::Masked(texture) => {
-                        tints.draw_before(column.column, target);
-                        masked::draw(scene, column, texture, target);
-                    }
-                    Material::Translucent(glass) => tints.add(scene, column, glass, target),
-                }
-            }
-        }
-    }
-    tints.draw(target);
 }

@@ -8,32 +8,31 @@
 //! Drawing by one thread allocates nothing once both have grown to the size of the frame. The same
 //! world, camera and time give the same pixels, in any number of bands.
 //!
-//! A single pass that finishes each column before the next was refused: two stages leave out a kind
-//! of item that a scene lacks, while a single pass would branch on it in the innermost loop.
+//! Rejected: one pass that finishes each column before the next. It would branch in the innermost
+//! loop on features that the scene does not have.
 
-mod dyn_caster;
-mod explanation;
 mod frame;
 mod renderable;
 #[cfg(test)]
 mod tests;
 mod threads;
 
+use std::fmt;
 use std::num::NonZero;
 
 pub use crate::visibility::{
     CeilingLoop, Column, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect,
-    PlaneLoop, PortalStats, RayLoop, SkyLoop, Surface, ThingLoop, Visibility, WallLoop, WhyPortals,
+    PlaneLoop, PortalStats, Projection, RayLoop, SkyLoop, Surface, ThingLoop, Visibility, WallLoop,
+    WhyPortals,
 };
-pub use dyn_caster::DynCaster;
-pub use explanation::Explanation;
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};
 pub use threads::{Threads, WhyOne};
 
-use crate::cast::Caster;
+pub use crate::cast::DynCaster;
+use crate::cast::{Caster, Exact};
 use crate::raster::{self, RasterMemory, SkyColumn, SkyView, SurfaceBuffer};
-use crate::visibility::{self, DrawList, Projection, Scene, Stats, VisibilityMemory};
+use crate::visibility::{self, DrawList, Scene, Stats, VisibilityMemory};
 #[cfg(feature = "terminal")]
 use crate::world::Figure;
 use crate::world::{Camera, World};
@@ -90,7 +89,7 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
+    /// A renderer that has drawn no frame, and finds walls by [`Exact`].
     pub fn new() -> Self {
         Self::default()
     }
@@ -134,7 +133,7 @@ impl Renderer {
         let Self { caster, filter, seconds, threads, memory } = self;
         let (filter, seconds, threads, stats) =
             (*filter, *seconds, *threads, &mut Stats::default());
-        caster.draw(Picture { world, camera, filter, seconds, threads, memory, frame, stats });
+        Picture { world, camera, filter, seconds, threads, memory, frame, stats }.draw_by(caster);
     }
 
     /// Draws as [`Renderer::render`] does, with the walls that `caster` finds.
@@ -158,7 +157,7 @@ impl Renderer {
         let mut counted = Stats::kept();
         let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut counted);
         let picture = Picture { world, camera, filter, seconds, threads, memory, frame, stats };
-        let (plan, threads) = caster.draw(picture);
+        let (plan, threads) = picture.draw_by(caster);
         let mut stats = counted.counts();
         let size = u64::from(frame.width()) * u64::from(frame.height());
         stats.overwritten = stats.pixels() - size;
@@ -196,6 +195,53 @@ impl Renderer {
     }
 }
 
+/// The plan of a frame and its cost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// The loops that drew it.
+    pub plan: FramePlan,
+    /// The threads that drew it.
+    pub threads: Threads,
+    /// The counts.
+    pub stats: FrameStats,
+}
+
+impl fmt::Display for Explanation {
+    /// Writes a few lines of text.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plan, threads, stats } = self;
+        write!(f, "{plan}")?;
+        writeln!(f, "threads  {threads}")?;
+        writeln!(f)?;
+        let FrameStats { rays, cells, looks, spans, .. } = stats;
+        writeln!(f, "rays     {rays:>10} cast, into {cells} cells, by {looks} looks")?;
+        if plan.visibility != Visibility::Flat {
+            let PortalStats { rays, faces, bounces, .. } = stats.portals;
+            writeln!(
+                f,
+                "portals  {rays:>10} rays, {faces} faces, {spans} spans, {bounces} bounces"
+            )?;
+        }
+        let passes = [
+            ("ceiling", Pass::Ceiling),
+            ("floor", Pass::Floor),
+            ("sky", Pass::Sky),
+            ("walls", Pass::Walls),
+            ("through", Pass::SeeThrough),
+            ("things", Pass::Things),
+        ];
+        for (name, pass) in passes {
+            let counts = stats.of(pass);
+            let (pixels, texels) = (counts.pixels, counts.texels);
+            writeln!(f, "{name:8} {pixels:>10} pixels written, {texels} texels read")?;
+        }
+        let (considered, drawn) = (stats.things_considered, stats.things_drawn);
+        writeln!(f, "in view  {considered:>10} things considered, {drawn} of them drawn")?;
+        let (pixels, overwritten) = (stats.pixels(), stats.overwritten);
+        writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
+    }
+}
+
 /// The arguments of a drawing, for any caster.
 struct Picture<'a> {
     world: &'a World,
@@ -209,6 +255,10 @@ struct Picture<'a> {
 }
 
 impl Picture<'_> {
+    fn draw_by(self, caster: &DynCaster) -> (FramePlan, Threads) {
+        if caster.is_default() { self.draw(&Exact) } else { self.draw(caster) }
+    }
+
     fn draw<C: Caster>(self, caster: &C) -> (FramePlan, Threads) {
         let mut plan = FramePlan::new(self.world, self.camera, self.filter);
         if self.memory.surfaces.are_kept() {

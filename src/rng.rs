@@ -3,12 +3,15 @@
 //!
 //! The generator is [`SplitMix64`] (G. L. Steele Jr., D. Lea and C. H. Flood, "Fast Splittable
 //! Pseudorandom Number Generators", 2014): a counter, and a finalizer that maps 64 bits one to one,
-//! so that each bit of the input changes half of the output on average. A crate was refused: the
-//! generator has ten lines, which never change. The standard library's hasher was refused, too: it
-//! may change.
+//! so that each bit of the input changes half of the output on average. Rejected: a crate, since
+//! the generator has ten lines, which never change; and the standard library's hasher, which may
+//! change.
+
+use serde::{Deserialize, Serialize};
 
 /// A generator of random numbers. The seed alone determines them.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "[u8; 8]", into = "[u8; 8]")]
 pub struct SplitMix64 {
     state: u64,
 }
@@ -17,11 +20,6 @@ impl SplitMix64 {
     /// A generator with that seed.
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
-    }
-
-    /// The seed of a generator that goes on as this one does.
-    pub(crate) const fn state(&self) -> u64 {
-        self.state
     }
 
     /// The next 64 random bits.
@@ -74,8 +72,22 @@ impl SplitMix64 {
     }
 }
 
+/// A generator from the bytes of its state.
+impl From<[u8; 8]> for SplitMix64 {
+    fn from(state: [u8; 8]) -> Self {
+        Self::new(u64::from_le_bytes(state))
+    }
+}
+
+/// The bytes of the state.
+impl From<SplitMix64> for [u8; 8] {
+    fn from(random: SplitMix64) -> Self {
+        random.state.to_le_bytes()
+    }
+}
+
 /// A pseudorandom number that a seed and words determine.
-pub(crate) fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
+pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
     words.into_iter().fold(seed, |bits, word| mixed(bits.wrapping_add(INCREMENT) ^ mixed(word)))
 }
 

@@ -16,26 +16,22 @@
 //! them: see `tree`. It is not used elsewhere, since most maps have few bodies, and rows of pixels are
 //! faster to test than a tree.
 
-mod body;
 mod bounds;
 mod camera;
 mod checker;
-mod explanation;
 mod lanes;
-mod light;
 mod ray;
 mod relative_shape;
 mod renderer;
 mod row;
-mod scene;
 mod shading;
 mod shadows;
 mod tree;
 
-pub use body::{Block, Body, FARTHEST, Plane, SMALLEST, Shape, SolidTexture, Sphere};
-pub use camera::{Axes, Camera, EYE_CLEARANCE, Elevation};
-pub use explanation::Explanation;
-pub use light::{Fraction, Sun};
+pub use crate::world::scene::{
+    Block, Body, EYE_CLEARANCE, Elevation, FARTHEST, Fraction, Plane, SMALLEST, Scene, Shape,
+    SolidTexture, Sphere, Start, Sun,
+};
+pub use camera::{Axes, Camera};
 pub use ray::{Hit, Ray};
-pub use renderer::Renderer;
-pub use scene::{Scene, Start};
+pub use renderer::{Explanation, Renderer};

@@ -5,13 +5,12 @@
 //! a return, an error, a panic or a signal. A [`Protocol`] is the same without a device and a clock,
 //! for any other reader and writer, such as a channel of a server.
 //!
-//! This module reads the bytes and divides them into units itself. An event library was refused:
-//! the known ones swallow keys after an unknown answer, mistake half a sequence for keys, or keep a
-//! reading thread that competes with the answers to queries.
+//! This module reads the bytes and divides them into units itself.
+//!
+//! Rejected: an event library. The known ones swallow keys after an unknown answer, mistake half a sequence for keys,
+//! or keep a reading thread that competes with the answers to queries.
 
 mod cell_writer;
-mod depth;
-mod environment;
 mod error;
 mod event;
 mod fidelity;
@@ -22,40 +21,32 @@ mod guard;
 mod input;
 mod key;
 mod known;
-mod mouse;
 mod options;
 mod protocol;
-mod recorder;
 mod sequence;
 mod session;
-mod size;
-pub(crate) mod thread_memory;
+#[cfg(unix)]
+mod signals;
 mod tmux;
 #[cfg(unix)]
 mod unix;
 #[cfg(not(unix))]
 mod unsupported;
 
-#[cfg(unix)]
-use self::unix as platform;
 #[cfg(not(unix))]
-use self::unsupported as platform;
+use self::unsupported::{self as signals, self as unix};
 
 #[cfg(feature = "cli")]
 pub(crate) use self::cell_writer::{Bytes, Style};
 pub use self::cell_writer::{CellWriter, Screen};
-pub use self::depth::{ColorSource, Detected, color_depth, color_source};
-pub use self::environment::locale_without_utf8;
 pub use self::error::Error;
-pub use self::event::{Event, QuitReason};
+pub use self::event::{Event, MouseButton, MouseEvent, MouseEventKind, QuitReason, WindowSize};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
+pub use self::guard::Recorder;
 pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
-pub use self::mouse::{MouseButton, MouseEvent, MouseEventKind};
-pub use self::options::Options;
-#[cfg(feature = "cli")]
-pub(crate) use self::platform::{peak_memory, take_keys_from_terminal};
+pub use self::options::{ColorSource, Detected, Options, locale_without_utf8};
 pub use self::protocol::Protocol;
-pub use self::recorder::Recorder;
 pub use self::session::Session;
-pub use self::size::WindowSize;
 pub use self::tmux::TmuxClient;
+#[cfg(feature = "cli")]
+pub(crate) use self::unix::take_keys_from_terminal;

@@ -27,23 +27,18 @@
 
 mod ascii;
 pub(crate) mod blocks;
+pub mod canvas;
 mod correction;
 mod first_person;
 mod glyphs;
 pub(crate) mod held;
 mod minimap;
-mod outline;
-mod ramp;
-mod wanted;
 
-pub use correction::Correction;
-pub use first_person::{FirstPerson, View};
-#[cfg(feature = "serve")]
-pub(crate) use glyphs::color_at;
-pub use glyphs::{CellAspect, GlyphSet};
-pub use held::{CHORD, HeldKeys, Hold, LINGER, Press};
-pub use minimap::{Explored, MapMark, Minimap};
-pub use wanted::{tap_steps, wanted};
+pub use self::correction::Correction;
+pub use self::first_person::{FirstPerson, View};
+pub use self::glyphs::{CellAspect, GlyphSet, color_at};
+pub use self::held::{CHORD, HeldKeys, Hold, LINGER, Press, tap_steps, wanted};
+pub use self::minimap::{Explored, MapMark, Minimap};
 
 #[cfg(test)]
 mod tests;

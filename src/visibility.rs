@@ -16,26 +16,19 @@
 //!   no error accumulates. A band of rows is identical to those rows of the whole frame.
 //! - A list allocates nothing once it has grown to the size of the frame.
 //!
-//! Drawing each column while its ray is followed was refused: a row of floor shares its distance,
-//! its light and its mip level, which a span finds once for many pixels.
+//! Rejected: drawing each column while its ray is followed. A row of floor shares its distance, its
+//! light and its mip level, which a span finds once for many pixels.
 
 mod billboard;
-mod chains;
 mod column;
 mod draw_list;
 mod face_column;
-mod facing;
-mod filter;
 mod flat;
-mod frame_size;
-mod layer_order;
 mod lighting;
 mod plan;
 mod portal;
 mod projection;
-mod ray_counter;
 mod runs;
-mod scene;
 mod span_mapping;
 mod stats;
 mod texture_stepper;
@@ -49,17 +42,16 @@ pub use column::{Column, Surface};
 pub(crate) use draw_list::{
     BillboardColumn, DrawList, DrawnPlane, Layer, PlaneSpan, Span, SpanMemory, SpanPair,
 };
-pub(crate) use face_column::{Extent, Material, SeeThroughColumn, WallColumn, WallRun, WallSink};
-pub(crate) use facing::Facing;
-pub use filter::Filter;
-pub use frame_size::{FrameSize, PixelAspect};
+pub(crate) use face_column::{
+    Extent, Facing, Material, SeeThroughColumn, WallColumn, WallRun, WallSink,
+};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
 pub use plan::{
-    CeilingLoop, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
+    CeilingLoop, Filter, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
     WhyPortals,
 };
-pub(crate) use projection::Projection;
-pub(crate) use scene::Scene;
+pub use projection::Projection;
+pub use projection::{FrameSize, PixelAspect};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
 pub use stats::{FrameStats, Pass, PassStats, PortalStats};
@@ -67,8 +59,38 @@ pub(crate) use texture_stepper::{FaceTexels, TextureStepper, WallTexels};
 pub(crate) use wall_part::WallPart;
 
 use crate::cast::{Caster, ExactOnLevel};
+use crate::world::texture::{MipLevel, Texture};
+use crate::world::{Camera, TextureId, World};
 use flat::{FlatMemory, PortalStarts};
 use portal::PortalMemory;
+
+/// A world, the camera that views it, and the projection and plan of the frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) camera: &'a Camera,
+    /// The time at which sprites are shown, in seconds.
+    pub(crate) seconds: f64,
+    pub(crate) projection: &'a Projection,
+    pub(crate) plan: &'a FramePlan,
+}
+
+impl<'a> Scene<'a> {
+    /// The level of detail of `texture` for a face at distance `t`, which the ray approaches by `slope`
+    /// cells per unit of `t`.
+    #[inline]
+    pub(crate) fn lod_on_face(self, texture: &Texture, t: f64, slope: f64) -> usize {
+        let area = self.projection.pixel_area_on_wall(t, slope);
+        self.plan.filter.lod(area * texture.area())
+    }
+
+    /// The mip level of the texture `id` for such a face.
+    #[inline]
+    pub(crate) fn level_on_face(self, id: TextureId, t: f64, slope: f64) -> &'a MipLevel {
+        let texture = self.world.texture(id);
+        texture.level(self.lod_on_face(texture, t, slope))
+    }
+}
 
 /// The memory of both ways, reused from frame to frame.
 #[derive(Clone, Debug, Default)]

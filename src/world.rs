@@ -2,32 +2,28 @@
 //!
 //! A [`World`] is valid by construction: every index in it points at something, and its start is on
 //! open floor. No later stage checks it again. [`map::parse`](crate::map::parse) and its siblings
-//! make worlds, and report every fault of a map with its place. Building a world by hand was
-//! refused, since its faults would have no place to report.
+//! make worlds, and report every fault of a map with its place. Rejected: building a world by hand, since
+//! its faults would have no place to report.
 //!
 //! In the world of a map, all doors are closed and all keys are in their places. A game opens doors
 //! and takes keys in its own copy of the world, so that a renderer needs nothing else.
+//!
+//! Rendering and collision leave out what a world does not have, such as mirrors. These properties depend
+//! on the kinds of tile and sprite, of which there are few, and not on the cells.
 
-mod air;
 mod beam_table;
 mod camera;
-mod covering;
 mod distance_field;
 mod door;
-mod face_light;
-mod figure;
+mod flood;
 mod grid;
-mod guard_post;
-mod heights;
 mod lamplight;
-mod mechanism;
+mod light;
 mod mission;
-mod parts;
-mod pitch;
-mod restored;
-mod shape;
+pub(crate) mod scene;
 pub mod sprite;
-mod summary;
+#[cfg(any(test, fuzzing))]
+mod tests;
 pub mod texture;
 mod things;
 mod tile;
@@ -35,31 +31,29 @@ mod tile;
 use std::sync::Arc;
 
 use crate::color::Rgb;
-pub use air::{Fog, Light, Sky, SkyGradient};
 pub(crate) use beam_table::{BeamTable, Beams, FRACTION_BITS, STRIP};
-pub use camera::{Camera, FieldOfView, Heading};
-pub use covering::{Ceiling, Covering, Pattern, Scale};
+pub use camera::{Camera, FieldOfView, Heading, Pitch};
 pub(crate) use distance_field::DistanceField;
 use door::Ajar;
 pub use door::{Door, KeyId, Opening};
-pub(crate) use face_light::FaceLight;
-pub use figure::Figure;
+pub(crate) use flood::Flood;
 pub use grid::{Cell, Grid, TileId};
-pub use guard_post::{Difficulty, Duty, GuardKind, GuardPost};
-pub use heights::{Gap, Heights};
 use lamplight::Lamplight;
 pub use lamplight::{Lamp, Reach};
-pub use mechanism::{Driver, MovingTile, SwitchId, TileEffect};
+pub(crate) use light::FaceLight;
+pub use light::{Fog, Light, Sky, SkyGradient};
 pub(crate) use mission::Mission;
-pub(crate) use parts::Parts;
-pub use pitch::Pitch;
-pub(crate) use restored::Changes;
-pub use shape::{Line, Outline, PillarRadius, Shape, ShapeHeight};
+pub use mission::{
+    Difficulty, Driver, Duty, GuardKind, GuardPost, MovingTile, SwitchId, TileEffect,
+};
 pub use sprite::{Anchor, Facings, FrameTime, Sprite, SpriteHeight, SpriteId};
 pub use texture::Texture;
 use things::Things;
-pub use things::{NoteId, Rhythm, Supply, Thing, ThingKind};
-pub use tile::{Glass, Paint, TextureId, Tile, TileKind};
+pub use things::{Figure, NoteId, Rhythm, Supply, Thing, ThingKind};
+pub use tile::{
+    Ceiling, Covering, Gap, Glass, Heights, Line, Outline, Paint, Pattern, PillarRadius, Scale,
+    Shape, ShapeHeight, TextureId, Tile, TileKind,
+};
 
 /// The contents of a level.
 ///
@@ -79,7 +73,7 @@ pub struct World {
     title: String,
     goal: Option<String>,
     grid: Grid,
-    /// The same as rays see it that end at what is not level, where anything is not.
+    /// The grid as seen by rays that stop at uneven cells (only if the map has any).
     level_grid: Option<Grid>,
     tiles: Vec<Tile>,
     textures: Arc<[Texture]>,
@@ -108,6 +102,33 @@ pub struct Start {
     pub heading: Heading,
 }
 
+/// The pieces of a world, before they are known to fit together.
+pub(crate) struct Parts {
+    pub(crate) title: String,
+    pub(crate) goal: Option<String>,
+    pub(crate) grid: Grid,
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) floor: Covering,
+    pub(crate) ceiling: Ceiling,
+    pub(crate) sky: Sky,
+    pub(crate) fog: Option<Fog>,
+    pub(crate) start: Start,
+    pub(crate) sprites: Vec<Sprite>,
+    pub(crate) things: Vec<Thing>,
+    pub(crate) keys: Vec<String>,
+    pub(crate) mission: Mission,
+}
+
+/// The changes of a game to its world, except those that follow from its doors, its mechanisms and its
+/// lamps.
+pub(crate) struct Changes<'a> {
+    pub(crate) things: &'a [Thing],
+    pub(crate) figures: &'a [Figure],
+    /// Whether lamps have ever added light.
+    pub(crate) is_lamplit: bool,
+}
+
 impl World {
     /// The name of the level; empty if the map has none.
     pub fn title(&self) -> &str {
@@ -124,8 +145,8 @@ impl World {
         &self.grid
     }
 
-    /// The grid as rays see it that end at what is not level: that is solid in it. `None` where everything
-    /// is level.
+    /// The grid as seen by rays that stop at uneven cells, which are solid in it. `None` if all tiles are
+    /// level.
     pub(crate) fn level_grid(&self) -> Option<&Grid> {
         self.level_grid.as_ref()
     }
@@ -145,22 +166,22 @@ impl World {
 
     /// The heights of floor and ceiling in `cell`; outside the map, those of the map's own floor.
     pub fn room_in(&self, cell: Cell) -> Heights {
-        self.tile_at(cell).unwrap_or(self.ground()).heights
+        self.tile_in(cell).unwrap_or(&self.tiles[0]).heights
     }
 
     /// The height of the floor in `cell`, or of the top of a wall; 0 outside the map.
     pub fn floor_at(&self, cell: Cell) -> f64 {
-        self.tile_at(cell).map_or(0.0, |tile| tile.heights.floor())
+        self.tile_in(cell).map_or(0.0, |tile| tile.heights.floor())
     }
 
     /// The light in `cell`: that of its tile, and what lamps add. For a wall with a light of its
     /// own, that light.
     pub fn light_in(&self, cell: Cell) -> Light {
-        let own = self.tile_at(cell).unwrap_or(self.ground()).light;
+        let own = self.tile_in(cell).unwrap_or(&self.tiles[0]).light;
         own.unwrap_or(Light::FULL).plus(self.lamplight.at(cell))
     }
 
-    /// What lamps add to the light in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
     pub(crate) fn lamplight_in(&self, cell: Cell) -> Light {
         self.lamplight.at(cell)
@@ -238,8 +259,231 @@ impl World {
         &self.sprites
     }
 
-    fn tile_at(&self, cell: Cell) -> Option<Tile> {
-        let tile = self.grid.tile(i64::from(cell.column), i64::from(cell.row))?;
-        Some(self.tile(tile))
+    /// The tile in `cell`; `None` outside the map.
+    #[inline]
+    pub(crate) fn tile_in(&self, cell: Cell) -> Option<&Tile> {
+        self.grid.tile_in(cell).map(|id| &self.tiles[usize::from(id.0)])
     }
+
+    /// Whether all floors are at 0, and all ceilings, walls and shapes reach 1, so that every ray
+    /// ends at the first of them.
+    pub fn is_level(&self) -> bool {
+        self.tiles.iter().all(Tile::has_level_heights)
+    }
+
+    /// Whether any tile is a mirror that shows an image.
+    pub fn has_mirrors(&self) -> bool {
+        self.tiles.iter().any(Tile::reflects)
+    }
+
+    /// Whether any tile is a shape.
+    pub(crate) fn has_shapes(&self) -> bool {
+        self.tiles.iter().any(|tile| matches!(tile.kind, TileKind::Shape(_)))
+    }
+
+    /// Whether everything solid is a wall, which shows one side and hides what is behind it.
+    pub(crate) fn is_of_walls(&self) -> bool {
+        let is_plain = |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Wall(_));
+        self.tiles.iter().all(is_plain)
+    }
+
+    /// Whether lamps add light anywhere.
+    pub(crate) fn has_lamplight(&self) -> bool {
+        !self.lamplight.is_dark()
+    }
+
+    /// The width of the widest sprite, in cells; 0 if there is none.
+    pub(crate) fn widest_sprite(&self) -> f64 {
+        self.sprites.iter().map(Sprite::width).fold(0.0, f64::max)
+    }
+
+    /// Whether the sky is above any cell but walls.
+    pub(crate) fn has_open_sky(&self) -> bool {
+        let is_open =
+            |tile: &Tile| tile.ceiling == Ceiling::Sky && !matches!(tile.kind, TileKind::Wall(_));
+        self.tiles.iter().any(is_open)
+    }
+
+    /// A height that no thing reaches above, wherever it stands or hangs; −∞ if there are no sprites.
+    pub(crate) fn limit_of_things(&self) -> f64 {
+        let tallest = |anchor: Anchor| {
+            let sprites = self.sprites.iter().filter(|sprite| sprite.anchor == anchor);
+            sprites.map(|sprite| sprite.height.cells()).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (standing, hanging) = (tallest(Anchor::Floor), tallest(Anchor::Ceiling));
+        let holds_things =
+            |tile: &&Tile| matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        let top_in = |Tile { heights, .. }: &Tile| {
+            let ceiling = if hanging > 0.0 { heights.ceiling() } else { f64::NEG_INFINITY };
+            ceiling.max(heights.floor() + standing)
+        };
+        self.tiles.iter().filter(holds_things).map(top_in).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The things that reach above `height`.
+    pub(crate) fn things_above(&self, height: f64) -> impl Iterator<Item = &Thing> {
+        self.things().iter().filter(move |thing| self.is_above(thing, height))
+    }
+
+    /// Whether `thing` reaches above `height`.
+    pub(crate) fn is_above(&self, thing: &Thing, height: f64) -> bool {
+        let sprite = self.sprite(thing.sprite);
+        sprite.base(self.room_in(thing.cell)) + sprite.height.cells() > height
+    }
+
+    /// A world of `parts` that fit together:
+    ///
+    /// - Every tile of the grid and every texture is in its list.
+    /// - Open tiles come before solid ones, and the map's own floor is the first.
+    /// - The start and all things are on open floor, and the grid knows which things block.
+    /// - Every door has a doorway with the same character, and stands between solid cells that are
+    ///   not doors and do not move.
+    /// - The states of moving tiles are in the list, the first of each in no other one. The grid
+    ///   shows no other states.
+    /// - Switches and notes are in their lists. Guards and their waypoints are on open floor.
+    ///
+    /// The map reader establishes all of that, and tests verify it.
+    pub(crate) fn from_parts(mut parts: Parts) -> Self {
+        let moving = &parts.mission.moving_tiles;
+        clear(&mut parts.grid, &parts.tiles, moving);
+        let level_grid = level_grid(&parts.grid, &parts.tiles, moving);
+        let mut world = Self {
+            title: parts.title,
+            goal: parts.goal,
+            grid: parts.grid,
+            level_grid,
+            tiles: parts.tiles,
+            textures: parts.textures.into(),
+            floor: parts.floor,
+            ceiling: parts.ceiling,
+            sky: parts.sky,
+            fog: parts.fog,
+            start: parts.start,
+            sprites: parts.sprites.into(),
+            things: Things::new(parts.things),
+            figures: Vec::new(),
+            lamplight: Lamplight::default(),
+            light_varies: false,
+            keys: parts.keys,
+            mission: parts.mission,
+            ajar: Ajar::default(),
+        };
+        world.light_up();
+        #[cfg(any(test, fuzzing))]
+        assert!(world.fits_together());
+        world
+    }
+
+    /// Shows other cells of the same kinds: `grid`, in which no door is partly open, with its start
+    /// and things, and without figures and moving lamps. They fit the other parts as in
+    /// [`World::from_parts`].
+    pub(crate) fn redraw(&mut self, grid: Grid, start: Start, things: Vec<Thing>) {
+        self.grid = grid;
+        let moving = &self.mission.moving_tiles;
+        clear(&mut self.grid, &self.tiles, moving);
+        self.level_grid = level_grid(&self.grid, &self.tiles, moving);
+        self.start = start;
+        self.things = Things::new(things);
+        self.figures.clear();
+        self.light_up();
+        self.ajar = Ajar::default();
+    }
+
+    /// The changes of a game so far.
+    pub(crate) fn changes(&self) -> Changes<'_> {
+        let Self {
+            title: _,
+            goal: _,
+            // The tiles that have changed follow from doors and mechanisms.
+            grid: _,
+            level_grid: _,
+            tiles: _,
+            textures: _,
+            floor: _,
+            ceiling: _,
+            sky: _,
+            fog: _,
+            start: _,
+            // A game adds its own at its start.
+            sprites: _,
+            things,
+            figures,
+            lamplight,
+            // It follows from lamplight.
+            light_varies: _,
+            keys: _,
+            mission: _,
+            // It follows from doors.
+            ajar: _,
+        } = self;
+        Changes { things: things.all(), figures, is_lamplit: !lamplight.is_dark() }
+    }
+
+    /// Replaces the things by those of them that are `left`, which may show other frames, and computes all
+    /// lamplight again, without moving lamps. Returns `false`, and changes nothing, if the things are not
+    /// in their order, were not all there, or have sprites without such a frame.
+    pub(crate) fn leave_things(&mut self, left: Vec<Thing>) -> bool {
+        let place = |cell: Cell| (cell.row, cell.column);
+        let mut is_used = vec![false; self.things().len()];
+        let mut is_there = |thing: &Thing| {
+            let before = self.things();
+            let first = before.partition_point(|it| place(it.cell) < place(thing.cell));
+            let here = before[first..].iter().take_while(|it| it.cell == thing.cell);
+            let is_it = |it: &Thing| Thing { frame: thing.frame, ..*it } == *thing;
+            let found = (first..).zip(here).find(|&(index, it)| !is_used[index] && is_it(it));
+            let Some((index, _)) = found else { return false };
+            is_used[index] = true;
+            thing.frame.is_none_or(|frame| frame <= self.sprite(thing.sprite).last_frame())
+        };
+        if !left.is_sorted_by_key(|thing| place(thing.cell)) || !left.iter().all(&mut is_there) {
+            return false;
+        }
+        self.things = Things::new(left);
+        self.light_up();
+        true
+    }
+
+    /// The number of keys. Their ids are the numbers below it.
+    pub(crate) fn key_count(&self) -> usize {
+        self.keys.len()
+    }
+}
+
+/// Computes the distance field of `grid`, where doors may close and moving tiles may become solid.
+fn clear(grid: &mut Grid, tiles: &[Tile], moving: &[MovingTile]) {
+    let first_solid = grid.first_solid();
+    let changing = may_become(tiles.len(), moving, |state| state >= first_solid);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    // A level grid has a tile of its own for what is not level.
+    let may_change = |id: TileId| changing.get(usize::from(id.0)).is_some_and(|&changes| changes);
+    grid.clear(|id| is_doorway(id) || may_change(id));
+}
+
+/// `grid` as seen by rays that stop at uneven cells; `None` if all tiles are level.
+fn level_grid(grid: &Grid, tiles: &[Tile], moving: &[MovingTile]) -> Option<Grid> {
+    let is_level = |TileId(index): TileId| tiles[usize::from(index)].is_level();
+    if tiles.iter().all(Tile::is_level) {
+        return None;
+    }
+    let first_solid = grid.first_solid();
+    let ends_rays = |state: TileId| state >= first_solid || !is_level(state);
+    let changing = may_become(tiles.len(), moving, ends_rays);
+    let is_doorway = |id: TileId| matches!(tiles[usize::from(id.0)].kind, TileKind::Doorway(_));
+    let mut level = grid.ending_at_others(is_level);
+    level.clear(|id| is_doorway(id) || changing[usize::from(id.0)]);
+    Some(level)
+}
+
+/// For each tile, whether it is a state of a moving tile that has a state for which `is_it` is true.
+fn may_become(
+    tile_count: usize,
+    moving: &[MovingTile],
+    is_it: impl Fn(TileId) -> bool,
+) -> Vec<bool> {
+    let mut marked = vec![false; tile_count];
+    let moving = moving.iter().filter(|moving| moving.states.iter().copied().any(&is_it));
+    for &TileId(index) in moving.flat_map(|moving| &moving.states) {
+        marked[usize::from(index)] = true;
+    }
+    marked
 }

@@ -4,8 +4,8 @@
 //! bounded by the bytes.
 
 use allocation_counter::measure;
-use cellcaster::server::fuzzing::Desk;
-use cellcaster::server::{AdminReply, AdminRequest};
+use cellcaster_server::fuzzing::Desk;
+use cellcaster_server::ops::admin::{AdminReply, AdminRequest};
 
 thread_local! {
     static DESK: Desk = Desk::default();

@@ -3,7 +3,7 @@
 //! Whatever the bytes are, they are refused with a sentence, or a room is restored from them that has a
 //! checkpoint itself and is played on: for a second, and one in eight for ten.
 
-use cellcaster::server::fuzzing::{CHECKPOINTS, checkpoint, resume};
+use cellcaster_server::fuzzing::{CHECKPOINTS, checkpoint, resume};
 
 use crate::bytes::Bytes;
 

@@ -6,7 +6,7 @@
 //! read as the same, and no message ends a host.
 
 use allocation_counter::measure;
-use cellcaster::server::fuzzing::SharedRoom;
+use cellcaster_server::fuzzing::SharedRoom;
 
 /// Ends a part.
 const END: u8 = 0;

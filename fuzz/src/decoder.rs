@@ -11,7 +11,7 @@
 use std::time::Duration;
 
 use allocation_counter::measure;
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::rng::SplitMix64;
 use cellcaster::terminal::{Event, Key, KeyEvent, Modifiers, Options, Phase, Protocol, WindowSize};
 use ratatui::style::Color;

@@ -7,7 +7,7 @@
 mod model;
 mod screens;
 
-use cellcaster::canvas::Canvas;
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::terminal::{CellWriter, Fidelity};
 use ratatui::backend::{Backend, ClearType};
 use ratatui::buffer::Buffer;

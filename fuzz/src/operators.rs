@@ -1,8 +1,8 @@
 //! What operators and visitors write: a configuration, a name, a range of addresses, a day, a script. The first
 //! byte says which one, the others are the text.
 
-use cellcaster::server::Config;
-use cellcaster::store::host::{AccountKey, AddressPrefix, Day, Name, printable, verify};
+use cellcaster_server::ops::config::Config;
+use cellcaster_server::accounts::{AccountKey, AddressPrefix, Day, Name, printable, verify};
 
 use crate::faults::check_faults;
 

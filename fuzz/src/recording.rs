@@ -2,7 +2,7 @@
 //! round has a game of its own and at most 1,200 steps, and a header takes a hundred bytes.
 
 use allocation_counter::measure;
-use cellcaster::server::fuzzing::Hall;
+use cellcaster_server::fuzzing::Hall;
 
 /// For the first round, and for each byte.
 const BYTES_OF_A_ROUND: u64 = 16 << 20;

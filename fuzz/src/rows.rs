@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 
 use cellcaster::game::{Rank, Share, Tally};
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountKey, AccountSettings, BanTarget, ColumnValue, Day, HostStore, LevelBoard, Name,
     SqliteStore, UnixTime, VerifiedLevel,
 };

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use allocation_counter::measure;
-use cellcaster::server::fuzzing;
+use cellcaster_server::fuzzing;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, duplex};
 use tokio::runtime::{Builder, Runtime};
 

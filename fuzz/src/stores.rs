@@ -4,12 +4,12 @@ use std::cell::RefCell;
 use std::fmt::Debug;
 
 use cellcaster::game::{Rank, Rules, Share, Tally};
-use cellcaster::store::host::{
+use cellcaster_server::accounts::{
     AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, DailyTry, Day,
     HostStore, LevelBoard, MemoryStore, Name, SqliteStore, UnixTime, VerifiedDescent,
     VerifiedLevel,
 };
-use cellcaster::store::{Preferences, Reached};
+use cellcaster::app::store::{Preferences, Reached};
 use cellcaster::world::Difficulty;
 
 use crate::bytes::Bytes;

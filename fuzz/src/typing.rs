@@ -5,7 +5,7 @@
 //! by its length, so that nobody makes a host work by typing.
 
 use allocation_counter::measure;
-use cellcaster::server::fuzzing::Hall;
+use cellcaster_server::fuzzing::Hall;
 use cellcaster::terminal::{Options, WindowSize};
 
 use crate::bytes::Bytes;

@@ -5,7 +5,7 @@
 
 use allocation_counter::measure;
 use cellcaster::map::builtin;
-use cellcaster::store::host::{AccountKey, HostStore, MemoryStore, Name, UnixTime, WaitingResults};
+use cellcaster_server::accounts::{AccountKey, HostStore, MemoryStore, Name, UnixTime, WaitingResults};
 
 use crate::folder::Folder;
 

@@ -8,9 +8,9 @@ use ratatui::style::{Color, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
-use crate::canvas::Canvas;
 use crate::color::palette::ColorDepth;
 use crate::tui::GlyphSet;
+use crate::tui::canvas::Canvas;
 
 const NAME: &str = "CELLCASTER";
 /// The rows of each letter that the name needs, with a bit for each point, the left one first.
@@ -32,12 +32,7 @@ const COLUMNS: usize = NAME.len() * ADVANCE - 1;
 const LEAST_BELOW: u16 = 6;
 
 /// Draws the name on a band at the top of `picture`, as large as there is room. Returns the area below it.
-pub(crate) fn draw(
-    canvas: &mut impl Canvas,
-    picture: Rect,
-    glyphs: GlyphSet,
-    depth: ColorDepth,
-) -> Rect {
+pub fn draw(canvas: &mut impl Canvas, picture: Rect, glyphs: GlyphSet, depth: ColorDepth) -> Rect {
     let lines = [2, 1].into_iter().map(|scale| lines(glyphs, scale));
     let fits = |lines: &Vec<String>| {
         let width = lines[0].chars().count();

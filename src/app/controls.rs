@@ -1,37 +1,98 @@
-//! Controls: converts keys to the intents of each step.
+//! Controls: converts time to steps, and keys to the intents of each step.
 
 use std::time::Duration;
 
-use super::clock::steps_in;
-use super::status::Toggles;
 use crate::app::bindings::{Action, Bindings};
-use crate::game::{Intent, Intents};
+use crate::game::{Intent, Intents, STEP};
 use crate::terminal::{Key, KeyEvent, Phase};
 use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
 
+/// Divides time into steps of the game. A remainder counts for the next step.
+#[derive(Clone, Debug, Default)]
+pub struct Clock {
+    /// The time up to which steps have been counted.
+    counted: Duration,
+}
+
+impl Clock {
+    /// The most steps computed at once, a quarter of a second: a machine that is too slow plays
+    /// more slowly and does not fall behind further and further.
+    pub const MOST_STEPS: u64 = 15;
+
+    /// The number of steps since the last call.
+    pub fn steps_until(&mut self, now: Duration) -> u64 {
+        let steps = steps_in(now.saturating_sub(self.counted));
+        self.counted = after(self.counted, steps);
+        steps
+    }
+
+    /// Skips the time up to `now`.
+    pub fn skip_to(&mut self, now: Duration) {
+        self.counted = now;
+    }
+
+    /// The time at which the step after `steps` further steps ends.
+    pub fn step_after(&self, steps: u64) -> Duration {
+        after(self.counted, steps.saturating_add(1))
+    }
+}
+
+/// The time `steps` steps after `time`.
+pub(crate) fn after(time: Duration, steps: u64) -> Duration {
+    time + Duration::from_nanos(STEP_NANOSECONDS.saturating_mul(steps))
+}
+
+/// The number of whole steps in `time`.
+pub(crate) fn steps_in(time: Duration) -> u64 {
+    // More nanoseconds are more than five centuries.
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX) / STEP_NANOSECONDS
+}
+
+/// The duration of a step.
+#[cfg(any(test, debug_assertions))]
+pub(crate) fn step() -> Duration {
+    Duration::from_nanos(STEP_NANOSECONDS)
+}
+
+/// The duration of a step in nanoseconds, rounded.
+const STEP_NANOSECONDS: u64 = (STEP * 1e9 + 0.5) as u64;
+
+/// The modes of motion that are switched on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Toggles {
+    /// Running.
+    pub runs: bool,
+    /// Ducking.
+    pub ducks: bool,
+    /// Walking on without a key.
+    pub keeps_walking: bool,
+}
+
 /// The keys that are held, and the modes that are switched on.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Controls {
-    pub(crate) held: HeldKeys<Key>,
-    pub(crate) toggles: Toggles,
+pub struct Controls {
+    /// The held keys.
+    pub held: HeldKeys<Key>,
+    /// The modes.
+    pub toggles: Toggles,
     /// The key that was pressed with Shift, for terminals that do not report Shift itself.
     shifted: Option<Key>,
 }
 
 /// The state of the game that keys depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct KeyContext {
+pub struct KeyContext {
     /// Whether the game runs and is not paused.
-    pub(crate) plays: bool,
+    pub plays: bool,
     /// Whether the player is in the air.
-    pub(crate) is_airborne: bool,
+    pub is_airborne: bool,
     /// Whether the player flies, so that ducking moves them.
-    pub(crate) flies: bool,
+    pub flies: bool,
 }
 
 impl Controls {
     /// Handles an event. Returns its meaning, or `None` for a release.
-    pub(crate) fn handle(
+    pub fn handle(
         &mut self,
         event: KeyEvent,
         now: Duration,
@@ -85,7 +146,7 @@ impl Controls {
     }
 
     /// Releases the keys that are no longer held at time `now`.
-    pub(crate) fn advance(&mut self, now: Duration, context: KeyContext) {
+    pub fn advance(&mut self, now: Duration, context: KeyContext) {
         if context.is_airborne {
             self.held.keep(now);
         }
@@ -102,7 +163,7 @@ impl Controls {
     }
 
     /// The player's intents.
-    pub(crate) fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
+    pub fn intents(&self, bindings: &Bindings, context: KeyContext) -> Intents {
         let keys = self.held.iter().filter_map(|(key, hold)| match bindings.action(key) {
             Some(Action::Want(Intent::Duck)) if context.flies && hold == Hold::Unknown => None,
             Some(Action::Want(intent)) => Some((intent, hold)),
@@ -122,4 +183,20 @@ impl Controls {
 /// Whether `intent` is to look up or down.
 fn tilts(intent: Intent) -> bool {
     matches!(intent, Intent::LookUp | Intent::LookDown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_time_is_lost_between_calls() {
+        let mut clock = Clock::default();
+        let steps: u64 = (1..=997).map(|call| clock.steps_until(Duration::from_millis(call))).sum();
+        assert_eq!(steps, 59);
+        assert!(clock.step_after(0) > Duration::from_millis(997));
+        assert_eq!(clock.step_after(2), clock.step_after(0) + 2 * step());
+        clock.skip_to(Duration::from_hours(1));
+        assert_eq!(clock.steps_until(Duration::from_hours(1)), 0);
+    }
 }

@@ -5,15 +5,14 @@
 //! tries after its end are practice. A descent that is left is saved, and goes on from there as the same
 //! try: its saved game is removed then, so that a death cannot be undone.
 
-use super::goal::Goal;
 use super::levels::Course;
 use super::menu::Menu;
 use super::menus::Choice;
-use super::panels::whole_seconds;
-use super::saved::save_of_descent;
-use super::{App, Levels, STEP, Screen};
-use crate::game::Rules;
-use crate::store::{Descent, Reached};
+use super::played::Goal;
+use super::time::whole_seconds;
+use super::{App, Levels, Screen};
+use crate::app::store::{Descent, Reached, Save};
+use crate::game::{LevelName, Rules, STEP};
 use crate::world::Difficulty;
 
 /// What is said about a daily run that does not count.
@@ -21,7 +20,7 @@ const PRACTICE: &str = "Practice: the first try of the day counts";
 
 impl App {
     /// The question before the daily run: the try that counts begins or goes on, or is over.
-    pub(super) fn daily_menu(&self) -> Menu<Choice> {
+    pub(crate) fn daily_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("daily run");
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
         let menu = menu.line(format!("The descent of {}, the same for all.", date_of(date.into())));
@@ -44,7 +43,7 @@ impl App {
     }
 
     /// Begins the descent of the day, at the same difficulty for everybody.
-    pub(super) fn begin_daily(&mut self) {
+    pub(crate) fn begin_daily(&mut self) {
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
         let counts = self.store.begin_daily(date);
         self.difficulty = Difficulty::default();
@@ -53,7 +52,7 @@ impl App {
     }
 
     /// Begins a descent that nobody has seen.
-    pub(super) fn begin_endless(&mut self) {
+    pub(crate) fn begin_endless(&mut self) {
         let Some(offers) = self.offers.as_mut() else { return };
         let seed = offers.seed;
         offers.seed = seed.wrapping_add(1);
@@ -63,7 +62,7 @@ impl App {
     }
 
     /// Says at the start of a daily run whether the try counts.
-    pub(super) fn tell_whether_it_counts(&mut self) {
+    pub(crate) fn tell_whether_it_counts(&mut self) {
         let (text, short) = match self.course {
             Course::Daily { counts: true, .. } => ("Daily run: this try counts", "This try counts"),
             Course::Daily { counts: false, .. } => (PRACTICE, "Practice"),
@@ -73,7 +72,7 @@ impl App {
     }
 
     /// The kind of the descent; `None` for levels.
-    pub(super) fn descent(&self) -> Option<Descent> {
+    pub(crate) fn descent(&self) -> Option<Descent> {
         match self.course {
             Course::Levels => None,
             Course::Endless => Some(Descent::Endless),
@@ -83,7 +82,7 @@ impl App {
     }
 
     /// The descent of that kind and seed, from its first floor on. The seed of a daily run is its date.
-    pub(super) fn descent_of(kind: Descent, seed: u64) -> Option<Levels> {
+    pub(crate) fn descent_of(kind: Descent, seed: u64) -> Option<Levels> {
         let course = match kind {
             Descent::Endless => Course::Endless,
             Descent::Daily | Descent::Practice => {
@@ -94,19 +93,19 @@ impl App {
     }
 
     /// Counts the floor of which the exit has just been reached.
-    pub(super) fn count_floor(&mut self) {
+    pub(crate) fn count_floor(&mut self) {
         if let Some(game) = self.game.grid() {
             self.reached = self.reached.and(&game.tally());
         }
     }
 
     /// Whether the level belongs to a descent.
-    pub(super) fn is_descent(&self) -> bool {
+    pub(crate) fn is_descent(&self) -> bool {
         self.course != Course::Levels
     }
 
     /// Records a floor that was won.
-    pub(super) fn record_floor(&mut self) {
+    pub(crate) fn record_floor(&mut self) {
         let Some(game) = self.game.grid() else { return };
         let script = self.run_script(game);
         self.count_floor();
@@ -120,7 +119,7 @@ impl App {
     }
 
     /// The lines about how far the descent came.
-    pub(super) fn descent_lines(&self) -> Vec<String> {
+    pub(crate) fn descent_lines(&self) -> Vec<String> {
         let mut lines = vec![described(self.reached)];
         if let Course::Daily { counts: false, .. } = self.course {
             lines.push(PRACTICE.to_owned());
@@ -129,7 +128,7 @@ impl App {
     }
 
     /// Adds the descents to the title's menu.
-    pub(super) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let Some(offers) = &self.offers else { return menu };
         let menu = match offers.today {
             Some(date) => {
@@ -144,8 +143,20 @@ impl App {
     }
 }
 
+/// The descent of that kind with these rules, as it is saved, without steps and checksum.
+pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
+    Save {
+        level: LevelName::of_floor(1).as_str().to_owned(),
+        file: None,
+        rules,
+        descent: Some(kind),
+        steps: None,
+        checksum: None,
+    }
+}
+
 /// The seed of a daily run as a date: 20261122 is 2026-11-22.
-pub(super) fn date_of(seed: u64) -> String {
+pub(crate) fn date_of(seed: u64) -> String {
     format!("{}-{:02}-{:02}", seed / 10_000, seed / 100 % 100, seed % 100)
 }
 

@@ -6,24 +6,26 @@ use crate::terminal::{ColorSource, TmuxClient};
 
 /// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Detection {
-    pub(crate) depth: ColorDepth,
+pub struct Detection {
+    /// The colour depth.
+    pub depth: ColorDepth,
     /// The source of the colour depth; `None` if it is the command line or the configuration.
-    pub(crate) source: Option<ColorSource>,
+    pub source: Option<ColorSource>,
     /// Whether the terminal is tmux, and its client, if it has said which.
-    pub(crate) is_tmux: bool,
-    pub(crate) tmux: Option<TmuxClient>,
+    pub is_tmux: bool,
+    /// The client of tmux, if it has said which.
+    pub tmux: Option<TmuxClient>,
     /// Whether key releases are reported; `None` if that is not known yet.
-    pub(crate) reports_releases: Option<bool>,
+    pub reports_releases: Option<bool>,
     /// The locale setting that restricts output to ASCII.
-    pub(crate) ascii_locale: Option<String>,
+    pub ascii_locale: Option<String>,
     /// Whether the player has no command line: what they have chosen is among their settings.
-    pub(crate) is_visitor: bool,
+    pub is_visitor: bool,
 }
 
 impl Detection {
     /// A line for each limit.
-    pub(crate) fn lines(&self) -> impl Iterator<Item = String> {
+    pub fn lines(&self) -> impl Iterator<Item = String> {
         [self.colors(), self.releases(), self.characters()].into_iter().flatten()
     }
 

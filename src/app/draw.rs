@@ -1,24 +1,39 @@
-//! Drawing: the picture, and what lies over it.
+//! Drawing: the picture and the panels over it, and when they are out of date.
+//!
+//! - Guards who move where no ray of the last picture ends behind them are not in view, and need no new
+//!   picture. Rejected: comparing the pixels of two pictures. It saves the bytes, but not the drawing.
+//! - A picture of many bodies in a large window takes seconds. It is abandoned for an event that ends or
+//!   stops the program or changes the window, for the key that leaves, and for any key while a panel is
+//!   shown. After a key, the next frame shows the panel over the unfinished picture, and the frame
+//!   after that renders the picture again. Other keys wait: if each of them abandoned a picture, none
+//!   would ever be complete while a key repeats.
+
+use std::time::Duration;
 
 use ratatui::layout::{Rect, Size};
 
-use super::overlay::Overlay;
-use super::status::{StatusValues, hint};
-use super::vitals::HealthSigns;
-use super::{App, Bindings, DrawOptions, Ghost, Screen, banner, panels};
-use crate::canvas::Canvas;
-use crate::game::{Game, PlayerId};
+use crate::app::bindings::{Action, Bindings};
+use crate::app::picture::{DrawOptions, Overlay};
+use crate::app::played::Viewpoint;
+use crate::app::recording::Ghost;
+use crate::app::screen::Screen;
+use crate::app::status::{HealthSigns, StatusValues, hint};
+use crate::app::{App, Shown, banner, panels};
+use crate::game::{Game, PlayerId, STEP};
+use crate::terminal::{Event, Phase};
+use crate::tui::canvas::Canvas;
+use crate::world::Figure;
 
 impl App {
     /// Draws the screen.
-    pub(super) fn draw(&mut self, canvas: &mut impl Canvas) {
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas) {
         self.render(canvas.bounds().as_size(), &mut |_, _| true);
         self.paint(canvas);
     }
 
     /// Renders the picture for a window of this size; may stop once `go_on` returns `false`, which it
     /// may decide by the screen and the keys. Returns whether the picture is complete.
-    pub(super) fn render(
+    pub(crate) fn render(
         &mut self,
         window: Size,
         go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
@@ -30,13 +45,13 @@ impl App {
         self.show_ghost();
         let [picture, _] = panels::picture_and_status(area);
         let (options, screen, bindings) =
-            (self.draw_options(), self.screen, &self.settings.bindings);
+            (self.draw_options(), self.screen(), &self.settings.bindings);
         let go_on = &mut || go_on(screen, bindings);
         self.game.render(&options, picture.as_size(), &mut self.views, go_on)
     }
 
     /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
-    pub(super) fn paint(&mut self, canvas: &mut impl Canvas) {
+    pub(crate) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
         if panels::is_too_small(area) {
             return panels::too_small(canvas);
@@ -45,7 +60,7 @@ impl App {
         self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
-        } else if self.screen.is_result() {
+        } else if self.shows_result() {
             canvas.draw_widget(hint("up and down, Enter"), status);
         } else {
             self.draw_status(canvas, status);
@@ -56,19 +71,19 @@ impl App {
 
     fn draw_panel(&mut self, canvas: &mut impl Canvas, picture: Rect) {
         let bindings = &self.settings.bindings;
-        match self.screen {
+        match self.screen() {
             Screen::Playing => {}
             Screen::Help => {
-                self.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
+                self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
             Screen::Leaving => {
                 panels::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
             Screen::Title => {
-                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth);
-                self.menu.draw(canvas, below);
+                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth());
+                self.pages.menu.draw(canvas, below);
             }
-            _ => self.menu.draw(canvas, picture),
+            _ => self.pages.menu.draw(canvas, picture),
         }
     }
 
@@ -81,9 +96,9 @@ impl App {
             share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
             toggles: self.controls.toggles,
             mouse: self.pointer.is_on(),
-            stats: self.stats.as_ref().filter(|_| self.shows_stats),
+            stats: self.stats.as_ref().filter(|_| self.settings.shows_stats),
             bindings: &self.settings.bindings,
-            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth),
+            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth()),
         });
         canvas.draw_widget(&self.status, area);
     }
@@ -99,16 +114,16 @@ impl App {
 
     fn draw_options(&self) -> DrawOptions {
         let is_game = self.demo.is_none();
-        let heading = |game: &Game| game.camera(self.field_of_view).heading;
+        let heading = |game: &Game| game.camera(self.settings.field_of_view).heading;
         let flash = self.game.grid().and_then(|game| Some((game.flash()?, heading(game))));
         DrawOptions {
             glyphs: self.settings.glyphs,
-            depth: self.depth,
+            depth: self.depth(),
             shade_ink: self.terminal.shade_ink,
-            cell_aspect: self.cell_aspect,
+            cell_aspect: self.settings.cell_aspect.or(self.terminal.aspect).unwrap_or_default(),
             filter: self.settings.filter,
             correction: self.store.preferences().correction,
-            field_of_view: self.field_of_view,
+            field_of_view: self.settings.field_of_view,
             flash: flash.filter(|_| is_game),
             marks_middle: is_game && self.store.preferences().crosshair,
         }
@@ -127,7 +142,7 @@ impl App {
         let Some(overlay) = self.overlay(options) else {
             return options.draw_middle(canvas, area);
         };
-        overlay.draw_hud(canvas, area, self.screen == Screen::Playing);
+        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
     }
 
     fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
@@ -143,5 +158,129 @@ impl App {
     fn overlay<'a>(&'a self, options: &'a DrawOptions) -> Option<Overlay<'a>> {
         let preferences = self.store.preferences();
         Overlay::new(self.game.grid()?, PlayerId::FIRST, options, preferences)
+    }
+}
+
+impl App {
+    /// Whether the screen is out of date.
+    pub(crate) fn is_stale(&self) -> bool {
+        let Some(Shown { viewpoint, revision, figures }) = &self.shown else { return true };
+        (*viewpoint, *revision) != self.surroundings()
+            || !self.figures_in_view().eq(figures)
+            || self.steps_to_animation() == Some(0)
+    }
+
+    /// The viewpoint, and a number that grows with every visible change but those of figures.
+    fn surroundings(&self) -> (Viewpoint, u64) {
+        let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
+        (self.game.viewpoint(self.settings.field_of_view), self.game.revision() + ghost)
+    }
+
+    /// The figures that the last picture and its map would show if they were drawn now, in the same
+    /// surroundings; and perhaps others.
+    fn figures_in_view(&self) -> impl Iterator<Item = &Figure> {
+        let figures = self.game.grid().into_iter().flat_map(|game| {
+            let camera = game.camera(self.settings.field_of_view);
+            game.figures().map(move |figure| (game.world(), camera, figure))
+        });
+        let in_view = figures
+            .filter(|(world, camera, figure)| self.views.grid.may_show(world, camera, figure));
+        in_view.map(|(.., figure)| figure)
+    }
+
+    /// The number of steps until that change; `None` for never.
+    pub(crate) fn steps_to_animation(&self) -> Option<u64> {
+        let steps = (self.animates_at? - self.game.elapsed()) / STEP;
+        Some(steps.round().max(0.0) as u64)
+    }
+
+    /// Records that the screen is up to date.
+    pub(crate) fn drawn(&mut self) {
+        let (viewpoint, revision) = self.surroundings();
+        let figures = self.figures_in_view().copied().collect();
+        self.shown = Some(Shown { viewpoint, revision, figures });
+        let soonest = self.game.elapsed() + STEP;
+        self.animates_at = self.views.next_change().map(|change| change.max(soonest));
+    }
+
+    /// The time at which the game changes without an event; `None` for never.
+    pub(crate) fn next_change(&self) -> Option<Duration> {
+        if self.demo.is_some() {
+            return Some(self.clock.step_after(0));
+        }
+        if self.screen() != Screen::Playing {
+            return self.pages.pending_until();
+        }
+        if self.controls.held.has_taps() {
+            return Some(self.clock.step_after(0));
+        }
+        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
+        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
+        let steps = quiet.into_iter().chain(before_animation).min()?;
+        Some(self.clock.step_after(steps))
+    }
+
+    /// Whether the player wants nothing, and the next step changes only what others do.
+    pub(crate) fn waits_for_others(&self) -> bool {
+        let wanted = self.wanted();
+        self.screen() == Screen::Playing
+            && self.demo.is_none()
+            && wanted.is_empty()
+            && !self.controls.held.has_taps()
+            && self.quiet_steps(wanted) == 0
+    }
+}
+
+/// Returns whether an event has arrived for which a function returns `true`.
+type HasArrived<'a> = dyn FnMut(&dyn Fn(&Event) -> bool) -> bool + 'a;
+
+/// The result of rendering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rendered {
+    Complete,
+    /// Parts of the picture are older. It is painted all the same, since the panel over it is new.
+    Partial,
+    /// An event comes first, and nothing is painted.
+    Interrupted,
+}
+
+impl App {
+    /// Renders the picture for a window of this size, unless an event comes first. `has_arrived` returns
+    /// whether such an event has arrived.
+    pub(crate) fn render_unless(
+        &mut self,
+        window: Size,
+        has_arrived: &mut HasArrived<'_>,
+    ) -> Rendered {
+        if self.is_interrupted {
+            let (screen, bindings) = (self.screen(), &self.settings.bindings);
+            // Other events may have arrived before it.
+            if has_arrived(&|event| comes_first(event, screen, bindings)) {
+                return Rendered::Interrupted;
+            }
+            self.is_interrupted = false;
+            let is_complete = self.render(window, &mut |_, _| false);
+            return if is_complete { Rendered::Complete } else { Rendered::Partial };
+        }
+        let is_complete = self.render(window, &mut |screen, bindings| {
+            !has_arrived(&|event| comes_first(event, screen, bindings))
+        });
+        self.is_interrupted = !is_complete;
+        if is_complete { Rendered::Complete } else { Rendered::Interrupted }
+    }
+}
+
+/// Whether `event` comes before a picture.
+fn comes_first(event: &Event, screen: Screen, bindings: &Bindings) -> bool {
+    match event {
+        Event::Quit(_) | Event::Suspend | Event::Resized => true,
+        Event::Key(event) => {
+            let leaves = || {
+                let key = bindings.resolve(*event).key;
+                bindings.action(key) == Some(Action::Leave)
+            };
+            event.phase == Phase::Press && (screen != Screen::Playing || leaves())
+        }
+        _ => false,
     }
 }

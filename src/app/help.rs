@@ -7,17 +7,16 @@ use ratatui::layout::{Constraint, Flex, Layout, Rect};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Padding, Paragraph};
 
-use super::App;
+use super::panels::wrapped;
 use super::panels::{BORDERS, PADDING, framed, key_names};
-use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings, MapChange};
-use crate::canvas::Canvas;
 use crate::game::Intent;
 use crate::terminal::Key;
+use crate::tui::canvas::Canvas;
 
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct HelpScroll {
+pub struct HelpScroll {
     /// The first line shown, below those that are always shown.
     first: usize,
     /// The number of lines shown last, and the number of all lines.
@@ -28,21 +27,9 @@ pub(crate) struct HelpScroll {
 /// The number of blank columns between two columns of text.
 const GAP: usize = 3;
 
-impl App {
-    /// Scrolls the help if `key` does that. Returns whether it does.
-    pub(super) fn scroll_help(&mut self, key: Key) -> bool {
-        let before = self.help.first;
-        let scrolls = self.help.scroll(key);
-        if self.help.first != before {
-            self.shown = None;
-        }
-        scrolls
-    }
-}
-
 impl HelpScroll {
     /// Scrolls if `key` does that. Returns whether it does.
-    pub(crate) fn scroll(&mut self, key: Key) -> bool {
+    pub fn scroll(&mut self, key: Key) -> bool {
         let page = self.page.max(1);
         let wanted = match key {
             Key::Up => self.first.saturating_sub(1),
@@ -63,7 +50,7 @@ impl HelpScroll {
 
     /// Draws the help: further keys, in sentences, before those of the bindings, and `notes` about the
     /// terminal at the end.
-    pub(crate) fn draw(
+    pub fn draw(
         &mut self,
         canvas: &mut impl Canvas,
         picture: Rect,

@@ -1,21 +1,16 @@
-//! Keys: the effect of each key on each screen.
-//!
-//! A [`PendingKey`](super::question::PendingKey) decides which presses answer a question. A panel that shows a
-//! result appears while the player presses keys of the game: only Enter and the arrows act there, once the keys
-//! that were held have been released.
+//! Keys and the mouse: what they do on each screen, and what the player wants by them.
 
 use std::time::Duration;
 
 use super::controls::KeyContext;
-use super::menu::Selection;
 use super::menus::Choice;
-use super::question::is_answerable;
-use super::settings_screen::Setting;
-use super::{App, Screen, menu};
+use super::page::Effect;
+use super::settings_page::DIFFICULTY_ROW;
+use super::{App, Screen};
 use crate::app::bindings::Action;
+use crate::app::store::Preferences;
 use crate::game::Intents;
-use crate::store::Preferences;
-use crate::terminal::{Key, KeyEvent};
+use crate::terminal::{Key, KeyEvent, MouseEvent};
 use crate::tui::Press;
 use crate::world::FieldOfView;
 
@@ -26,7 +21,7 @@ const WIDEST_VIEW: f64 = 120.0;
 
 impl App {
     /// Handles a press, a repetition or a release at time `now`.
-    pub(super) fn key(&mut self, event: KeyEvent, now: Duration) {
+    pub(crate) fn key(&mut self, event: KeyEvent, now: Duration) {
         self.advance(now);
         let event = self.settings.bindings.resolve(event);
         let key_context = self.key_context();
@@ -37,41 +32,50 @@ impl App {
     }
 
     /// Handles the loss of the focus: keys may be released in another window.
-    pub(super) fn focus_lost(&mut self, now: Duration) {
+    pub(crate) fn focus_lost(&mut self, now: Duration) {
         self.advance(now);
         self.release_keys();
         self.pointer.forget();
     }
 
     /// Releases all keys.
-    pub(super) fn release_keys(&mut self) {
+    pub(crate) fn release_keys(&mut self) {
         self.controls.held.release_all();
     }
 
     /// Answers the question on the screen by a pending key that did not repeat.
-    pub(super) fn settle(&mut self, now: Duration) {
-        if let Some(key) = self.pending.settle(now) {
-            self.answer(key);
-        }
+    pub(crate) fn settle(&mut self, now: Duration) {
+        let effect = self.pages.settle(&self.settings.bindings, now);
+        self.carry_out(effect);
     }
 
-    pub(super) fn key_context(&self) -> KeyContext {
+    pub(crate) fn key_context(&self) -> KeyContext {
         KeyContext {
-            plays: self.screen == Screen::Playing,
+            plays: self.screen() == Screen::Playing,
             is_airborne: self.game.is_airborne(),
             flies: self.game.flies(),
         }
     }
 
     fn press(&mut self, key: Key, press: Press) {
-        self.pending.forget();
-        let scrolls = self.screen == Screen::Help && self.scroll_help(key);
-        match self.screen {
-            _ if scrolls => {}
-            Screen::Leaving => self.press_to_answer(key, press),
-            _ if self.screen.is_result() => self.press_on_result(key, press),
-            _ if self.screen.has_menu() => self.press_in_menu(key, press),
-            _ => self.press_command(key, press),
+        let (bindings, held) = (&self.settings.bindings, &self.controls.held);
+        match self.pages.press((key, press), bindings, held, self.now) {
+            Effect::Other => match self.pages.menu.choice() {
+                Some(Choice::Continue(id)) if self.removes(key) => self.open(Screen::Remove(id)),
+                _ => self.press_command(key, press),
+            },
+            effect => self.carry_out(effect),
+        }
+    }
+
+    fn carry_out(&mut self, effect: Effect) {
+        match effect {
+            Effect::None | Effect::Answer(_) | Effect::Other => {}
+            Effect::Redraw => self.shown = None,
+            Effect::Change { forward } => self.change_value(forward),
+            Effect::Choose => self.choose(),
+            Effect::Leave(true) => self.leave(),
+            Effect::Leave(false) => self.close(),
         }
     }
 
@@ -86,66 +90,21 @@ impl App {
         }
     }
 
-    fn press_on_result(&mut self, key: Key, press: Press) {
-        let held = &self.controls.held;
-        if press == Press::Repeat || !is_answerable(held, self.shown_since, self.now) {
-            return;
-        }
-        match key {
-            Key::Up | Key::Down => {
-                self.menu.select_neighbour(key == Key::Down);
-                self.shown = None;
-            }
-            Key::Enter => self.press_to_answer(key, press),
-            _ => {}
-        }
-    }
-
-    fn press_in_menu(&mut self, key: Key, press: Press) {
-        if let Some(selection) = Selection::by(key, &self.settings.bindings) {
-            self.menu.select(selection);
-            self.shown = None;
-        } else if let Some(forward) = self.changes_by(key) {
-            self.change_value(forward);
-        } else if self.chooses(key) {
-            self.press_to_answer(key, press);
-        } else if let (true, Some(Choice::Continue(id))) = (self.removes(key), self.menu.choice()) {
-            self.open(Screen::Remove(id));
-        } else {
-            self.press_command(key, press);
-        }
-    }
-
-    /// Whether `key` changes a value to the next one, or to the one before.
-    fn changes_by(&self, key: Key) -> Option<bool> {
-        let has_values = matches!(self.screen, Screen::Settings | Screen::Levels | Screen::Maps);
-        menu::changes_by(key, &self.settings.bindings).filter(|_| has_values)
-    }
-
     fn change_value(&mut self, forward: bool) {
-        match (self.screen, self.menu.choice()) {
-            (Screen::Levels | Screen::Maps, _) => self.change_setting(Setting::Difficulty, forward),
+        match (self.screen(), self.pages.menu.choice()) {
+            (Screen::Levels | Screen::Maps, _) => self.change_setting(DIFFICULTY_ROW, forward),
             (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
             _ => {}
         }
     }
 
-    /// Whether `key` chooses an entry of the menu.
-    fn chooses(&self, key: Key) -> bool {
-        match key {
-            Key::Enter | Key::Char(' ') => true,
-            Key::Char(digit) => self.menu.has_number(digit),
-            _ => false,
-        }
-    }
-
     /// Whether `key` removes the selected saved game.
     fn removes(&self, key: Key) -> bool {
-        self.screen == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
+        self.screen() == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
     }
 
     fn command(&mut self, key: Key, action: Action) {
-        match (self.screen, action) {
+        match (self.screen(), action) {
             (screen, Action::Leave) if key == Key::Escape && screen != Screen::Playing => {
                 self.go_back();
             }
@@ -162,7 +121,7 @@ impl App {
             (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
             (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
             (_, Action::ToggleGhost) => self.toggle_ghost(),
-            (_, Action::ToggleStats) => toggle(&mut self.shows_stats, &mut self.shown),
+            (_, Action::ToggleStats) => toggle(&mut self.settings.shows_stats, &mut self.shown),
             (Screen::Playing, Action::ToggleWalkOn) => {
                 toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
             }
@@ -178,15 +137,17 @@ impl App {
         }
     }
 
-    pub(super) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+    /// Keeps a choice of the player.
+    pub(crate) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
         let mut preferences = self.store.preferences();
         change(&mut preferences);
-        self.set_preferences(preferences);
+        self.store.set_preferences(preferences);
+        self.shown = None;
     }
 
     /// Returns to the screen before, or asks whether to leave where there is none.
     fn go_back(&mut self) {
-        match self.screen {
+        match self.screen() {
             Screen::Playing => {}
             Screen::Title => self.leave(),
             screen if screen.is_before_start() => self.give_up_beginning(),
@@ -204,7 +165,7 @@ impl App {
 
     /// Asks whether to leave. Where there is no game to lose, it is not asked.
     fn ask_to_leave(&mut self) {
-        if self.demo.is_some() || self.screen.is_before_start() {
+        if self.demo.is_some() || self.screen().is_before_start() {
             self.leave();
         } else {
             self.open(Screen::Leaving);
@@ -212,42 +173,36 @@ impl App {
     }
 
     /// Leaves the program.
-    pub(super) fn leave(&mut self) {
+    pub(crate) fn leave(&mut self) {
         _ = self.leave_game();
         self.has_left = true;
     }
 
-    fn press_to_answer(&mut self, key: Key, press: Press) {
-        if let Some(key) = self.pending.press(key, press, self.now) {
-            self.answer(key);
-        }
+    /// Handles an event of the mouse at time `now`.
+    pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
+        self.advance(now);
+        self.pointer.handle(event, self.screen() == Screen::Playing);
     }
 
-    fn answer(&mut self, key: Key) {
-        if self.screen == Screen::Leaving {
-            let leaves = self.settings.bindings.action(key) == Some(Action::Leave);
-            if key == Key::Enter || leaves && key != Key::Escape {
-                self.leave();
-            } else {
-                self.close();
-            }
-            return;
-        }
-        if let Key::Char(digit) = key {
-            self.menu.select_number(digit);
-        }
-        self.choose();
+    /// The player's intents for the next step, by keys and mouse.
+    pub(crate) fn wanted(&self) -> Intents {
+        let keys = self.intents();
+        keys.iter()
+            .chain(self.pointer.clicked().iter())
+            .collect::<Intents>()
+            .with_look(self.pointer.look())
     }
 
     /// The player's intents by the held keys.
-    pub(super) fn intents(&self) -> Intents {
+    pub(crate) fn intents(&self) -> Intents {
         self.controls.intents(&self.settings.bindings, self.key_context())
     }
 
     fn widen_view(&mut self, degrees: f64) {
-        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
+        let view =
+            (self.settings.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
         if let Some(view) = FieldOfView::from_degrees(view) {
-            self.field_of_view = view;
+            self.settings.field_of_view = view;
         }
     }
 }

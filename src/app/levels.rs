@@ -1,29 +1,44 @@
-//! The levels of a game, in order.
+//! The levels of a game, in order, and the way from one to the next: beginning, going on, beginning
+//! again, dying, and returning to the title.
+//!
+//! A level may change while it is played, because its author edits the map. The game checks for changes
+//! a few times a second. Rejected: file events of the system. A library for them needs a thread, wakes
+//! the loop, and has to follow files that editors replace.
 
-use std::{fmt, iter};
+use std::time::Duration;
+use std::{fmt, iter, mem};
 
-use super::OwnLevel;
-use super::played::Played;
-use super::reload::Changes;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Text};
+
+use crate::app::App;
+use crate::app::panels::{self, wrapped};
+use crate::app::played::{Goal, Played};
+use crate::app::recording::{Ghost, RunLog};
+use crate::app::screen::Screen;
+use crate::app::steps::Watch;
+use crate::app::store::Reached;
+use crate::app::title::{Demo, OwnLevel};
 use crate::fault::Faults;
-use crate::game::{Game, Rules};
+use crate::game::{Game, Intent, Intents, Rules};
 use crate::generate::descent;
 use crate::map::{Level, builtin};
 use crate::space::Scene;
+use crate::tui::canvas::Canvas;
 use crate::world::Difficulty;
 
 /// The levels of a game, in order. Each but the first is created when it is reached.
 pub struct Levels {
-    pub(super) first: Stage,
-    pub(super) rest: Box<dyn Iterator<Item = Stage>>,
-    pub(super) changes: Option<Changes>,
-    pub(super) number: LevelNumber,
-    pub(super) course: Course,
+    pub(crate) first: Stage,
+    pub(crate) rest: Box<dyn Iterator<Item = Stage>>,
+    pub(crate) changes: Option<Changes>,
+    pub(crate) number: LevelNumber,
+    pub(crate) course: Course,
 }
 
 /// What levels belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) enum Course {
+pub(crate) enum Course {
     /// Levels that are tried again until they are won.
     #[default]
     Levels,
@@ -34,7 +49,7 @@ pub(super) enum Course {
 }
 
 /// A level before it begins. It can begin any number of times.
-pub(super) struct Stage {
+pub(crate) struct Stage {
     content: Content,
 }
 
@@ -48,7 +63,7 @@ enum Content {
 
 /// The number of a level, counted from 1, and the number of levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LevelNumber {
+pub(crate) struct LevelNumber {
     number: usize,
     /// `None` if the number is unlimited or unknown.
     of: Option<usize>,
@@ -80,7 +95,7 @@ impl Levels {
     }
 
     /// The floors of the descent with that seed, without an end.
-    pub(super) fn descent(seed: u64, course: Course) -> Self {
+    pub(crate) fn descent(seed: u64, course: Course) -> Self {
         let stage = move |number| Stage { content: Content::Floor { seed, number } };
         Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
     }
@@ -101,7 +116,7 @@ impl Levels {
     }
 
     /// No level.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self::staged(Stage::nothing(), iter::empty())
     }
 
@@ -118,17 +133,17 @@ impl Levels {
 
 impl Stage {
     /// A level in which there is nothing.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self { content: Content::Level(Level::Space(Scene::default())) }
     }
 
     /// A built-in level.
-    pub(super) fn builtin(level: &'static builtin::Level) -> Self {
+    pub(crate) fn builtin(level: &'static builtin::Level) -> Self {
         Self { content: Content::Builtin(level) }
     }
 
     /// The name under which results of the level are kept, if they are.
-    pub(super) fn name(&self) -> Option<&str> {
+    pub(crate) fn name(&self) -> Option<&str> {
         match &self.content {
             Content::Builtin(level) => Some(level.name),
             Content::Own(own) => Some(&own.key),
@@ -137,7 +152,7 @@ impl Stage {
     }
 
     /// The path of the level's map file, if it is known.
-    pub(super) fn file(&self) -> Option<&str> {
+    pub(crate) fn file(&self) -> Option<&str> {
         match &self.content {
             Content::Own(own) => own.file.as_deref(),
             _ => None,
@@ -145,7 +160,7 @@ impl Stage {
     }
 
     /// The level at its start; `None` if a built-in level has faults, which tests exclude.
-    pub(super) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
+    pub(crate) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
         let rules = Rules { difficulty, seed: 0 };
         Some(match &self.content {
             Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
@@ -161,7 +176,7 @@ impl Stage {
     }
 
     /// Replaces the level by a changed one.
-    pub(super) fn change(&mut self, level: Level) {
+    pub(crate) fn change(&mut self, level: Level) {
         self.content = Content::Level(level);
     }
 }
@@ -169,17 +184,17 @@ impl Stage {
 impl LevelNumber {
     /// The number of the next level.
     #[must_use]
-    pub(super) fn next(self) -> Self {
+    pub(crate) fn next(self) -> Self {
         Self { number: self.number + 1, ..self }
     }
 
     /// Whether there are several levels, as far as known.
-    pub(super) fn is_one_of_several(self) -> bool {
+    pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
     }
 
     /// Writes the number as `2/5`.
-    pub(super) fn write_short(self, to: &mut impl fmt::Write) -> fmt::Result {
+    pub(crate) fn write_short(self, to: &mut impl fmt::Write) -> fmt::Result {
         match self.of {
             Some(count) => write!(to, "{}/{count}", self.number),
             None => write!(to, "{}", self.number),
@@ -197,5 +212,175 @@ impl fmt::Display for LevelNumber {
 impl fmt::Debug for Levels {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Levels").finish_non_exhaustive()
+    }
+}
+
+impl App {
+    /// Begins the first of `levels`; asks first if a game in it is saved.
+    pub(crate) fn begin(&mut self, levels: Levels) {
+        // A recorded script is about what the program began with.
+        self.script = None;
+        self.set_up(levels);
+        self.ask_about_saved();
+    }
+
+    /// Begins the first of `levels`.
+    pub(crate) fn set_up(&mut self, levels: Levels) {
+        let Levels { first, rest, number, changes, course } = levels;
+        let Some(game) = first.begin(self.difficulty) else { return };
+        self.later_levels = rest;
+        self.level = number;
+        self.reload = changes.map(Reload::from);
+        self.earlier = 0.0;
+        self.course = course;
+        self.reached = Reached::default();
+        self.demo = None;
+        self.log = RunLog::default();
+        self.begin_level(first, game);
+        self.tell_whether_it_counts();
+    }
+
+    /// Begins the next level. After the last one comes the end.
+    pub(crate) fn next_level(&mut self) {
+        let Some(stage) = self.later_levels.next() else { return self.show(Screen::End) };
+        let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
+        self.earlier += self.game.elapsed();
+        self.level = self.level.next();
+        if !self.is_descent() {
+            self.log = RunLog::default();
+        }
+        self.begin_level(stage, game);
+        self.ask_about_saved();
+    }
+
+    /// Begins the level again. A script that is recorded ends here: in a script, a level begins
+    /// once.
+    pub(crate) fn restart_level(&mut self) {
+        self.script = None;
+        self.begin_again();
+    }
+
+    /// Returns to the start of the level.
+    pub(crate) fn begin_again(&mut self) {
+        let Some(game) = self.stage.begin(self.difficulty) else { return };
+        self.log = RunLog::default();
+        let stage = mem::replace(&mut self.stage, Stage::nothing());
+        self.begin_level(stage, game);
+    }
+
+    /// Goes on from the last checkpoint after a death.
+    pub(crate) fn retry(&mut self) {
+        let retry: Intents = [Intent::Retry].into_iter().collect();
+        self.game.step(retry);
+        self.record(retry, 1);
+        self.watch = Watch::begin(self.game.grid());
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+
+    /// Leaves the game for the title.
+    pub(crate) fn return_to_title(&mut self) {
+        let not_saved = self.leave_game();
+        self.show_title();
+        if let Some(sentence) = not_saved {
+            self.say_in_menu(&sentence);
+        }
+    }
+
+    /// Shows the title, over a level that plays itself.
+    pub(crate) fn show_title(&mut self) {
+        self.script = None;
+        self.reload = None;
+        self.ghost = None;
+        match Demo::begin() {
+            Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
+            None => self.game = Played::nothing(),
+        }
+        self.release_keys();
+        self.show(Screen::Title);
+    }
+
+    fn begin_level(&mut self, stage: Stage, game: Played) {
+        self.ghost = match (self.best_run(&stage), game.grid()) {
+            (Some(cursor), Some(game)) => Some(Ghost::new(game.clone(), cursor)),
+            _ => None,
+        };
+        self.watch = Watch::begin(game.grid());
+        self.stage = stage;
+        self.game = game;
+        self.result = None;
+        self.notice = None;
+        self.goal = Goal::of(&self.game, self.settings.minimap);
+        self.map.begin_level();
+        self.release_keys();
+        self.show(Screen::Playing);
+    }
+}
+
+/// The time between two checks.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Returns the level or its faults, if it has changed.
+pub(crate) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
+
+/// The source of changes, and the faults of the last one.
+pub(crate) struct Reload {
+    changes: Changes,
+    next_check: Duration,
+    fault: Option<String>,
+}
+
+impl Reload {
+    pub(crate) fn from(changes: Changes) -> Self {
+        Self { changes, next_check: INTERVAL, fault: None }
+    }
+}
+
+impl App {
+    /// Checks for a change when it is time, and continues in the changed level.
+    pub(crate) fn reload(&mut self, now: Duration) {
+        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
+            return;
+        };
+        reload.next_check = now + INTERVAL;
+        match (reload.changes)() {
+            None => {}
+            Some(Ok(level)) => {
+                reload.fault = None;
+                self.game = self.game.begun_again_in(level.clone());
+                self.stage.change(level);
+                self.goal = Goal::of(&self.game, self.settings.minimap);
+                self.map.begin_level();
+                if self.shows_result() {
+                    self.show(Screen::Playing);
+                }
+                self.shown = None;
+            }
+            Some(Err(faults)) => {
+                reload.fault = Some(faults.summary());
+                self.shown = None;
+            }
+        }
+    }
+
+    /// The time of the next check; `None` for never.
+    pub(crate) fn next_reload(&self) -> Option<Duration> {
+        self.reload.as_ref().map(|reload| reload.next_check)
+    }
+
+    /// Draws the faults of the level, if any, over the bottom of the picture.
+    pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
+        let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
+        let Some(fault) = fault else { return };
+        let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));
+        let height = (lines.len() as u16).saturating_add(2).min(picture.height);
+        let area = Rect { y: picture.bottom() - height, height, ..picture };
+        let inside = panels::framed(canvas, area, "the map has faults");
+        let text: Text = lines.into_iter().map(Line::from).collect();
+        let padded = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        for side in [inside.x, inside.right().saturating_sub(1)] {
+            canvas.draw_widget(Text::default(), Rect { x: side, width: 1, ..inside });
+        }
+        canvas.draw_widget(text, padded);
     }
 }

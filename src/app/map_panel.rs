@@ -10,8 +10,9 @@ use crate::world::Camera;
 
 /// The state of the minimap between frames.
 #[derive(Clone, Debug)]
-pub(crate) struct MapPanel {
-    pub(crate) is_shown: bool,
+pub struct MapPanel {
+    /// Whether the map is shown.
+    pub is_shown: bool,
     display: MapDisplay,
     explored: Explored,
     zoom: i32,
@@ -27,7 +28,8 @@ const MOST_ZOOM: i32 = 6;
 const MOVED_BY: f64 = 0.25;
 
 impl MapPanel {
-    pub(crate) fn new(display: MapDisplay) -> Self {
+    /// A panel with this content.
+    pub fn new(display: MapDisplay) -> Self {
         Self {
             is_shown: display != MapDisplay::Off,
             display,
@@ -39,7 +41,7 @@ impl MapPanel {
     }
 
     /// Resets the panel for a new level.
-    pub(crate) fn begin_level(&mut self) {
+    pub fn begin_level(&mut self) {
         self.explored = Explored::default();
         self.offset = DVec2::ZERO;
     }
@@ -62,7 +64,7 @@ impl MapPanel {
     }
 
     /// Applies a change of the zoom or of the shown part.
-    pub(crate) fn change(&mut self, change: MapChange) {
+    pub fn change(&mut self, change: MapChange) {
         let by = self.extent * MOVED_BY;
         match change {
             MapChange::Larger => self.zoom = (self.zoom + 1).min(MOST_ZOOM),
@@ -96,7 +98,7 @@ impl MapPanel {
     /// presses are needed to come back from outside.
     pub(crate) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
         let grid = game.world().grid();
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let size = grid.extent();
         self.extent = extent.min(size);
         let half = self.extent / 2.0;
         let center = (camera.position() + self.offset).clamp(half, size - half);

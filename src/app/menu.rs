@@ -11,16 +11,16 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span, Text};
 use ratatui::widgets::{Block, Padding, Paragraph};
 
+use super::panels::wrapped;
 use super::panels::{BORDERS, PADDING, framed};
-use super::wrap::wrapped;
 use crate::app::bindings::{Action, Bindings};
-use crate::canvas::Canvas;
 use crate::game::Intent;
 use crate::terminal::Key;
+use crate::tui::canvas::Canvas;
 
 /// A list of entries with choices of the type `C`.
 #[derive(Clone, Debug)]
-pub(crate) struct Menu<C> {
+pub struct Menu<C> {
     title: String,
     text: Vec<String>,
     entries: Vec<Entry<C>>,
@@ -34,24 +34,30 @@ pub(crate) struct Menu<C> {
 struct Entry<C> {
     label: String,
     /// Shown at the right.
-    value: String,
+    pub value: String,
     choice: C,
 }
 
 /// A movement of the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Selection {
+pub enum Selection {
+    /// The entry before.
     Previous,
+    /// The next entry.
     Next,
+    /// The entry a page above.
     PageUp,
+    /// The entry a page below.
     PageDown,
+    /// The first entry.
     First,
+    /// The last entry.
     Last,
 }
 
 impl Selection {
     /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
-    pub(crate) fn by(key: Key, bindings: &Bindings) -> Option<Self> {
+    pub fn by(key: Key, bindings: &Bindings) -> Option<Self> {
         Some(match key {
             Key::Up => Self::Previous,
             Key::Down => Self::Next,
@@ -69,7 +75,7 @@ impl Selection {
 }
 
 /// Whether `key` changes a value to the next one, or to the one before; `None` if it does neither.
-pub(crate) fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
+pub fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
     match key {
         Key::Right => Some(true),
         Key::Left => Some(false),
@@ -88,7 +94,7 @@ const GAP: usize = 2;
 
 impl<C: Copy> Menu<C> {
     /// A menu without entries.
-    pub(crate) fn new(title: impl Into<String>) -> Self {
+    pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             text: Vec::new(),
@@ -100,18 +106,18 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Adds a line of text above the entries.
-    pub(crate) fn line(mut self, text: impl Into<String>) -> Self {
+    pub fn line(mut self, text: impl Into<String>) -> Self {
         self.text.push(text.into());
         self
     }
 
     /// Adds an entry.
-    pub(crate) fn entry(self, label: impl Into<String>, choice: C) -> Self {
+    pub fn entry(self, label: impl Into<String>, choice: C) -> Self {
         self.entry_with(label, "", choice)
     }
 
     /// Adds an entry with a value at its right.
-    pub(crate) fn entry_with(
+    pub fn entry_with(
         mut self,
         label: impl Into<String>,
         value: impl Into<String>,
@@ -122,18 +128,18 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Selects the entry with that index, or the last one.
-    pub(crate) fn selecting(mut self, index: usize) -> Self {
+    pub fn selecting(mut self, index: usize) -> Self {
         self.selected = index.min(self.entries.len().saturating_sub(1));
         self
     }
 
     /// The index of the selected entry.
-    pub(crate) fn selected(&self) -> usize {
+    pub fn selected(&self) -> usize {
         self.selected
     }
 
     /// The choice of the selected entry; `None` if the menu is empty.
-    pub(crate) fn choice(&self) -> Option<C> {
+    pub fn choice(&self) -> Option<C> {
         self.entries.get(self.selected).map(|entry| entry.choice)
     }
 
@@ -144,12 +150,12 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Whether there is an entry with the number `digit`, counted from 1.
-    pub(crate) fn has_number(&self, digit: char) -> bool {
+    pub fn has_number(&self, digit: char) -> bool {
         self.index_of(digit).is_some()
     }
 
     /// Selects the entry with the number `digit`, counted from 1, if there is one.
-    pub(crate) fn select_number(&mut self, digit: char) {
+    pub fn select_number(&mut self, digit: char) {
         self.selected = self.index_of(digit).unwrap_or(self.selected);
     }
 
@@ -161,7 +167,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Selects the entry with that choice, if there is one. Returns whether there is.
-    pub(crate) fn select_choice(&mut self, choice: C) -> bool
+    pub fn select_choice(&mut self, choice: C) -> bool
     where
         C: PartialEq,
     {
@@ -176,7 +182,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Moves the selection. From the last entry, the next one is the first.
-    pub(crate) fn select(&mut self, selection: Selection) {
+    pub fn select(&mut self, selection: Selection) {
         let (count, page) = (self.entries.len().max(1), self.page.max(1));
         let last = count - 1;
         self.selected = match selection {
@@ -190,7 +196,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Draws the menu in the middle of `room`.
-    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
+    pub fn draw(&mut self, canvas: &mut impl Canvas, room: Rect) {
         let most_rows = usize::from(room.height.saturating_sub(BORDERS)).max(1);
         let most_columns = usize::from(room.width.saturating_sub(BORDERS + PADDING)).max(1);
         self.page = self.entries.len().min(most_rows);

@@ -3,17 +3,17 @@
 use std::fmt::Write;
 
 use super::menu::Menu;
-use super::panels::{key_names, time, whole_seconds};
-use super::settings_screen::Setting;
-use super::{App, Levels, STEP, Screen};
+use super::panels::key_names;
+use super::time::{of_steps, whole_seconds};
+use super::{App, Levels, Screen};
 use crate::app::bindings::Action;
+use crate::app::store::SaveId;
 use crate::map::builtin;
-use crate::store::{Preferences, SaveId};
 use crate::world::Difficulty;
 
 /// What an entry of a menu does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Choice {
+pub(crate) enum Choice {
     /// Opens a screen.
     Open(Screen),
     /// Begins the campaign.
@@ -38,8 +38,8 @@ pub(super) enum Choice {
     Daily,
     /// Begins an endless descent.
     Endless,
-    /// Changes a setting.
-    Change(Setting),
+    /// Changes the setting in that row of the settings page.
+    Change(usize),
     /// Goes on with the game.
     GoOn,
     /// Goes on from the last checkpoint.
@@ -58,7 +58,7 @@ pub(super) enum Choice {
 
 impl App {
     /// The menu of `screen`; an empty one if it has none.
-    pub(super) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
+    pub(crate) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
         match screen {
             Screen::Title => self.title_menu(),
             Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
@@ -81,14 +81,13 @@ impl App {
     }
 
     /// Does what the selected entry says.
-    pub(super) fn choose(&mut self) {
-        let Some(choice) = self.menu.choice() else { return };
+    pub(crate) fn choose(&mut self) {
+        let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
             Choice::Open(screen) => self.open(screen),
             Choice::Begin(difficulty) => {
                 self.difficulty = difficulty;
-                let preferences = self.store.preferences();
-                self.set_preferences(Preferences { difficulty, ..preferences });
+                self.prefer(|it| it.difficulty = difficulty);
                 self.begin_builtin(0);
             }
             Choice::Level(index) => {
@@ -99,7 +98,7 @@ impl App {
             Choice::Daily => self.begin_daily(),
             Choice::Endless => self.begin_endless(),
             Choice::Continue(id) => {
-                if self.screen != Screen::Daily {
+                if self.screen() != Screen::Daily {
                     // A recorded script is about what the program began with.
                     self.script = None;
                 }
@@ -135,14 +134,12 @@ impl App {
                 self.begin(Levels::own(level));
             }
             Err(fault) => {
-                let selected = self.menu.selected();
-                self.menu = self.map_menu().line(fault).selecting(selected);
-                self.shown = None;
+                self.say_in_menu(&fault);
             }
         }
     }
 
-    pub(super) fn title_menu(&self) -> Menu<Choice> {
+    pub(crate) fn title_menu(&self) -> Menu<Choice> {
         let menu = self
             .with_continue(Menu::new(""))
             .entry("New game", Choice::Open(Screen::NewGame))
@@ -172,12 +169,12 @@ impl App {
     fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
         self.store.best(name, difficulty).map_or_else(
             || "-".to_owned(),
-            |best| format!("{} {:>7}", time(best.tally.steps as f64 * STEP), best.rank),
+            |best| format!("{} {:>7}", of_steps(best.tally.steps), best.rank),
         )
     }
 
     /// Looks for the player's own maps now.
-    pub(super) fn find_own_maps(&mut self) {
+    pub(crate) fn find_own_maps(&mut self) {
         let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
         self.own_maps = find.map_or_else(Vec::new, |find| find());
     }
@@ -214,7 +211,7 @@ impl App {
     }
 
     /// Adds the entries that end the game.
-    pub(super) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let menu = match &self.offers {
             Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
             None => menu,
@@ -242,7 +239,7 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
 }
 
 /// `text` with a capital letter at its start.
-pub(super) fn capitalized(text: &str) -> String {
+pub(crate) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     // Writing to a string never fails.

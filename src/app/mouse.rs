@@ -8,9 +8,6 @@
 //! Positions are converted to angles first, and then subtracted: rounding errors do not add up, and
 //! a pointer that returns to its position has turned the player by nothing.
 
-use std::time::Duration;
-
-use super::{App, Screen};
 use crate::game::{Intent, Intents, Look, STEPS_PER_SECOND};
 use crate::terminal::{MouseButton, MouseEvent, MouseEventKind};
 
@@ -26,7 +23,7 @@ const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
 
 /// The position of the pointer, and its motion and clicks since the last step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pointer {
+pub struct Pointer {
     is_on: bool,
     columns: u16,
     /// Measured from the upper left corner, in units of [`Look`]; `None` if unknown.
@@ -42,33 +39,33 @@ pub(crate) struct Pointer {
 
 impl Pointer {
     /// A pointer that is on or off at first.
-    pub(crate) fn new(is_on: bool) -> Self {
+    pub fn new(is_on: bool) -> Self {
         Self { is_on, ..Self::default() }
     }
 
     /// Whether the mouse turns the player.
-    pub(crate) fn is_on(&self) -> bool {
+    pub fn is_on(&self) -> bool {
         self.is_on
     }
 
     /// Switches between on and off.
-    pub(crate) fn toggle(&mut self) {
+    pub fn toggle(&mut self) {
         *self = Self { is_on: !self.is_on, columns: self.columns, ..Self::default() };
     }
 
     /// Forgets the position.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         *self = Self { is_on: self.is_on, columns: self.columns, ..Self::default() };
     }
 
     /// Sets the width of the window.
-    pub(crate) fn set_columns(&mut self, columns: u16) {
+    pub fn set_columns(&mut self, columns: u16) {
         self.columns = columns;
         self.forget();
     }
 
     /// Handles an event. Motion and clicks count only if the player `plays`.
-    pub(crate) fn handle(&mut self, event: MouseEvent, plays: bool) {
+    pub fn handle(&mut self, event: MouseEvent, plays: bool) {
         if !self.is_on {
             return;
         }
@@ -85,13 +82,12 @@ impl Pointer {
     }
 
     /// The intents of the buttons for the next step.
-    pub(crate) fn clicked(&self) -> Intents {
+    pub fn clicked(&self) -> Intents {
         self.clicked
     }
 
     /// Whether the next step turns the player or uses a click.
-    #[cfg(feature = "serve")]
-    pub(crate) fn is_busy(&self) -> bool {
+    pub fn is_busy(&self) -> bool {
         self.has_input() || self.edge.is_some()
     }
 
@@ -125,7 +121,7 @@ impl Pointer {
     }
 
     /// The turn and tilt of the next step.
-    pub(crate) fn look(&self) -> Look {
+    pub fn look(&self) -> Look {
         let at_edge = self.edge.map_or(0, |(edge, _)| {
             i32::from(edge) * DEGREES_PER_SECOND * i32::from(Look::PER_DEGREE)
                 / STEPS_PER_SECOND as i32
@@ -135,12 +131,12 @@ impl Pointer {
     }
 
     /// Whether there was motion or a click since the last step.
-    pub(super) fn has_input(&self) -> bool {
+    pub(crate) fn has_input(&self) -> bool {
         self.moved != [0, 0] || !self.clicked.is_empty()
     }
 
     /// Records that `steps` steps have used [`Pointer::look`].
-    pub(crate) fn passed(&mut self, steps: u64) {
+    pub fn passed(&mut self, steps: u64) {
         if steps == 0 {
             return;
         }
@@ -150,23 +146,6 @@ impl Pointer {
             let left = u64::from(left).saturating_sub(steps) as u32;
             (left > 0).then_some((edge, left))
         });
-    }
-}
-
-impl App {
-    /// Handles an event of the mouse at time `now`.
-    pub(super) fn mouse(&mut self, event: MouseEvent, now: Duration) {
-        self.advance(now);
-        self.pointer.handle(event, self.screen == Screen::Playing);
-    }
-
-    /// The player's intents for the next step, by keys and mouse.
-    pub(super) fn wanted(&self) -> Intents {
-        let keys = self.intents();
-        keys.iter()
-            .chain(self.pointer.clicked().iter())
-            .collect::<Intents>()
-            .with_look(self.pointer.look())
     }
 }
 

@@ -1,6 +1,4 @@
-//! Panels on the picture: the minimap's frame, and messages.
-
-use std::fmt::{self, Display};
+//! Panels on the picture: frames, messages, and lines wrapped to fit.
 
 use ratatui::layout::{Constraint, Flex, Layout, Rect, Size};
 use ratatui::style::Color;
@@ -8,9 +6,9 @@ use ratatui::text::{Span, Text};
 use ratatui::widgets::{Block, Padding, Paragraph, Wrap};
 
 use crate::app::bindings::{Action, Bindings};
-use crate::canvas::Canvas;
 use crate::terminal::Key;
 use crate::tui::Minimap;
+use crate::tui::canvas::Canvas;
 
 /// The smallest window to play in.
 const LEAST_COLUMNS: u16 = 20;
@@ -25,18 +23,18 @@ pub(crate) const BORDERS: u16 = 2;
 pub(crate) const PADDING: u16 = 2;
 
 /// Whether `area` is too small to play in.
-pub(crate) fn is_too_small(area: Rect) -> bool {
+pub fn is_too_small(area: Rect) -> bool {
     area.width < LEAST_COLUMNS || area.height < LEAST_ROWS
 }
 
 /// Draws the message that the window is too small.
-pub(crate) fn too_small(canvas: &mut impl Canvas) {
+pub fn too_small(canvas: &mut impl Canvas) {
     let text = format!("Too small to play: {LEAST_COLUMNS}×{LEAST_ROWS} at least.");
     canvas.draw_widget(Paragraph::new(text).wrap(Wrap { trim: true }), canvas.bounds());
 }
 
 /// The areas of the picture and of the status line.
-pub(crate) fn picture_and_status(area: Rect) -> [Rect; 2] {
+pub fn picture_and_status(area: Rect) -> [Rect; 2] {
     let picture = Rect { height: area.height.saturating_sub(1), ..area };
     let status = Rect { y: picture.bottom(), height: area.height - picture.height, ..area };
     [picture, status]
@@ -85,7 +83,7 @@ pub(crate) fn framed(canvas: &mut impl Canvas, area: Rect, title: &str) -> Rect 
 }
 
 /// Draws the question whether to leave; `effect` is what that does.
-pub(crate) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
+pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, effect: &str) {
     let leave = bindings.keys(Action::Leave).find(|&key| key != Key::Escape);
     let keys = leave.map_or_else(String::new, |key| format!("{key} or "));
     let text = format!("{keys}Enter {effect}\nany other key goes on");
@@ -93,7 +91,7 @@ pub(crate) fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindin
 }
 
 /// Draws a panel in the middle of the picture, as large as `text` needs.
-pub(crate) fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
+pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
     let widest = text.width().max(title.len()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
@@ -109,27 +107,32 @@ pub(crate) fn key_names(bindings: &Bindings, action: Action) -> String {
     names.join(" ")
 }
 
-/// Formats minutes and seconds.
-pub(crate) fn whole_seconds(seconds: f64) -> impl Display {
-    let seconds = seconds as u64;
-    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
-}
-
-struct WholeSeconds {
-    minutes: u64,
-    seconds: u64,
-}
-
-impl Display for WholeSeconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{:02}", self.minutes, self.seconds)
+/// Wraps `text` into lines of up to `width` characters, between words, and within words that are
+/// longer.
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut room = width;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if room < width {
+            if length < room {
+                lines[..].last_mut().into_iter().for_each(|line| line.push(' '));
+                room -= 1;
+            } else {
+                lines.push(String::new());
+                room = width;
+            }
+        }
+        for character in word.chars() {
+            if room == 0 {
+                lines.push(String::new());
+                room = width;
+            }
+            lines[..].last_mut().into_iter().for_each(|line| line.push(character));
+            room -= 1;
+        }
     }
-}
-
-/// Formats minutes, seconds and tenths.
-pub(crate) fn time(seconds: f64) -> String {
-    let tenths = (seconds * 10.0) as u64;
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
+    lines
 }
 
 #[cfg(test)]
@@ -137,9 +140,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_minutes_seconds_and_tenths() {
-        assert_eq!(time(0.0), "0:00.0");
-        assert_eq!(time(61.26), "1:01.2");
-        assert_eq!(time(3600.0), "60:00.0");
+    fn lines_are_filled_to_the_width() {
+        for (text, width, lines) in [
+            ("", 5, &[""][..]),
+            ("one two three", 7, &["one two", "three"]),
+            ("one two three", 13, &["one two three"]),
+            ("abcdefgh i", 3, &["abc", "def", "gh", "i"]),
+            ("ä ö", 1, &["ä", "ö"]),
+        ] {
+            assert_eq!(wrapped(text, width), lines, "{text} in {width}");
+        }
     }
 }

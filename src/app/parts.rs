@@ -1,24 +1,22 @@
 //! The parts of the program that the sessions of a server use, too.
 
-pub(crate) use super::banner::draw as draw_banner;
-pub(crate) use super::bindings::Action;
-pub(crate) use super::clock::Clock;
-pub(crate) use super::controls::{Controls, KeyContext};
-pub(crate) use super::detection::Detection;
-pub(crate) use super::draw_options::DrawOptions;
-pub(crate) use super::help::HelpScroll;
-pub(crate) use super::map_panel::MapPanel;
-pub(crate) use super::menu::{Menu, Selection, changes_by};
-pub(crate) use super::mouse::Pointer;
-pub(crate) use super::overlay::Overlay;
-pub(crate) use super::panels::{
-    is_too_small, leaving, message, picture_and_status, time, too_small, whole_seconds,
-};
-pub(crate) use super::question::{PendingKey, is_answerable};
-pub(crate) use super::settings_screen::{
-    COLORS, CORRECTIONS, GLYPHS, after, name, on_or_off, with_card,
-};
-pub(crate) use super::stats::{Meter, Stats};
-pub(crate) use super::status::{Part, StatusLine, hint};
-pub(crate) use super::vitals::HealthSigns;
-pub(crate) use super::watch::Watch;
+pub use super::banner::draw as draw_banner;
+pub use super::bindings::Action;
+pub use super::controls::Clock;
+pub use super::controls::{Controls, KeyContext};
+pub use super::detection::Detection;
+pub use super::help::HelpScroll;
+pub use super::map_panel::MapPanel;
+pub use super::menu::{Menu, Selection, changes_by};
+pub use super::mouse::Pointer;
+pub use super::page::{Effect, Kind, Page, Pages, PendingKey, is_answerable};
+pub use super::panels::{is_too_small, leaving, message, picture_and_status, too_small};
+pub use super::picture::DrawOptions;
+pub use super::picture::Overlay;
+pub use super::setting::{Choice, Field, Setting, Value};
+pub use super::settings_page::with_card;
+pub use super::stats::{Meter, Stats};
+pub use super::status::HealthSigns;
+pub use super::status::{Part, StatusLine, hint};
+pub use super::steps::Watch;
+pub use super::time::{of_steps, tenths, whole_seconds};

@@ -2,30 +2,36 @@
 //!
 //! [`Simulation`] is the interface of both, and [`Played::grid`] gives access to the rest of a game
 //! in a grid.
-
-mod picture;
+//!
+//! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
+//! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
+//! steps in which only guards move do not count.
 
 use std::ops::{Deref, DerefMut};
 
 use glam::DVec3;
+use ratatui::layout::{Rect, Size};
 
-use crate::game::{Flight, Game, Intents, Outcome, Rules};
+use crate::app::picture::DrawOptions;
+use crate::app::settings::MapDisplay;
+use crate::game::{Flight, Game, Intents, Outcome, Rules, STEPS_PER_SECOND};
 use crate::generate::Site;
 use crate::map::Level;
 use crate::space;
 use crate::tui::View;
+use crate::tui::canvas::Canvas;
 use crate::world::{FieldOfView, Heading};
 
 /// A level that is being played.
 #[derive(Debug)]
-pub(super) enum Played {
+pub(crate) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
 }
 
 /// A game that advances in steps. It cannot be formatted for debugging: the program would contain that code for
 /// all of a game.
-pub(super) trait Simulation {
+pub(crate) trait Simulation {
     /// The level's title, or a substitute if the map gives none.
     fn title(&self) -> &str;
 
@@ -51,7 +57,7 @@ pub(super) trait Simulation {
 
 /// The player's position and direction of view, in a grid or among bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Viewpoint {
+pub(crate) struct Viewpoint {
     position: DVec3,
     heading: Heading,
     /// The direction upwards: the slope of a pitch, or an elevation in radians.
@@ -61,30 +67,30 @@ pub(super) struct Viewpoint {
 
 /// The state of both views between frames.
 #[derive(Default)]
-pub(super) struct Views {
-    pub(super) grid: View,
+pub(crate) struct Views {
+    pub(crate) grid: View,
     space: View<space::Scene>,
 }
 
 impl Views {
-    pub(super) fn new(grid: View) -> Self {
+    pub(crate) fn new(grid: View) -> Self {
         Self { grid, ..Self::default() }
     }
 
     /// The game time of the next change in the last picture that the player does not cause; `None`
     /// for never.
-    pub(super) fn next_change(&self) -> Option<f64> {
+    pub(crate) fn next_change(&self) -> Option<f64> {
         self.grid.next_change()
     }
 }
 
 impl Played {
-    pub(super) fn new(level: Level) -> Self {
+    pub(crate) fn new(level: Level) -> Self {
         Self::with_rules(level, Rules::default())
     }
 
     /// `level` at its start, with these rules.
-    pub(super) fn with_rules(level: Level, rules: Rules) -> Self {
+    pub(crate) fn with_rules(level: Level, rules: Rules) -> Self {
         match level {
             Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
             Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
@@ -92,12 +98,12 @@ impl Played {
     }
 
     /// A flight through nothing.
-    pub(super) fn nothing() -> Self {
+    pub(crate) fn nothing() -> Self {
         Self::new(Level::Space(space::Scene::default()))
     }
 
     /// Begins `level` at the player's position in this game, if possible.
-    pub(super) fn begun_again_in(&self, level: Level) -> Self {
+    pub(crate) fn begun_again_in(&self, level: Level) -> Self {
         match (self, level) {
             (Self::Grid(game), Level::Grid(world)) => {
                 Self::Grid(Box::new(game.begun_again_in(*world)))
@@ -110,7 +116,7 @@ impl Played {
     }
 
     /// The game, if it is in a grid.
-    pub(super) fn grid(&self) -> Option<&Game> {
+    pub(crate) fn grid(&self) -> Option<&Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,
@@ -118,49 +124,49 @@ impl Played {
     }
 
     /// The goal that the map gives.
-    pub(super) fn goal(&self) -> Option<&str> {
+    pub(crate) fn goal(&self) -> Option<&str> {
         self.grid()?.world().goal()
     }
 
     /// Whether the level has an exit.
-    pub(super) fn has_exit(&self) -> bool {
+    pub(crate) fn has_exit(&self) -> bool {
         self.grid().is_some_and(Game::has_exit)
     }
 
     /// The player's cell in a generated level.
-    pub(super) fn site(&self) -> Option<Site> {
+    pub(crate) fn site(&self) -> Option<Site> {
         self.grid()?.site()
     }
 
     /// The names of the keys that the player has.
-    pub(super) fn keys(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &str> {
         self.grid().into_iter().flat_map(Game::keys)
     }
 
     /// The message for the player.
-    pub(super) fn message(&self) -> Option<&str> {
+    pub(crate) fn message(&self) -> Option<&str> {
         self.grid()?.message()
     }
 
     /// Whether the player is dead.
-    pub(super) fn is_dead(&self) -> bool {
+    pub(crate) fn is_dead(&self) -> bool {
         self.grid().is_some_and(|game| matches!(game.outcome(), Outcome::Dead { .. }))
     }
 
     /// The game, if it is in a grid.
-    pub(super) fn grid_mut(&mut self) -> Option<&mut Game> {
+    pub(crate) fn grid_mut(&mut self) -> Option<&mut Game> {
         match self {
             Self::Grid(game) => Some(game),
             Self::Space(_) => None,
         }
     }
 
-    pub(super) fn is_airborne(&self) -> bool {
+    pub(crate) fn is_airborne(&self) -> bool {
         self.grid().is_some_and(Game::is_airborne)
     }
 
     /// Whether the player flies, so that ducking moves down.
-    pub(super) fn flies(&self) -> bool {
+    pub(crate) fn flies(&self) -> bool {
         self.grid().is_none()
     }
 }
@@ -269,4 +275,104 @@ impl Simulation for Flight {
 
 fn or_untitled(title: &str) -> &str {
     if title.is_empty() { "a level without a name" } else { title }
+}
+
+impl Played {
+    /// Renders the player's view for an area of this size; may stop once `go_on` returns `false`.
+    /// Returns whether the picture is complete.
+    pub(crate) fn render(
+        &self,
+        options: &DrawOptions,
+        size: Size,
+        views: &mut Views,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        let seconds = self.elapsed();
+        match self {
+            Self::Grid(game) => {
+                let camera = game.camera(options.field_of_view);
+                let picture = options.picture(game.world(), &camera, seconds);
+                options.render(&picture, size, &mut views.grid, go_on)
+            }
+            Self::Space(flight) => {
+                let camera = flight.camera(options.field_of_view);
+                let picture = options.picture(flight.scene(), &camera, seconds);
+                options.render(&picture, size, &mut views.space, go_on)
+            }
+        }
+    }
+
+    /// Paints the rendered picture into `area`, which has the size that it was rendered for.
+    pub(crate) fn paint(
+        &self,
+        options: &DrawOptions,
+        canvas: &mut impl Canvas,
+        area: Rect,
+        views: &Views,
+    ) {
+        let seconds = self.elapsed();
+        match self {
+            Self::Grid(game) => {
+                let camera = game.camera(options.field_of_view);
+                let picture = options.picture(game.world(), &camera, seconds);
+                picture.paint(&views.grid, 0, area, canvas);
+            }
+            Self::Space(flight) => {
+                let camera = flight.camera(options.field_of_view);
+                let picture = options.picture(flight.scene(), &camera, seconds);
+                picture.paint(&views.space, 0, area, canvas);
+            }
+        }
+    }
+}
+
+/// The number of steps with intents for which the goal is shown: four seconds.
+const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
+
+/// A goal, and how much longer it is shown.
+#[derive(Clone, Debug)]
+pub(crate) struct Goal {
+    text: String,
+    short: String,
+    steps_left: u64,
+}
+
+impl Goal {
+    /// The goal of `game`, from its map if that has one.
+    pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
+        let (text, short) = match game.goal() {
+            Some(own) => (own, own),
+            None if game.has_exit() && display == MapDisplay::Off => {
+                ("Find the way out", "Find the exit")
+            }
+            None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
+            None => ("Roam as you like: no exit here", "Roam around"),
+        };
+        Self::new(text, short)
+    }
+
+    /// A goal with a shorter form for narrow windows. Both are sentences without their full stops.
+    pub(crate) fn new(text: &str, short: &str) -> Self {
+        Self { text: text.to_owned(), short: short.to_owned(), steps_left: SHOWN_FOR }
+    }
+
+    /// A sentence without its full stop.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A shorter form for narrow windows.
+    pub(crate) fn short(&self) -> &str {
+        &self.short
+    }
+
+    /// Whether the goal is still shown.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.steps_left > 0
+    }
+
+    /// Counts `steps` steps in which the player wanted something.
+    pub(crate) fn moved(&mut self, steps: u64) {
+        self.steps_left = self.steps_left.saturating_sub(steps);
+    }
 }

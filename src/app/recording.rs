@@ -1,11 +1,17 @@
-//! Recordings of a game while it is played.
+//! Runs as scripts: recorded while the game is played, and played again by the ghost of the best run.
+//!
+//! The ghost is a game of its own. Rejected: recorded positions. A script is a hundredth of their size,
+//! and is kept anyway.
 
 use std::fmt;
 use std::io::Write;
 
-use super::App;
-use crate::game::{self, Intents};
+use crate::app::App;
+use crate::app::played::Goal;
+use crate::game::{self, Game, Intents, Script, Stretch};
 use crate::terminal;
+use crate::tui::MapMark;
+use crate::world::{Camera, FieldOfView, Figure, SpriteId};
 
 /// The recordings to make of a game; by default, none.
 #[derive(Default)]
@@ -20,7 +26,7 @@ pub struct Recording {
 }
 
 /// Writes a script while the game is played.
-pub(super) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
+pub(crate) type ScriptRecorder = game::Recorder<Box<dyn Write>>;
 
 impl fmt::Debug for Recording {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -33,12 +39,208 @@ impl fmt::Debug for Recording {
 
 impl App {
     /// Records that the player had `intents` for `steps` steps.
-    pub(super) fn record(&mut self, intents: Intents, steps: u64) {
+    pub(crate) fn record(&mut self, intents: Intents, steps: u64) {
         self.log.record(intents, steps);
         if let Some(script) = &mut self.script {
             // The game continues if recording fails. The owner of the file asks for the error
             // later.
             _ = script.record(intents, steps);
+        }
+    }
+}
+
+/// The stretches of a run so far.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RunLog {
+    stretches: Vec<Stretch>,
+}
+
+impl RunLog {
+    /// Records that the player wants `intents` for `steps` more steps.
+    pub(crate) fn record(&mut self, intents: Intents, mut steps: u64) {
+        while steps > 0 {
+            let last = self.stretches.last_mut().filter(|last| last.intents == intents);
+            let room = last.map_or(0, |last| {
+                let taken = steps.min(u64::from(Stretch::MOST_STEPS - last.steps)) as u32;
+                last.steps += taken;
+                taken
+            });
+            steps -= u64::from(room);
+            if room == 0 {
+                let taken = steps.min(Stretch::MOST_STEPS.into()) as u32;
+                self.stretches.push(Stretch { steps: taken, intents });
+                steps -= u64::from(taken);
+            }
+        }
+    }
+
+    /// Whether nothing has been recorded.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.stretches.is_empty()
+    }
+
+    /// The number of steps.
+    pub(crate) fn steps(&self) -> u64 {
+        self.stretches.iter().map(|stretch| u64::from(stretch.steps)).sum()
+    }
+
+    pub(crate) fn stretches(&self) -> &[Stretch] {
+        &self.stretches
+    }
+
+    /// The script of the run, without a header.
+    pub(crate) fn script(&self) -> String {
+        self.stretches.iter().flat_map(|stretch| [stretch.to_string(), "\n".to_owned()]).collect()
+    }
+}
+
+/// A script and the number of its steps that are over.
+#[derive(Clone, Debug)]
+pub(crate) struct ScriptCursor {
+    stretches: Vec<Stretch>,
+    /// The stretch of the next step, and how many of its steps are over.
+    index: usize,
+    passed: u32,
+}
+
+impl ScriptCursor {
+    /// The start of `script`.
+    pub(crate) fn new(script: &Script) -> Self {
+        let stretches = script.sections().iter().flat_map(|section| &section.stretches);
+        Self { stretches: stretches.copied().collect(), index: 0, passed: 0 }
+    }
+
+    /// The intents of the next step, which is then over; `None` at the end.
+    pub(crate) fn next(&mut self) -> Option<Intents> {
+        let stretch = self.stretches.get(self.index)?;
+        self.passed += 1;
+        if self.passed >= stretch.steps {
+            (self.index, self.passed) = (self.index + 1, 0);
+        }
+        Some(stretch.intents)
+    }
+
+    /// Returns to the start.
+    pub(crate) fn rewind(&mut self) {
+        (self.index, self.passed) = (0, 0);
+    }
+}
+
+/// How much of the ghost shows, of 255.
+const OPACITY: u8 = 96;
+
+/// The game of the best run, step by step beside that of the player.
+#[derive(Debug)]
+pub(crate) struct Ghost {
+    game: Game,
+    cursor: ScriptCursor,
+    /// The intents of the next step; `None` at the end of the script.
+    next: Option<Intents>,
+}
+
+impl App {
+    /// Switches ghosts on or off, and says so.
+    pub(crate) fn toggle_ghost(&mut self) {
+        self.prefer(|it| it.ghost ^= true);
+        let is_on = self.store.preferences().ghost;
+        let (text, short) = match (is_on, &self.ghost) {
+            (false, _) => ("The ghost is off", "Ghost off"),
+            (true, Some(ghost)) if ghost.camera().is_none() => {
+                ("The ghost is on, and has left the level", "Ghost on, and gone")
+            }
+            (true, Some(_)) => ("The ghost of your best run is on", "Ghost on"),
+            (true, None) => ("The ghost is on: you have no best run here yet", "No ghost here yet"),
+        };
+        self.notice = Some(Goal::new(text, short));
+    }
+}
+
+impl Ghost {
+    /// The best run at its start, in `game` at its start.
+    pub(crate) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
+        let next = cursor.next();
+        Self { game, cursor, next }
+    }
+
+    /// Advances by one step.
+    pub(crate) fn step(&mut self) {
+        if let Some(intents) = self.next {
+            self.game.step(intents);
+            self.next = self.cursor.next();
+        }
+    }
+
+    /// The number of steps in which the ghost stays as it is, at most `most`.
+    pub(crate) fn quiet_steps(&self, most: u64) -> u64 {
+        match self.next {
+            Some(intents) => self.game.quiet_steps(intents).min(1).min(most),
+            None => most,
+        }
+    }
+
+    /// A number that changes when the ghost has moved.
+    pub(crate) fn steps(&self) -> u64 {
+        self.game.tally().steps
+    }
+
+    /// The figure of the ghost; `None` after it has left the level.
+    pub(crate) fn figure(&self, sprite: SpriteId) -> Option<Figure> {
+        let camera = self.camera()?;
+        Some(Figure {
+            sprite,
+            position: camera.position(),
+            base: self.game.feet(),
+            heading: camera.heading,
+            frame: 0,
+            opacity: OPACITY,
+        })
+    }
+
+    /// The ghost on the map; `None` after it has left the level.
+    pub(crate) fn on_map(&self) -> Option<MapMark> {
+        let camera = self.camera()?;
+        Some(MapMark { position: camera.position(), heading: camera.heading })
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        (!self.game.is_finished()).then(|| self.game.camera(FieldOfView::default()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::game::{Intent, Script};
+
+    #[test]
+    fn the_script_has_the_steps_that_were_recorded() {
+        let run = [Intent::Run].into_iter().collect();
+        let most = u64::from(Stretch::MOST_STEPS);
+        let recorded = [(run, 3), (run, 4), (Intents::new(), 1), (run, 0), (run, 2 * most + 1)];
+        let mut log = RunLog::default();
+        assert!(log.is_empty());
+        for (intents, steps) in recorded {
+            log.record(intents, steps);
+        }
+        let script = Script::parse(&log.script(), "it").unwrap_or_else(|faults| panic!("{faults}"));
+        let each =
+            recorded.into_iter().flat_map(|(intents, steps)| (0..steps).map(move |_| intents));
+        assert!(script.iter().map(|(_, intents)| intents).eq(each));
+    }
+
+    #[test]
+    fn it_gives_the_steps_of_the_script() {
+        let text = "2 steps forward\n[b]\n1 step stand\n3 steps run\n";
+        let script = Script::parse(text, "it").unwrap_or_else(|faults| panic!("{faults}"));
+        let expected: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
+        let mut cursor = ScriptCursor::new(&script);
+        for _ in 0..2 {
+            let mut steps = Vec::new();
+            while let Some(intents) = cursor.next() {
+                steps.push(intents);
+            }
+            assert_eq!(steps, expected);
+            cursor.rewind();
         }
     }
 }

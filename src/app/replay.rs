@@ -7,8 +7,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use super::{App, Levels, Screen, Settings};
-use crate::canvas::Canvas;
 use crate::game::{Intents, STEPS_PER_SECOND, Script};
+use crate::tui::canvas::Canvas;
 
 /// A game without a terminal, one step at a time. It draws the picture, minimap and status line
 /// that a player with the same intents would see.
@@ -28,10 +28,10 @@ impl Replay {
 
     /// Advances by one step with `intents`.
     pub fn step(&mut self, intents: Intents) {
-        if self.app.screen == Screen::LevelDone {
+        if self.app.screen() == Screen::LevelDone {
             self.app.next_level();
         }
-        if self.app.screen == Screen::Playing {
+        if self.app.screen() == Screen::Playing {
             self.app.game.step(intents);
             self.app.goal.moved(u64::from(!intents.is_empty()));
             if self.app.game.is_finished() {

@@ -1,26 +1,28 @@
-//! Results: what is kept of a run when it ends.
+//! Results: what is kept of a run, and the panels at the end of a level, at a death, and at the end of
+//! the last level.
 
-use super::App;
-use super::levels::Stage;
-use super::panels::whole_seconds;
-use super::run_log::RunLog;
-use super::script_cursor::ScriptCursor;
-use crate::game::{Game, Header, LevelName, Rank, Script, Tally};
+use crate::app::App;
+use crate::app::levels::Stage;
+use crate::app::menu::Menu;
+use crate::app::menus::Choice;
+use crate::app::recording::{RunLog, ScriptCursor};
+use crate::app::store::{Improved, Run};
+use crate::app::time::{tenths, whole_seconds};
+use crate::game::{Game, Header, LevelName, Outcome, Rank, STEP, Script, Share, Tally};
 use crate::map::builtin;
-use crate::store::{Improved, Run};
 
 /// The result of a level that was won.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LevelResult {
-    pub(super) tally: Tally,
-    pub(super) par: Option<u32>,
-    pub(super) rank: Rank,
-    pub(super) improved: Improved,
+pub(crate) struct LevelResult {
+    pub(crate) tally: Tally,
+    pub(crate) par: Option<u32>,
+    pub(crate) rank: Rank,
+    pub(crate) improved: Improved,
 }
 
 impl App {
     /// Records the level that has just been won, and returns its result.
-    pub(super) fn record_result(&mut self) -> Option<LevelResult> {
+    pub(crate) fn record_result(&mut self) -> Option<LevelResult> {
         if self.is_descent() {
             self.record_floor();
         }
@@ -42,7 +44,7 @@ impl App {
 
     /// The script of the run so far, with a header that names the level. A descent is one run from its
     /// first floor on.
-    pub(super) fn run_script(&self, game: &Game) -> String {
+    pub(crate) fn run_script(&self, game: &Game) -> String {
         let level = if self.is_descent() {
             Some(LevelName::of_floor(1))
         } else {
@@ -54,7 +56,7 @@ impl App {
     }
 
     /// One line about the game that is played: the level, the time, and what happened.
-    pub(super) fn summary(&self) -> Option<String> {
+    pub(crate) fn summary(&self) -> Option<String> {
         if self.demo.is_some() || self.log.is_empty() {
             return self.left.clone();
         }
@@ -77,7 +79,7 @@ impl App {
 
     /// Keeps what was done in the game that is left, and saves it to go on with later. Returns a sentence if
     /// it is not saved, which is also in the line about the game.
-    pub(super) fn leave_game(&mut self) -> Option<String> {
+    pub(crate) fn leave_game(&mut self) -> Option<String> {
         self.left = self.summary();
         let saved = self.save_game();
         self.log = RunLog::default();
@@ -87,14 +89,14 @@ impl App {
     }
 
     /// The best run of the level as a script, to walk along.
-    pub(super) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
+    pub(crate) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
         let text = self.store.script(stage.name()?, self.difficulty)?;
         Script::parse(&text, "the best run").ok().map(|script| ScriptCursor::new(&script))
     }
 
     /// The index of the first built-in level that was not won at the preferred difficulty, if any
     /// was won.
-    pub(super) fn first_not_won(&self) -> Option<usize> {
+    pub(crate) fn first_not_won(&self) -> Option<usize> {
         let difficulty = self.store.preferences().difficulty;
         let won: Vec<&str> = self.store.won(difficulty).collect();
         let index = builtin::LEVELS.iter().position(|level| !won.contains(&level.name))?;
@@ -103,13 +105,115 @@ impl App {
 }
 
 /// The name of a level for the player: without the hash of a map's text.
-pub(super) fn shown_name(key: &str) -> &str {
+pub(crate) fn shown_name(key: &str) -> &str {
     match key.rsplit_once('-').filter(|_| builtin_named(key).is_none()) {
         Some((name, _)) => name,
         None => key,
     }
 }
 
-pub(super) fn builtin_named(name: &str) -> Option<usize> {
+pub(crate) fn builtin_named(name: &str) -> Option<usize> {
     builtin::LEVELS.iter().position(|level| level.name == name)
+}
+
+impl App {
+    /// What the player has done in the level, its rank, and how to go on.
+    pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
+        let menu =
+            self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
+        let is_fastest = self.result.is_some_and(|result| result.improved.time);
+        let fastest = if is_fastest { " (your fastest)" } else { "" };
+        let menu = menu.line(format!("in {}{fastest}", tenths(self.game.elapsed())));
+        let menu = match &self.result {
+            Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
+            None => menu,
+        };
+        let menu = menu.entry("Go on", Choice::NextLevel);
+        let menu =
+            if self.is_descent() { menu } else { menu.entry("Play it again", Choice::Restart) };
+        self.with_leaving(menu)
+    }
+
+    /// What happened to the player, and how to go on. The first choice goes on at once.
+    pub(crate) fn death_menu(&self) -> Menu<Choice> {
+        let cause = match self.game.grid().map(Game::outcome) {
+            Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
+            _ => String::new(),
+        };
+        if self.is_descent() {
+            let menu = Menu::new("you are dead").line(cause);
+            let menu = self.descent_lines().into_iter().fold(menu, Menu::line);
+            return self.with_leaving(menu);
+        }
+        let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
+        let menu = Menu::new("you are dead").line(cause);
+        let menu =
+            if deaths > 1 { menu.line(format!("for the {} time", ordinal(deaths))) } else { menu };
+        let menu =
+            menu.entry("Try again", Choice::Retry).entry("Restart the level", Choice::Restart);
+        self.with_leaving(menu)
+    }
+
+    pub(crate) fn end_menu(&self) -> Menu<Choice> {
+        let seconds = self.earlier + self.game.elapsed();
+        let menu = Menu::new("the end").line("all levels").line(format!("in {}", tenths(seconds)));
+        self.with_leaving(menu)
+    }
+
+    /// The level's title and, if there are several levels, its number.
+    pub(crate) fn level_lines(&self) -> Vec<String> {
+        let mut lines = vec![self.game.title().to_owned()];
+        if self.level.is_one_of_several() {
+            lines.push(self.level.to_string());
+        }
+        lines
+    }
+}
+
+/// `number` as an ordinal: 1st, 2nd, 3rd, 4th.
+fn ordinal(number: u32) -> String {
+    let ending = match (number % 10, number % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{number}{ending}")
+}
+
+/// The rank first, as it is what a small window has room for.
+fn result_lines(result: &LevelResult) -> Vec<String> {
+    let LevelResult { tally, par, rank, improved } = *result;
+    let best = if improved.rank { " (your best)" } else { "" };
+    let mut lines = vec![format!("rank: {rank}{best}"), counts(&tally)];
+    if let Some(par) = par {
+        let seconds = tally.steps as f64 * STEP;
+        let compared = if seconds <= f64::from(par) { "within" } else { "over" };
+        lines.push(format!("{compared} the par time of {}", whole_seconds(par.into())));
+    }
+    lines
+}
+
+/// What was found and what happened, where there was something to find or something happened.
+fn counts(tally: &Tally) -> String {
+    let shares = [("gold", tally.treasure), ("secrets", tally.secrets)];
+    let shares = shares.into_iter().filter(|(_, share)| share.total > 0);
+    let shares = shares.map(|(what, Share { found, total })| format!("{what}: {found} of {total}"));
+    let counts = [("alarms", tally.alarms), ("stunned", tally.stunned), ("deaths", tally.deaths)];
+    let counts = counts.into_iter().filter(|&(what, count)| count > 0 || what == "alarms");
+    let counts = counts.map(|(what, count)| format!("{what}: {count}"));
+    shares.chain(counts).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordinals_have_the_endings_of_english() {
+        let numbers = [1, 2, 3, 4, 11, 12, 13, 21, 102, 111, 113];
+        let shown = numbers.map(ordinal).join(" ");
+        assert_eq!(shown, "1st 2nd 3rd 4th 11th 12th 13th 21st 102nd 111th 113th");
+    }
 }

@@ -2,19 +2,33 @@
 //!
 //! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
 //! frame, so that nothing is computed or written.
+//!
+//! The time is that of the machine's clock. For tests, a debug build has another one: if the environment
+//! variable `CELLCASTER_CLOCK` is `focus`, time stands still until the terminal reports that the
+//! window has the focus, and each such report is one step of the game. What happens is then a
+//! function of the bytes that the program reads, on a machine under any load. Bytes, keys, screens
+//! and the terminal are the same under both clocks.
+//!
+//! A report of the focus has no other effect, and every terminal can send it. Rejected: time as a private
+//! sequence, which the decoder would have to know; and time from a file or a socket, which would have no
+//! order with the keys.
 
 use std::env;
-use std::time::Duration;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
-use super::interruption::Rendered;
-use super::stats::{Meter, Stats};
-use super::time::Time;
-use super::{App, Levels, Offers, Recording, Settings, TerminalLook};
-use crate::canvas::Canvas;
-use crate::store::Store;
+use crate::app::draw::Rendered;
+use crate::app::levels::Levels;
+use crate::app::recording::Recording;
+use crate::app::settings::Settings;
+use crate::app::stats::{Meter, Stats};
+use crate::app::store::Store;
+use crate::app::title::Offers;
+use crate::app::{App, TerminalLook};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, GlyphSet};
 
 /// What the program begins with.
@@ -142,7 +156,7 @@ impl Presenter {
             return Ok(());
         }
         if app.is_stale() {
-            let window = session.size().cells();
+            let window = session.protocol().size().cells();
             let rendered =
                 app.render_unless(window, &mut |comes_first| session.has_event(comes_first));
             if rendered == Rendered::Interrupted {
@@ -171,9 +185,10 @@ impl Presenter {
     }
 
     fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
-        if let Some(rates) = self.meter.frame(now, session.bytes_written()) {
-            let (round_trip, fidelity) = (session.round_trip(), session.fidelity());
-            let wants_compression = session.is_limited_by_network();
+        if let Some(rates) = self.meter.frame(now, session.protocol().bytes_drawn()) {
+            let (round_trip, fidelity) =
+                (session.protocol().round_trip(), session.protocol().fidelity());
+            let wants_compression = session.protocol().is_limited_by_network();
             app.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
         }
     }
@@ -197,24 +212,24 @@ impl Presenter {
 
 /// Whether the terminal does not show the current state, or not exactly.
 fn is_unfinished(app: &App, session: &Session) -> bool {
-    app.is_stale() || !session.is_settled()
+    app.is_stale() || !session.protocol().is_settled()
 }
 
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
     let offered = app.tmux_remedy();
-    let aspect = session.size().cell_aspect.and_then(CellAspect::new);
+    let aspect = session.protocol().size().cell_aspect.and_then(CellAspect::new);
     app.terminal_changed(TerminalLook {
         aspect,
-        depth: session.color_depth(),
-        shade_ink: session.shade_ink(),
+        depth: session.protocol().color_depth(),
+        shade_ink: session.protocol().shade_ink(),
         glyphs: session.glyph_support(),
     });
-    app.pointer.set_columns(session.size().columns);
-    app.detection.depth = app.depth;
-    app.detection.is_tmux = session.is_tmux();
-    app.detection.tmux = session.tmux_client().cloned();
-    app.detection.source = app.settings.depth.is_none().then(|| session.color_source());
+    app.pointer.set_columns(session.protocol().size().columns);
+    app.detection.depth = app.depth();
+    app.detection.is_tmux = session.protocol().is_tmux();
+    app.detection.tmux = session.protocol().tmux_client().cloned();
+    app.detection.source = app.settings.depth.is_none().then(|| session.protocol().color_source());
     app.renew_tmux_offer(offered.as_deref());
 }
 
@@ -229,4 +244,65 @@ fn ascii_locale(glyphs: GlyphSet) -> Option<String> {
 fn panic_on_demand(key: Key) {
     let demanded = key == Key::Function(12) && env::var_os("CELLCASTER_PANIC").is_some();
     assert!(!demanded, "CELLCASTER_PANIC is set, and F12 was pressed");
+}
+
+/// The time since the main loop began.
+#[derive(Debug)]
+pub(crate) struct Time {
+    start: Instant,
+    /// The time, if the terminal gives it.
+    #[cfg(debug_assertions)]
+    told: Option<std::cell::Cell<Duration>>,
+}
+
+impl Time {
+    /// Begins at zero.
+    pub(crate) fn begin() -> Self {
+        Self {
+            start: Instant::now(),
+            #[cfg(debug_assertions)]
+            told: env::var_os("CELLCASTER_CLOCK")
+                .is_some_and(|clock| clock == "focus")
+                .then(std::cell::Cell::default),
+        }
+    }
+
+    pub(crate) fn now(&self) -> Duration {
+        #[cfg(debug_assertions)]
+        if let Some(told) = &self.told {
+            return told.get();
+        }
+        self.start.elapsed()
+    }
+
+    /// The machine's clock, by which steps that take long are noticed; `None` if the terminal gives
+    /// the time.
+    pub(crate) fn of_machine(&self) -> Option<fn() -> Duration> {
+        #[cfg(debug_assertions)]
+        if self.told.is_some() {
+            return None;
+        }
+        Some(|| {
+            static BEGUN: OnceLock<Instant> = OnceLock::new();
+            BEGUN.get_or_init(Instant::now).elapsed()
+        })
+    }
+
+    /// How long it is until `time`; `None` if time stands still until the terminal reports
+    /// something.
+    pub(crate) fn until(&self, time: Duration) -> Option<Duration> {
+        #[cfg(debug_assertions)]
+        if self.told.is_some() {
+            return None;
+        }
+        Some(time.saturating_sub(self.now()))
+    }
+
+    /// Handles a report that the window has the focus.
+    #[cfg(debug_assertions)]
+    pub(crate) fn focus_reported(&self) {
+        if let Some(told) = &self.told {
+            told.set(told.get() + super::controls::step());
+        }
+    }
 }

@@ -9,17 +9,17 @@
 //! a checksum of the map alone. It would not notice a change of the rules, and would reject a map of which
 //! only a comment has changed.
 
-use super::descents::date_of;
+use super::descents::{date_of, save_of_descent};
 use super::menu::Menu;
 use super::menus::{Choice, capitalized};
-use super::panels::whole_seconds;
+use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
-use super::run_log::RunLog;
-use super::watch::Watch;
-use super::{App, Levels, STEP, Screen};
-use crate::game::{Game, Intents, LevelName, Outcome, Rules, Script};
+use super::steps::Watch;
+use super::time::whole_seconds;
+use super::{App, Levels, Screen};
+use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
+use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
-use crate::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::world::Difficulty;
 
 /// What leaving does with the game.
@@ -38,7 +38,7 @@ impl App {
     ///
     /// # Errors
     /// If the store does not take it.
-    pub(super) fn save_game(&mut self) -> Result<(), NotSaved> {
+    pub(crate) fn save_game(&mut self) -> Result<(), NotSaved> {
         match self.game_to_save() {
             Some(saved) => self.store.save(&saved),
             None => Ok(()),
@@ -92,7 +92,7 @@ impl App {
     }
 
     /// What leaving the program does, for the question whether to leave.
-    pub(super) fn effect_of_leaving(&self) -> &'static str {
+    pub(crate) fn effect_of_leaving(&self) -> &'static str {
         match self.leaving() {
             Leaving::LosesNothing => "leaves the program",
             Leaving::Saves => "leaves the program\nthe game is saved",
@@ -102,15 +102,15 @@ impl App {
     }
 
     /// Removes the saved game of the level that has just been won.
-    pub(super) fn remove_save_of_level(&mut self) {
+    pub(crate) fn remove_save_of_level(&mut self) {
         if let Some(save) = self.as_save() {
             self.store.remove_saved(save.id());
         }
     }
 
     /// Asks how to begin a level if a game in it is saved, or if there is no room to save another.
-    pub(super) fn ask_about_saved(&mut self) {
-        let is_at_start = self.screen == Screen::Playing && self.log.is_empty();
+    pub(crate) fn ask_about_saved(&mut self) {
+        let is_at_start = self.screen() == Screen::Playing && self.log.is_empty();
         let Some(save) = self.as_save().filter(|_| is_at_start) else { return };
         if self.store.has_saved(save.id()) {
             self.show(Screen::HasSaved);
@@ -120,7 +120,7 @@ impl App {
     }
 
     /// The question which game to play in a level in which one is saved.
-    pub(super) fn has_saved_menu(&self) -> Menu<Choice> {
+    pub(crate) fn has_saved_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("a saved game");
         let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
         let menu = match self.store.saves().find(|save| save.id() == id) {
@@ -135,13 +135,13 @@ impl App {
     }
 
     /// The question what to do in a level of which no game can be saved.
-    pub(super) fn no_room_menu(&self) -> Menu<Choice> {
+    pub(crate) fn no_room_menu(&self) -> Menu<Choice> {
         let menu = self.with_removal(Menu::new("no room"));
         self.with_leaving(menu.entry("Play without saving", Choice::GoOn))
     }
 
     /// Adds the offer to remove the oldest saved game.
-    pub(super) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let menu = menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."));
         match self.store.saves().last() {
             Some(oldest) => {
@@ -152,11 +152,11 @@ impl App {
     }
 
     /// Removes the oldest saved game to make room for the one that begins.
-    pub(super) fn remove_oldest(&mut self) {
+    pub(crate) fn remove_oldest(&mut self) {
         if let Some(id) = self.store.saves().last().map(Save::id) {
             self.store.remove_saved(id);
         }
-        if self.screen == Screen::Daily {
+        if self.screen() == Screen::Daily {
             self.renew_menu();
         } else {
             self.show(Screen::Playing);
@@ -165,7 +165,7 @@ impl App {
     }
 
     /// Adds to the title's menu how to go on: at once if there is one way, or by a list.
-    pub(super) fn with_continue(&self, menu: Menu<Choice>) -> Menu<Choice> {
+    pub(crate) fn with_continue(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let mut ways = self.ways_on();
         let (first, second) = (ways.next(), ways.next());
         match (first, second) {
@@ -179,7 +179,7 @@ impl App {
     }
 
     /// The list of saved games, the newest first, and the next level of the campaign.
-    pub(super) fn saves_menu(&self) -> Menu<Choice> {
+    pub(crate) fn saves_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("continue").line("x removes a saved game");
         self.ways_on()
             .fold(menu, |menu, (name, played, choice)| menu.entry_with(name, played, choice))
@@ -206,7 +206,7 @@ impl App {
     }
 
     /// The question whether to remove a saved game.
-    pub(super) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
+    pub(crate) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
         let menu = Menu::new("remove the saved game?");
         let menu = match self.store.saves().find(|save| save.id() == id) {
             Some(save) => menu.line(described(save)),
@@ -216,7 +216,7 @@ impl App {
     }
 
     /// Removes a saved game, and returns to the list, or to the title if it is empty.
-    pub(super) fn remove_saved(&mut self, id: SaveId) {
+    pub(crate) fn remove_saved(&mut self, id: SaveId) {
         self.store.remove_saved(id);
         self.show(Screen::Title);
         if self.store.saves().next().is_some() {
@@ -225,7 +225,7 @@ impl App {
     }
 
     /// Goes on with the saved game, if its script still leads to the state in which it was left.
-    pub(super) fn continue_saved(&mut self, id: SaveId) {
+    pub(crate) fn continue_saved(&mut self, id: SaveId) {
         let begun = self.read_saved(id).and_then(|(saved, script)| {
             self.begin_saved(&saved.save)?;
             Ok((saved, script))
@@ -237,7 +237,7 @@ impl App {
     }
 
     /// Goes on with the saved game of the level that has just begun.
-    pub(super) fn resume(&mut self, id: SaveId) {
+    pub(crate) fn resume(&mut self, id: SaveId) {
         match self.read_saved(id) {
             Ok((saved, script)) => self.repeat(&saved.save, &script),
             Err(sentence) => self.say_in_menu(&sentence),
@@ -248,13 +248,6 @@ impl App {
         let saved = self.store.saved(id).ok_or("The saved game can't be read.")?;
         let script = Script::parse(&saved.script, "the saved game");
         Ok((saved, script.map_err(|_| "The saved game is damaged.")?))
-    }
-
-    /// Shows a sentence above the entries of the menu.
-    pub(super) fn say_in_menu(&mut self, sentence: &str) {
-        let selected = self.menu.selected();
-        self.menu = self.menu_of(self.screen).line(sentence).selecting(selected);
-        self.shown = None;
     }
 
     /// Begins the level of a saved game, or the first floor of its descent.
@@ -320,7 +313,7 @@ impl App {
         self.show(Screen::Outdated(save.id()));
     }
 
-    pub(super) fn outdated_menu(&self, id: SaveId) -> Menu<Choice> {
+    pub(crate) fn outdated_menu(&self, id: SaveId) -> Menu<Choice> {
         let what = if self.is_descent() { "The floors of descents have" } else { "The level has" };
         let menu = Menu::new("the saved game")
             .line(format!("{what} changed since you left it."))
@@ -329,7 +322,7 @@ impl App {
     }
 
     /// Plays what has begun, without the saved game that cannot go on.
-    pub(super) fn begin_anew(&mut self, id: SaveId) {
+    pub(crate) fn begin_anew(&mut self, id: SaveId) {
         self.store.remove_saved(id);
         self.show(Screen::Playing);
     }
@@ -352,18 +345,6 @@ impl App {
 }
 
 const NO_MAP: &str = "The map of the saved game is not as it was.";
-
-/// The descent of that kind with these rules, as it is saved, without steps and checksum.
-pub(super) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
-    Save {
-        level: LevelName::of_floor(1).as_str().to_owned(),
-        file: None,
-        rules,
-        descent: Some(kind),
-        steps: None,
-        checksum: None,
-    }
-}
 
 /// The name of a saved game for the player.
 fn name_of(save: &Save) -> String {

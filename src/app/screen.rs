@@ -1,17 +1,12 @@
-//! Screens: what is shown over the picture, and the way back from it.
-//!
-//! Screens that are opened from another one return to it: the settings to the title or to the
-//! pause, wherever they were opened. The way back is a stack of screens with their menus, so that
-//! the selection is the same on return.
+//! Screens: the pages of the game at home.
 
-use super::App;
-use super::menu::Menu;
-use super::menus::Choice;
-use crate::store::SaveId;
+use crate::app::App;
+use crate::app::page::{Kind, Page};
+use crate::app::store::SaveId;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Screen {
+pub(crate) enum Screen {
     Title,
     /// The choice of a difficulty for a new game.
     NewGame,
@@ -45,65 +40,71 @@ pub(super) enum Screen {
     End,
 }
 
-impl Screen {
-    /// Whether the screen shows a result: nothing that it offers is chosen by a key that was meant
-    /// for the game.
-    pub(super) fn is_result(self) -> bool {
-        matches!(self, Self::LevelDone | Self::Dead | Self::End)
-    }
-
-    /// Whether the screen is a question before the first step of a level.
-    pub(super) fn is_before_start(self) -> bool {
-        matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
-    }
-
-    /// Whether the screen has a menu.
-    pub(super) fn has_menu(self) -> bool {
-        !matches!(self, Self::Playing | Self::Help | Self::Leaving)
+impl Page for Screen {
+    fn kind(self) -> Kind {
+        match self {
+            Self::Playing => Kind::Bare,
+            Self::Help => Kind::Help,
+            Self::Leaving => Kind::Leaving,
+            Self::LevelDone | Self::Dead | Self::End => Kind::Result,
+            Self::Settings | Self::Levels | Self::Maps => Kind::Menu { has_values: true },
+            _ => Kind::Menu { has_values: false },
+        }
     }
 }
 
-/// A screen with its menu.
-pub(super) type Shelved = (Screen, Menu<Choice>);
+impl Screen {
+    /// Whether the screen is a question before the first step of a level.
+    pub(crate) fn is_before_start(self) -> bool {
+        matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
+    }
+}
 
 impl App {
+    pub(crate) fn screen(&self) -> Screen {
+        self.pages.page()
+    }
+
+    /// Whether a result is shown.
+    pub(crate) fn shows_result(&self) -> bool {
+        self.screen().kind() == Kind::Result
+    }
+
     /// Shows `screen`, from which there is no way back.
-    pub(super) fn show(&mut self, screen: Screen) {
-        self.behind.clear();
+    pub(crate) fn show(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
-        self.enter((screen, menu));
+        self.pages.show(screen, menu, self.now);
+        self.shown = None;
     }
 
     /// Opens `screen` over the one that is shown.
-    pub(super) fn open(&mut self, screen: Screen) {
+    pub(crate) fn open(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
-        let before = (self.screen, self.menu.clone());
-        self.behind.push(before);
-        self.enter((screen, menu));
+        self.pages.open(screen, menu, self.now);
+        self.shown = None;
     }
 
     /// Returns to the screen from which this one was opened, or to the game.
-    pub(super) fn close(&mut self) {
-        let (screen, menu) = self.behind.pop().unwrap_or_else(|| (Screen::Playing, Menu::new("")));
-        self.enter((screen, menu));
-        if screen == Screen::Title {
+    pub(crate) fn close(&mut self) {
+        self.pages.close(Screen::Playing, self.now);
+        self.shown = None;
+        if self.screen() == Screen::Title {
             // What it offers may have changed.
             self.renew_menu();
         }
     }
 
-    /// Makes the menu anew, after something that it shows has changed.
-    pub(super) fn renew_menu(&mut self) {
-        let selected = self.menu.selected();
-        self.menu = self.menu_of(self.screen).selecting(selected);
+    /// Makes the menu again, after something that it shows has changed.
+    pub(crate) fn renew_menu(&mut self) {
+        let menu = self.menu_of(self.screen());
+        self.pages.renew(menu);
         self.shown = None;
     }
 
-    fn enter(&mut self, (screen, menu): Shelved) {
-        self.screen = screen;
-        self.menu = menu;
-        self.shown_since = self.now;
-        self.pending.forget();
+    /// Shows a sentence above the entries of the menu.
+    pub(crate) fn say_in_menu(&mut self, sentence: &str) {
+        let menu = self.menu_of(self.screen()).line(sentence);
+        self.pages.renew(menu);
         self.shown = None;
     }
 }

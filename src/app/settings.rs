@@ -11,29 +11,29 @@
 //! ```
 //!
 //! A [`Configuration`] is the content of such a file; the command line takes precedence. All faults
-//! of a file are reported in one run, each with its place. Reading it by serde was refused, as for
-//! maps: serde stops at the first fault.
+//! of a file are reported in one run, each with its place.
+//!
+//! - A key that the file gives to an action is removed from its action in the preset.
+//! - A key given to two actions is a fault.
+//! - An empty list leaves an action without a key.
 
-mod keys;
-mod read;
-mod value;
-mod write;
-
+use std::fmt;
 use std::num::NonZeroU32;
+use std::ops::Range;
 use std::time::Duration;
 
-use super::bindings::Bindings;
-#[cfg(feature = "serve")]
-use super::bindings::PRESETS;
-#[cfg(feature = "serve")]
-use super::settings_screen::after;
+use toml::de::{DeTable, DeValue};
+
+use crate::app::bindings::{Action, Bindings, Preset};
+use crate::app::setting::{At, Choice, FRAME_RATE, Setting, Value, toml_string};
+use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
+use crate::fault::document::{self, Entry, FaultList};
+use crate::fault::{Fault, Faults, quoted};
 use crate::render::{DynCaster, Filter};
-use crate::store::Preferences;
-use crate::terminal::Fidelity;
+use crate::terminal::{Fidelity, Key};
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
-use value::PRESET;
 
 /// How the game is shown and controlled.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +42,7 @@ pub struct Settings {
     pub bindings: Bindings,
     /// The time between two frames while something moves.
     pub frame_time: Duration,
-    /// The field of view at first.
+    /// The field of view. Keys change it.
     pub field_of_view: FieldOfView,
     /// The shape of a cell; `None` for that of the terminal.
     pub cell_aspect: Option<CellAspect>,
@@ -56,7 +56,7 @@ pub struct Settings {
     pub filter: Filter,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
-    /// Whether the status line shows the figures of frames and the link at first.
+    /// Whether the status line shows the figures of frames and the link. A key changes it.
     pub shows_stats: bool,
     /// The difficulty of levels that are played without the title; `None` for the one that the player
     /// has chosen before.
@@ -134,8 +134,8 @@ pub enum MapDisplay {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
-    /// The name of the preset that the bindings are based on.
-    preset: &'static str,
+    /// The preset that the bindings are based on.
+    pub preset: Preset,
     /// The actions of keys.
     pub bindings: Bindings,
     /// The colour depth; `None` for that of the terminal.
@@ -154,34 +154,210 @@ pub struct Configuration {
     pub fidelity: Option<Fidelity>,
 }
 
-#[cfg(feature = "serve")]
-impl Configuration {
-    /// The name of the preset that the bindings are based on.
-    pub(crate) fn preset(&self) -> &'static str {
-        self.preset
-    }
-
-    /// Takes the bindings of the next preset, or of the one before if `forward` is false.
-    pub(crate) fn change_preset(&mut self, forward: bool) {
-        let (name, bindings) = after(&PRESETS, |preset| preset.0 == self.preset, forward);
-        (self.preset, self.bindings) = (name, bindings());
-    }
+impl Choice for MapDisplay {
+    const ALL: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Seen, "seen", "what was seen"),
+        (Self::All, "all", "all"),
+        (Self::Off, "off", "off"),
+    ];
 }
 
 impl Default for Configuration {
     fn default() -> Self {
         Self {
-            preset: PRESET.default,
+            preset: Preset::default(),
             bindings: Bindings::default(),
             colors: None,
             glyphs: None,
             field_of_view: FieldOfView::default(),
-            frames_per_second: const { NonZeroU32::new(30).unwrap() },
+            frames_per_second: FRAME_RATE,
             mouse: false,
             minimap: MapDisplay::default(),
             fidelity: None,
         }
     }
+}
+
+/// The settings in the order of a file. The table of keys follows them.
+const SETTINGS: [Setting<Configuration>; 8] = [
+    Setting {
+        key: "preset",
+        about: "the keyboard that keys are for, as a start: \"qwerty\", \"azerty\" or \"hjkl\"",
+        value: &At(|it: &mut Configuration| &mut it.preset),
+    },
+    Setting {
+        key: "colors",
+        about: "how many colours: \"true\", \"256\", \"16\", \"mono\", or \"auto\" for what the\nterminal has",
+        value: &At(|it: &mut Configuration| &mut it.colors),
+    },
+    Setting {
+        key: "glyphs",
+        about: "characters for pixels: \"half\" (two a cell), \"quadrant\" (four), \"sextant\" (six),\n\
+                  \"octant\" (eight), \"ascii\", \"ramp\" (by brightness), or \"auto\" for what the\n\
+                  terminal can show",
+        value: &At(|it: &mut Configuration| &mut it.glyphs),
+    },
+    Setting {
+        key: "fov",
+        about: "the field of view in degrees, above 0 and below 180",
+        value: &At(|it: &mut Configuration| &mut it.field_of_view),
+    },
+    Setting {
+        key: "fps",
+        about: "the most frames a second, from 1 to 240",
+        value: &At(|it: &mut Configuration| &mut it.frames_per_second),
+    },
+    Setting {
+        key: "mouse",
+        about: "whether the mouse turns the player at first: true or false",
+        value: &At(|it: &mut Configuration| &mut it.mouse),
+    },
+    Setting {
+        key: "minimap",
+        about: "the map in the corner: \"seen\" (what has been seen so far), \"all\" or \"off\"",
+        value: &At(|it: &mut Configuration| &mut it.minimap),
+    },
+    Setting {
+        key: "fidelity",
+        about: "how exact colours are while something moves: \"exact\", \"high\", \"low\", a\n\
+                  tolerance from 0 to 255, or \"auto\" for what the link allows",
+        value: &At(|it: &mut Configuration| &mut it.fidelity),
+    },
+];
+
+impl Configuration {
+    /// Parses a configuration file, which faults refer to as `name`.
+    ///
+    /// # Errors
+    /// All faults of the file.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
+        let faults = FaultList::default();
+        let document = document::parse(text, &faults);
+        let mut configuration = Self::default();
+        if faults.is_empty() {
+            configuration.read(&document, &faults);
+        }
+        if faults.is_empty() {
+            Ok(configuration)
+        } else {
+            Err(Faults::new(name, text, faults.take()))
+        }
+    }
+
+    fn read(&mut self, document: &DeTable, faults: &FaultList) {
+        let mut bound = Bound::default();
+        for entry in document::entries(document, faults) {
+            if let Some(setting) = SETTINGS.iter().find(|setting| setting.key == entry.key) {
+                setting.value.read(&entry, self);
+            } else if entry.key == KEYS {
+                bound = entry
+                    .table("[keys]")
+                    .map(|table| Bound::read(&entry, table))
+                    .unwrap_or_default();
+            } else {
+                let known: Vec<&str> = SETTINGS.iter().map(|it| it.key).chain([KEYS]).collect();
+                entry.faults.push(entry.unknown_key("the configuration", &known));
+            }
+        }
+        self.bindings = self.preset.bindings().rebound(&bound.actions, bound.keys);
+    }
+
+    /// Takes the bindings of the next preset, or of the one before if `forward` is false.
+    pub fn change_preset(&mut self, forward: bool) {
+        self.preset = self.preset.after(forward);
+        self.bindings = self.preset.bindings();
+    }
+}
+
+/// The name of the table of keys.
+const KEYS: &str = "keys";
+
+/// The keys that a file gives to actions.
+#[derive(Default)]
+struct Bound {
+    /// The actions in the table.
+    actions: Vec<Action>,
+    keys: Vec<(Key, Action)>,
+}
+
+impl Bound {
+    fn read(owner: &Entry<'_, '_>, table: &DeTable<'_>) -> Self {
+        let names = Action::ALL.map(|(name, ..)| name);
+        let mut bound = Self::default();
+        for entry in owner.entries(table) {
+            match Action::named(entry.key) {
+                Some(action) => bound.bind(action, &entry),
+                None => entry.faults.push(entry.unknown_key("the table of keys", &names)),
+            }
+        }
+        bound
+    }
+
+    /// Binds the key or the list of keys of `entry` to `action`.
+    fn bind(&mut self, action: Action, entry: &Entry<'_, '_>) {
+        self.actions.push(action);
+        let values = match entry.value {
+            DeValue::Array(values) => {
+                values.iter().map(|value| (value.get_ref(), value.span())).collect()
+            }
+            single => vec![(single, entry.value_place.clone())],
+        };
+        for (value, place) in values {
+            let Some(name) = value.as_str() else {
+                let wanted = "the name of a key, or a list of names";
+                entry.faults.push(entry.wrong_type(wanted, "forward = [\"z\", \"up\"]"));
+                break;
+            };
+            match name.parse::<Key>() {
+                Err(error) => {
+                    entry.faults.push(Fault::new(place, error.to_string()).label("unknown key"));
+                }
+                Ok(key) if self.keys.iter().any(|&(other, to)| other == key && to != action) => {
+                    entry.faults.push(bound_twice(key, place));
+                }
+                Ok(key) => self.keys.push((key, action)),
+            }
+        }
+    }
+}
+
+fn bound_twice(key: Key, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("the key {} is bound to two actions", quoted(&key.to_string())))
+        .label("another action has it too")
+        .help("give each key to one action")
+}
+
+impl fmt::Display for Configuration {
+    /// Writes a complete file: each setting with its description, its default and its value. Keys
+    /// of the preset are commented out, so that they follow the preset.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let default = Self::default();
+        for Setting { key, about, value } in &SETTINGS {
+            about.lines().try_for_each(|line| writeln!(f, "# {line}"))?;
+            writeln!(f, "# default: {}", value.write(&default).trim_matches('"'))?;
+            writeln!(f, "{key} = {}\n", value.write(self))?;
+        }
+        writeln!(
+            f,
+            "# The keys of each action, in place of the preset's; those of the preset are comments."
+        )?;
+        writeln!(f, "# A key is one character or a name, such as \"up\", \"space\", \"f1\".")?;
+        writeln!(f, "[{KEYS}]")?;
+        let usual = self.preset.bindings();
+        for (name, does, action) in Action::ALL {
+            let keys = list(&self.bindings, action);
+            let comment = if keys == list(&usual, action) { "# " } else { "" };
+            writeln!(f, "{comment}{name} = {keys}  # {does}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The keys of `action` as a TOML array.
+fn list(bindings: &Bindings, action: Action) -> String {
+    let keys: Vec<String> =
+        bindings.keys(action).map(|key| toml_string(&key.to_string())).collect();
+    format!("[{}]", keys.join(", "))
 }
 
 #[cfg(test)]

@@ -7,18 +7,20 @@ use crate::terminal::Fidelity;
 
 /// The current figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Stats {
-    pub(crate) rates: Rates,
+pub struct Stats {
+    /// The rates of frames and bytes.
+    pub rates: Rates,
     /// The time from sending a frame to the terminal's answer, if it answers.
-    pub(crate) round_trip: Option<Duration>,
-    pub(crate) fidelity: Fidelity,
+    pub round_trip: Option<Duration>,
+    /// The fidelity of frames.
+    pub fidelity: Fidelity,
     /// Whether the link limits the fidelity, so that compression would help.
-    pub(crate) wants_compression: bool,
+    pub wants_compression: bool,
 }
 
 /// The rates of frames and bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rates {
+pub struct Rates {
     pub(crate) frames_per_second: f64,
     pub(crate) bytes_per_second: f64,
 }
@@ -44,7 +46,7 @@ impl fmt::Display for Stats {
 /// Measures the rates while frames follow one another. Pauses between motions do not count, so that
 /// the figures need no update when motion ends.
 #[derive(Debug, Default)]
-pub(crate) struct Meter {
+pub struct Meter {
     begun: Duration,
     bytes_before: u64,
     frames: u32,
@@ -58,7 +60,7 @@ const PAUSE: Duration = Duration::from_millis(500);
 
 impl Meter {
     /// Counts a frame; `bytes` is the total so far. Returns new figures when they are due.
-    pub(crate) fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
+    pub fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
         let pauses = now.saturating_sub(self.last) > PAUSE;
         let elapsed = now.saturating_sub(self.begun);
         self.frames += 1;

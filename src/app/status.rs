@@ -4,12 +4,10 @@
 //! is allocated. Its time is therefore that of the last frame: while nothing moves, no frame is
 //! drawn to show another second.
 //!
-//! Parts that do not fit are left out as a whole, the least important first. Cutting the line at
-//! its end was refused: in a narrow window, the key for help would be lost.
+//! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
+//! line at its end. In a narrow window, the key for help would be lost.
 
-mod write;
-
-use std::fmt;
+use std::fmt::{self, Write};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -17,61 +15,72 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 
-use super::goal::Goal;
-use super::levels::LevelNumber;
-use super::played::Played;
-use super::stats::Stats;
-use super::vitals::HealthSigns;
-use crate::app::bindings::Bindings;
-
-/// The modes of motion that are switched on.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Toggles {
-    pub(crate) runs: bool,
-    pub(crate) ducks: bool,
-    pub(crate) keeps_walking: bool,
-}
+use crate::app::bindings::{Action, Bindings};
+use crate::app::controls::Toggles;
+use crate::app::levels::LevelNumber;
+use crate::app::played::{Goal, Played};
+use crate::app::stats::Stats;
+use crate::app::time::whole_seconds;
+use crate::color::palette::ColorDepth;
+use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, Share};
+use crate::tui::GlyphSet;
+use crate::world::{FieldOfView, Supply};
 
 /// The values that the line shows.
-pub(super) struct StatusValues<'a> {
-    pub(super) game: &'a Played,
-    pub(super) goal: &'a Goal,
-    pub(super) notice: Option<&'a Goal>,
-    pub(super) level: LevelNumber,
+pub(crate) struct StatusValues<'a> {
+    pub(crate) game: &'a Played,
+    pub(crate) goal: &'a Goal,
+    pub(crate) notice: Option<&'a Goal>,
+    pub(crate) level: LevelNumber,
     /// The share of the level that has been seen, from 0 to 1, if that is counted.
-    pub(super) share_seen: Option<f64>,
-    pub(super) toggles: Toggles,
+    pub(crate) share_seen: Option<f64>,
+    pub(crate) toggles: Toggles,
     /// Whether the mouse turns the player.
-    pub(super) mouse: bool,
-    pub(super) stats: Option<&'a Stats>,
-    pub(super) bindings: &'a Bindings,
-    pub(super) health_signs: HealthSigns,
+    pub(crate) mouse: bool,
+    pub(crate) stats: Option<&'a Stats>,
+    pub(crate) bindings: &'a Bindings,
+    pub(crate) health_signs: HealthSigns,
 }
 
 /// The texts of the line: place and state of the player at the left; progress and help at the
 /// right.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StatusLine {
+pub struct StatusLine {
     texts: [[String; 2]; PARTS],
 }
 
 /// The parts of the line, from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub enum Part {
+    /// The health.
     Health,
+    /// The alarm of the guards.
     Alarm,
+    /// How lit the player is.
     Light,
+    /// What the player carries.
     Supplies,
+    /// The level's title.
     Title,
+    /// The level's number.
     Level,
+    /// The place in a generated level.
     Site,
+    /// The modes of motion.
     Modes,
+    /// The keys that the player has.
     Keys,
+    /// What has just happened, or the goal.
     Notice,
+    /// The figures of frames and the link.
     Stats,
+    /// The treasure found.
     Treasure,
+    /// The share of the level that was seen.
     Seen,
+    /// The time played.
     Time,
+    /// The key for help.
     Help,
 }
 
@@ -133,12 +142,12 @@ const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
     /// Updates the texts.
-    pub(super) fn update(&mut self, values: &StatusValues) {
+    pub(crate) fn update(&mut self, values: &StatusValues) {
         self.rewrite(|line| line.write(values));
     }
 
     /// Replaces all texts by those that `write` writes.
-    pub(crate) fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
+    pub fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
         _ = write(self);
@@ -213,8 +222,211 @@ fn draw_text(text: &str, area: Rect, buffer: &mut Buffer) {
 }
 
 /// A line with a hint instead of the game's state.
-pub(crate) fn hint(text: &str) -> impl Widget {
+pub fn hint(text: &str) -> impl Widget {
     Line::raw(text).centered().style(Style::new().add_modifier(Modifier::REVERSED))
+}
+
+impl StatusLine {
+    pub(crate) fn write(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, level, share_seen, toggles, mouse, stats, bindings, .. } = *values;
+        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        if let Some((game, player)) = mission {
+            self.write_vitals(game, &player, values.health_signs)?;
+        }
+        self.both(Part::Title, format_args!("{}", game.title()))?;
+        if level.is_one_of_several() {
+            let [short, long] = &mut self.texts[Part::Level as usize];
+            level.write_short(short)?;
+            write!(long, "{level}")?;
+        }
+        if let Some(site) = game.site() {
+            self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
+        }
+        self.write_modes(toggles, mouse, mission.is_some_and(|it| it.1.lamp_is_lit()))?;
+        self.write_keys(game.keys())?;
+        self.write_notice(values)?;
+        if let Some(stats) = stats {
+            self.write_stats(stats)?;
+        }
+        if let Some(share) = share_seen {
+            self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
+        }
+        self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
+        self.write_help(bindings)
+    }
+
+    /// Writes what a key has done, the message of the game, or the goal.
+    fn write_notice(&mut self, values: &StatusValues) -> fmt::Result {
+        let StatusValues { game, goal, notice, .. } = *values;
+        let notice = notice.filter(|notice| notice.is_shown());
+        if let (None, Some(message)) = (notice, game.message()) {
+            return self.both(Part::Notice, format_args!("{message}"));
+        }
+        if let Some(line) = notice.or(Some(goal)).filter(|line| line.is_shown()) {
+            let [short, long] = self.forms(Part::Notice);
+            short.push_str(line.short());
+            long.push_str(line.text());
+        }
+        Ok(())
+    }
+
+    /// Writes the modes that are switched on.
+    pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
+        let modes = [
+            (toggles.runs, "running"),
+            (toggles.ducks, "ducking"),
+            (toggles.keeps_walking, "walking on"),
+            (mouse, "mouse"),
+            (lamp, "lamp"),
+        ];
+        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the figures of frames and the link.
+    pub fn write_stats(&mut self, stats: &Stats) -> fmt::Result {
+        let [short, long] = self.forms(Part::Stats);
+        write!(short, "{}", stats.rates)?;
+        write!(long, "{stats}")
+    }
+
+    /// Writes the names of the keys that the player has.
+    pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
+        for (index, key) in keys.enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the keys that show the help.
+    pub fn write_help(&mut self, bindings: &Bindings) -> fmt::Result {
+        let [short, long] = &mut self.texts[Part::Help as usize];
+        for (index, key) in bindings.keys(Action::ToggleHelp).enumerate() {
+            let blank = if index > 0 { " " } else { "" };
+            write!(long, "{blank}{key}")?;
+        }
+        short.push_str(long);
+        long.push_str(" help");
+        Ok(())
+    }
+
+    /// The short and the long form of `part`.
+    pub fn forms(&mut self, part: Part) -> &mut [String; 2] {
+        &mut self.texts[part as usize]
+    }
+
+    /// Appends to both forms of `part`.
+    pub fn both(&mut self, part: Part, text: fmt::Arguments) -> fmt::Result {
+        self.texts[part as usize].iter_mut().try_for_each(|form| form.write_fmt(text))
+    }
+}
+
+/// How health is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HealthSigns {
+    /// A heart for each point.
+    Hearts,
+    /// Numbers.
+    Digits,
+}
+
+/// Visibility below which the player is in the dark, and below which the light is dim.
+const DARK: u8 = 64;
+const DIM: u8 = 144;
+
+impl HealthSigns {
+    /// The signs that a picture of that kind shows best.
+    pub fn for_picture(glyphs: GlyphSet, depth: ColorDepth) -> Self {
+        let has_hearts = glyphs.has_blocks() && depth != ColorDepth::Mono;
+        if has_hearts { Self::Hearts } else { Self::Digits }
+    }
+}
+
+impl StatusLine {
+    /// Writes health, alarm, light, supplies and treasure.
+    pub fn write_vitals(
+        &mut self,
+        game: &Game,
+        player: &PlayerView,
+        signs: HealthSigns,
+    ) -> fmt::Result {
+        self.write_health(player.health(), signs)?;
+        self.write_alarm(game, player)?;
+        let light = match player.visibility() {
+            0..DARK => "dark",
+            DARK..DIM => "dim",
+            DIM.. => "lit",
+        };
+        self.both(Part::Light, format_args!("{light}"))?;
+        self.write_supplies(player)?;
+        let Share { found, total } = game.treasure();
+        if total > 0 {
+            let needed = game.world().treasure_needed();
+            let [short, long] = self.forms(Part::Treasure);
+            write!(long, "{found} of {total} gold")?;
+            match needed {
+                0 => {}
+                _ if found >= needed => long.push_str(", enough"),
+                _ if needed == total => long.push_str(", all needed"),
+                _ => write!(long, ", {needed} needed")?,
+            }
+            if found < needed && needed < total {
+                write!(short, "{found}/{total} need {needed}")?;
+            } else {
+                write!(short, "{found}/{total} gold")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the alarm, and the kind of the nearest guard who has raised it.
+    fn write_alarm(&mut self, game: &Game, player: &PlayerView) -> fmt::Result {
+        let alarm = match game.alarm() {
+            Alarm::Calm => return Ok(()),
+            Alarm::Wary => "wary",
+            Alarm::Raised => "ALARM",
+        };
+        let position = player.camera(FieldOfView::default()).position();
+        let distance = |guard: &GuardView| guard.position.distance_squared(position);
+        let guards = game.guards().filter(|guard| guard.mood.alarm() == game.alarm());
+        let nearest = guards.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [short, long] = self.forms(Part::Alarm);
+        short.push_str(alarm);
+        match nearest {
+            Some(guard) => write!(long, "{alarm}: {}", guard.kind.name()),
+            None => long.write_str(alarm),
+        }
+    }
+
+    fn write_health(&mut self, health: Health, signs: HealthSigns) -> fmt::Result {
+        let Health { points, most } = health;
+        match signs {
+            HealthSigns::Digits => self.both(Part::Health, format_args!("HP {points}/{most}")),
+            HealthSigns::Hearts => (0..most).try_for_each(|index| {
+                let heart = if index < points { '♥' } else { '♡' };
+                self.both(Part::Health, format_args!("{heart}"))
+            }),
+        }
+    }
+
+    /// Writes what the player carries: the first letters, or the names.
+    fn write_supplies(&mut self, player: &PlayerView) -> fmt::Result {
+        let carried = Supply::ALL.map(|supply| (supply.name(), player.supplies(supply)));
+        let [short, long] = self.forms(Part::Supplies);
+        for (index, (name, count)) in carried.iter().filter(|(_, count)| *count > 0).enumerate() {
+            let (blank, comma) = if index > 0 { (" ", ", ") } else { ("", "") };
+            let letter = &name[..1];
+            let name = if *count == 1 { &name[..name.len() - 1] } else { name };
+            write!(short, "{blank}{count}{letter}")?;
+            write!(long, "{comma}{count} {name}")?;
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

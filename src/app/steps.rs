@@ -1,4 +1,4 @@
-//! The steps of the game that pass with time.
+//! The steps of the game that pass with time, and the bell that is rung for what happens in them.
 //!
 //! Each step uses the keys held at its own time, even if several steps pass between two frames: a
 //! tap lasts the same number of steps on a slow machine as on a fast one.
@@ -8,17 +8,18 @@
 
 use std::time::Duration;
 
-use super::clock::{self, Clock};
-use super::played::Played;
-use super::{App, Screen};
-use crate::game::Intents;
+use crate::app::App;
+use crate::app::controls::{self, Clock};
+use crate::app::played::Played;
+use crate::app::screen::Screen;
+use crate::game::{Alarm, Game, Intents, PlayerId};
 
 /// The time after which no further step is begun before keys are read.
 const MOST_TIME: Duration = Duration::from_millis(25);
 
 impl App {
     /// Advances the game to `now`, or as far as it gets in a moment. The rest of the time is lost.
-    pub(super) fn advance(&mut self, now: Duration) {
+    pub(crate) fn advance(&mut self, now: Duration) {
         self.now = now;
         let begun = self.machine_time.map(|time| time());
         let is_late = |time: Option<fn() -> Duration>| {
@@ -36,9 +37,9 @@ impl App {
                 }
             }
         }
-        while steps > 0 && moves < Clock::MOST_STEPS && self.screen == Screen::Playing {
+        while steps > 0 && moves < Clock::MOST_STEPS && self.screen() == Screen::Playing {
             let passed = self.pass(step, steps, &mut moves);
-            step = clock::after(step, passed);
+            step = controls::after(step, passed);
             steps -= passed;
             if is_late(self.machine_time) {
                 break;
@@ -89,7 +90,7 @@ impl App {
     }
 
     /// The number of steps with these intents in which nothing changes but clocks.
-    pub(super) fn quiet_steps(&self, intents: Intents) -> u64 {
+    pub(crate) fn quiet_steps(&self, intents: Intents) -> u64 {
         let quiet = self.game.quiet_steps(intents);
         self.ghost.as_ref().map_or(quiet, |ghost| ghost.quiet_steps(quiet))
     }
@@ -102,5 +103,54 @@ impl App {
         } else if self.game.is_dead() {
             self.show(Screen::Dead);
         }
+    }
+}
+
+/// The last state, to compare the next one with.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    alarm: Alarm,
+    health: u8,
+    /// Whether something has happened since [`Watch::take_ring`].
+    rings: bool,
+}
+
+impl Watch {
+    /// A watch that begins with the state of `game`.
+    pub(crate) fn begin(game: Option<&Game>) -> Self {
+        let mut watch = Self::default();
+        if let Some(game) = game {
+            watch.look(game);
+        }
+        watch.silenced()
+    }
+
+    /// A watch that begins with the state of `player` in `game`.
+    pub fn of(game: &Game, player: PlayerId) -> Self {
+        let mut watch = Self::default();
+        watch.look_at(game, player);
+        watch.silenced()
+    }
+
+    fn silenced(self) -> Self {
+        Self { rings: false, ..self }
+    }
+
+    /// Looks at the state after a step.
+    pub(crate) fn look(&mut self, game: &Game) {
+        self.look_at(game, PlayerId::FIRST);
+    }
+
+    /// Looks at the state of `player` after a step.
+    pub fn look_at(&mut self, game: &Game, player: PlayerId) {
+        let alarm = game.alarm();
+        let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
+        self.rings |= alarm > self.alarm || health < self.health;
+        (self.alarm, self.health) = (alarm, health);
+    }
+
+    /// Whether something has happened since the last call.
+    pub fn take_ring(&mut self) -> bool {
+        std::mem::take(&mut self.rings)
     }
 }

@@ -21,12 +21,12 @@ use std::time::Duration;
 use glam::DVec2;
 
 use super::*;
+use crate::app::store::Store;
 use crate::game::{Game, Rank, Tally};
 use crate::map::{Level, parse_str};
-use crate::store::Store;
 use crate::terminal::{Key, KeyEvent, Modifiers, Phase};
-use crate::tui::held::keyboard::Keyboard;
-use crate::world::World;
+use crate::tui::held::tests::Keyboard;
+use crate::world::{FieldOfView, World};
 
 const W: Key = Key::Char('w');
 const SPACE: Key = Key::Char(' ');

@@ -1,75 +1,45 @@
-//! The time of the main loop.
-//!
-//! It is that of the machine's clock. For tests, a debug build has another one: if the environment
-//! variable `CELLCASTER_CLOCK` is `focus`, time stands still until the terminal reports that the
-//! window has the focus, and each such report is one step of the game. What happens is then a
-//! function of the bytes that the program reads, on a machine under any load. Bytes, keys, screens
-//! and the terminal are the same under both clocks.
-//!
-//! A report of the focus has no other effect, and every terminal can send it. Time as a private
-//! sequence was refused: the decoder would have to know it. So was time that a file or a socket
-//! gives: it would have no order with the keys.
+//! Times as players read them: minutes and seconds, with or without tenths.
 
-use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::fmt::{self, Display};
 
-/// The time since the main loop began.
-#[derive(Debug)]
-pub(super) struct Time {
-    start: Instant,
-    /// The time, if the terminal gives it.
-    #[cfg(debug_assertions)]
-    told: Option<std::cell::Cell<Duration>>,
+use crate::game::STEP;
+
+/// Formats minutes and seconds.
+pub fn whole_seconds(seconds: f64) -> impl Display {
+    let seconds = seconds as u64;
+    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
 }
 
-impl Time {
-    /// Begins at zero.
-    pub(super) fn begin() -> Self {
-        Self {
-            start: Instant::now(),
-            #[cfg(debug_assertions)]
-            told: std::env::var_os("CELLCASTER_CLOCK")
-                .is_some_and(|clock| clock == "focus")
-                .then(std::cell::Cell::default),
-        }
-    }
+struct WholeSeconds {
+    minutes: u64,
+    seconds: u64,
+}
 
-    pub(super) fn now(&self) -> Duration {
-        #[cfg(debug_assertions)]
-        if let Some(told) = &self.told {
-            return told.get();
-        }
-        self.start.elapsed()
+impl Display for WholeSeconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{:02}", self.minutes, self.seconds)
     }
+}
 
-    /// The machine's clock, by which steps that take long are noticed; `None` if the terminal gives
-    /// the time.
-    pub(super) fn of_machine(&self) -> Option<fn() -> Duration> {
-        #[cfg(debug_assertions)]
-        if self.told.is_some() {
-            return None;
-        }
-        Some(|| {
-            static BEGUN: OnceLock<Instant> = OnceLock::new();
-            BEGUN.get_or_init(Instant::now).elapsed()
-        })
-    }
+/// Formats minutes, seconds and tenths.
+pub fn tenths(seconds: f64) -> String {
+    let all = (seconds * 10.0) as u64;
+    format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
+}
 
-    /// How long it is until `time`; `None` if time stands still until the terminal reports
-    /// something.
-    pub(super) fn until(&self, time: Duration) -> Option<Duration> {
-        #[cfg(debug_assertions)]
-        if self.told.is_some() {
-            return None;
-        }
-        Some(time.saturating_sub(self.now()))
-    }
+/// Formats the time of `steps` steps of a game as minutes, seconds and tenths.
+pub fn of_steps(steps: u64) -> String {
+    tenths(steps as f64 * STEP)
+}
 
-    /// Handles a report that the window has the focus.
-    #[cfg(debug_assertions)]
-    pub(super) fn focus_reported(&self) {
-        if let Some(told) = &self.told {
-            told.set(told.get() + super::clock::step());
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_minutes_seconds_and_tenths() {
+        assert_eq!(tenths(0.0), "0:00.0");
+        assert_eq!(tenths(61.26), "1:01.2");
+        assert_eq!(tenths(3600.0), "60:00.0");
     }
 }

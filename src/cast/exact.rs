@@ -7,24 +7,26 @@
 //! rooms, among pillars and in corridors (`benches/casters.rs`), a ray takes 0.6 to 0.9 times the
 //! time of `dda`, which is why this caster is the default.
 //!
-//! The walk compares the next two lines in double precision first, as `dda` does. It accepts the
-//! result if the distances differ by more than a bound on their rounding. Otherwise the ray passes
-//! so close to the corner of the two lines that only the sign of a cross product, computed without
-//! rounding, can tell the side. Ordinary rays never need it, and pay one comparison for each line.
+//! The walk compares the distances of the next two lines in double precision first, as `dda` does. The
+//! ray meets the next x line at `(x - origin.x) / direction.x`, and the next y line at `(y - origin.y) /
+//! direction.y`. Only their order counts, so both are multiplied by `|direction.x · direction.y|`: two
+//! products are compared, without a division, and at a corner both are equal. Both are computed from the
+//! index of the line. Rejected: adding up lengths from line to line, whose error grows with the distance.
+//!
+//! The walk accepts the result if the distances differ by more than a bound on their rounding. Otherwise
+//! the ray passes so close to the corner of the two lines that only the sign of a cross product, computed
+//! without rounding, can tell the side. Ordinary rays never need it, and pay one comparison for each line.
 //! This is a floating-point filter before an exact predicate, as in Shewchuk, "Adaptive Precision
 //! Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997).
 //!
-//! The bound on the rounding is computed once for each ray, from the size of the map. A bound for
-//! each line, tighter near the start, was refused: it costs more than the exact cross products that
-//! it saves.
+//! The bound on the rounding is computed once for each ray, from the size of the map. Rejected: a bound
+//! for each line, tighter near the start. It costs more than the exact cross products that it saves.
 
 use std::iter;
 
 use glam::DVec2;
 
-use super::{
-    Caster, Crossing, Hit, MajorAxisTraversal, Order, Ray, RoundedOrder, Side, Walk, through,
-};
+use super::{Caster, Crossing, Hit, MajorAxisTraversal, Order, Ray, Side, Walk, through};
 use crate::numeric::cross;
 use crate::world::{Cell, Grid, TileId, World};
 
@@ -59,8 +61,7 @@ impl Caster for Exact {
     }
 }
 
-/// Casts as [`Exact`] does, and ends where a ray enters what is not level: in `grid`, which has that for
-/// solid.
+/// Casts as [`Exact`] does, and also hits uneven cells, which are solid in `grid`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExactOnLevel<'a> {
     pub(crate) grid: &'a Grid,
@@ -77,7 +78,7 @@ impl Caster for ExactOnLevel<'_> {
     }
 
     fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
-        let tile_of = |cell: Cell| world.grid().tile(i64::from(cell.column), i64::from(cell.row));
+        let tile_of = |cell: Cell| world.grid().tile_in(cell);
         let mut walk = Walk::new(self.grid, ray);
         let start = walk.cell();
         let solid_cells = iter::from_fn(|| {
@@ -108,27 +109,32 @@ pub struct ExactOrder {
 impl ExactOrder {
     /// The order for `ray` in `grid`.
     pub fn new(grid: &Grid, ray: &Ray) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let rounded = RoundedOrder::new(ray);
-        let furthest = size + ray.origin().abs();
-        Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
+        Self::from_rounded(grid, ray, RoundedOrder::new(ray))
     }
 
     /// The same order for a ray of a camera, which is not scaled: where a product overflows, the difference
     /// is in doubt, or infinite and correct.
     #[cfg(feature = "tui")]
     #[inline]
-    pub(super) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let rounded = RoundedOrder::of_direction(ray.origin(), ray.direction(), ray.direction());
-        let furthest = size + ray.origin().abs();
+    pub(crate) fn of_camera(grid: &Grid, ray: &Ray) -> Self {
+        let direction = ray.direction();
+        Self::from_rounded(
+            grid,
+            ray,
+            RoundedOrder::of_direction(ray.origin(), direction, direction),
+        )
+    }
+
+    #[inline]
+    fn from_rounded(grid: &Grid, ray: &Ray, rounded: RoundedOrder) -> Self {
+        let furthest = grid.extent() + ray.origin().abs();
         Self { ray: *ray, uncertainty: uncertainty(furthest, rounded.weight), rounded }
     }
 
     /// The distances to the lines at `x` and `y`, in a common unit.
     #[cfg(feature = "tui")]
     #[inline]
-    pub(super) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
         self.rounded.distances(x, y)
     }
 }
@@ -152,8 +158,7 @@ pub(crate) struct CommonOrder {
 impl CommonOrder {
     /// The order for rays from `origin` in `grid`, with at most this number of reflections.
     pub(crate) fn new(grid: &Grid, origin: DVec2, most_bounces: u32) -> Self {
-        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
-        let furthest = size * f64::from(most_bounces + 1) + origin.abs();
+        let furthest = grid.extent() * f64::from(most_bounces + 1) + origin.abs();
         Self { origin, furthest }
     }
 
@@ -177,7 +182,7 @@ impl CommonOrder {
 /// The ray is passed in parts, because a reference would force the walk into memory.
 #[cold]
 #[inline(never)]
-pub(super) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
+pub(crate) fn decide(origin: DVec2, direction: DVec2, x: f64, y: f64) -> Side {
     let cross = cross(origin, direction, DVec2::new(x, y)).sign();
     // For a ray to the north-east or to the south-west, left and right are swapped.
     let x_behind_y = if (direction.x > 0.0) == (direction.y > 0.0) { cross } else { -cross };
@@ -196,6 +201,45 @@ impl Order for ExactOrder {
         } else {
             decide(self.ray.origin(), self.ray.direction(), x, y)
         }
+    }
+}
+
+/// The order of lines by their distances in double precision.
+#[derive(Clone, Debug)]
+pub struct RoundedOrder {
+    origin: DVec2,
+    /// For each axis, the size of the direction along the other axis, with the sign of this axis.
+    pub(crate) weight: DVec2,
+}
+
+impl RoundedOrder {
+    /// The order for `ray`.
+    pub fn new(ray: &Ray) -> Self {
+        // The direction is scaled, so that no product of a length and a direction overflows.
+        let (scaled, _) = ray.scaled_direction();
+        Self::of_direction(ray.origin(), ray.direction(), scaled)
+    }
+
+    /// The order for rays from `origin` along `direction`, which is also `scaled`.
+    #[inline]
+    fn of_direction(origin: DVec2, direction: DVec2, scaled: DVec2) -> Self {
+        let weight = |own: f64, other: f64| if own < 0.0 { -other.abs() } else { other.abs() };
+        let weight = DVec2::new(weight(direction.x, scaled.y), weight(direction.y, scaled.x));
+        Self { origin, weight }
+    }
+
+    /// The distances to the lines at `x` and `y`, in a common unit.
+    #[inline]
+    pub(crate) fn distances(&self, x: f64, y: f64) -> (f64, f64) {
+        ((x - self.origin.x) * self.weight.x, (y - self.origin.y) * self.weight.y)
+    }
+}
+
+impl Order for RoundedOrder {
+    #[inline]
+    fn next(&mut self, x: f64, y: f64) -> Side {
+        let (to_x, to_y) = self.distances(x, y);
+        if to_y <= to_x { Side::Y } else { Side::X }
     }
 }
 

@@ -8,7 +8,10 @@
 //! walk has to know which line it crossed to find the next.
 //!
 //! The traversal need not stop at every line. A ray that crosses n lines changes its band by at most n,
-//! so it may leap as far as the [distance field](crate::world::DistanceField) says.
+//! so it may leap as far as the [distance field](crate::world::DistanceField) says. On a large map,
+//! [beams](crate::world::BeamTable) take the ray across a strip of the map, or to the line at which
+//! something solid begins in the beam. There the ray reads the distance field, and leaps by it until the
+//! beam is clear again.
 //!
 //! Positions are integers in units of 2⁻³² of a cell: that of the start, and a slope added for each line.
 //! Rounding moves them by less than a unit a line. Where a position is so close to the edge of a band that
@@ -18,15 +21,11 @@
 //! Journal 4, 1965); leaps by a distance field are Zuiderveld, Koning and Viergever's ("Acceleration of
 //! ray-casting using 3D distance transforms", 1992).
 
-mod axis;
-mod beams;
-
 use glam::DVec2;
 
 use super::exact::decide;
 use super::{Crossing, Ray, Side};
-use crate::world::{Cell, DistanceField, FRACTION_BITS, Grid, TileId};
-use axis::{Axis, MOST_LINES, UNITS, units};
+use crate::world::{BeamTable, Beams, Cell, DistanceField, FRACTION_BITS, Grid, STRIP, TileId};
 
 /// The solid cells that a ray enters, in the exact order.
 #[derive(Clone)]
@@ -70,8 +69,12 @@ struct Path {
     block_strides: [i64; 2],
 }
 
+/// The most lines for which units are fine enough.
+const MAX_LINES: u32 = 1 << 16;
+/// The units of a cell.
+const UNITS: i64 = 1 << FRACTION_BITS;
 /// A bound on the rounding of a position, in units: one for each line, and eight for the start.
-const UNCERTAINTY: i64 = MOST_LINES as i64 + 8;
+const UNCERTAINTY: i64 = MAX_LINES as i64 + 8;
 /// Where a block is this far from anything solid, the cell's own distance is not looked up.
 const FAR: i64 = 6;
 
@@ -115,7 +118,7 @@ impl<'grid> MajorAxisTraversal<'grid> {
     }
 
     /// The cell that the ray is in.
-    pub(super) fn cell(&self) -> Option<(Cell, TileId)> {
+    pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
         self.path.cell_in(self.grid, self.at.line, self.at.band)
     }
 
@@ -234,6 +237,73 @@ impl Path {
         }
     }
 
+    /// As [`Path::leap`], and across everything that a beam says is clear.
+    #[inline]
+    fn leap_along_beams(
+        self,
+        distance_field: &DistanceField,
+        [along_rows, along_columns]: &[BeamTable; 2],
+        from: Progress,
+    ) -> (i64, Progress) {
+        let table = match self.side {
+            Side::X => along_rows,
+            Side::Y => along_columns,
+        };
+        let beams = table.beams(self.slope * self.step, self.step < 0);
+        let Progress { mut line, mut band, mut lookups } = from;
+        let mut clear = 1;
+        loop {
+            line += clear;
+            // The beam is read one line back, because behind `line` the ray may have entered
+            // another band.
+            let (end, beams_read) = self.end_of_beam(beams, line - 1);
+            let is_past_beam = end >= line;
+            line = line.max(end);
+            lookups += beams_read + 1;
+            let mut band_before = band;
+            band = self.band_at(self.position + self.slope * line, line);
+            if is_past_beam {
+                // The beam is wider than the cell, so that the neighbouring cell is clear, too.
+                band_before = band;
+            } else {
+                let along = self.start + self.step * line;
+                clear = distance_field.lines_of_block([along, band], self.block_strides);
+                if clear >= FAR {
+                    continue;
+                }
+            }
+            let ahead = self.corner + self.line_stride * line + self.band_stride * band;
+            clear = distance_field.lines_at(ahead);
+            let is_clear_beside =
+                || is_past_beam || clear >= 2 || distance_field.is_clear(ahead - self.line_stride);
+            if clear == 0 || !is_clear_beside() {
+                return (band_before, Progress { line, band, lookups });
+            }
+        }
+    }
+
+    /// The first line from `line` on that no beam crosses, and the number of beams read.
+    #[inline]
+    fn end_of_beam(self, beams: Beams<'_>, mut line: i64) -> (i64, u64) {
+        let along = self.start + self.step * line;
+        let within = along.rem_euclid(STRIP);
+        let mut within = if self.step > 0 { within } else { STRIP - 1 - within };
+        let mut strip = along.div_euclid(STRIP);
+        let mut position = self.position + self.slope * (line + STRIP / 2 - within);
+        let mut beams_read = 0;
+        loop {
+            beams_read += 1;
+            let ahead = beams.lines_ahead(strip, within, position);
+            line += ahead;
+            if ahead < STRIP - within {
+                return (line, beams_read);
+            }
+            within = 0;
+            strip += self.step;
+            position += self.slope * STRIP;
+        }
+    }
+
     /// The band at the crossing with `line`, at that position.
     #[inline]
     fn band_at(self, position: i64, line: i64) -> i64 {
@@ -253,8 +323,7 @@ impl Path {
             Side::X => (along, band),
             Side::Y => (band, along),
         };
-        let tile = grid.tile(column, row)?;
-        Some((Cell { column: column as u32, row: row as u32 }, tile))
+        grid.cell(column, row)
     }
 }
 
@@ -277,6 +346,56 @@ fn decide_band(origin: DVec2, direction: DVec2, side: Side, line: i64, edge: i64
         is_across == (direction_across > 0.0)
     };
     if is_beyond { edge } else { edge - 1 }
+}
+
+/// A ray and a map along one axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    /// The column or row in which the ray starts; the one before, if it starts on a line that it crosses.
+    start: i64,
+    /// The position of the start, in units.
+    position: i64,
+    direction: f64,
+    /// The strides of cells and of blocks in the distance field.
+    stride: i64,
+    block_stride: i64,
+}
+
+impl Axis {
+    /// `None` if the ray does not start on the map.
+    #[inline]
+    fn new(origin: f64, direction: f64, count: u32, strides: [i64; 2]) -> Option<Self> {
+        /// More than the rounding of a position.
+        const NEAR: u32 = 2;
+        let position = units(origin);
+        let is_near_line = (position as u32).wrapping_add(NEAR) < 2 * NEAR;
+        let start = if is_near_line {
+            start_near_line(origin, direction)
+        } else {
+            position >> FRACTION_BITS
+        };
+        let is_on_map = (start as u64) < u64::from(count) && count <= MAX_LINES;
+        let [stride, block_stride] = strides;
+        is_on_map.then_some(Self { start, position, direction, stride, block_stride })
+    }
+}
+
+/// The column or row in which a ray starts, where that is on a line or close to one.
+#[cold]
+#[inline(never)]
+fn start_near_line(origin: f64, direction: f64) -> i64 {
+    let start = origin.floor();
+    let is_before = start == origin && direction > 0.0;
+    // A start far off the map may exceed an integer.
+    (start as i64).saturating_sub(i64::from(is_before))
+}
+
+/// A position in units, rounded. A position far off every map is far off in units.
+#[inline]
+fn units(position: f64) -> i64 {
+    // Doubles of this size have a spacing of one unit, so that the addition rounds to units.
+    const SIZE: f64 = 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1 - FRACTION_BITS)) as f64;
+    (position + SIZE).to_bits().wrapping_sub(SIZE.to_bits()) as i64
 }
 
 #[cfg(test)]

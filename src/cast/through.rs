@@ -1,14 +1,29 @@
-//! Casting through doors that are ajar, shapes, glass, and masks.
+//! Casting through what does not fill its cell: doors that are ajar, shapes, glass, and masks.
 //!
 //! The traversal stops at every solid cell, and this module decides whether the ray goes on.
-//! Between solid cells the cost is that of casting at walls.
+//! Between solid cells the cost is that of casting at walls. Results are as exact as for walls:
+//!
+//! - The leaf of a door is a segment of a line in the middle of its cell. The distance is computed from
+//!   the position of the line by one division. Where rounding leaves in doubt whether the ray misses an
+//!   end of the leaf, the sign of a cross product decides. The ends belong to the leaf.
+//! - Shapes are solved in closed form from the ray's origin. For a line, the distance is the quotient
+//!   of two cross products, whose exact signs tell on which side of an end the ray passes. For a
+//!   pillar, it is the root of a quadratic equation in double-double arithmetic. The ends belong to
+//!   the line, and a ray that touches a pillar hits it. A ray along the line, or from inside the
+//!   pillar, hits nothing.
 
-use super::{Crossing, Hit, Ray, Side, door, shape};
-use crate::world::{Cell, TileId, TileKind, World};
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::ray::{cell_before, meeting, texture_coordinate};
+use super::{Crossing, Hit, Ray, Side};
+use crate::numeric::{DoubleDouble, cross, sign_of_cross};
+use crate::world::{Cell, Grid, Line, Opening, Outline, PillarRadius, TileId, TileKind, World};
 
 /// The hit of `ray` in `world`. The ray starts in the cell `start` and enters `solid_cells`; the
 /// transparent faces that it enters are passed to `passed`. A tile that `ends` the ray is a hit.
-pub(super) fn cast(
+pub(crate) fn cast(
     start: Option<(Cell, TileId)>,
     solid_cells: impl Iterator<Item = Crossing>,
     world: &World,
@@ -17,10 +32,10 @@ pub(super) fn cast(
     mut passed: impl FnMut(Hit),
 ) -> Option<Hit> {
     let grid = world.grid();
-    let leaf_in = |cell| door::meet(grid, ray, cell, world.opening(cell));
+    let leaf_in = |cell| meet_leaf(grid, ray, cell, world.opening(cell));
     let start = start.and_then(|(cell, tile)| match world.tile(tile).kind {
         TileKind::Door(_) => leaf_in(cell),
-        TileKind::Shape(it) => shape::meet(ray, cell, it.outline),
+        TileKind::Shape(it) => meet_shape(ray, cell, it.outline),
         _ => None,
     });
     if start.is_some() {
@@ -37,7 +52,7 @@ pub(super) fn cast(
                 }
             }
             TileKind::Shape(it) => {
-                if let Some(hit) = shape::meet(ray, crossing.cell, it.outline) {
+                if let Some(hit) = meet_shape(ray, crossing.cell, it.outline) {
                     return Some(hit);
                 }
             }
@@ -59,11 +74,263 @@ pub(super) fn cast(
 
 /// The tile of the cell that `ray` leaves by a crossing.
 fn tile_before(world: &World, ray: &Ray, crossing: Crossing) -> Option<TileId> {
-    let back = |direction: f64| if direction > 0.0 { -1 } else { 1 };
-    let (columns, rows) = match crossing.side {
-        Side::X => (back(ray.direction().x), 0),
-        Side::Y => (0, back(ray.direction().y)),
-    };
-    let (column, row) = (i64::from(crossing.cell.column), i64::from(crossing.cell.row));
-    world.grid().tile(column + columns, row + rows)
+    let [column, row] = cell_before(ray.direction(), crossing.cell, crossing.side);
+    world.grid().tile(column, row)
 }
+
+/// The hit of `ray`, which passes through `cell`, on the leaf of the door there. `None` if it
+/// misses the leaf.
+pub(crate) fn meet_leaf(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit> {
+    let leaf = Leaf::new(grid, cell, opening);
+    if !leaf.is_ahead(ray) {
+        return None;
+    }
+    let (t, along) = meeting(ray, leaf.side, leaf.start);
+    leaf.holds(ray, along).then(|| {
+        let u = texture_coordinate(ray.direction(), leaf.side, along + opening.part());
+        Hit { cell, side: leaf.side, t, u }
+    })
+}
+
+/// At more than this distance from an end of the leaf, a rounded position is on the correct side of
+/// the end.
+const UNCERTAINTY: f64 = 1e-11;
+
+/// The part of a leaf that is not inside the jamb.
+struct Leaf {
+    /// The kind of line that contains the leaf.
+    side: Side,
+    /// The north or west end, at the jamb into which the leaf slides.
+    start: DVec2,
+    end: DVec2,
+}
+
+impl Leaf {
+    fn new(grid: &Grid, cell: Cell, opening: Opening) -> Self {
+        let (column, row) = (f64::from(cell.column), f64::from(cell.row));
+        let length = 1.0 - opening.part();
+        // A door has solid jambs on two sides, and open cells on the other two.
+        let is_jamb_in_the_west = grid.is_solid(i64::from(cell.column) - 1, i64::from(cell.row));
+        if is_jamb_in_the_west {
+            let start = DVec2::new(column, row + 0.5);
+            Self { side: Side::Y, start, end: DVec2::new(column + length, start.y) }
+        } else {
+            let start = DVec2::new(column + 0.5, row);
+            Self { side: Side::X, start, end: DVec2::new(start.x, row + length) }
+        }
+    }
+
+    /// Whether `ray` meets the line that contains the leaf.
+    fn is_ahead(&self, ray: &Ray) -> bool {
+        let way = self.start - ray.origin();
+        let (way, direction) = match self.side {
+            Side::X => (way.x, ray.direction().x),
+            Side::Y => (way.y, ray.direction().y),
+        };
+        direction != 0.0 && (way == 0.0 || (way > 0.0) == (direction > 0.0))
+    }
+
+    /// Whether `ray` meets the line between both ends. `along` is the rounded distance from the
+    /// start to that point, in cells.
+    fn holds(&self, ray: &Ray, along: f64) -> bool {
+        let length = (self.end - self.start).max_element();
+        let within = along.min(length - along);
+        if within.abs() > UNCERTAINTY {
+            return within > 0.0;
+        }
+        self.offset_sign(ray, self.start) >= 0.0 && self.offset_sign(ray, self.end) <= 0.0
+    }
+
+    /// The sign of the offset from `point`, on the line, to the point where `ray` meets the line.
+    fn offset_sign(&self, ray: &Ray, point: DVec2) -> f64 {
+        let direction = ray.direction();
+        let sign = cross(ray.origin(), direction, point).sign();
+        match self.side {
+            Side::X => sign * direction.x.signum(),
+            Side::Y => -sign * direction.y.signum(),
+        }
+    }
+}
+
+/// The intersection of a ray with a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Passage {
+    /// The hit on the outside; `None` if the ray misses the shape or starts inside.
+    pub(crate) hit: Option<Hit>,
+    /// The `t` at which the ray leaves the shape, if it was inside. A line has no inside.
+    pub(crate) end: Option<f64>,
+}
+
+impl Passage {
+    pub(crate) const NONE: Self = Self { hit: None, end: None };
+
+    /// The intersection of `ray`, which passes through `cell`, with the shape of this `outline`
+    /// there.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
+        match outline {
+            Outline::Pillar(radius) => {
+                let Some(chord) = Chord::new(ray, cell, radius) else { return Self::NONE };
+                Self { hit: chord.hit(ray, cell, radius), end: chord.end() }
+            }
+            Outline::Line(line) => Self { hit: meet_line(ray, cell, line), end: None },
+        }
+    }
+}
+
+/// The hit of `ray`, which passes through `cell`, on the shape of this `outline` there. `None` if
+/// it misses.
+fn meet_shape(ray: &Ray, cell: Cell, outline: Outline) -> Option<Hit> {
+    Passage::new(ray, cell, outline).hit
+}
+
+fn meet_line(ray: &Ray, cell: Cell, line: Line) -> Option<Hit> {
+    let (start, extent) = (line.start(cell), line.stretch());
+    let (across, exponent) = speed_across(ray, extent);
+    let side_of = |end| sign_of_cross(ray.origin(), ray.direction(), end);
+    let (from_start, from_end) = (side_of(start), side_of(start + extent));
+    let is_beside = from_start > 0.0 && from_end > 0.0 || from_start < 0.0 && from_end < 0.0;
+    if across == 0.0 || is_beside {
+        return None;
+    }
+    let to_line = cross(ray.origin(), extent, start);
+    let is_ahead = to_line.sign() == 0.0 || (to_line.sign() > 0.0) == (across > 0.0);
+    if !is_ahead {
+        return None;
+    }
+    let t = to_line.over_scaled(across, exponent).abs();
+    let along = cross(ray.origin(), ray.direction(), start).over_scaled(across, exponent);
+    let along = along.clamp(0.0, 1.0) + 0.0;
+    let u = if across > 0.0 { along } else { 1.0 - along };
+    Some(Hit { cell, side: facing(extent.perp()), t, u })
+}
+
+/// The speed of `ray` towards a line with this `extent`, from its left or its right, rounded at most once,
+/// and the exponent of a power of two by which it is divided.
+fn speed_across(ray: &Ray, extent: DVec2) -> (f64, i32) {
+    let across = |direction: DVec2| direction.x * extent.y - direction.y * extent.x;
+    if extent.x == 0.0 || extent.y == 0.0 {
+        // This is one of the components, which underflows in no other unit.
+        return (across(ray.direction()), 0);
+    }
+    let (direction, exponent) = ray.scaled_direction();
+    (across(direction), exponent)
+}
+
+/// The chord of a pillar on the line of a ray.
+struct Chord {
+    /// The `t` of the ray at its start; `None` if that is behind the ray's origin.
+    start: Option<f64>,
+    /// The `t` of the ray at its end.
+    end: f64,
+    /// Half its length, and the signed distance of the line from the axis, both multiplied by the length of the
+    /// ray's scaled direction.
+    half_length: f64,
+    miss: f64,
+}
+
+impl Chord {
+    /// The chord on the line of `ray`; `None` if the line misses the pillar.
+    fn new(ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Self> {
+        /// From further away, squares overflow.
+        const FARTHEST: f64 = 1e100;
+        let (center, radius) = (cell.center(), radius.cells());
+        let (direction, _) = ray.scaled_direction();
+        let way = center - ray.origin();
+        if way.abs().max_element() > FARTHEST {
+            return Self::from_afar(ray, center, radius);
+        }
+        if is_clearly_beside(way, direction, radius) {
+            return None;
+        }
+        Self::from_near(ray, center, radius)
+    }
+
+    fn from_near(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
+        let (direction, exponent) = ray.scaled_direction();
+        let x = DoubleDouble::sum(center.x, -ray.origin().x);
+        let y = DoubleDouble::sum(center.y, -ray.origin().y);
+        let (along_x, along_y) = (DoubleDouble::from(direction.x), DoubleDouble::from(direction.y));
+        let to_middle = (x * along_x + y * along_y).rounded();
+        let miss = x * along_y - y * along_x;
+        let length_squared = along_x.square() + along_y.square();
+        let radius_squared = DoubleDouble::product(radius, radius);
+        let half_length_squared = (radius_squared * length_squared - miss.square()).rounded();
+        if half_length_squared < 0.0 {
+            return None;
+        }
+        let half_length = half_length_squared.sqrt();
+        // The squared distance of the origin from the axis minus the squared radius.
+        let outside = (x.square() + y.square() - radius_squared).rounded();
+        let unscaled = |t: f64| libm::scalbn(t, -exponent);
+        let is_ahead = outside >= 0.0 && to_middle > 0.0;
+        // Of the two forms of each solution, these add terms of the same sign.
+        let end = if to_middle > 0.0 {
+            (to_middle + half_length) / length_squared.rounded()
+        } else {
+            -outside / (half_length - to_middle)
+        };
+        Some(Self {
+            start: is_ahead.then(|| unscaled(outside / (to_middle + half_length))),
+            end: unscaled(end),
+            half_length,
+            miss: miss.rounded(),
+        })
+    }
+
+    /// The chord on the line of a ray from so far away that its ends are at the same distance.
+    fn from_afar(ray: &Ray, center: DVec2, radius: f64) -> Option<Self> {
+        /// The exponent of a unit of length in which no distance overflows.
+        const UNIT: i32 = 8;
+        let (direction, exponent) = ray.scaled_direction();
+        let miss = cross(ray.origin(), ray.direction(), center).over_scaled(1.0, exponent);
+        let length_squared = direction.length_squared();
+        let half_length_squared = radius * radius * length_squared - miss * miss;
+        if half_length_squared < 0.0 {
+            return None;
+        }
+        let way = (center - ray.origin()) * libm::scalbn(1.0, -UNIT);
+        let t = libm::scalbn(way.dot(direction) / length_squared, UNIT - exponent);
+        let half_length = half_length_squared.sqrt();
+        Some(Self { start: Some(t).filter(|&t| t > 0.0), end: t, half_length, miss })
+    }
+
+    /// The hit of `ray`, from outside, on the pillar with this `radius` in `cell`.
+    fn hit(&self, ray: &Ray, cell: Cell, radius: PillarRadius) -> Option<Hit> {
+        let t = self.start?;
+        let (direction, _) = ray.scaled_direction();
+        let outward = direction.perp() * self.miss - direction * self.half_length;
+        Some(Hit { cell, side: facing(outward), t, u: around_pillar(outward, radius.cells()) })
+    }
+
+    /// The `t` at which the ray leaves the pillar; `None` if that is behind the origin.
+    fn end(&self) -> Option<f64> {
+        Some(self.end).filter(|&t| t >= 0.0)
+    }
+}
+
+/// Whether a line along `direction` misses a circle at `way` by more than the rounding of doubles.
+/// This holds for most lines that miss, which then need no double-double arithmetic.
+fn is_clearly_beside(way: DVec2, direction: DVec2, radius: f64) -> bool {
+    const ROUNDING: f64 = 1e-12;
+    let miss = (way.x * direction.y - way.y * direction.x).abs();
+    let reach = radius * direction.length();
+    miss > reach + (reach + way.x.abs() + way.y.abs()) * ROUNDING
+}
+
+/// The texture coordinate where a pillar faces `outward`. The texture is repeated around the pillar
+/// a whole number of times, so that each copy is as close as possible to one cell wide.
+fn around_pillar(outward: DVec2, radius: f64) -> f64 {
+    let times = (TAU * radius).round().max(1.0);
+    let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
+    // A value just below 0 would be rounded to 1, the left edge of the next copy.
+    Some(turn - turn.floor()).filter(|&u| u < 1.0).unwrap_or_default()
+}
+
+/// The kind of grid line closest in direction to a surface with this `normal`.
+fn facing(normal: DVec2) -> Side {
+    if normal.x.abs() >= normal.y.abs() { Side::X } else { Side::Y }
+}
+
+#[cfg(test)]
+mod tests;

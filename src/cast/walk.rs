@@ -5,18 +5,17 @@
 //! method, its walk goes from a cell to a neighbour, never looks up a cell off the map, and ends
 //! after at most one step for each line of the map.
 //!
-//! A loop for each method was refused: each would have to guarantee all of that again.
+//! Rejected: a loop for each method. Each would have to guarantee all of that again.
 
 #[cfg(feature = "tui")]
 mod from_inside;
 mod mirrored;
 
+use super::{ExactOrder, Ray, Side};
+use crate::world::{Cell, Grid, TileId};
 #[cfg(feature = "tui")]
 pub(crate) use from_inside::WalkFromInside;
 pub(crate) use mirrored::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
-
-use super::{ExactOrder, Ray, Side};
-use crate::world::{Cell, Grid, TileId};
 
 /// A cell that a ray enters, and the kind of line that it crosses to enter it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,8 +76,7 @@ impl<'grid, O: Order> Walk<'grid, O> {
 
     /// The cell that contains the ray at present; `None` off the map.
     pub(crate) fn cell(&self) -> Option<(Cell, TileId)> {
-        let tile = self.grid.tile(self.x.index, self.y.index)?;
-        Some((Cell { column: self.x.index as u32, row: self.y.index as u32 }, tile))
+        self.grid.cell(self.x.index, self.y.index)
     }
 
     /// The next solid cell that the ray enters.
@@ -104,8 +102,7 @@ impl<O: Order> Iterator for Walk<'_, O> {
             if !axis.is_on_map() {
                 return None;
             }
-            if let Some(tile) = self.grid.tile(self.x.index, self.y.index) {
-                let cell = Cell { column: self.x.index as u32, row: self.y.index as u32 };
+            if let Some((cell, tile)) = self.cell() {
                 return Some(Crossing { cell, tile, side });
             }
         }
@@ -169,7 +166,7 @@ impl Axis {
 ///
 /// A ray that starts off the map starts with the edge: the empty space before it takes no steps,
 /// whatever its length.
-pub(crate) fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
+pub fn first_line(origin: f64, direction: f64, count: u32) -> f64 {
     if direction > 0.0 {
         origin.ceil().max(0.0)
     } else if direction < 0.0 {

@@ -5,15 +5,9 @@
 //! about an option's valid values, which the sentences about mistakes need.
 
 mod about;
-mod accuracy;
-#[cfg(all(unix, feature = "serve"))]
-mod admin;
-mod bench;
 mod cast;
 mod check;
 mod config;
-#[cfg(feature = "serve")]
-mod database;
 mod generated;
 mod help;
 mod levels;
@@ -23,13 +17,8 @@ mod option;
 mod order;
 mod play;
 mod replay;
-#[cfg(feature = "serve")]
-mod scores;
-#[cfg(feature = "serve")]
-mod serve;
 mod snapshot;
 mod value;
-mod wire;
 
 use std::ffi::OsString;
 
@@ -38,33 +27,22 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, ValueHint, value_parser};
 use clap_complete::Shell;
 
-pub(super) use self::accuracy::{Accuracy, ReportFormat};
-#[cfg(all(unix, feature = "serve"))]
-pub(super) use self::admin::{Admin, AdminAction};
-pub(super) use self::bench::{Bench, BenchFormat};
-pub(super) use self::cast::Cast;
-pub(super) use self::check::Check;
-pub(super) use self::config::Config;
-#[cfg(feature = "serve")]
-pub(super) use self::database::Database;
-pub(super) use self::generated::Generated;
-pub(super) use self::levels::{Levels, LevelsFormat};
-pub(super) use self::map::STANDARD_INPUT;
+pub(crate) use self::cast::Cast;
+pub(crate) use self::check::Check;
+pub(crate) use self::config::Config;
+pub(crate) use self::generated::Generated;
+pub(crate) use self::levels::{Levels, LevelsFormat};
+pub(crate) use self::map::STANDARD_INPUT;
 use self::option::OptionSpec;
-pub(super) use self::play::{FidelityChoice, Play};
-pub(super) use self::replay::Replay;
-#[cfg(feature = "serve")]
-pub(super) use self::scores::{Scores, ScoresFormat};
-#[cfg(feature = "serve")]
-pub(super) use self::serve::Serve;
-pub(super) use self::snapshot::{Format, Snapshot};
-pub(super) use self::value::Size;
-pub(super) use self::wire::{Wire, WireFormat};
+pub(crate) use self::play::{FidelityChoice, Play};
+pub(crate) use self::replay::Replay;
+pub(crate) use self::snapshot::{Format, Snapshot};
+pub(crate) use self::value::Size;
 use super::Error;
 
 /// The requested command.
 #[derive(Debug)]
-pub(super) enum Command {
+pub(crate) enum Command {
     /// A text to print: help, or the version.
     Text(String),
     Completions(Shell),
@@ -75,21 +53,12 @@ pub(super) enum Command {
     Check(Check),
     Config(Config),
     Levels(Levels),
-    Accuracy(Accuracy),
-    #[cfg(all(unix, feature = "serve"))]
-    Admin(Admin),
-    Bench(Bench),
     Replay(Replay),
-    #[cfg(feature = "serve")]
-    Scores(Scores),
-    #[cfg(feature = "serve")]
-    Serve(Serve),
-    Wire(Wire),
 }
 
 impl Command {
     /// The command that `arguments` request. The first argument is the program's own name.
-    pub(super) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Error> {
+    pub(crate) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Error> {
         let (words, subcommand) = order::subcommand_first(arguments.into_iter().collect());
         let mut program = description();
         let subcommand = subcommand.unwrap_or(&play::SUBCOMMAND);
@@ -119,16 +88,7 @@ const SUBCOMMANDS: &[&Subcommand] = &[
     &check::SUBCOMMAND,
     &levels::SUBCOMMAND,
     &config::SUBCOMMAND,
-    &accuracy::SUBCOMMAND,
-    &bench::SUBCOMMAND,
     &replay::SUBCOMMAND,
-    &wire::SUBCOMMAND,
-    #[cfg(feature = "serve")]
-    &serve::SUBCOMMAND,
-    #[cfg(all(unix, feature = "serve"))]
-    &admin::SUBCOMMAND,
-    #[cfg(feature = "serve")]
-    &scores::SUBCOMMAND,
     &about::COMPLETIONS,
     &about::MAN,
     &about::HELP,
@@ -164,7 +124,7 @@ struct Positional {
 }
 
 /// The names of the subcommands.
-pub(super) fn subcommand_names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn subcommand_names() -> impl Iterator<Item = &'static str> {
     SUBCOMMANDS.iter().map(|subcommand| subcommand.name)
 }
 
@@ -173,7 +133,7 @@ fn named(name: &str) -> Option<&'static Subcommand> {
 }
 
 /// The whole program, for clap.
-pub(super) fn description() -> clap::Command {
+pub(crate) fn description() -> clap::Command {
     let play = &play::SUBCOMMAND;
     clap::Command::new("cellcaster")
         .about("A raycaster game in the terminal, and its pictures in scripts")

@@ -14,7 +14,7 @@ use serde_json::json;
 
 /// A writer of a recording.
 #[derive(Debug)]
-pub(super) struct Asciicast<W> {
+pub(crate) struct Asciicast<W> {
     output: W,
     /// The time of the previous event in milliseconds, as in the file.
     last: u128,
@@ -22,7 +22,7 @@ pub(super) struct Asciicast<W> {
 
 impl<W: Write> Asciicast<W> {
     /// Starts a recording of a terminal of `size`.
-    pub(super) fn begin(output: W, size: Size) -> io::Result<Self> {
+    pub(crate) fn begin(output: W, size: Size) -> io::Result<Self> {
         let mut asciicast = Self { output, last: 0 };
         let terminal = json!({ "cols": size.width, "rows": size.height });
         asciicast.write_line(json!({ "version": 3, "term": terminal }).to_string())?;
@@ -30,17 +30,17 @@ impl<W: Write> Asciicast<W> {
     }
 
     /// Records that `bytes` were sent at `time`, counted from the start. They are whole characters.
-    pub(super) fn sent(&mut self, time: Duration, bytes: &[u8]) -> io::Result<()> {
+    pub(crate) fn sent(&mut self, time: Duration, bytes: &[u8]) -> io::Result<()> {
         self.write_event(time, "o", &String::from_utf8_lossy(bytes))
     }
 
     /// Records that the terminal's size changed at `time`.
-    pub(super) fn resized(&mut self, time: Duration, size: Size) -> io::Result<()> {
+    pub(crate) fn resized(&mut self, time: Duration, size: Size) -> io::Result<()> {
         self.write_event(time, "r", &format!("{}x{}", size.width, size.height))
     }
 
     /// Flushes `output`.
-    pub(super) fn finish(mut self) -> io::Result<()> {
+    pub(crate) fn finish(mut self) -> io::Result<()> {
         self.output.flush()
     }
 

@@ -15,9 +15,8 @@ use crate::world::World;
 ///
 /// # Errors
 /// A mistake if a line was no ray, after all lines are answered.
-pub(super) fn run(options: &Cast) -> Result<(), Error> {
+pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
     let world = level::load_grid(options.map.as_deref())?;
-    let caster = options.method.caster();
     let mut input = BufReader::new(io::stdin().lock());
     let mut output = BufWriter::new(io::stdout().lock());
     let mut line = Vec::new();
@@ -31,7 +30,7 @@ pub(super) fn run(options: &Cast) -> Result<(), Error> {
             output.flush().map_err(|error| Error::of_output(&error))?;
             return verdict(wrong_lines);
         }
-        let answer = answer(&world, &caster, &line);
+        let answer = answer(&world, caster, &line);
         wrong_lines += u64::from(matches!(answer, Answer::Error { .. }));
         write(&answer, &mut output).map_err(|error| Error::of_output(&error))?;
         // The other program may wait for this answer before it sends the next ray.

@@ -9,7 +9,7 @@ use crate::game::is_exit_out_of_reach;
 use crate::map::Level;
 
 /// Checks all maps, even after a fault, and lists the valid ones.
-pub(super) fn run(options: &Check) -> Result<(), Error> {
+pub(crate) fn run(options: &Check) -> Result<(), Error> {
     let (mut wrong, mut remarks) = (0_usize, 0_usize);
     for map in &options.maps {
         match level::load(Some(map)) {

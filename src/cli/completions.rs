@@ -7,7 +7,7 @@ use clap_complete::{Shell, generate};
 use super::{Error, arguments};
 
 /// Writes the completions for `shell`.
-pub(super) fn run(shell: Shell) -> Result<(), Error> {
+pub(crate) fn run(shell: Shell) -> Result<(), Error> {
     let mut script = Vec::new();
     generate(shell, &mut arguments::description(), "cellcaster", &mut script);
     io::stdout().write_all(&script).map_err(|error| Error::of_output(&error))

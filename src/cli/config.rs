@@ -8,22 +8,22 @@ use etcetera::{BaseStrategy, choose_base_strategy};
 use super::Error;
 use super::arguments::Config;
 use crate::app::Configuration;
+use crate::app::store::private;
 use crate::fault::printable;
-use crate::store::private;
 
 /// The largest configuration, in bytes.
-pub(super) const LARGEST: u64 = 1 << 20;
+pub const LARGEST: u64 = 1 << 20;
 
 /// The configuration in force, and the path of its file.
-pub(super) struct InForce {
-    pub(super) configuration: Configuration,
+pub(crate) struct InForce {
+    pub(crate) configuration: Configuration,
     path: Option<PathBuf>,
     /// Whether the file exists.
     is_there: bool,
 }
 
 /// Prints the configuration as a file with the same effect.
-pub(super) fn run(options: Config) -> Result<(), Error> {
+pub(crate) fn run(options: Config) -> Result<(), Error> {
     let InForce { configuration, path, is_there } = load(options.config)?;
     let place = match path {
         Some(path) if is_there => format!("# Settings of Cellcaster, from {}", path.display()),
@@ -40,7 +40,7 @@ pub(super) fn run(options: Config) -> Result<(), Error> {
 }
 
 /// The configuration of the named file, or of the user's own file if it exists.
-pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
+pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
     let is_named = named.is_some();
     let Some(path) = named.or_else(|| configuration_file("config.toml")) else {
         return Ok(InForce {
@@ -61,7 +61,7 @@ pub(super) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
 }
 
 /// A file in `cellcaster` in the platform's folder for configuration.
-pub(super) fn configuration_file(name: &str) -> Option<PathBuf> {
+pub fn configuration_file(name: &str) -> Option<PathBuf> {
     let folder = choose_base_strategy().ok()?.config_dir();
     Some(folder.join("cellcaster").join(name))
 }

@@ -20,7 +20,6 @@ enum Cause {
     /// A file of the user with faults.
     Faults(Faults),
     /// The same of several files, as text of several lines.
-    #[cfg(feature = "serve")]
     Report(String),
     /// A failure of the system.
     Machine(String),
@@ -34,28 +33,27 @@ enum Cause {
 
 impl Error {
     /// An invalid request, described by `sentence`.
-    pub(super) fn mistake(sentence: impl Into<String>) -> Self {
+    pub fn mistake(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Mistake(sentence.into()) }
     }
 
     /// Faults of several files: `text` has a line with the place of each.
-    #[cfg(feature = "serve")]
-    pub(super) fn report_of(text: String) -> Self {
+    pub fn report_of(text: String) -> Self {
         Self { cause: Cause::Report(text) }
     }
 
     /// A mistake that has already been reported.
-    pub(super) fn reported() -> Self {
+    pub(crate) fn reported() -> Self {
         Self { cause: Cause::Reported }
     }
 
     /// What was asked for is not so, as the output says.
-    pub(super) fn failed() -> Self {
+    pub(crate) fn failed() -> Self {
         Self { cause: Cause::Failed }
     }
 
     /// The error of writing to standard output.
-    pub(super) fn of_output(error: &io::Error) -> Self {
+    pub fn of_output(error: &io::Error) -> Self {
         let cause = match error.kind() {
             io::ErrorKind::BrokenPipe => Cause::ClosedPipe,
             _ => Cause::Machine(format!("standard output can't be written: {error}")),
@@ -64,27 +62,22 @@ impl Error {
     }
 
     /// A failure of the system, described by `sentence`.
-    pub(super) fn machine(sentence: impl Into<String>) -> Self {
+    pub fn machine(sentence: impl Into<String>) -> Self {
         Self { cause: Cause::Machine(sentence.into()) }
     }
 
     /// Prints the message of a command that continues.
-    pub(super) fn warn(&self) {
+    pub fn warn(&self) {
         self.print();
     }
 
     /// Prints the message, and returns the exit status.
-    pub(super) fn report(&self) -> ExitCode {
+    pub(crate) fn report(&self) -> ExitCode {
         match &self.cause {
             Cause::ClosedPipe => ExitCode::SUCCESS,
             Cause::Reported => ExitCode::from(2),
             Cause::Failed => ExitCode::FAILURE,
-            Cause::Mistake(_) | Cause::Faults(_) => {
-                self.print();
-                ExitCode::from(2)
-            }
-            #[cfg(feature = "serve")]
-            Cause::Report(_) => {
+            Cause::Mistake(_) | Cause::Faults(_) | Cause::Report(_) => {
                 self.print();
                 ExitCode::from(2)
             }
@@ -104,9 +97,7 @@ impl Error {
     fn printable(&self) -> String {
         let message = self.to_string();
         match self.cause {
-            Cause::Faults(_) => printable_lines(&message),
-            #[cfg(feature = "serve")]
-            Cause::Report(_) => printable_lines(&message),
+            Cause::Faults(_) | Cause::Report(_) => printable_lines(&message),
             _ => printable(&message),
         }
     }
@@ -135,7 +126,6 @@ impl fmt::Display for Error {
                 write!(f, "cellcaster: {sentence}")
             }
             Cause::Faults(faults) => faults.fmt(f),
-            #[cfg(feature = "serve")]
             Cause::Report(text) => f.write_str(text),
             Cause::Failed => f.write_str("cellcaster: not so"),
             Cause::Reported => f.write_str("cellcaster: already reported"),

@@ -15,12 +15,12 @@ use crate::map::{self, Folder, Level, builtin};
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.
-pub(super) fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
+pub fn load_grid(argument: Option<&OsStr>) -> Result<World, Error> {
     grid_of(load(argument)?, &argument.unwrap_or_default().to_string_lossy())
 }
 
 /// The world of the level `name`, for a command that needs a grid.
-pub(super) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
+pub(crate) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
     match level {
         Level::Grid(world) => Ok(*world),
         Level::Space(_) => {
@@ -32,7 +32,7 @@ pub(super) fn grid_of(level: Level, name: &str) -> Result<World, Error> {
 
 /// The level that `argument` names: a built-in level or a map file; without it, the first built-in
 /// level.
-pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
+pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     let of_grid = |level: &builtin::Level| Ok(Level::from(level.world()?));
     let Some(argument) = argument else { return of_grid(&builtin::LEVELS[0]) };
     if let Some(index) = builtin_level(argument) {
@@ -53,7 +53,7 @@ pub(super) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
 }
 
 /// The level in the file that `argument` names, and its [`Watch`]. Only files can change.
-pub(super) fn watch(
+pub(crate) fn watch(
     argument: Option<&OsStr>,
     generated: Option<Generated>,
 ) -> Result<(Level, Watch), Error> {
@@ -75,7 +75,7 @@ const NOTHING_TO_WATCH: &str =
     "--watch needs a map file, as in \"cellcaster play my.toml --watch\": nothing else changes";
 
 /// The level that `argument` names; if it is built in, followed by the later ones.
-pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
+pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     if let Some(levels) = argument.map_or(Some(0), builtin_level).and_then(Levels::builtin) {
         return Ok(levels);
     }
@@ -89,7 +89,7 @@ pub(super) fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
 }
 
 /// As [`load_series`], or the generated level followed by those of the next seeds.
-pub(super) fn load_or_generate(
+pub(crate) fn load_or_generate(
     map: Option<&OsStr>,
     generated: Option<Generated>,
 ) -> Result<Levels, Error> {
@@ -106,7 +106,7 @@ pub(super) fn load_or_generate(
 }
 
 /// The levels of a script: those that the options name, or else that of its header.
-pub(super) fn of_script(
+pub(crate) fn of_script(
     map: Option<&OsStr>,
     generated: Option<Generated>,
     header: &Header,
@@ -138,7 +138,7 @@ pub(super) fn of_script(
 }
 
 /// The level that a script's header names.
-pub(super) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
+pub(crate) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
     match name.floor() {
         Some(floor) => Ok(Level::from(descent(seed, floor)?)),
         None => load(Some(OsStr::new(name.as_str()))),
@@ -146,7 +146,7 @@ pub(super) fn load_named(name: &LevelName, seed: u64) -> Result<Level, Error> {
 }
 
 /// The name of the level that `argument` names, for a script's header. Standard input has none.
-pub(super) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
+pub(crate) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
     match argument {
         None => LevelName::new(builtin::LEVELS[0].name),
         Some(name) if name == STANDARD_INPUT => None,
@@ -155,7 +155,7 @@ pub(super) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
 }
 
 /// The part of a generated level around `site`, or around its start.
-pub(super) fn generate(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
+pub(crate) fn generate(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
     let level = generated.generator.level(generated.seed, generated.extent)?;
     let site = site.or(level.start()).unwrap_or_default();
     Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
+use super::Error;
 use super::arguments::{Levels, LevelsFormat};
 use super::data_folder::data_folder;
-use super::{Error, verify};
+use crate::app::store::{Best, Store};
+use crate::app::time::{of_steps, tenths};
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
 use crate::sort;
-use crate::store::{Best, Store};
 use crate::world::{Difficulty, World};
 
 /// A built-in level with its best results.
@@ -24,7 +25,7 @@ struct Entry {
 }
 
 /// Writes the list that `options` request.
-pub(super) fn run(options: &Levels) -> Result<(), Error> {
+pub(crate) fn run(options: &Levels) -> Result<(), Error> {
     let (store, damage) = match data_folder() {
         Some(folder) => Store::open(&folder),
         None => (Store::in_memory(), None),
@@ -49,12 +50,10 @@ pub(super) fn run(options: &Levels) -> Result<(), Error> {
 fn table(entries: &[Entry]) -> String {
     let mut rows = vec![["", "name", "title", "par", "easy", "normal", "hard"].map(str::to_owned)];
     rows.extend(entries.iter().map(|entry| {
-        let par = entry.world.par().map_or("-".to_owned(), |seconds| {
-            verify::clock(u64::from(seconds) * u64::from(STEPS_PER_SECOND))
-        });
+        let par = entry.world.par().map_or("-".to_owned(), |seconds| tenths(seconds.into()));
         let [easy, normal, hard] = entry.bests.map(|best| {
             best.map_or("-".to_owned(), |best| {
-                format!("{} {}", verify::clock(best.tally.steps), best.rank)
+                format!("{} {}", of_steps(best.tally.steps), best.rank)
             })
         });
         let title = entry.world.title().to_owned();

@@ -10,7 +10,7 @@ use clap_mangen::Man;
 use super::{Error, arguments};
 
 /// Writes the page in roff.
-pub(super) fn run() -> Result<(), Error> {
+pub(crate) fn run() -> Result<(), Error> {
     let page = page().map_err(|error| Error::machine(format!("no manual page: {error}")))?;
     io::stdout().write_all(&page).map_err(|error| Error::of_output(&error))
 }

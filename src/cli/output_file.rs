@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::Error;
 
 /// A file that is not in its place yet, or a pipe or a device.
-pub(super) struct OutputFile {
+pub struct OutputFile {
     /// The file as the user called it.
     name: PathBuf,
     file: File,
@@ -25,7 +25,7 @@ struct Replacement {
 
 impl OutputFile {
     /// An empty file that will replace the one at `path`, if there is one.
-    pub(super) fn create(path: &Path) -> Result<Self, Error> {
+    pub fn create(path: &Path) -> Result<Self, Error> {
         let name = path.to_owned();
         let create = || {
             if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
@@ -39,7 +39,7 @@ impl OutputFile {
     }
 
     /// Writes the whole file by `write`, and puts it in its place.
-    pub(super) fn write(
+    pub fn write(
         self,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Error> {
@@ -75,6 +75,6 @@ impl Drop for Replacement {
 }
 
 /// The error for a file that cannot be written.
-pub(super) fn unwritable(path: &Path, error: &io::Error) -> Error {
+pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Error {
     Error::machine(format!("{} can't be written: {error}", path.display()))
 }

@@ -4,13 +4,13 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::app::store::map_key;
 use crate::app::{OwnLevel, OwnMap};
 use crate::map::{self, Level};
 use crate::sort;
-use crate::store::map_key;
 
 /// The map files in `folders`, sorted by name. Folders that cannot be read have none.
-pub(super) fn find(folders: &[PathBuf]) -> Vec<OwnMap> {
+pub(crate) fn find(folders: &[PathBuf]) -> Vec<OwnMap> {
     let entries = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     sort::by(&mut paths, PathBuf::cmp);
@@ -31,7 +31,7 @@ fn own_map(path: PathBuf) -> Option<OwnMap> {
 ///
 /// # Errors
 /// A sentence for the player.
-pub(super) fn load(path: &Path) -> Result<OwnLevel, String> {
+pub(crate) fn load(path: &Path) -> Result<OwnLevel, String> {
     if !path.is_file() {
         return Err(format!("{} is no file now", path.display()));
     }
@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path) -> Result<OwnLevel, String> {
 
 /// `level` with what it is kept by, which was loaded from `path`; `None` if that is no file that can be read
 /// again.
-pub(super) fn own_level(path: &Path, level: Level) -> Option<OwnLevel> {
+pub(crate) fn own_level(path: &Path, level: Level) -> Option<OwnLevel> {
     let text = text_of(path)?;
     let file = fs::canonicalize(path).ok()?.into_os_string().into_string().ok();
     Some(OwnLevel { level, key: key_of(path, &text), file })

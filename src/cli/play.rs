@@ -11,15 +11,16 @@ use super::recording::RecordingFile;
 use super::today::today;
 use super::{Error, config, level, own_maps};
 use crate::app;
+use crate::app::store::Store;
 use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin, Settings};
 use crate::game::{Header, LevelName, Rules};
-use crate::store::Store;
+use crate::render::DynCaster;
 use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphSet;
 use crate::world::Difficulty;
 
 /// Plays until the player quits.
-pub(super) fn run(options: Play) -> Result<(), Error> {
+pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let opening = opening(&options)?;
     let level = match options.generated {
         None => level::name(options.map.as_deref()),
@@ -46,7 +47,7 @@ pub(super) fn run(options: Play) -> Result<(), Error> {
         cell_aspect: options.cell_aspect,
         glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
         depth: options.depth.or(configuration.colors),
-        caster: options.method.unwrap_or_default().caster(),
+        caster: caster.clone(),
         filter: options.filter.unwrap_or_default(),
         fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
         shows_stats: options.shows_stats,

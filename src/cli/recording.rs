@@ -12,8 +12,10 @@ use ratatui::layout::Size;
 use super::Error;
 use super::asciicast::Asciicast;
 use super::output_file::unwritable;
-use crate::store::private;
-use crate::{app, game, terminal};
+use crate::app;
+use crate::app::store::private;
+use crate::game;
+use crate::terminal;
 
 /// The content of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +28,7 @@ enum Kind {
 
 /// A file that is written during the game.
 #[derive(Debug)]
-pub(super) struct RecordingFile {
+pub(crate) struct RecordingFile {
     path: PathBuf,
     kind: Kind,
     output: Output,
@@ -35,7 +37,7 @@ pub(super) struct RecordingFile {
 impl RecordingFile {
     /// Creates an empty file. An existing file is replaced only if `overwrites` is set, and when
     /// the game starts.
-    pub(super) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
+    pub(crate) fn create(path: &Path, overwrites: bool) -> Result<Self, Error> {
         let kind = Kind::of(path)?;
         let mut options = OpenOptions::new();
         if overwrites {
@@ -56,13 +58,13 @@ impl RecordingFile {
     }
 
     /// Whether a file with this name contains intents.
-    pub(super) fn is_script(path: &Path) -> bool {
+    pub(crate) fn is_script(path: &Path) -> bool {
         Kind::of(path).is_ok_and(|kind| kind == Kind::Script)
     }
 
     /// The recorder that writes the file.
     /// A script begins with `header`.
-    pub(super) fn recording(&self, header: game::Header) -> app::Recording {
+    pub(crate) fn recording(&self, header: game::Header) -> app::Recording {
         let output = self.output.clone();
         if self.kind == Kind::Asciicast {
             let terminal = TerminalRecorder { output, asciicast: None, start: Instant::now() };
@@ -75,7 +77,7 @@ impl RecordingFile {
 
     /// Returns the first error of writing, if there was one. A file without content is removed,
     /// because the game did not start.
-    pub(super) fn finish(self) -> Result<(), Error> {
+    pub(crate) fn finish(self) -> Result<(), Error> {
         let mut state = self.output.lock();
         let is_empty = || fs::metadata(&self.path).is_ok_and(|it| it.is_file() && it.len() == 0);
         if is_empty() {

@@ -1,7 +1,9 @@
 //! `cellcaster replay`: plays a script off screen into a recording.
 
 use std::cell::Cell;
-use std::io::{self, BufWriter, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -13,6 +15,7 @@ use ratatui::buffer::Buffer;
 
 use super::arguments::Replay;
 use super::asciicast::Asciicast;
+use super::external::External;
 use super::output_file::OutputFile;
 use super::{Error, level, script, verify};
 use crate::app;
@@ -21,13 +24,10 @@ use crate::game::Script;
 use crate::terminal::CellWriter;
 
 /// Writes the recording that `options` request.
-pub(super) fn run(options: &Replay) -> Result<(), Error> {
-    #[cfg(feature = "serve")]
-    if let Some(reports) = super::room_recording::replayed(&options.script, options.map.as_deref())?
-    {
-        return io::stdout()
-            .write_all(reports.as_bytes())
-            .map_err(|error| Error::of_output(&error));
+pub(crate) fn run(options: &Replay) -> Result<(), Error> {
+    if is_room_recording(&options.script) {
+        let words = [Some(options.script.clone().into_os_string()), options.map.clone()];
+        return External::room_replay(words.into_iter().flatten()).run();
     }
     let script = script::load(&options.script)?;
     if options.verifies {
@@ -99,4 +99,14 @@ impl<W: Write> Write for Screen<W> {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
+}
+
+/// Whether the file is the recording of a server's room, which has the game's rules and more.
+fn is_room_recording(path: &Path) -> bool {
+    const BEGINNING: &[u8] = b"cellcaster-room ";
+    let mut beginning = [0; BEGINNING.len()];
+    // A file that cannot be read is reported where scripts are read.
+    path.is_file()
+        && File::open(path).is_ok_and(|mut file| file.read_exact(&mut beginning).is_ok())
+        && beginning == BEGINNING
 }

@@ -12,24 +12,25 @@ use crate::game::Script;
 const LONGEST: u64 = 1 << 26;
 
 /// A walk through the built-in level with the most features, for commands without a script.
-pub(super) const SHOWCASE: Showcase =
+pub const SHOWCASE: Showcase =
     Showcase { level: "citadel", script: include_str!("../../maps/showcase.script") };
 
 /// A compiled-in script, and its built-in level.
-pub(super) struct Showcase {
-    pub(super) level: &'static str,
+pub struct Showcase {
+    /// The built-in level that it is played in.
+    pub level: &'static str,
     script: &'static str,
 }
 
 impl Showcase {
     /// The parsed script.
-    pub(super) fn script(&self) -> Result<Script, Error> {
+    pub fn script(&self) -> Result<Script, Error> {
         Ok(Script::parse(self.script, "showcase.script")?)
     }
 }
 
 /// The script in a file.
-pub(super) fn load(path: &Path) -> Result<Script, Error> {
+pub fn load(path: &Path) -> Result<Script, Error> {
     let name = path.display().to_string();
     let mut content = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut content));

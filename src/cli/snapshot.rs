@@ -25,7 +25,7 @@ use crate::color::palette;
 use crate::game::Game;
 use crate::generate::Site;
 use crate::map::Level;
-use crate::render::Renderable;
+use crate::render::{DynCaster, Renderable};
 use crate::space::{self, Elevation, Scene};
 use crate::tui::View;
 use crate::world::{Camera, Heading, World};
@@ -43,7 +43,7 @@ trait Writer {
 }
 
 /// Writes the frame that `options` request.
-pub(super) fn run(options: Snapshot) -> Result<(), Error> {
+pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
     if is_png && options.watches {
         return Err(Error::mistake(
@@ -54,19 +54,19 @@ pub(super) fn run(options: Snapshot) -> Result<(), Error> {
         return Err(no_png_here("snapshot"));
     }
     if options.watches {
-        return watched::run(options);
+        return watched::run(options, caster);
     }
     if let Some(generated) = options.generated {
         let (world, camera) = generated_world(generated, &options)?;
-        let view = View::with_caster(options.method.caster());
+        let view = View::with_caster(caster.clone());
         return output(Picture::new(&world, &camera, view, &options), &options)
             .map_err(|error| Error::of_output(&error));
     }
-    draw(&level::load(options.map.as_deref())?, &options)
+    draw(&level::load(options.map.as_deref())?, &options, caster)
 }
 
 /// The error of `command`, which writes a PNG, if the output is a terminal.
-pub(super) fn no_png_here(command: &str) -> Error {
+pub fn no_png_here(command: &str) -> Error {
     Error::mistake(format!(
         "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
          \"cellcaster {command} --format png > picture.png\""
@@ -74,14 +74,14 @@ pub(super) fn no_png_here(command: &str) -> Error {
 }
 
 /// Draws the frame of `level`.
-fn draw(level: &Level, options: &Snapshot) -> Result<(), Error> {
+fn draw(level: &Level, options: &Snapshot, caster: &DynCaster) -> Result<(), Error> {
     match level {
         Level::Grid(world) => {
             // Guards are figures of a game, and not yet in the world of a map.
             let game = (!world.guards().is_empty()).then(|| Game::new((**world).clone()));
             let world = game.as_ref().map_or(&**world, Game::world);
             let camera = camera(world, options.camera, options);
-            let view = View::with_caster(options.method.caster());
+            let view = View::with_caster(caster.clone());
             output(Picture::new(world, &camera, view, options), options)
         }
         Level::Space(scene) => {

@@ -5,7 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use crate::generate::daily_seed;
 
 /// The present date in UTC as a number, such as 20261122, and the seconds since 1970.
-pub(super) fn today() -> (u32, u64) {
+pub fn today() -> (u32, u64) {
     let elapsed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     (date(elapsed.as_secs() / SECONDS_PER_DAY), elapsed.as_secs())
 }

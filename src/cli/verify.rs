@@ -5,15 +5,16 @@ use std::io::{self, Write};
 
 use super::arguments::Replay;
 use super::{Error, level};
-use crate::game::{Game, Header, LevelName, Outcome, Rules, STEPS_PER_SECOND, Script};
-use crate::store::{DescentRun, replayed};
+use crate::app::store::{DescentRun, replayed};
+use crate::app::time::{of_steps, tenths};
+use crate::game::{Game, Header, LevelName, Outcome, Rules, Script};
 use crate::world::World;
 
 /// Writes what `script` achieves in the level that `options` or its header name.
 ///
 /// # Errors
 /// With exit status 1 if it does not reach an exit.
-pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
+pub(crate) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
     let (name, world) = level(options, script.header())?;
     let rules = script.header().rules();
     let floor = script.header().level.as_ref().and_then(LevelName::floor);
@@ -23,12 +24,6 @@ pub(super) fn run(options: &Replay, script: &Script) -> Result<(), Error> {
     };
     io::stdout().write_all(report.as_bytes()).map_err(|error| Error::of_output(&error))?;
     if wins { Ok(()) } else { Err(Error::failed()) }
-}
-
-/// A number of steps as minutes and seconds with one digit.
-pub(super) fn clock(steps: u64) -> String {
-    let tenths = steps * 10 / u64::from(STEPS_PER_SECOND);
-    format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }
 
 /// The level that the options name, or else the header; and its name.
@@ -58,9 +53,9 @@ fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, boo
     report.tell_outcome(&game);
     let tally = game.tally();
     let par = game.world().par();
-    let par_time = par.map(|par| clock(u64::from(par) * u64::from(STEPS_PER_SECOND)));
+    let par_time = par.map(|par| tenths(par.into()));
     let par_time = par_time.map_or(String::new(), |par| format!(", par {par}"));
-    report.line("time", format!("{} ({} steps{par_time})", clock(tally.steps), tally.steps));
+    report.line("time", format!("{} ({} steps{par_time})", of_steps(tally.steps), tally.steps));
     report.line("treasure", format!("{} of {}", tally.treasure.found, tally.treasure.total));
     report.line("secrets", format!("{} of {}", tally.secrets.found, tally.secrets.total));
     report.line("alarms", tally.alarms);
@@ -78,7 +73,7 @@ fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) 
     let mut report = Report::about(name, "", rules);
     report.tell_outcome(&game);
     report.line("floors", reached.floors);
-    report.line("time", format!("{} ({} steps)", clock(reached.steps), reached.steps));
+    report.line("time", format!("{} ({} steps)", of_steps(reached.steps), reached.steps));
     report.line("treasure", reached.treasure);
     (report.0, reached.floors > 0)
 }

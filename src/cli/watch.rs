@@ -14,7 +14,7 @@ use crate::fault::Faults;
 use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
 
 /// A map file, and the versions of it and its textures at the last load.
-pub(super) struct Watch {
+pub(crate) struct Watch {
     map: PathBuf,
     watched: Vec<WatchedFile>,
     /// The faults of a file that has just changed, and may be incomplete.
@@ -23,7 +23,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Loads the level in the file at `map`, and starts to watch it.
-    pub(super) fn load(map: &Path) -> (Result<Level, Faults>, Self) {
+    pub(crate) fn load(map: &Path) -> (Result<Level, Faults>, Self) {
         let (level, watched) = load(map);
         (level, Self { map: map.to_owned(), watched, unconfirmed: None })
     }
@@ -31,7 +31,7 @@ impl Watch {
     /// The current level or its faults, if it has changed since the last call. Faults are returned
     /// only if the file has not changed between two calls, because an editor may be writing or
     /// replacing it.
-    pub(super) fn change(&mut self) -> Option<Result<Level, Faults>> {
+    pub(crate) fn change(&mut self) -> Option<Result<Level, Faults>> {
         if self.watched.iter().all(WatchedFile::is_up_to_date) {
             return self.unconfirmed.take().map(Err);
         }

@@ -1,25 +1,25 @@
 //! Oklab, a colour space in which distance is perceived difference.
 //!
 //! Source: Björn Ottosson, "A perceptual color space for image processing" (2020),
-//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more. CIE
-//! L\*a\*b\* was refused for choosing among few colours: its blues turn purple when they are mixed
-//! with grey.
+//! <https://bottosson.github.io/posts/oklab/>. People notice a difference of about 0.02 or more.
+//! Rejected for choosing among few colours: CIE L\*a\*b\*, whose blues turn purple when they are
+//! mixed with grey.
 
 use super::srgb::linear;
 use super::{Rgb, product};
 
 /// A colour by its lightness, its red–green and its yellow–blue component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Oklab(pub(crate) [f64; 3]);
+pub struct Oklab(pub [f64; 3]);
 
 impl Oklab {
     /// Converts red, green and blue light, each from 0 to 1.
-    pub(crate) fn from_linear(light: [f64; 3]) -> Self {
+    pub fn from_linear(light: [f64; 3]) -> Self {
         Self(product(&FROM_CONE_ROOTS, cones(light).map(libm::cbrt)))
     }
 
     /// The square of the distance of two colours.
-    pub(crate) fn distance_squared(&self, other: &Self) -> f64 {
+    pub fn distance_squared(&self, other: &Self) -> f64 {
         self.0.iter().zip(other.0).map(|(one, other)| (one - other) * (one - other)).sum()
     }
 }
@@ -31,12 +31,12 @@ impl From<Rgb> for Oklab {
 }
 
 /// The responses of the long, medium and short wave cones to linear sRGB.
-pub(super) fn cones(light: [f64; 3]) -> [f64; 3] {
+pub(crate) fn cones(light: [f64; 3]) -> [f64; 3] {
     product(&FROM_LINEAR, light)
 }
 
 /// The matrix from the cube roots of cone responses to Oklab.
-pub(super) const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
+const FROM_CONE_ROOTS: [[f64; 3]; 3] = [
     [0.210_454_26, 0.793_617_8, -0.004_072_05],
     [1.977_998_5, -2.428_592_2, 0.450_593_7],
     [0.025_904_04, 0.782_771_77, -0.808_675_77],

@@ -1,19 +1,18 @@
 //! The transfer function of sRGB: from stored channels to linear light, and back.
 //!
 //! Source: IEC 61966-2-1 (1999). One table of doubles holds the function; it is computed at compile
-//! time, and all other tables derive from it. A power function at run time was refused: millions of
+//! time, and all other tables derive from it. Rejected: a power function at run time. Millions of
 //! texels are averaged in linear light.
 
 use super::Rgb;
 
 /// Converts a colour to red, green and blue light, each from 0 to 1.
-pub(crate) fn linear(color: Rgb) -> [f64; 3] {
+pub fn linear(color: Rgb) -> [f64; 3] {
     color.channels().map(|channel| LINEAR[usize::from(channel)])
 }
 
 /// Converts linear light from 0 to 1 to a channel from 0 to 1, without rounding it to 8 bits.
-#[cfg(feature = "lab")]
-pub(crate) fn encoded(light: f64) -> f64 {
+pub fn encoded(light: f64) -> f64 {
     if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
@@ -39,7 +38,7 @@ pub(crate) fn mean_of_two(one: Rgb, other: Rgb) -> Rgb {
 }
 
 /// The light of each value of a channel, from 0 to 1.
-pub(super) static LINEAR: [f64; 256] = {
+pub(crate) static LINEAR: [f64; 256] = {
     let mut table = [0.0; 256];
     let mut value = 0;
     while value < table.len() {
@@ -50,7 +49,7 @@ pub(super) static LINEAR: [f64; 256] = {
 };
 
 /// The light of each value of a channel in 65535ths, rounded to the nearest.
-pub(super) static LINEAR_16: [u16; 256] = {
+pub(crate) static LINEAR_16: [u16; 256] = {
     let mut table = [0; 256];
     let mut value = 0;
     while value < table.len() {

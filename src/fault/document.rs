@@ -1,7 +1,7 @@
 //! TOML with the place of each key and value.
 //!
-//! Deserializing into structs with serde was refused: it stops at the first fault, and its values
-//! have no places.
+//! Rejected: deserializing into structs with serde. It stops at the first fault, and only the values
+//! that are asked for as `Spanned` have places.
 //!
 //! The parser keeps each token several times, at up to 150 bytes, and a file of 64 MiB can have as
 //! many tokens as bytes. The lexer alone needs no memory, so tokens are counted before they are parsed.
@@ -15,7 +15,7 @@ use toml::de::{DeTable, DeValue};
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-use super::{Fault, nearest, quoted};
+use super::{Fault, nearest_or_all, quoted};
 use crate::sort;
 
 /// The largest number of tokens of a document, white space and line breaks included: some twenty for
@@ -27,11 +27,11 @@ const MOST_TOKENS_RECOVERED: usize = 1 << 16;
 
 /// The faults of a document, collected while it is read.
 #[derive(Default)]
-pub(crate) struct FaultList(RefCell<Vec<Fault>>);
+pub struct FaultList(RefCell<Vec<Fault>>);
 
 impl FaultList {
     /// Adds a fault.
-    pub(crate) fn push(&self, fault: Fault) {
+    pub fn push(&self, fault: Fault) {
         self.0.borrow_mut().push(fault);
     }
 
@@ -46,12 +46,12 @@ impl FaultList {
     }
 
     /// Whether there is no fault so far.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// The faults so far, which are no longer in the list.
-    pub(crate) fn take(&self) -> Vec<Fault> {
+    pub fn take(&self) -> Vec<Fault> {
         self.0.take()
     }
 
@@ -85,7 +85,7 @@ fn line_numbers(text: &str, places: BTreeSet<usize>) -> BTreeMap<usize, usize> {
 ///
 /// A bracket that is never closed ends the document at its line. The parser takes the rest of the text for the
 /// content of the bracket, and finds a fault in almost every line of it.
-pub(crate) fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
+pub fn parse<'t>(text: &'t str, faults: &FaultList) -> DeTable<'t> {
     let mut tokens = Source::new(text).lex();
     let is_recovered = tokens.by_ref().nth(MOST_TOKENS_RECOVERED).is_none();
     if let Some(token) = tokens.nth(MOST_TOKENS - MOST_TOKENS_RECOVERED - 1) {
@@ -137,17 +137,21 @@ fn too_many_tokens(place: Range<usize>) -> Fault {
 }
 
 /// A key and its value.
-pub(crate) struct Entry<'a, 't> {
-    pub(crate) key: &'a str,
-    pub(crate) key_place: Range<usize>,
-    pub(crate) value: &'a DeValue<'t>,
-    pub(crate) value_place: Range<usize>,
+pub struct Entry<'a, 't> {
+    /// The key, without quotes.
+    pub key: &'a str,
+    /// The bytes of the key in the text.
+    pub key_place: Range<usize>,
+    /// The value.
+    pub value: &'a DeValue<'t>,
+    /// The bytes of the value in the text.
+    pub value_place: Range<usize>,
     /// The faults of its document.
-    pub(crate) faults: &'a FaultList,
+    pub faults: &'a FaultList,
 }
 
 /// The entries of `table`, in the order of their keys. Their faults go to `faults`.
-pub(crate) fn entries<'a, 't>(
+pub fn entries<'a, 't>(
     table: &'a DeTable<'t>,
     faults: &'a FaultList,
 ) -> impl Iterator<Item = Entry<'a, 't>> {
@@ -162,15 +166,12 @@ pub(crate) fn entries<'a, 't>(
 
 impl<'a, 't> Entry<'a, 't> {
     /// The entries of a table of the same document, in the order of their keys.
-    pub(crate) fn entries(
-        &self,
-        table: &'a DeTable<'t>,
-    ) -> impl Iterator<Item = Self> + use<'a, 't> {
+    pub fn entries(&self, table: &'a DeTable<'t>) -> impl Iterator<Item = Self> + use<'a, 't> {
         entries(table, self.faults)
     }
 
     /// The value as a string; reports a fault where it is not one. `example` is a whole entry.
-    pub(crate) fn string(&self, example: &str) -> Option<&'a str> {
+    pub fn string(&self, example: &str) -> Option<&'a str> {
         let DeValue::String(string) = self.value else {
             self.faults.push(self.wrong_type("a string", example));
             return None;
@@ -179,7 +180,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The value as a table; faults as in [`Entry::string`].
-    pub(crate) fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
+    pub fn table(&self, example: &str) -> Option<&'a DeTable<'t>> {
         let DeValue::Table(table) = self.value else {
             self.faults.push(self.wrong_type("a table", example));
             return None;
@@ -188,7 +189,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The value as a number; `None` if it is not one.
-    pub(crate) fn number(&self) -> Option<f64> {
+    pub fn number(&self) -> Option<f64> {
         match self.value {
             DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
                 .ok()
@@ -198,35 +199,50 @@ impl<'a, 't> Entry<'a, 't> {
         }
     }
 
-    /// The value as a list of two, each as an entry with the same key; reports a fault where it is
-    /// not one.
-    pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
-        let DeValue::Array(list) = self.value else {
-            self.faults.push(self.wrong_type("a list of two", example));
-            return None;
-        };
-        let mut entries = list.iter().map(|value| Self {
+    /// The elements of the value, each as an entry with the same key; `None` if it is no list.
+    pub(crate) fn list(&self) -> Option<Vec<Self>> {
+        let DeValue::Array(list) = self.value else { return None };
+        let entry = |value: &'a Spanned<DeValue<'t>>| Self {
             key: self.key,
             key_place: self.key_place.clone(),
             value: value.get_ref(),
             value_place: value.span(),
             faults: self.faults,
-        });
-        if let (Some(first), Some(second), None) = (entries.next(), entries.next(), entries.next())
-        {
-            return Some([first, second]);
-        }
-        let message = format!("{} must be a list of two", quoted(self.key));
-        self.faults.push(
-            Fault::new(self.value_place.clone(), message)
-                .label(format!("this is a list of {}", list.len()))
-                .help(format!("write {example}")),
-        );
+        };
+        Some(list.iter().map(entry).collect())
+    }
+
+    /// The value as a list of two, each as in [`Entry::list`]; reports a fault where it is not one.
+    pub(crate) fn pair(&self, example: &str) -> Option<[Self; 2]> {
+        let Some(list) = self.list() else {
+            self.faults.push(self.wrong_type("a list of two", example));
+            return None;
+        };
+        let count = list.len();
+        list.try_into().ok().or_else(|| {
+            let message = format!("{} must be a list of two", quoted(self.key));
+            self.reject(message, format!("this is a list of {count}"), format!("write {example}"))
+        })
+    }
+
+    /// The entry `key` of `table`, which has this entry, too.
+    pub(crate) fn beside(&self, table: &'a DeTable<'t>, key: &str) -> Option<Self> {
+        self.entries(table).find(|entry| entry.key == key)
+    }
+
+    /// Reports a fault of the value. The label and the help may be empty.
+    pub(crate) fn reject<T>(
+        &self,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.faults.push(Fault::new(self.value_place.clone(), message).label(label).help(help));
         None
     }
 
     /// The fault that the value is not what is `wanted`; `example` is a whole entry.
-    pub(crate) fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
+    pub fn wrong_type(&self, wanted: &str, example: &str) -> Fault {
         let found = match self.value {
             DeValue::String(_) => "a string",
             DeValue::Integer(_) => "an integer",
@@ -242,13 +258,9 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The fault that the key is not one of `known`, the keys of `owner`.
-    pub(crate) fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
-        let fault =
-            Fault::new(self.key_place.clone(), format!("{owner} has no key {}", quoted(self.key)))
-                .label("unknown key");
-        match nearest(self.key, known) {
-            Some(name) => fault.help(format!("the nearest key is {}", quoted(name))),
-            None => fault.help(format!("known keys: {}", known.join(", "))),
-        }
+    pub fn unknown_key(&self, owner: &str, known: &[&str]) -> Fault {
+        let message = format!("{owner} has no key {}", quoted(self.key));
+        let help = nearest_or_all(self.key, known, "the nearest key is", "known keys:");
+        Fault::new(self.key_place.clone(), message).label("unknown key").help(help)
     }
 }

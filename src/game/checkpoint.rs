@@ -14,7 +14,7 @@ use crate::world::{Cell, Difficulty, ThingKind};
 
 /// The game from which a dead player goes on.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Checkpoint {
+pub(crate) struct Checkpoint {
     /// `None` in a level where nothing kills.
     game: Option<Arc<Game>>,
     /// The cell of the checkpoint; `None` for the start.
@@ -23,17 +23,17 @@ pub(super) struct Checkpoint {
 
 impl Checkpoint {
     /// The game at the checkpoint in `cell`.
-    pub(super) fn new(game: Option<Arc<Game>>, cell: Option<Cell>) -> Self {
+    pub(crate) fn new(game: Option<Arc<Game>>, cell: Option<Cell>) -> Self {
         Self { game, cell }
     }
 
     /// The game from which a dead player goes on.
-    pub(super) fn game(&self) -> Option<&Game> {
+    pub(crate) fn game(&self) -> Option<&Game> {
         self.game.as_deref()
     }
 
     /// The cell of the checkpoint; `None` for the start.
-    pub(super) fn cell(&self) -> Option<Cell> {
+    pub(crate) fn cell(&self) -> Option<Cell> {
         self.cell
     }
 }
@@ -41,13 +41,13 @@ impl Checkpoint {
 impl Game {
     /// The game with its start as the first checkpoint.
     #[must_use]
-    pub(super) fn with_start(mut self) -> Self {
+    pub(crate) fn with_start(mut self) -> Self {
         self.checkpoint.game = self.is_mission.then(|| Arc::new(self.clone()));
         self
     }
 
     /// Whether the player has reached another checkpoint than the last one, and nobody follows them.
-    pub(super) fn is_at_a_new_checkpoint(&self) -> bool {
+    pub(crate) fn is_at_a_new_checkpoint(&self) -> bool {
         self.is_mission
             && self.rules.difficulty < Difficulty::Hard
             && self.last_checkpoint() != Some(self.player.motion.cell())
@@ -57,7 +57,7 @@ impl Game {
     }
 
     /// Makes the checkpoint that the player has reached the one to go on from.
-    pub(super) fn reach_checkpoint(&mut self) {
+    pub(crate) fn reach_checkpoint(&mut self) {
         if !self.is_at_a_new_checkpoint() {
             return;
         }
@@ -79,7 +79,7 @@ impl Game {
     }
 
     /// The cell of the player's last checkpoint; `None` for the start.
-    pub(super) fn last_checkpoint(&self) -> Option<Cell> {
+    pub(crate) fn last_checkpoint(&self) -> Option<Cell> {
         match self.members.as_deref() {
             Some(members) => members.checkpoint(),
             None => self.checkpoint.cell,
@@ -94,7 +94,7 @@ impl Game {
     }
 
     /// Shows a checkpoint as one that nobody goes on from, if that is so.
-    pub(super) fn grey_checkpoint(&mut self, cell: Option<Cell>) {
+    pub(crate) fn grey_checkpoint(&mut self, cell: Option<Cell>) {
         let is_used = |cell| self.members.as_ref().is_some_and(|it| it.has_checkpoint(cell));
         if let Some(cell) = cell.filter(|&cell| !is_used(cell)) {
             self.world.set_frame(cell, is_checkpoint, CheckpointFrame::Grey.index());
@@ -102,7 +102,7 @@ impl Game {
     }
 
     /// Goes on from the last checkpoint.
-    pub(super) fn retry(&mut self) {
+    pub(crate) fn retry(&mut self) {
         let Some(saved) = self.checkpoint.game.clone() else { return };
         let mut game = Self::clone(&saved);
         game.player.health = game.player.health.revived();

@@ -3,44 +3,71 @@
 //!
 //! The predicate [`is_clear`] says where the circle may be, and no position that fails it is ever
 //! accepted. If rounding puts a contact slightly inside, the circle is moved back along its path to
-//! a position that passes. So the circle is clear after a step because it was clear before. Moving
-//! first and pushing out of walls afterwards was refused: it picks the wrong side of a wall at
-//! speed, and jitters in corners.
+//! a position that passes. So the circle is clear after a step because it was clear before. Rejected: to
+//! move first and push out of walls afterwards, which picks the wrong side of a wall at speed, and jitters
+//! in corners.
+//!
+//! The sweep says how far a circle moves along a straight path before it touches something.
+//! Its centre traverses the grid from cell to cell, so that the longest path costs at most the
+//! columns and rows of the map. In each open cell the problem is small. A solid neighbour beside
+//! the cell is a wall, moved inwards by the radius. A solid neighbour across a corner is a quarter
+//! disc around that corner, unless a wall beside it covers the disc. Rejected: to round every
+//! solid cell by itself. Each joint of a straight wall would have a quarter disc, at which rounding errors
+//! could stop the player.
+//!
+//! A shape is a disc around a pillar, or a line with round ends.
+//! Along a line, the centre stays [`SKIN`] farther away than the radius. A position at exactly that
+//! distance from a slanted line cannot be represented in doubles, and a player who slides along it
+//! would be stopped by rounding in every step.
+//!
+//! A [`Place`] is the world as it blocks somebody, by the height of the feet and of the body.
+//! A cell has gaps, between a floor and a ceiling or above a roof. A player is clear of the cell if
+//! one gap contains the whole body. So for feet at one height the world is two-dimensional: some
+//! cells block and the others do not, and the sweep needs nothing else.
+//!
+//! A thing that blocks fills its cell up to its height: a player can jump onto it or over it.
+//! Nobody walks up onto one, however low it is; use a floor for that. Rejected: a box as wide as
+//! the picture. A map says for each cell whether it is free, and the author sees that in the grid.
 
-mod outline;
-mod place;
-mod sweep;
+use std::array::IntoIter;
+use std::iter::{self, Flatten};
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use crate::game::stored::stored;
-use crate::world::{Cell, Outline};
-pub(super) use place::{Place, Stature};
-use sweep::{Path, first_contact};
+use super::fall::Room;
+use crate::world::{Cell, Gap, Line, Outline, Tile, TileKind, World};
 
 /// The number of walls that a body may touch in one step. A corner has two; a body that touches
 /// more is stuck between them, and stops.
 const MOST_CONTACTS: usize = 4;
+/// How deep a path enters a corner's disc, relative to the radius, before it counts as a contact. A
+/// player who slides around a corner leaves it along the tangent, exact to about 1e-16.
+const GRAZE: f64 = 1e-14;
+/// How much farther than its radius a circle stays away from a line, in cells.
+const SKIN: f64 = 1e-9;
+/// A path that approaches a line by less than this for each cell is parallel to it.
+const PARALLEL: f64 = 1e-12;
 
 /// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half a
 /// cell, so that only the eight cells around its own are in reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Radius(f64);
+pub(crate) struct Radius(f64);
 
 impl Radius {
     /// A radius in cells; `None` outside the range.
-    pub(super) const fn new(cells: f64) -> Option<Self> {
+    pub(crate) const fn new(cells: f64) -> Option<Self> {
         if cells > 0.0 && cells <= 0.5 { Some(Self(cells)) } else { None }
     }
 
     /// The radius in cells.
-    pub(super) const fn cells(self) -> f64 {
+    pub(crate) const fn cells(self) -> f64 {
         self.0
     }
 }
 
-/// What may block a circle.
-pub(super) trait Obstacles {
+/// Anything that can block a circle.
+pub(crate) trait Obstacles {
     /// Whether a cell is solid. Cells outside the map are: nobody leaves the map.
     fn blocks(&self, column: i64, row: i64) -> bool;
 
@@ -64,17 +91,15 @@ pub(super) trait Obstacles {
 }
 
 /// The position of a body, in cells, and its velocity, in cells per second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Body {
-    pub(super) position: DVec2,
-    pub(super) velocity: DVec2,
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Body {
+    pub(crate) position: DVec2,
+    pub(crate) velocity: DVec2,
 }
-
-stored! { struct Body { position, velocity } }
 
 /// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
 /// of its velocity that points into what it touches.
-pub(super) fn slide<O: Obstacles>(
+pub(crate) fn slide<O: Obstacles>(
     obstacles: &mut O,
     body: Body,
     displacement: DVec2,
@@ -106,7 +131,7 @@ pub(super) fn slide<O: Obstacles>(
 
 /// Moves a circle by `displacement` up to the first contact. Returns its position, and whether there
 /// was a contact.
-pub(super) fn fly<O: Obstacles>(
+pub(crate) fn fly<O: Obstacles>(
     obstacles: &O,
     position: DVec2,
     displacement: DVec2,
@@ -126,14 +151,14 @@ fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
 
 /// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
 /// squares.
-pub(super) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
+pub(crate) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let least = 2.0 * radius.0;
     let is_apart = |other: &DVec2| other.distance_squared(center) >= least * least;
     obstacles.circles().iter().all(is_apart)
         && overlapped(center, radius).all(|(column, row)| {
             let stands_clear = |cell| {
                 let outline = obstacles.outline(cell);
-                outline.is_none_or(|outline| outline::is_clear_of(outline, cell, center, radius))
+                outline.is_none_or(|outline| is_clear_of_outline(outline, cell, center, radius))
             };
             !obstacles.blocks(column, row) && cell_on_map(column, row).is_none_or(stands_clear)
         })
@@ -153,7 +178,7 @@ fn overlapped(center: DVec2, radius: Radius) -> impl Iterator<Item = (i64, i64)>
 }
 
 /// Whether a circle around `center` overlaps `cell`, solid or not. Touching is not overlapping.
-pub(super) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
+pub(crate) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
     !is_clear_of(center, i64::from(cell.column), i64::from(cell.row), radius)
 }
 
@@ -174,6 +199,531 @@ fn cell_on_map(column: i64, row: i64) -> Option<Cell> {
 
 fn cell_of(point: DVec2) -> (i64, i64) {
     (point.x.floor() as i64, point.y.floor() as i64)
+}
+
+/// The height of the feet and of the body, in cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stature {
+    pub(crate) feet: f64,
+    pub(crate) height: f64,
+}
+
+impl Stature {
+    /// Whether `gap` contains the body.
+    fn fits(self, gap: Gap) -> bool {
+        // The same difference as in `room`, so that a player whose head touches is clear.
+        gap.bottom <= self.feet && self.feet <= gap.top - self.height
+    }
+}
+
+/// The world for a player of some stature.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) stature: Stature,
+    /// The highest step that the player can climb; 0 in the air.
+    pub(crate) step: f64,
+    /// Whether the world has shapes.
+    pub(crate) has_shapes: bool,
+    /// The positions of players in the way, who are columns without an upper end.
+    pub(crate) others: &'a [DVec2],
+}
+
+impl Obstacles for Place<'_> {
+    fn blocks(&self, column: i64, row: i64) -> bool {
+        self.gap(column, row).is_none()
+    }
+
+    fn outline(&self, cell: Cell) -> Option<Outline> {
+        if !self.has_shapes {
+            return None;
+        }
+        let tile = self.tile(i64::from(cell.column), i64::from(cell.row))?;
+        match tile.kind {
+            // It reaches up to the ceiling at most.
+            TileKind::Shape(shape) if self.stature.feet < tile.top_of_what_stands() => {
+                Some(shape.outline)
+            }
+            _ => None,
+        }
+    }
+
+    fn circles(&self) -> &[DVec2] {
+        self.others
+    }
+
+    /// Steps up, if there is room.
+    fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
+        let at = |feet| Self { stature: Stature { feet, ..self.stature }, ..*self };
+        let mut steps = self.steps_up(column, row).map(at);
+        let Some(lifted) = steps.find(|lifted| is_clear(lifted, center, radius)) else {
+            return false;
+        };
+        *self = lifted;
+        true
+    }
+}
+
+impl Place<'_> {
+    /// The gap of a cell that contains the body.
+    fn gap(&self, column: i64, row: i64) -> Option<Gap> {
+        let tile = self.tile(column, row)?;
+        let fits = |gap: &Gap| self.stature.fits(*gap);
+        let Some(thing) = self.thing_in_the_way(column, row, tile) else {
+            return gaps(tile).find(fits);
+        };
+        gaps(tile).flat_map(|gap| around(gap, thing)).find(fits)
+    }
+
+    /// The tile of a cell; `None` outside the map.
+    fn tile(&self, column: i64, row: i64) -> Option<Tile> {
+        let id = self.world.grid().tile(column, row)?;
+        Some(self.world.tile(id))
+    }
+
+    /// The range of heights at which a thing blocks a cell of `tile`, if one does.
+    fn thing_in_the_way(&self, column: i64, row: i64, tile: Tile) -> Option<Gap> {
+        if !self.world.grid().is_occupied(column, row) {
+            return None;
+        }
+        let things = self.world.things_in(cell_on_map(column, row)?).iter();
+        let sprite = things.map(|thing| self.world.sprite(thing.sprite)).find(|it| it.blocks)?;
+        let base = sprite.base(tile.heights);
+        Some(Gap { bottom: base, top: base + sprite.height.cells() })
+    }
+
+    /// The heights in a cell that are one step up: its floors and the top of its shape. Things are
+    /// no steps.
+    fn steps_up(&self, column: i64, row: i64) -> impl Iterator<Item = f64> + use<> {
+        let Stature { feet, .. } = self.stature;
+        let most = feet + self.step;
+        let tile = self.tile(column, row);
+        let floors = tile.into_iter().flat_map(gaps).map(|gap| gap.bottom);
+        let shapes = tile.filter(|tile| matches!(tile.kind, TileKind::Shape(_)));
+        let tops = shapes.map(|tile| tile.top_of_what_stands());
+        floors.chain(tops).filter(move |&height| height > feet && height <= most)
+    }
+
+    /// Whether the player has room around `center`.
+    pub(crate) fn is_clear(&self, center: DVec2, radius: Radius) -> bool {
+        is_clear(self, center, radius)
+    }
+
+    /// The height to which floors that have risen around the feet lift a body whose circle is around `center`, by
+    /// a step at most; `None` if there are no such floors, or no room.
+    pub(crate) fn lifted(&self, center: DVec2, radius: Radius) -> Option<f64> {
+        let Stature { feet, .. } = self.stature;
+        let tiles = overlapped(center, radius).filter_map(|(column, row)| self.tile(column, row));
+        let floors = tiles.flat_map(|tile| tile.gaps()).map(|gap| gap.bottom);
+        let above = |&floor: &f64| feet < floor && floor <= feet + self.step;
+        let feet = floors.filter(above).reduce(f64::max)?;
+        let lifted = Self { stature: Stature { feet, ..self.stature }, ..*self };
+        lifted.is_clear(center, radius).then_some(feet)
+    }
+
+    /// The lowest and the highest position of the feet of a player whose circle around `center` is
+    /// clear.
+    pub(crate) fn room(&self, center: DVec2, radius: Radius) -> Room {
+        let gaps = overlapped(center, radius)
+            .filter_map(|(column, row)| self.gap_above_shapes(column, row, center, radius));
+        let most = Room { floor: f64::NEG_INFINITY, ceiling: f64::INFINITY };
+        gaps.fold(most, |room, gap| Room {
+            floor: room.floor.max(gap.bottom),
+            ceiling: room.ceiling.min(gap.top - self.stature.height),
+        })
+    }
+
+    /// The gap of a cell that contains the body of a player whose circle is around `center`: only
+    /// its part above the shape, if the circle overlaps that.
+    fn gap_above_shapes(
+        &self,
+        column: i64,
+        row: i64,
+        center: DVec2,
+        radius: Radius,
+    ) -> Option<Gap> {
+        let gap = self.gap(column, row)?;
+        if !self.has_shapes {
+            return Some(gap);
+        }
+        let (tile, cell) = (self.tile(column, row)?, cell_on_map(column, row)?);
+        let top = tile.top_of_what_stands();
+        match tile.kind {
+            TileKind::Shape(shape)
+                if top <= self.stature.feet
+                    && !is_clear_of_outline(shape.outline, cell, center, radius) =>
+            {
+                Some(Gap { bottom: gap.bottom.max(top), ..gap })
+            }
+            _ => Some(gap),
+        }
+    }
+}
+
+/// The gaps of `tile` for a player: a door, glass or a mask fills a gap up to its top.
+fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
+    let filled = match tile.kind {
+        TileKind::Open
+        | TileKind::Doorway(_)
+        | TileKind::Wall(_)
+        | TileKind::Mirror(_)
+        | TileKind::Shape(_) => None,
+        TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) => {
+            Some(Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() })
+        }
+    };
+    tile.gaps().flat_map(move |gap| match filled {
+        None => [Some(gap), None].into_iter().flatten(),
+        Some(filled) => around(gap, filled),
+    })
+}
+
+/// The parts of a gap below and above what fills a part of it.
+fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
+    let below = Gap { top: gap.top.min(filled.bottom), ..gap };
+    let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };
+    let is_open = |gap: &Gap| gap.bottom < gap.top;
+    [Some(below).filter(is_open), Some(above).filter(is_open)].into_iter().flatten()
+}
+
+/// A straight path.
+#[derive(Clone, Copy, Debug)]
+struct Path {
+    from: DVec2,
+    /// A unit vector.
+    direction: DVec2,
+    length: f64,
+}
+
+impl Path {
+    /// The path from a position by a displacement; `None` if that is zero.
+    fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
+        // Unlike the root of a sum of squares, this neither overflows nor underflows.
+        let length = libm::hypot(displacement.x, displacement.y);
+        (length > 0.0).then(|| Self { from, direction: displacement / length, length })
+    }
+
+    fn length(self) -> f64 {
+        self.length
+    }
+
+    fn direction(self) -> DVec2 {
+        self.direction
+    }
+
+    fn at(self, distance: f64) -> DVec2 {
+        self.from + self.direction * distance
+    }
+
+    /// The position at `distance` along the path, or one shortly before it if a circle is not clear
+    /// there. The path begins at a clear position, and is free of obstacles up to `distance` except
+    /// for rounding.
+    fn last_clear<O: Obstacles>(self, obstacles: &O, distance: f64, radius: Radius) -> DVec2 {
+        let retreats = iter::successors(Some(f64::EPSILON), |retreat| Some(2.0 * retreat));
+        iter::once(distance)
+            .chain(retreats.map(|retreat| distance - retreat))
+            .take_while(|&distance| distance > 0.0)
+            .map(|distance| self.at(distance))
+            .find(|&center| is_clear(obstacles, center, radius))
+            .unwrap_or(self.from)
+    }
+}
+
+/// The first contact between a circle on a path and something solid.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    /// The position of the circle's centre, which is clear.
+    position: DVec2,
+    /// The unit vector from the obstacle to the centre.
+    normal: DVec2,
+    /// The rest of the displacement.
+    remaining: DVec2,
+    /// The column and the row of the obstacle; `None` for another circle.
+    cell: Option<(i64, i64)>,
+}
+
+/// The first contact of a circle on `path`, if there is one.
+fn first_contact<O: Obstacles>(obstacles: &O, path: Path, radius: Radius) -> Option<Contact> {
+    let (mut column, mut row) = cell_of(path.from);
+    loop {
+        let around = OpenCell { obstacles, column, row, radius };
+        let Event { distance, kind } = around.next_event(path)?;
+        if distance > path.length {
+            return None;
+        }
+        match kind {
+            EventKind::Leave { columns, rows } => {
+                column += columns;
+                row += rows;
+            }
+            EventKind::Touch(obstacle) => {
+                let (position, normal) = obstacle.touched(obstacles, path, distance, radius);
+                let remaining = path.direction * (path.length - distance);
+                let cell = obstacle.cell().map(|(columns, rows)| (column + columns, row + rows));
+                return Some(Contact { position, normal, remaining, cell });
+            }
+        }
+    }
+}
+
+/// An open cell around the centre of a circle.
+struct OpenCell<'a, O> {
+    obstacles: &'a O,
+    column: i64,
+    row: i64,
+    radius: Radius,
+}
+
+/// The next event on a path.
+struct Event {
+    /// The distance along the path.
+    distance: f64,
+    kind: EventKind,
+}
+
+enum EventKind {
+    /// The centre crosses into a neighbouring open cell.
+    Leave { columns: i64, rows: i64 },
+    /// The circle touches something solid.
+    Touch(Obstacle),
+}
+
+enum Obstacle {
+    /// A flat wall, touched from `position`.
+    Wall { position: DVec2, normal: DVec2 },
+    /// The corner of a solid cell at an offset of columns and rows.
+    Corner { vertex: DVec2, cell: (i64, i64) },
+    /// Another circle of the same radius.
+    Circle { center: DVec2 },
+    /// The shape in a cell at an offset of columns and rows.
+    Shape { touch: TouchKind, cell: (i64, i64) },
+}
+
+/// The side of a room that a path approaches along one axis.
+struct Side {
+    /// The cell behind it, as an offset of columns and rows.
+    neighbor: (i64, i64),
+    /// Whether that cell is solid.
+    is_wall: bool,
+    /// How far the centre may go along the axis in this room.
+    line: f64,
+    /// The distance along the path.
+    distance: f64,
+}
+
+impl<O: Obstacles> OpenCell<'_, O> {
+    fn blocks(&self, columns: i64, rows: i64) -> bool {
+        self.obstacles.blocks(self.column + columns, self.row + rows)
+    }
+
+    /// The first of: either side ahead, any corner, shape or circle. `None` for a path without a
+    /// direction.
+    fn next_event(&self, path: Path) -> Option<Event> {
+        // Of two equal events either will do: the other follows in the next room, or on the slide.
+        let sides = [self.event_along_y(path), self.event_along_x(path)];
+        let events = sides.into_iter().flatten();
+        let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
+        let events = events.chain(self.circle_events(path));
+        events.reduce(|first, next| if next.distance <= first.distance { next } else { first })
+    }
+
+    fn event_along_x(&self, path: Path) -> Option<Event> {
+        let side = self.side(self.column, path.from.x, path.direction.x, (1, 0))?;
+        let position = DVec2::new(side.line, path.at(side.distance).y);
+        Some(side.event(position))
+    }
+
+    fn event_along_y(&self, path: Path) -> Option<Event> {
+        let side = self.side(self.row, path.from.y, path.direction.y, (0, 1))?;
+        let position = DVec2::new(path.at(side.distance).x, side.line);
+        Some(side.event(position))
+    }
+
+    /// The side that a path approaches along `axis`, on which this room is the cell `index`; `None`
+    /// if the path is perpendicular to the axis.
+    fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<Side> {
+        if direction == 0.0 {
+            return None;
+        }
+        let step = if direction > 0.0 { 1 } else { -1 };
+        let neighbor = (axis.0 * step, axis.1 * step);
+        let is_wall = self.blocks(neighbor.0, neighbor.1);
+        let border = (index + i64::from(step > 0)) as f64;
+        let inset = if is_wall { self.radius.0 } else { 0.0 };
+        let line = border - step as f64 * inset;
+        Some(Side { neighbor, is_wall, line, distance: ((line - from) / direction).max(0.0) })
+    }
+
+    fn corner_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        let exposed = |(columns, rows): &(i64, i64)| {
+            self.blocks(*columns, *rows) && !self.blocks(*columns, 0) && !self.blocks(0, *rows)
+        };
+        let event = move |(columns, rows): (i64, i64)| {
+            let column = self.column + i64::from(columns > 0);
+            let row = self.row + i64::from(rows > 0);
+            let vertex = DVec2::new(column as f64, row as f64);
+            let distance = distance_to_disc(path, vertex, self.radius.0)?;
+            let corner = Obstacle::Corner { vertex, cell: (columns, rows) };
+            Some(Event { distance, kind: EventKind::Touch(corner) })
+        };
+        [(-1, -1), (1, -1), (-1, 1), (1, 1)].into_iter().filter(exposed).filter_map(event)
+    }
+
+    fn circle_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        self.obstacles.circles().iter().filter_map(move |&center| {
+            let distance = distance_to_disc(path, center, 2.0 * self.radius.0)?;
+            Some(Event { distance, kind: EventKind::Touch(Obstacle::Circle { center }) })
+        })
+    }
+
+    fn shape_events(&self, path: Path) -> impl Iterator<Item = Event> {
+        let around = (-1..=1).flat_map(|rows| (-1..=1).map(move |columns| (columns, rows)));
+        around.filter_map(move |(columns, rows)| {
+            let cell = cell_on_map(self.column + columns, self.row + rows)?;
+            let outline = self.obstacles.outline(cell)?;
+            let touch = first_touch(outline, cell, path, self.radius)?;
+            let shape = Obstacle::Shape { touch: touch.kind, cell: (columns, rows) };
+            Some(Event { distance: touch.distance, kind: EventKind::Touch(shape) })
+        })
+    }
+}
+
+impl Side {
+    /// The event at this side, for a centre that is then at `position`.
+    fn event(&self, position: DVec2) -> Event {
+        let (columns, rows) = self.neighbor;
+        let kind = if self.is_wall {
+            let normal = -DVec2::new(columns as f64, rows as f64);
+            EventKind::Touch(Obstacle::Wall { position, normal })
+        } else {
+            EventKind::Leave { columns, rows }
+        };
+        Event { distance: self.distance, kind }
+    }
+}
+
+/// The distance along a path at which it enters a disc.
+fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
+    let offset = path.from - center;
+    let closest = -path.direction.dot(offset);
+    let miss = path.direction.perp_dot(offset).abs();
+    if closest <= 0.0 || miss >= radius * (1.0 - GRAZE) {
+        return None;
+    }
+    let half_chord = ((radius - miss) * (radius + miss)).sqrt();
+    Some((closest - half_chord).max(0.0))
+}
+
+impl Obstacle {
+    /// The obstacle's cell, as an offset of columns and rows from that of the centre.
+    fn cell(&self) -> Option<(i64, i64)> {
+        match *self {
+            Self::Wall { normal, .. } => Some((-normal.x as i64, -normal.y as i64)),
+            Self::Corner { cell, .. } | Self::Shape { cell, .. } => Some(cell),
+            Self::Circle { .. } => None,
+        }
+    }
+
+    /// The position of a circle that touches this at `distance` on its path, and the normal of the
+    /// contact.
+    fn touched<O: Obstacles>(
+        &self,
+        obstacles: &O,
+        path: Path,
+        distance: f64,
+        radius: Radius,
+    ) -> (DVec2, DVec2) {
+        match *self {
+            Self::Wall { position, normal } if is_clear(obstacles, position, radius) => {
+                (position, normal)
+            }
+            Self::Wall { normal, .. } => (path.last_clear(obstacles, distance, radius), normal),
+            Self::Shape { touch: TouchKind::Flat { position, normal }, .. } => {
+                if is_clear(obstacles, position, radius) {
+                    (position, normal)
+                } else {
+                    (path.last_clear(obstacles, distance, radius), normal)
+                }
+            }
+            Self::Corner { vertex, .. }
+            | Self::Circle { center: vertex }
+            | Self::Shape { touch: TouchKind::Round(vertex), .. } => {
+                let position = path.last_clear(obstacles, distance, radius);
+                let outward = position - vertex;
+                (position, outward / outward.length())
+            }
+        }
+    }
+}
+
+/// A contact of a circle with a shape.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    /// The distance along the path.
+    distance: f64,
+    /// The part of the shape nearest to the circle's centre then.
+    kind: TouchKind,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum TouchKind {
+    /// A round part around its centre: a pillar, or an end of a line.
+    Round(DVec2),
+    /// The side of a line, seen from a `position`; `normal` points there.
+    Flat { position: DVec2, normal: DVec2 },
+}
+
+/// Whether a circle around `center` does not overlap an outline in `cell`; it may touch.
+fn is_clear_of_outline(
+    outline: Outline,
+    cell: Cell,
+    center: DVec2,
+    Radius(radius): Radius,
+) -> bool {
+    outline.distance(cell, center) >= radius
+}
+
+/// The first contact of a circle on `path` with an outline in `cell`.
+fn first_touch(outline: Outline, cell: Cell, path: Path, Radius(radius): Radius) -> Option<Touch> {
+    let round = |center: DVec2, radius: f64| {
+        let distance = distance_to_disc(path, center, radius)?;
+        Some(Touch { distance, kind: TouchKind::Round(center) })
+    };
+    match outline {
+        Outline::Pillar(pillar) => round(cell.center(), radius + pillar.cells()),
+        Outline::Line(line) => {
+            let start = line.start(cell);
+            let touches = [
+                first_touch_of_side(line, start, path, radius),
+                round(start, radius),
+                round(start + line.stretch(), radius),
+            ];
+            touches
+                .into_iter()
+                .flatten()
+                .min_by(|one, other| one.distance.total_cmp(&other.distance))
+        }
+    }
+}
+
+fn first_touch_of_side(line: Line, start: DVec2, path: Path, radius: f64) -> Option<Touch> {
+    let stretch = line.stretch();
+    let length = stretch.length();
+    let normal = stretch.perp() / length;
+    let offset = path.at(0.0) - start;
+    let normal = if offset.dot(normal) < 0.0 { -normal } else { normal };
+    let away = offset.dot(normal) - (radius + SKIN);
+    let approach = -path.direction().dot(normal);
+    if approach <= PARALLEL {
+        return None;
+    }
+    let distance = (away / approach).max(0.0);
+    let point = path.at(distance);
+    let along = (point - start).dot(stretch) / length;
+    // Off by rounding, or because the path began inside the skin.
+    let position = point + normal * (radius + SKIN - (point - start).dot(normal));
+    let kind = TouchKind::Flat { position, normal };
+    (0.0..=length).contains(&along).then_some(Touch { distance, kind })
 }
 
 #[cfg(test)]

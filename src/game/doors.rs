@@ -2,17 +2,18 @@
 //!
 //! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
 //! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
-//! closing door that is opened turns back. A door with a switch stays open while the switch is on. Its position is computed from the number of steps, not
-//! from its last position.
+//! closing door that is opened turns back. A door with a switch stays open while the switch is on. The
+//! position is computed from the number of steps, not from the last position.
 //!
 //! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
-//! not begin to close while anybody touches the cell. A door that pushes players away was refused:
-//! there may be no room for them.
+//! not begin to close while anybody touches the cell. Rejected: a door that pushes players away.
+//! There may be no room for them.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::cast::{Ray, Walk};
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
@@ -24,14 +25,12 @@ const STAY: u32 = 240;
 const REACH: f64 = 0.75;
 
 /// The doors that are not closed, in the order in which they were opened.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Doors {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Doors {
     moving: Vec<MovingDoor>,
 }
 
-stored! { struct Doors { moving } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct MovingDoor {
     cell: Cell,
     phase: Phase,
@@ -39,9 +38,7 @@ struct MovingDoor {
     is_held: bool,
 }
 
-stored! { struct MovingDoor { cell, phase, is_held } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// The number of steps from closed.
     Opening(u32),
@@ -51,11 +48,9 @@ enum Phase {
     Closing(u32),
 }
 
-stored! { enum Phase { 0: Opening(steps), 1: Open(steps), 2: Closing(steps) } }
-
 impl Doors {
     /// Opens the door in `cell`, unless it is opening already.
-    pub(super) fn open(&mut self, cell: Cell) {
+    pub(crate) fn open(&mut self, cell: Cell) {
         match self.moving.iter_mut().find(|door| door.cell == cell) {
             None => self.moving.push(MovingDoor::new(cell)),
             Some(MovingDoor { phase, .. }) => {
@@ -67,7 +62,7 @@ impl Doors {
     }
 
     /// Opens the door in `cell` for as long as a switch is on, or lets it close.
-    pub(super) fn hold(&mut self, cell: Cell, is_on: bool) {
+    pub(crate) fn hold(&mut self, cell: Cell, is_on: bool) {
         if is_on {
             self.open(cell);
         }
@@ -80,19 +75,19 @@ impl Doors {
     }
 
     /// Whether [`Doors::open`] would change anything.
-    pub(super) fn would_open(&self, cell: Cell) -> bool {
+    pub(crate) fn would_open(&self, cell: Cell) -> bool {
         let door = self.moving.iter().find(|door| door.cell == cell);
         door.is_none_or(|door| matches!(door.phase, Phase::Closing(_)))
     }
 
     /// The number of doors that are not closed.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.moving.len()
     }
 
     /// Advances the doors of `world` by one step; `is_occupied` says which cells a player touches.
     /// Returns whether any door has moved.
-    pub(super) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
+    pub(crate) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
         let mut has_moved = false;
         self.moving.retain_mut(|door| {
             let before = door.phase.opening();
@@ -109,7 +104,7 @@ impl Doors {
 
     /// Opens the doors of `world` as far as they were open, after the window has moved by `shift`
     /// and shows them closed. Doors outside it are closed.
-    pub(super) fn shift(&mut self, world: &mut World, shift: Shift) {
+    pub(crate) fn shift(&mut self, world: &mut World, shift: Shift) {
         self.moving.retain_mut(|door| match shift.cell(door.cell) {
             Some(cell) => {
                 door.cell = cell;
@@ -120,21 +115,16 @@ impl Doors {
         });
     }
 
-    /// The number of steps in which no door moves; `None` if none ever will.
-    pub(super) fn quiet_steps(&self) -> Option<u64> {
-        let waiting = self.moving.iter().filter(|door| !door.is_kept_open());
-        let quiet = waiting.map(|door| match door.phase {
-            Phase::Open(steps) => u64::from(steps),
-            Phase::Opening(_) | Phase::Closing(_) => 0,
-        });
-        quiet.min()
+    /// Whether no door moves until it is opened or a switch lets it go.
+    pub(crate) fn are_at_rest(&self) -> bool {
+        self.moving.iter().all(MovingDoor::is_kept_open)
     }
 
     /// Opens the doors of `world`, in which all are closed, as far as they are open.
     ///
     /// # Errors
-    /// If that are no doors of `world`.
-    pub(super) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
+    /// If they are not doors of `world`.
+    pub(crate) fn show(&self, world: &mut World) -> Result<(), Unrestorable> {
         for (index, door) in self.moving.iter().enumerate() {
             let is_new = self.moving[..index].iter().all(|other| other.cell != door.cell);
             let is_possible = match door.phase {
@@ -145,15 +135,6 @@ impl Doors {
             world.set_opening(door.cell, door.phase.opening());
         }
         Ok(())
-    }
-
-    /// Advances the doors by `steps`, at most [`Doors::quiet_steps`].
-    pub(super) fn wait(&mut self, steps: u64) {
-        for door in self.moving.iter_mut().filter(|door| !door.is_kept_open()) {
-            if let Phase::Open(left) = &mut door.phase {
-                *left = left.saturating_sub(u32::try_from(steps).unwrap_or(u32::MAX));
-            }
-        }
     }
 }
 
@@ -201,7 +182,7 @@ fn eased(part: f64) -> f64 {
 
 /// The door in front of a player at `position` who looks or walks along `direction`, a unit vector;
 /// `None` if none is within reach.
-pub(super) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
+pub(crate) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
     let ray = Ray::new(position, direction).ok()?;
     let cell = Walk::new(world.grid(), &ray).first_solid()?;
     let TileKind::Door(door) = world.tile(cell.tile).kind else { return None };

@@ -10,18 +10,18 @@
 //! lever or a plate of it is reached; a plate counts as reached where a guard may step on it. An
 //! exit that asks for treasure needs as much of it in reach.
 //!
-//! Random play was refused: not finding a way proves little.
-
-mod openers;
-mod ways;
+//! Rejected: random play. Not finding a way proves little.
 
 use std::collections::BTreeSet;
 
 use super::fall::GRAVITY;
 use super::player::{JUMP_HEIGHT, RADIUS, RUN, STEP_HEIGHT};
-use crate::world::{Cell, Gap, Thing, ThingKind, World};
-use openers::{Openers, pressed_by_guards};
-use ways::{Way, Ways, high_enough, of_tiles, open_in, without};
+use super::stance::DUCKING;
+use crate::sort;
+use crate::world::{
+    Ceiling, Cell, Door, Driver, Gap, KeyId, SwitchId, Thing, ThingKind, Tile, TileEffect,
+    TileKind, World,
+};
 
 /// Whether `world` has an exit and the player cannot reach any. `false` if there is no exit.
 ///
@@ -124,7 +124,7 @@ impl<'a> Reach<'a> {
     fn go_on(&mut self, from: Place) {
         self.flights += 1;
         self.pass(from.cell);
-        let is_on_a_ledge = beside(from.cell).any(|cell| {
+        let is_on_a_ledge = from.cell.beside().any(|cell| {
             let highest = highest(from, cell);
             let within = |way: &&Way| way.least <= highest;
             let gaps = self.gaps(cell);
@@ -133,7 +133,7 @@ impl<'a> Reach<'a> {
         });
         self.ahead.push(from.cell);
         while let Some(cell) = self.ahead.pop() {
-            for next in beside(cell) {
+            for next in cell.beside() {
                 let Some(index) = self.index(next) else { continue };
                 if self.passed[index] == self.flights {
                     continue;
@@ -179,7 +179,7 @@ impl<'a> Reach<'a> {
 
     /// The gaps of a cell that are high enough to duck in.
     fn gaps(&self, cell: Cell) -> Ways {
-        let Some(id) = self.world.grid().tile(cell.column.into(), cell.row.into()) else {
+        let Some(id) = self.world.grid().tile_in(cell) else {
             return Ways::default();
         };
         let moves = || self.world.moving_tiles().iter().any(|moving| moving.states[0] == id);
@@ -214,17 +214,156 @@ fn highest(from: Place, cell: Cell) -> f64 {
     from.height + JUMP_HEIGHT - GRAVITY / 2.0 * falling * falling
 }
 
-/// The neighbours of a cell in the west, east, north and south.
-fn beside(Cell { column, row }: Cell) -> impl Iterator<Item = Cell> {
-    let at = |column: Option<u32>, row: Option<u32>| Some(Cell { column: column?, row: row? });
-    [
-        at(column.checked_sub(1), Some(row)),
-        at(column.checked_add(1), Some(row)),
-        at(Some(column), row.checked_sub(1)),
-        at(Some(column), row.checked_add(1)),
-    ]
-    .into_iter()
-    .flatten()
+/// The keys and switches that the player has found.
+#[derive(Clone, PartialEq, Default)]
+struct Openers {
+    keys: BTreeSet<KeyId>,
+    switches: BTreeSet<SwitchId>,
+}
+
+impl Openers {
+    /// Adds the keys and plates in `cell`, and the levers in and around it.
+    fn find_in(&mut self, world: &World, cell: Cell) {
+        for thing in world.things_in(cell) {
+            if let ThingKind::Key(key) = thing.kind {
+                self.keys.insert(key);
+            }
+        }
+        if let Some(TileEffect::Plate(switch)) = world.effect_in(cell) {
+            self.switches.insert(switch);
+        }
+        if world.switch_count() == 0 {
+            return;
+        }
+        for row in cell.row.saturating_sub(1)..=cell.row.saturating_add(1) {
+            for column in cell.column.saturating_sub(1)..=cell.column.saturating_add(1) {
+                for thing in world.things_in(Cell { column, row }) {
+                    if let ThingKind::Lever(switch) = thing.kind {
+                        self.switches.insert(switch);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether what `driver` moves may be anywhere on its way.
+    fn can_move(&self, driver: Driver) -> bool {
+        match driver {
+            Driver::Switch(switch) => self.switches.contains(&switch),
+            Driver::Hand | Driver::Weight => true,
+        }
+    }
+}
+
+/// The switches of plates, if there are guards who may step on them.
+fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
+    let plate = |tile: &Tile| match tile.effect {
+        Some(TileEffect::Plate(switch)) => Some(switch),
+        _ => None,
+    };
+    let has_guards = !world.guards().is_empty();
+    sort::gathered(world.tiles().iter().filter(|_| has_guards).filter_map(plate))
+}
+
+/// A gap of a cell, and the lowest height from which the player gets into it: its bottom, or where
+/// a floor begins that carries the player up to it.
+#[derive(Clone, Copy)]
+struct Way {
+    gap: Gap,
+    least: f64,
+}
+
+/// The ways through a cell. A tile has two gaps, each at two ends where it moves. A shape may
+/// divide one and leave a way beside it, and a thing may divide one more.
+type Ways = [Option<Way>; 8];
+
+/// The ways through each tile; through those that move, at all heights or at both ends.
+fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
+    let tiles = world.tiles().iter();
+    let mut of_tiles: Vec<Ways> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
+    for moving in world.moving_tiles().iter().filter(|it| openers.can_move(it.driver)) {
+        let mut states = moving.states.iter().map(|&state| world.tile(state));
+        of_tiles[usize::from(moving.states[0].0)] = match moving.driver {
+            Driver::Switch(_) => along(states),
+            // They carry nobody up.
+            Driver::Hand | Driver::Weight => {
+                let ends = [states.next(), states.next_back()];
+                let gaps = ends.iter().flatten().flat_map(|tile| open_in(tile, openers));
+                high_enough(gaps.collect())
+            }
+        };
+    }
+    of_tiles
+}
+
+/// The ways through a tile that moves through `states`. A player who gets onto its floor at any
+/// height is carried to both ends, but not through the ceiling.
+fn along(states: impl Iterator<Item = Tile>) -> Ways {
+    let (mut below, mut above) = (Vec::new(), Vec::new());
+    for tile in states {
+        let gaps: Vec<Gap> = tile.gaps().collect();
+        let is_inside =
+            |index: usize| matches!(tile.ceiling, Ceiling::Covered(_)) && index + 1 < gaps.len();
+        for (index, &gap) in gaps.iter().enumerate().filter(|(_, gap)| gap.height() >= DUCKING) {
+            let side = if is_inside(index) { &mut below } else { &mut above };
+            side.push(gap);
+        }
+    }
+    let mut ways = Ways::default();
+    let ends = [below, above].into_iter().flat_map(|gaps| {
+        let by_height = |one: &&Gap, other: &&Gap| one.bottom.total_cmp(&other.bottom);
+        let lowest = gaps.iter().min_by(by_height).copied();
+        let highest = gaps.iter().max_by(by_height).copied();
+        let ends = [lowest, highest].into_iter().flatten();
+        let way = move |gap| Some(Way { gap, least: lowest?.bottom });
+        ends.filter_map(way).collect::<Vec<_>>()
+    });
+    ways.iter_mut().zip(ends).for_each(|(way, end)| *way = Some(end));
+    ways
+}
+
+/// The gaps of a tile for a player who has found `openers`.
+fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
+    let gaps: Vec<Gap> = tile.gaps().collect();
+    let standing = Gap { bottom: tile.heights.floor(), top: tile.top_of_what_stands() };
+    match tile.kind {
+        TileKind::Door(Door { key: Some(key), .. }) if !openers.keys.contains(&key) => {
+            without(&gaps, standing)
+        }
+        TileKind::Door(Door { switch: Some(switch), .. })
+            if !openers.switches.contains(&switch) =>
+        {
+            without(&gaps, standing)
+        }
+        TileKind::Mask(_) | TileKind::Glass(_) => without(&gaps, standing),
+        // There may be a way beside it, and its top is a floor.
+        TileKind::Shape(_) => [without(&gaps, standing), gaps].concat(),
+        TileKind::Open
+        | TileKind::Door(_)
+        | TileKind::Doorway(_)
+        | TileKind::Wall(_)
+        | TileKind::Mirror(_) => gaps,
+    }
+}
+
+/// The `gaps` that are high enough to duck in.
+fn high_enough(gaps: Vec<Gap>) -> Ways {
+    let mut left = Ways::default();
+    let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
+    let way = |gap: Gap| Way { gap, least: gap.bottom };
+    left.iter_mut().zip(high).for_each(|(left, gap)| *left = Some(way(gap)));
+    left
+}
+
+/// The parts of gaps below and above what fills a part of them.
+fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
+    let left = gaps.iter().flat_map(|&gap| {
+        let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;
+        let below = Gap { top: filled.bottom, ..gap };
+        let above = Gap { bottom: filled.top, ..gap };
+        if is_apart { [Some(gap), None] } else { [Some(below), Some(above)] }
+    });
+    left.flatten().filter(|gap| gap.bottom < gap.top).collect()
 }
 
 #[cfg(test)]

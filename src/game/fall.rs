@@ -2,34 +2,34 @@
 //!
 //! The times of landing, of hitting the ceiling and of the highest point are known in closed form.
 //! A step is solved up to the first of them, and on from there. Therefore the result does not
-//! depend on the length of steps, and nobody falls through a floor. Adding `gravity * dt` to the
-//! speed was refused: the height of a jump would depend on the step, and a fast fall would have to
+//! depend on the length of steps, and nobody falls through a floor. Rejected: to add
+//! `gravity * dt` to the speed. The height of a jump would depend on the step, and a fast fall would have to
 //! be stopped after going too far.
 
 /// Cells per second squared.
-pub(super) const GRAVITY: f64 = 12.0;
+pub(crate) const GRAVITY: f64 = 12.0;
 
 /// The height and the vertical speed of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Flight {
+pub(crate) struct Flight {
     /// In cells.
-    pub(super) height: f64,
+    pub(crate) height: f64,
     /// Cells per second, upwards.
-    pub(super) speed: f64,
+    pub(crate) speed: f64,
 }
 
 /// The lowest and the highest position, both included. The ceiling is not below the floor; both are
 /// infinite where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Room {
-    pub(super) floor: f64,
-    pub(super) ceiling: f64,
+pub(crate) struct Room {
+    pub(crate) floor: f64,
+    pub(crate) ceiling: f64,
 }
 
 impl Flight {
     /// The flight after `duration` seconds in `room`, where it is now. It ends on the floor, and
     /// begins to fall at the ceiling.
-    pub(super) fn after(self, duration: f64, room: Room) -> Self {
+    pub(crate) fn after(self, duration: f64, room: Room) -> Self {
         match self.time_to_ceiling(room.ceiling) {
             Some(time) if time < duration => {
                 let top = Self { height: room.ceiling, speed: 0.0 };

@@ -2,8 +2,8 @@
 //!
 //! All bodies are convex. Each is therefore behind a plane through its point nearest to the player,
 //! and a path on the near side of all these planes enters none of them. The path is clipped to
-//! these half-spaces, which makes the player slide along bodies. Moving first and pushing out
-//! afterwards was refused: between two bodies that ends inside one of them.
+//! these half-spaces, which makes the player slide along bodies. Rejected: to move first
+//! and push out afterwards, which between two bodies ends inside one of them.
 
 use glam::{DVec2, DVec3};
 

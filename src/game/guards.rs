@@ -1,55 +1,44 @@
 //! Guards: they stand, patrol, notice, search, chase, strike, give up and fall.
 //!
-//! A step of all guards depends on the world, on what can be perceived of the players, on the
-//! sounds of the step, and on nothing else. Guards share what they know about ways, and call each
-//! other by sounds that spread as all others do.
+//! A step of all guards depends only on the world, on what can be perceived of the players, and on the
+//! sounds of the step. Guards share their knowledge of ways, and call each other by sounds that spread
+//! like any other.
 //!
-//! Guards far from all players take [`FAR_STRIDE`] steps at once. Simulating only those who are in
-//! view was refused: a patrol would stop whenever the player looks away.
+//! Guards far from all players take [`FAR_STRIDE`] steps at once. Rejected: to simulate only guards in
+//! view. A patrol would stop whenever the player looks away.
 
-mod act;
-mod alert;
-mod attack;
-mod awake;
-mod chase;
+mod behavior;
 mod context;
-mod duty;
 mod guard;
 mod kind;
-mod listen;
-mod mood;
-mod mover;
-mod outside;
-mod perceive;
-mod route;
-mod shifted;
-mod sight;
-mod sprites;
-mod state;
-mod stored;
-mod terrain;
+mod movement;
+mod perception;
 mod trail;
-mod view;
+mod walking;
 mod ways;
 
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::collision::overlaps;
+use super::rules::MOST_PLAYERS;
 use super::rules::Rules;
 use super::scratch::Scratch;
-use super::sound::{Sound, SoundField, Source};
+use super::sight::{Cloud, Point, is_in_sight};
+use super::sound::{Sound, SoundField, SoundKind, Source};
+use super::stored::{OfLevel, Unrestorable, at_most, check};
+use crate::generate::Shift;
 use crate::rng::hash;
-use crate::world::{GuardKind, SpriteId, World};
-use awake::Awake;
+use crate::world::sprite::builtin;
+use crate::world::{Cell, Figure, GuardKind, Lamp, Light, Reach, SpriteId, World};
 use context::{Context, Other};
-use guard::Guard;
-use sprites::sprites_of;
-use state::State;
-use terrain::Terrain;
+use guard::{Guard, State};
+use movement::{Ground, RADIUS};
 use trail::Trail;
-use ways::Ways;
+use ways::{Terrain, Ways};
 
-pub(crate) use act::{Act, Cloud, Target};
-pub use mood::{Alarm, Mood};
-pub(crate) use sight::{Point, is_in_sight};
-pub use view::GuardView;
+pub(crate) use context::{Act, Target};
+pub use guard::{Alarm, GuardView, Mood};
 
 /// Guards on duty at this distance from all players, in cells, take several steps at once.
 const FAR: f64 = 26.0;
@@ -60,30 +49,60 @@ const FALLEN_EACH: u64 = 30;
 /// that come after them in the same step.
 const MOST_AIR_CELLS: usize = 16_384;
 
+/// How far a fall is heard, in cells.
+const FALL: u8 = 6;
+/// How near to the middle of a guard a projectile hits, in cells.
+const HIT: f64 = 0.35;
 /// All guards of a level.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Guards {
+    #[serde(skip)]
     rules: Rules,
     list: Vec<Guard>,
+    #[serde(skip)]
     awake: Awake,
     /// By the order of [`GuardKind::ALL`].
+    #[serde(skip)]
     sprites: [Option<SpriteId>; GuardKind::ALL.len()],
+    #[serde(skip)]
     terrain: Terrain,
     ways: Ways,
     air: SoundField,
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
     trails: Vec<Trail>,
+    #[serde(skip)]
     others: Scratch<Vec<Other>>,
     /// The cells over which sounds have spread in this step.
+    #[serde(skip)]
     air_cells: Scratch<usize>,
     /// The guards, sounds and cells that the last step has looked at.
+    #[serde(skip)]
     work: Scratch<u64>,
     acts: Vec<Act>,
     /// The sounds that guards have made in the last step.
     spoken: Vec<Sound>,
+    /// Empty between steps.
+    #[serde(skip)]
     woken: Vec<usize>,
     steps: u64,
     alarm: Alarm,
     has_changed: bool,
+}
+
+/// The guards who are awake. Only they are looked at in a step, so that those who sleep cost nothing
+/// until a sound or a push wakes them. Those who sleep on a floor that has moved count as
+/// awake, since they may fall.
+///
+/// Guards who have woken never sleep again. The list is therefore found anew where somebody wakes or
+/// the level changes, and not in each step.
+#[derive(Clone, Debug, PartialEq, Default)]
+struct Awake {
+    /// The guards who do not sleep, from the lowest index to the highest.
+    indices: Vec<usize>,
+    /// Whether there are hounds, awake or asleep.
+    has_hounds: bool,
+    /// The number of guards who have a sprite.
+    figures: usize,
 }
 
 impl Guards {
@@ -94,7 +113,10 @@ impl Guards {
         let list: Vec<Guard> =
             posts.map(|(post, index)| Guard::new(world, post, index, rules.seed)).collect();
         let is_needed = |kind| list.iter().any(|guard| guard.kind == kind);
-        let sprites = sprites_of(is_needed).map(|sprite| Some(world.add_sprite(sprite?)));
+        let sprites = GuardKind::ALL.map(|kind| {
+            let sprite = is_needed(kind).then(|| builtin::named(kind.name()))??;
+            Some(world.add_sprite(sprite))
+        });
         let mut guards = Self {
             rules,
             list,
@@ -182,7 +204,7 @@ impl Guards {
         self.has_changed |= (guard.mover, guard.frame()) != before;
     }
 
-    /// The number of steps that a guard takes at once now: 0 for those who wait for their turn.
+    /// The number of steps that a guard takes at once now: 0 while they wait for their turn.
     fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
@@ -204,7 +226,7 @@ impl Guards {
         }
     }
 
-    /// Lets all guards hear `sound` whom it reaches.
+    /// Lets all guards within reach hear `sound`.
     fn spread(&mut self, world: &World, targets: &[Target], clouds: &[Cloud], sound: &Sound) {
         let told = match sound.by {
             Source::Guard(index) => self.list.get(index).and_then(|guard| guard.quarry),
@@ -268,7 +290,7 @@ impl Guards {
             self.trails.resize_with(targets.len(), Trail::default);
             let trails = self.trails.iter_mut().zip(targets);
             for (trail, target) in trails.filter(|(_, target)| target.is_alive) {
-                trail.record(world, target, self.steps);
+                trail.record(world, target.cell(), self.steps);
             }
         }
     }
@@ -281,9 +303,324 @@ impl Guards {
         self.alarm = alarm;
     }
 
-    /// A number that depends on the whole state.
-    pub(crate) fn checksum(&self) -> u64 {
-        hash(self.steps, self.list.iter().flat_map(Guard::words))
+    /// Refuses a state in which a step could fail.
+    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        let map = (world.grid().width(), world.grid().height());
+        self.ways.check(map)?;
+        check(self.air.is_possible(map), "the search of a sound")?;
+        self.trails.iter().try_for_each(|trail| trail.check(self.steps))?;
+        self.list.iter().try_for_each(|guard| guard.check(world, self.list.len()))
+    }
+}
+
+impl Guards {
+    /// Finds the guards who are awake.
+    fn find_awake(&mut self) {
+        let guards = self.list.iter().enumerate();
+        let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
+        let indices = &mut self.awake.indices;
+        indices.clear();
+        indices.extend(awake.map(|(index, _)| index));
+        self.awake.has_hounds = self.list.iter().any(|guard| guard.kind == GuardKind::Hound);
+        self.awake.figures = self.figures().count();
+    }
+
+    /// The guards who are awake.
+    pub(crate) fn awake(&self) -> impl Iterator<Item = &Guard> + Clone {
+        self.awake.indices.iter().map(|&index| &self.list[index])
+    }
+
+    /// Records where all guards are. Those who sleep have not moved since the last step.
+    fn look_at_others(&mut self) {
+        if self.others.len() != self.list.len() {
+            self.others.clear();
+            self.others.extend(self.list.iter().map(Guard::as_other));
+            return;
+        }
+        for &index in &self.awake.indices {
+            self.others[index] = self.list[index].as_other();
+        }
+    }
+}
+
+/// Queries and effects for the rest of the game.
+impl Guards {
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The act of the last step at this place in the order of acts.
+    pub(crate) fn act(&self, index: usize) -> Option<Act> {
+        self.acts.get(index).copied()
+    }
+
+    /// Whether no guard does anything until they perceive something: all sleep.
+    pub(crate) fn are_at_rest(&self) -> bool {
+        // Only a step fills what guards remember of each other and of the players.
+        let has_begun = self.steps > 0 || self.list.is_empty();
+        has_begun
+            && !self.has_changed
+            && self.acts.is_empty()
+            && self.spoken.is_empty()
+            && self.awake().all(Guard::is_asleep)
+    }
+
+    /// Advances the clocks by `steps` in which all guards are at rest.
+    pub(crate) fn wait(&mut self, steps: u64) {
+        if self.list.is_empty() {
+            return;
+        }
+        let before = self.steps;
+        self.steps += steps;
+        self.ways.wait(steps);
+        self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
+    }
+
+    /// Whether anything that a picture shows of guards has changed in the last step.
+    pub(crate) fn has_changed(&self) -> bool {
+        self.has_changed
+    }
+
+    /// The guards, in the order of their indices.
+    pub(crate) fn views(&self) -> impl ExactSizeIterator<Item = GuardView> + '_ {
+        self.list.iter().map(Guard::view)
+    }
+
+    /// The guards as a picture shows them.
+    pub(crate) fn figures(&self) -> impl Iterator<Item = Figure> + '_ {
+        self.list.iter().filter_map(|guard| {
+            let sprite = self.sprites[guard.kind as usize]?;
+            let (position, heading) = (guard.mover.position(), guard.mover.heading);
+            let (base, frame) = (guard.mover.feet, guard.frame());
+            Some(Figure { sprite, position, base, heading, frame, opacity: u8::MAX })
+        })
+    }
+
+    /// The number of [`Guards::figures`].
+    pub(crate) fn figure_count(&self) -> usize {
+        self.awake.figures
+    }
+
+    /// The lamps that guards carry.
+    pub(crate) fn lamps(&self) -> impl Iterator<Item = (Cell, Lamp)> + Clone + '_ {
+        let bearers = self.awake().filter(|guard| guard.kind == GuardKind::Lantern);
+        let up = bearers.filter(|guard| !guard.state.is_down() && guard.state != State::Asleep);
+        let light = Light::new(0.7).unwrap_or(Light::FULL);
+        up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
+    }
+
+    /// How much the guards know.
+    pub(crate) fn alarm(&self) -> Alarm {
+        self.alarm
+    }
+
+    /// Whether the guard `index` neither follows nor looks for a player, and is not down.
+    pub(crate) fn is_unaware(&self, index: usize) -> bool {
+        self.list.get(index).is_some_and(|guard| {
+            let mood = guard.state.mood();
+            matches!(mood, Mood::Asleep | Mood::OnDuty | Mood::Wondering | Mood::Returning)
+        })
+    }
+
+    /// Whether `from` is behind the guard `index`: more than 90° off the direction of their look.
+    pub(crate) fn is_behind(&self, index: usize, from: DVec2) -> bool {
+        let guard = self.list.get(index);
+        guard.is_some_and(|it| it.mover.facing.dot(from - it.mover.position()) < 0.0)
+    }
+
+    /// The number of guards.
+    pub(crate) fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The guards, sounds and cells that the last step looked at.
+    pub(crate) fn work(&self) -> u64 {
+        *self.work
+    }
+
+    /// The cells of all guards.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.list.iter().map(|guard| guard.mover.cell())
+    }
+
+    /// Whether any guard would overlap `cell` if it were solid: a door does not close on them.
+    pub(crate) fn touches(&self, cell: Cell) -> bool {
+        self.list.iter().any(|guard| overlaps(guard.mover.position(), cell, RADIUS))
+    }
+
+    /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
+    pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
+        self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
+    }
+
+    /// The positions of the guards who are awake and on their feet, nearer than `distance` to
+    /// `position`, and with a part of their body between the heights `feet` and `head`.
+    pub(crate) fn touching(
+        &self,
+        position: DVec2,
+        distance: f64,
+        feet: f64,
+        head: f64,
+    ) -> impl Iterator<Item = DVec2> {
+        let up = self.awake().filter(|guard| !guard.is_asleep() && !guard.state.is_down());
+        let level = up.filter(move |guard| guard.mover.feet < head && feet < guard.head());
+        let positions = level.map(|guard| guard.mover.position());
+        positions.filter(move |at| at.distance_squared(position) < distance * distance)
+    }
+
+    /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
+    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector. Nothing is
+    /// between the two at the height of the middle of the guard.
+    pub(crate) fn guard_near(
+        &self,
+        world: &World,
+        position: DVec2,
+        direction: DVec2,
+        reach: f64,
+        least_cosine: f64,
+    ) -> Option<usize> {
+        let near = self.ahead(position, direction, least_cosine);
+        let near = near.filter(|&(distance, guard, _)| {
+            let to = guard.middle();
+            distance <= reach && is_in_sight(world, &[], Point { position, ..to }, to)
+        });
+        Some(near.min_by(|one, other| one.0.total_cmp(&other.0))?.2)
+    }
+
+    /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
+    /// cosine `least_cosine` off `direction`, a unit vector: the position and the height.
+    pub(crate) fn aim(
+        &self,
+        world: &World,
+        clouds: &[Cloud],
+        eye: (DVec2, f64),
+        direction: DVec2,
+        least_cosine: f64,
+    ) -> Option<(DVec2, f64)> {
+        let eye = Point { position: eye.0, height: eye.1 };
+        let ahead = self.ahead(eye.position, direction, least_cosine);
+        let seen = ahead.filter(|(_, guard, _)| is_in_sight(world, clouds, eye, guard.middle()));
+        let Point { position, height } =
+            seen.min_by(|one, other| one.0.total_cmp(&other.0))?.1.middle();
+        Some((position, height))
+    }
+
+    /// The guards who are not down in a cone, with their distances and indices.
+    fn ahead(
+        &self,
+        position: DVec2,
+        direction: DVec2,
+        least_cosine: f64,
+    ) -> impl Iterator<Item = (f64, &Guard, usize)> {
+        let up = self.list.iter().zip(0..).filter(|(guard, _)| !guard.state.is_down());
+        up.filter_map(move |(guard, index)| {
+            let way = guard.mover.position() - position;
+            let distance = way.length();
+            let is_ahead = direction.dot(way) >= least_cosine * distance;
+            is_ahead.then_some((distance, guard, index))
+        })
+    }
+
+    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`; both
+    /// have a position and a height.
+    pub(crate) fn hit_between(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Option<usize> {
+        let way = to.0 - from.0;
+        let length_squared = way.length_squared();
+        let hits = self.list.iter().zip(0..).filter_map(|(guard, index)| {
+            let offset = guard.mover.position() - from.0;
+            let along = if length_squared > 0.0 { offset.dot(way) / length_squared } else { 0.0 };
+            let along = along.clamp(0.0, 1.0);
+            let height = from.1 + (to.1 - from.1) * along;
+            let is_hit = (way * along).distance_squared(offset) <= HIT * HIT
+                && (guard.mover.feet..=guard.head()).contains(&height)
+                && !guard.state.is_down();
+            is_hit.then_some((along, index))
+        });
+        Some(hits.min_by(|one, other| one.0.total_cmp(&other.0))?.1)
+    }
+
+    /// Lays the guard `index` on the floor for that many steps.
+    pub(crate) fn stun(&mut self, index: usize, steps: u16) {
+        let Some(guard) = self.list.get_mut(index) else { return };
+        guard.stun(steps);
+        let (cell, by) = (guard.mover.cell(), Source::Guard(index));
+        self.find_awake();
+        self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
+    }
+
+    /// Pushes the guard `index` along `direction`, a unit vector: they stagger for half a second,
+    /// and lose the blow that they were raising.
+    pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
+        if let Some(guard) = self.list.get_mut(index) {
+            guard.push(direction);
+            self.find_awake();
+        }
+    }
+
+    /// Whether a guard has no room after the floor of `cell` has moved.
+    pub(crate) fn are_crushed(&self, world: &World, cell: Cell, carries: bool) -> bool {
+        self.list.iter().any(|guard| {
+            let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+            overlaps(guard.mover.position(), cell, RADIUS)
+                && guard.mover.after_floor(&ground, carries).is_none()
+        })
+    }
+
+    /// Records that the floor of `cell` has just moved. If it carries, the guards who stand on it stay
+    /// on it.
+    pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
+        let mut has_unsettled = false;
+        for guard in &mut self.list {
+            if overlaps(guard.mover.position(), cell, RADIUS) {
+                let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
+                guard.mover = guard.mover.after_floor(&ground, carries).unwrap_or(guard.mover);
+                has_unsettled |= guard.is_asleep() && !guard.is_unsettled;
+                guard.is_unsettled = true;
+            }
+        }
+        if has_unsettled {
+            self.find_awake();
+        }
+    }
+
+    /// Forgets the player with that index, who has left.
+    pub(crate) fn forget_player(&mut self, index: usize) {
+        for guard in &mut self.list {
+            guard.quarry = guard.quarry.filter(|quarry| quarry.target != index);
+        }
+        if let Some(trail) = self.trails.get_mut(index) {
+            trail.forget();
+        }
+    }
+
+    /// Moves all guards with the window of a generated level. Those outside it are gone, and those
+    /// of parts that have come into it are there.
+    pub(crate) fn shift(&mut self, world: &World, shift: Shift) {
+        self.list.retain_mut(|guard| guard.shift(shift));
+        let is_new = |cell: Cell| shift.is_new(cell);
+        let posts = world.guards().iter().zip(0..);
+        let posts =
+            posts.filter(|(post, _)| post.from <= self.rules.difficulty && is_new(post.cell));
+        let seed = hash(self.rules.seed, [self.steps]);
+        self.list.extend(posts.map(|(post, index)| Guard::new(world, post, index, seed)));
+        self.terrain.look_at_things(world);
+        self.others.clear();
+        self.find_awake();
+        self.ways.forget();
+        self.air.forget();
+        self.trails.iter_mut().for_each(Trail::forget);
+        self.spoken.clear();
+    }
+}
+
+impl OfLevel for Guards {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { rules, sprites, terrain, .. } = start;
+        let list = self.list.of_level(start.list)?;
+        let mut guards = Self { rules, list, sprites, terrain, ..self };
+        guards.find_awake();
+        Ok(guards)
     }
 }
 

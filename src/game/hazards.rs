@@ -5,21 +5,21 @@
 //! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
 //!   second time on.
 //! - Spikes are heard half a second before they come out, and hurt once for each time.
-//! - A blow from outside the view does not kill before it has [warned](super::warnings). The view
-//!   is that of the default field of view, whatever the player has chosen: a game does not depend on
-//!   how it is shown.
-
-mod spikes;
+//! - A blow from outside the view does not kill before it has [warned](super::health). The view
+//!   has the default field of view, whatever the player has chosen: a game does not depend on how it
+//!   is shown.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::Game;
 use super::health::{Cause, Flash, Harm};
 use super::noise::reach;
 use super::player::Motion;
-use super::sound::SoundKind;
-use crate::world::{Difficulty, Heading, TileEffect};
-pub(super) use spikes::Spikes;
+use super::sound::{Sound, SoundKind, Source};
+use super::stored::{OfLevel, Unrestorable};
+use crate::world::sprite::builtin::SpikesFrame;
+use crate::world::{Cell, Difficulty, Heading, Rhythm, ThingKind, TileEffect, World};
 
 /// The highest fall that does not hurt, in cells.
 const SAFE_FALL: f64 = 2.2;
@@ -31,8 +31,8 @@ const SPIKES: u8 = 2;
 const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
-    /// What the floor does to the player in this step, which began at `before`.
-    pub(super) fn meet_hazards(&mut self, before: &Motion) {
+    /// The effects of the floor on the player in this step, which began at `before`.
+    pub(crate) fn meet_hazards(&mut self, before: &Motion) {
         self.fall();
         if self.is_mission {
             self.wade(before);
@@ -81,13 +81,6 @@ impl Game {
         }
     }
 
-    /// The number of steps in water in which it does not hurt; `None` outside water.
-    pub(super) fn quiet_steps_in_water(&self) -> Option<u64> {
-        let steps = self.player.in_water;
-        let next = COLD * 2.max(steps / COLD + 1);
-        (self.is_mission && self.is_in_water()).then(|| u64::from(next - steps - 1))
-    }
-
     fn step_on_spikes(&mut self) {
         *self.work += self.spikes.count() as u64;
         let Self { spikes, world, sounds, steps, .. } = self;
@@ -96,7 +89,7 @@ impl Game {
         }
         let motion = self.player.motion;
         let thrust = self.spikes.thrust_in(motion.cell(), self.steps);
-        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + spikes::HEIGHT;
+        let is_touched = motion.feet() < self.world.floor_at(motion.cell()) + SPIKES_HEIGHT;
         if thrust.is_some() && is_touched && thrust != self.player.last_thrust {
             self.player.last_thrust = thrust;
             self.hurt(Harm { points: SPIKES, bearing: None, spares: false, cause: Cause::Spikes });
@@ -104,7 +97,7 @@ impl Game {
     }
 
     /// The guard `by` hits the player from `from`.
-    pub(super) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
+    pub(crate) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
         let kind = self.guards.views().nth(by).map(|guard| guard.kind);
         if let Some(kind) = kind {
             self.hurt_from(by, from, points, Cause::Guard(kind));
@@ -112,7 +105,7 @@ impl Game {
     }
 
     /// A bolt hits the player that the guard `by` has shot at `from`.
-    pub(super) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
+    pub(crate) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
         self.hurt_from(by, from, points, Cause::Bolt);
     }
 
@@ -152,4 +145,159 @@ impl Game {
 /// Whether water hurts in that step of wading.
 fn is_cold_after(steps: u32) -> bool {
     steps >= 2 * COLD && steps.is_multiple_of(COLD)
+}
+
+/// The steps for which they rise, which warns, and for which they are out.
+const WARNING: u64 = 30;
+const OUT: u64 = 24;
+/// How high they come out, in cells.
+const SPIKES_HEIGHT: f64 = 0.4;
+
+/// All spikes of a level.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Spikes {
+    /// In the order of the world's things.
+    each: Vec<Spike>,
+}
+
+impl OfLevel for Spikes {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { each: self.each.of_level(start.each)? })
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Spike {
+    cell: Cell,
+    rhythm: Rhythm,
+    /// The phase that they show.
+    phase: Phase,
+}
+
+impl OfLevel for Spike {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { phase: self.phase, ..start })
+    }
+}
+
+/// The position of spikes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Phase {
+    In,
+    Rising,
+    Out,
+}
+
+impl Spikes {
+    /// The spikes of `world`, which show that they are in.
+    pub(crate) fn new(world: &mut World) -> Self {
+        let each: Vec<Spike> = world
+            .things()
+            .iter()
+            .filter_map(|thing| match thing.kind {
+                ThingKind::Spikes(rhythm) => {
+                    Some(Spike { cell: thing.cell, rhythm, phase: Phase::In })
+                }
+                _ => None,
+            })
+            .collect();
+        for spike in &each {
+            spike.show(world);
+        }
+        Self { each }
+    }
+
+    /// The number of spikes.
+    pub(crate) fn count(&self) -> usize {
+        self.each.len()
+    }
+
+    /// Shows the spikes as they are in the step `now`, and adds a sound for those that begin to rise.
+    /// Returns whether any has changed.
+    pub(crate) fn show(&mut self, world: &mut World, now: u64, sounds: &mut Vec<Sound>) -> bool {
+        let mut has_changed = false;
+        for spike in &mut self.each {
+            let phase = spike.rhythm.phase(now);
+            if phase != spike.phase {
+                spike.phase = phase;
+                spike.show(world);
+                sounds.extend((phase == Phase::Rising).then(|| spike.warning()));
+                has_changed = true;
+            }
+        }
+        has_changed
+    }
+
+    /// The step in which the spikes in `cell` came out that are out in the step `now`; `None` if
+    /// there are none.
+    fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
+        let spike = self.each.iter().find(|spike| spike.cell == cell)?;
+        (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
+    }
+}
+
+impl Spike {
+    /// The sound that they make before they come out.
+    fn warning(&self) -> Sound {
+        let (kind, by) = (SoundKind::Spikes, Source::Object);
+        Sound { kind, cell: self.cell, reach: reach::SPIKES, by }
+    }
+
+    fn show(&self, world: &mut World) {
+        let is_it = |kind| matches!(kind, ThingKind::Spikes(_));
+        let frame = match self.phase {
+            Phase::In => SpikesFrame::In,
+            Phase::Rising => SpikesFrame::Rising,
+            Phase::Out => SpikesFrame::Out,
+        };
+        world.set_frame(self.cell, is_it, frame.index());
+    }
+}
+
+impl Rhythm {
+    /// The steps since they last came out, had they always done so.
+    fn age(self, now: u64) -> u64 {
+        let (period, delay) = (u64::from(self.period), u64::from(self.delay));
+        (now + period - delay % period) % period
+    }
+
+    fn phase(self, now: u64) -> Phase {
+        let period = u64::from(self.period);
+        let is_before = now < u64::from(self.delay);
+        match self.age(now) {
+            age if age < OUT && !is_before => Phase::Out,
+            age if age + WARNING >= period => Phase::Rising,
+            _ => Phase::In,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn spikes_warn_before_they_come_out(
+            period in 60..=3600_u16,
+            delay in 0..3600_u16,
+            now in 3600..9000_u64,
+        ) {
+            let rhythm = Rhythm { period, delay: delay % period };
+            let thrust = now + u64::from(period) - rhythm.age(now);
+            prop_assert!((1..=WARNING).all(|step| rhythm.phase(thrust - step) == Phase::Rising));
+            prop_assert!(rhythm.phase(thrust - WARNING - 1) != Phase::Rising);
+            prop_assert!((0..OUT).all(|step| rhythm.phase(thrust + step) == Phase::Out));
+            prop_assert!(rhythm.phase(thrust + OUT) != Phase::Out);
+        }
+
+        #[test]
+        fn they_first_come_out_after_their_delay(period in 60..=3600_u16, delay in 0..3600_u16) {
+            let rhythm = Rhythm { period, delay: delay % period };
+            let first = (0..7200).find(|&step| rhythm.phase(step) == Phase::Out);
+            prop_assert_eq!(first, Some(u64::from(rhythm.delay)));
+        }
+    }
 }

@@ -1,10 +1,23 @@
 //! Health: what hurts takes points, and a player without points is dead.
+//!
+//! A guard whom the player does not see warns before they kill:
+//!
+//! - A blow from outside the view that would kill leaves one point, and warns of the guard who struck.
+//! - For [`GRACE`] steps after the warning, further such blows of that guard leave the point, too.
+//!   After them, they kill.
+//! - A guard whose last such blow was [`FORGOTTEN`] steps ago warns again.
+//!
+//! Each guard warns for themselves. One warning for all was refused: the second of two guards would
+//! kill a player whom they had not struck before. Sparing the player each time was refused, too: a
+//! player who faced a wall could not be killed.
 
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, stored};
+use serde::{Deserialize, Serialize};
+
+use super::stored::{Unrestorable, check};
 use crate::world::{GuardKind, Heading};
 
 /// How many points of health a player has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Health {
     /// The points left, at most [`Health::most`].
     pub points: u8,
@@ -13,7 +26,7 @@ pub struct Health {
 }
 
 /// What the edge of the picture shows for a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flash {
     /// Why it is shown.
     pub kind: FlashKind,
@@ -21,10 +34,8 @@ pub struct Flash {
     pub left: u16,
 }
 
-stored! { struct Flash { kind, left } }
-
 /// Why the edge of the picture flashes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FlashKind {
     /// The player has been hurt, from that direction on the map; `None` for what has no direction,
     /// such as a fall.
@@ -36,31 +47,27 @@ pub enum FlashKind {
     Gain,
 }
 
-stored! { enum FlashKind { 0: Hurt { bearing }, 1: Gain } }
-
 /// What takes health.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Harm {
-    pub(super) points: u8,
+pub(crate) struct Harm {
+    pub(crate) points: u8,
     /// The direction from the player to what hurts them.
-    pub(super) bearing: Option<Heading>,
+    pub(crate) bearing: Option<Heading>,
     /// Whether it leaves the last point, because the player could not see it.
-    pub(super) spares: bool,
+    pub(crate) spares: bool,
     /// What a message says if it kills.
-    pub(super) cause: Cause,
+    pub(crate) cause: Cause,
 }
 
 /// What can kill a player.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Cause {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub(crate) enum Cause {
     Guard(GuardKind),
     Bolt,
     Spikes,
     Water,
     Fall,
 }
-
-stored! { enum Cause { 0: Guard(kind), 1: Bolt, 2: Spikes, 3: Water, 4: Fall } }
 
 /// The duration of a flash in steps.
 const HURT_STEPS: u16 = 24;
@@ -76,36 +83,29 @@ impl Health {
     }
 
     /// The health after `harm`.
-    pub(super) fn after(self, harm: &Harm) -> Self {
+    pub(crate) fn after(self, harm: &Harm) -> Self {
         let least = u8::from(harm.spares).min(self.points);
         Self { points: self.points.saturating_sub(harm.points).max(least), ..self }
     }
 
     /// The health with that many points more, up to those of an unhurt player.
-    pub(super) fn healed(self, points: u8) -> Self {
+    pub(crate) fn healed(self, points: u8) -> Self {
         Self { points: self.points.saturating_add(points).min(self.most), ..self }
     }
 
     /// The health of a player who goes on after death: at least half.
-    pub(super) fn revived(self) -> Self {
+    pub(crate) fn revived(self) -> Self {
         Self { points: self.points.max(self.most / 2), ..self }
     }
 
+    /// Whether a player can have it.
+    pub(crate) fn is_possible(self) -> bool {
+        self.points <= self.most && self.most == Self::MOST
+    }
+
     /// Whether points are missing.
-    pub(super) fn is_hurt(self) -> bool {
+    pub(crate) fn is_hurt(self) -> bool {
         self.points < self.most
-    }
-}
-
-impl Stored for Health {
-    fn write(&self, out: &mut Writer) {
-        let Self { points, most: _ } = self;
-        points.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let points = input.number_to(Self::MOST.into())? as u8;
-        Ok(Self { points, most: Self::MOST })
     }
 }
 
@@ -127,32 +127,32 @@ impl Flash {
     }
 
     /// The number of steps in which it does not fade.
-    pub(super) fn quiet_steps(self) -> u64 {
+    pub(crate) fn quiet_steps(self) -> u64 {
         u64::from(self.left.saturating_sub(Self::FADE))
     }
 
     /// A flash for `harm`.
-    pub(super) fn hurt(harm: &Harm) -> Self {
+    pub(crate) fn hurt(harm: &Harm) -> Self {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
     }
 
     /// A flash for a blow after which `grace` steps of grace are left.
-    pub(super) fn warning(harm: &Harm, grace: u16) -> Self {
+    pub(crate) fn warning(harm: &Harm, grace: u16) -> Self {
         Self { left: grace.max(HURT_STEPS), ..Self::hurt(harm) }
     }
 
     /// A flash for a blow of another player, which takes no health.
-    pub(super) fn struck(bearing: Option<Heading>) -> Self {
+    pub(crate) fn struck(bearing: Option<Heading>) -> Self {
         Self { kind: FlashKind::Hurt { bearing }, left: HURT_STEPS }
     }
 
     /// A flash for a find.
-    pub(super) fn gain() -> Self {
+    pub(crate) fn gain() -> Self {
         Self { kind: FlashKind::Gain, left: GAIN_STEPS }
     }
 
     /// The flash after `steps`; `None` if it has ended.
-    pub(super) fn after(self, steps: u16) -> Option<Self> {
+    pub(crate) fn after(self, steps: u16) -> Option<Self> {
         let left = self.left.saturating_sub(steps);
         (left > 0).then_some(Self { left, ..self })
     }
@@ -160,7 +160,7 @@ impl Flash {
 
 impl Cause {
     /// The cause as a part of a sentence: "killed by …".
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Guard(GuardKind::Warden) => "a warden",
             Self::Guard(GuardKind::Listener) => "a listener",
@@ -172,6 +172,54 @@ impl Cause {
             Self::Water => "cold water",
             Self::Fall => "a fall",
         }
+    }
+}
+
+/// The steps after a warning in which the guard does not kill: 3 seconds.
+pub(crate) const GRACE: u16 = 180;
+/// The steps after a blow in which the guard is remembered: 10 seconds.
+const FORGOTTEN: u64 = 600;
+
+/// The guards of whom a player has been warned.
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Warnings {
+    list: Vec<Warning>,
+}
+
+/// A guard of whom a player has been warned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Warning {
+    /// The index of the guard.
+    guard: usize,
+    /// The step of the blow that warned, and that of the last blow which left the point.
+    since: u64,
+    last: u64,
+}
+
+impl Warnings {
+    /// Records a blow of `guard` in the step `now` that would kill from outside the view. Returns the
+    /// steps of grace that are left; `None` if it kills.
+    pub(crate) fn spare(&mut self, guard: usize, now: u64) -> Option<u16> {
+        self.list.retain(|warning| now.saturating_sub(warning.last) < FORGOTTEN);
+        let known = self.list.iter_mut().find(|warning| warning.guard == guard);
+        let Some(warning) = known else {
+            self.list.push(Warning { guard, since: now, last: now });
+            return Some(GRACE);
+        };
+        let passed = u16::try_from(now - warning.since).unwrap_or(u16::MAX);
+        let left = GRACE.checked_sub(passed).filter(|&left| left > 0)?;
+        warning.last = now;
+        Some(left)
+    }
+
+    /// Refuses warnings after the step `now`.
+    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+        check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
+    }
+
+    /// Forgets all guards.
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
     }
 }
 
@@ -202,5 +250,32 @@ mod tests {
         let flash = Flash::gain();
         assert_eq!(flash.after(GAIN_STEPS - 1).map(|flash| flash.left), Some(1));
         assert_eq!(flash.after(GAIN_STEPS), None);
+    }
+
+    proptest! {
+        #[test]
+        fn a_guard_warns_first_and_kills_after_the_grace_whatever_others_do(
+            waits in prop::collection::vec(1..700_u64, 1..12),
+            others in prop::collection::vec(any::<bool>(), 12),
+        ) {
+            let mut warnings = Warnings::default();
+            let (mut now, mut since, mut last) = (0, 0, None);
+            for (wait, is_other_first) in waits.into_iter().zip(others) {
+                now += wait;
+                if is_other_first {
+                    warnings.spare(1, now);
+                }
+                if last.is_none_or(|last| now - last >= FORGOTTEN) {
+                    since = now;
+                }
+                let passed = now - since;
+                let left = warnings.spare(0, now);
+                prop_assert_eq!(left.map(u64::from), u64::from(GRACE).checked_sub(passed).filter(|&left| left > 0));
+                if left.is_none() {
+                    break;
+                }
+                last = Some(now);
+            }
+        }
     }
 }

@@ -1,10 +1,15 @@
 //! Intents: what the player wants, independent of keys. The bindings of keys, and how long a key
 //! counts as held, are decided elsewhere.
+//!
+//! A [`Look`] turns and tilts by an angle rather than for a time, as a pointer does.
+//! Angles are whole hundredths of a degree, so that a script stores them without loss and replays
+//! them bit for bit. They take effect at once, because a pointer's motion is smooth already.
+//! Converting an angle into a time of turning was refused: a step turns by 2.3°, which is coarser
+//! than a hand can aim.
 
 use std::fmt;
 
-use super::look::Look;
-use super::stored::{Reader, Stored, Unrestorable, Writer};
+use serde::{Deserialize, Serialize};
 
 /// One action that the player may want.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -141,13 +146,14 @@ impl Intent {
     }
 
     /// The intent with that name.
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|intent| intent.name() == name)
     }
 }
 
 /// A set of intents, and the angles by which the player turns and tilts in each step.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(try_from = "(u32, Look)")]
 pub struct Intents {
     /// One bit for each intent, by its position in the enum.
     bits: u32,
@@ -197,31 +203,26 @@ impl Intents {
     }
 
     /// The intents of the set that [act once](Intent::acts_once), without angles.
-    pub(super) fn once(self) -> Self {
+    pub(crate) fn once(self) -> Self {
         Self { bits: self.bits & ONCE, look: Look::NONE }
     }
 
     /// The intents of the set that are not in `others`, without angles.
-    pub(super) fn without(self, others: Self) -> Self {
+    pub(crate) fn without(self, others: Self) -> Self {
         Self { bits: self.bits & !others.bits, look: Look::NONE }
     }
 
     /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
-    pub(super) fn balance(self, toward: Intent, against: Intent) -> f64 {
+    pub(crate) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
     }
 }
 
-impl Stored for Intents {
-    fn write(&self, out: &mut Writer) {
-        let Self { bits, look } = self;
-        bits.write(out);
-        look.write(out);
-    }
+impl TryFrom<(u32, Look)> for Intents {
+    type Error = &'static str;
 
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let bits = input.number_to((1 << Intent::ALL.len()) - 1)? as u32;
-        Ok(Self { bits, look: Stored::read(input)? })
+    fn try_from((bits, look): (u32, Look)) -> Result<Self, &'static str> {
+        if bits >> Intent::ALL.len() == 0 { Ok(Self { bits, look }) } else { Err("an intent") }
     }
 }
 
@@ -260,6 +261,67 @@ impl fmt::Debug for Intents {
     }
 }
 
+/// The angles by which the player turns and tilts in one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Look {
+    /// Clockwise as seen from above, in hundredths of a degree.
+    pub turn: i16,
+    /// Upwards, in hundredths of a degree: the horizon in a grid, the eye in a scene of bodies.
+    pub tilt: i16,
+}
+
+/// The names of both in files.
+pub(crate) const TURN: &str = "turn";
+pub(crate) const TILT: &str = "tilt";
+
+impl Look {
+    /// No turn and no tilt.
+    pub const NONE: Self = Self { turn: 0, tilt: 0 };
+
+    /// Units in a degree.
+    pub const PER_DEGREE: i16 = 100;
+
+    /// Clockwise, in radians.
+    pub(crate) fn turn_radians(self) -> f64 {
+        radians(self.turn)
+    }
+
+    /// Upwards, in radians.
+    pub(crate) fn tilt_radians(self) -> f64 {
+        radians(self.tilt)
+    }
+
+    /// The words of a script for it: none, one or two.
+    pub(crate) fn words(self) -> impl Iterator<Item = String> {
+        let amounts = [(TURN, self.turn), (TILT, self.tilt)];
+        let amounts = amounts.into_iter().filter(|&(_, amount)| amount != 0);
+        amounts.map(|(name, amount)| format!("{name}:{}", Degrees(amount)))
+    }
+}
+
+fn radians(hundredths: i16) -> f64 {
+    (f64::from(hundredths) / f64::from(Look::PER_DEGREE)).to_radians()
+}
+
+/// Hundredths of a degree, written in degrees with the necessary digits.
+struct Degrees(i16);
+
+impl fmt::Display for Degrees {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", f64::from(self.0) / f64::from(Look::PER_DEGREE))
+    }
+}
+
+/// The hundredths of a degree that `text` gives in degrees; `None` if it is not a number, is not a
+/// whole number of hundredths, is 0 or is too large.
+pub(crate) fn hundredths(text: &str) -> Option<i16> {
+    let degrees: f64 = text.parse().ok()?;
+    let hundredths = (degrees * f64::from(Look::PER_DEGREE)).round();
+    let is_whole = hundredths / f64::from(Look::PER_DEGREE) == degrees;
+    let is_some = hundredths != 0.0 && hundredths.abs() <= f64::from(i16::MAX);
+    (is_whole && is_some).then_some(hundredths as i16)
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
@@ -286,6 +348,23 @@ mod tests {
                 prop_assert!(intents.iter().eq(model.iter().copied()));
                 prop_assert_eq!(intents, model.iter().copied().collect());
             }
+        }
+    }
+
+    #[test]
+    fn every_amount_is_read_as_it_is_written() {
+        for amount in i16::MIN + 1..=i16::MAX {
+            let read = (amount != 0).then_some(amount);
+            assert_eq!(hundredths(&Degrees(amount).to_string()), read);
+        }
+        assert_eq!(Degrees(-325).to_string(), "-3.25");
+        assert_eq!(Degrees(100).to_string(), "1");
+    }
+
+    #[test]
+    fn what_is_no_amount_is_refused() {
+        for text in ["", "x", "nan", "inf", "0", "-0.0", "0.001", "1.005", "328", "1e300", "1,5"] {
+            assert_eq!(hundredths(text), None, "{text}");
         }
     }
 }

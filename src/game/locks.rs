@@ -7,13 +7,13 @@ use super::Game;
 use super::doors::door_ahead;
 use super::intent::{Intent, Intents};
 use super::noise::reach;
-use super::notice::Notice;
+use super::player::Notice;
 use super::sound::SoundKind;
 use crate::world::{Cell, Door};
 
 impl Game {
     /// The intents, with a jump in front of a door, a lever or the like replaced by opening it.
-    pub(super) fn at_a_door(&self, mut intents: Intents) -> Intents {
+    pub(crate) fn at_a_door(&self, mut intents: Intents) -> Intents {
         let motion = &self.player.motion;
         let looking = motion.heading().direction();
         if intents.contains(Intent::Jump)
@@ -28,7 +28,7 @@ impl Game {
     }
 
     /// The door in front of the player, if they want to open it or walk through it.
-    pub(super) fn door_wanted(&self, intents: Intents) -> Option<(Cell, Door)> {
+    pub(crate) fn door_wanted(&self, intents: Intents) -> Option<(Cell, Door)> {
         if self.world.is_of_walls() {
             return None;
         }
@@ -40,7 +40,7 @@ impl Game {
     }
 
     /// Opens the door that the player wants to open or walks into.
-    pub(super) fn open_doors(&mut self, intents: Intents) {
+    pub(crate) fn open_doors(&mut self, intents: Intents) {
         if let Some((cell, door)) = self.door_wanted(intents) {
             self.try_to_open(cell, door);
         }
@@ -61,7 +61,7 @@ impl Game {
     }
 
     /// Whether [`Game::open_doors`] would change anything.
-    pub(super) fn would_answer(&self, cell: Cell, door: Door) -> bool {
+    pub(crate) fn would_answer(&self, cell: Cell, door: Door) -> bool {
         if self.can_open(door) {
             self.doors.would_open(cell)
         } else {
@@ -70,7 +70,7 @@ impl Game {
     }
 
     /// Shows a message, unless it is shown already.
-    pub(super) fn say(&mut self, text: String) {
+    pub(crate) fn say(&mut self, text: String) {
         if self.player.notice.text() != Some(&text) {
             self.player.notice = Notice::new(text);
             self.revision += 1;

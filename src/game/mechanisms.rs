@@ -10,73 +10,118 @@
 //! A step looks only at the plates that are down, at the cells that somebody stands in, and at the
 //! cells that move. Which these are is kept from step to step. A map may have a million others.
 
-mod handles;
-mod moving_cell;
-mod stored;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::Game;
-use super::multiplayer::{MOST_PLAYERS, playing_mut};
+use super::multiplayer::playing_mut;
 use super::noise::reach;
 use super::player::Motion;
+use super::rules::MOST_PLAYERS;
 use super::sound::SoundKind;
+use super::stored::{OfLevel, Unrestorable, check};
 use super::tally::Share;
-use crate::game::stored::stored;
+use super::{Game, STEPS_PER_SECOND};
+use crate::cast::{Ray, Walk};
 use crate::sort;
+use crate::world::sprite::builtin::LeverFrame;
 use crate::world::{
     Cell, Driver, MovingTile, SwitchId, ThingKind, TileEffect, TileId, TileKind, World,
 };
-use moving_cell::{MovingCell, Step};
 
 /// The state of all mechanisms of a level.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Mechanisms {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Mechanisms {
     /// For each switch.
     switches: Vec<Switch>,
     /// All plates, row by row.
     plates: Vec<Plate>,
     /// The plates that are down, from the lowest index to the highest.
+    #[serde(skip)]
     down: Vec<usize>,
     /// The cells of moving tiles, row by row.
     moving: Vec<MovingCell>,
     /// Those of them that do not rest, from the lowest index to the highest.
+    #[serde(skip)]
     active: Vec<usize>,
     /// For each moving tile, its first cell.
+    #[serde(skip)]
     first_cells: Vec<Option<Cell>>,
     /// The doors that switches open.
+    #[serde(skip)]
     doors: Vec<(Cell, SwitchId)>,
     /// Whether there are levers, flames or secret walls.
+    #[serde(skip)]
     has_handles: bool,
     /// Whether there are floors that crumble.
+    #[serde(skip)]
     has_crumbling: bool,
+    #[serde(skip)]
     secrets: Share,
 }
 
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 struct Switch {
     /// Whether its levers are turned on.
     is_turned: bool,
     /// Whether its doors and tiles have been told that it is on.
     is_on: bool,
     /// The number of its plates that are down.
+    #[serde(skip)]
     plates_down: u32,
     /// The moving cells that it drives, by their indices.
+    #[serde(skip)]
     cells: Vec<usize>,
 }
 
-stored! { part of Switch { is_turned, is_on } level { plates_down, cells } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Plate {
+    #[serde(skip)]
     cell: Cell,
+    #[serde(skip)]
     switch: SwitchId,
     is_down: bool,
 }
 
-stored! { part of Plate { is_down } level { cell, switch } }
+impl OfLevel for Mechanisms {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let switches = self.switches.of_level(start.switches)?;
+        let plates = self.plates.of_level(start.plates)?;
+        let moving = self.moving.of_level(start.moving)?;
+        Ok(Self { switches, plates, moving, ..start })
+    }
+}
+
+impl OfLevel for Switch {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { is_turned: self.is_turned, is_on: self.is_on, ..start })
+    }
+}
+
+impl OfLevel for Plate {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { is_down: self.is_down, ..start })
+    }
+}
 
 impl Mechanisms {
+    /// Shows moving tiles in `world`, where they rest, as they are.
+    ///
+    /// # Errors
+    /// If one is beyond its last state.
+    pub(crate) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
+        for moving in &self.moving {
+            check(moving.is_possible(world), "a moving tile")?;
+            let (cell, shown) = (moving.cell, moving.shown(world));
+            if world.grid().tile_in(cell) != Some(shown) {
+                world.set_tile(cell, shown);
+            }
+        }
+        self.recollect(world);
+        Ok(())
+    }
+
     /// The mechanisms of `world`, at rest.
-    pub(super) fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let tiles = world.grid().rows().zip(0..).flat_map(|(line, row)| {
             let columns = line.iter().zip(0..);
             columns.map(move |(&tile, column)| (Cell { column, row }, tile))
@@ -121,8 +166,8 @@ impl Mechanisms {
         self.moving.push(MovingCell::new(cell, tile));
     }
 
-    /// Finds out anew what is kept from step to step: which plates are down, which cells do not rest,
-    /// and which secrets have been found.
+    /// Derives the facts kept from step to step again: which plates are down, which cells do not rest, and
+    /// which secrets have been found.
     fn recollect(&mut self, world: &World) {
         let plates = self.plates.iter().enumerate().filter(|(_, plate)| plate.is_down);
         self.down = plates.map(|(index, _)| index).collect();
@@ -133,30 +178,30 @@ impl Mechanisms {
         self.active =
             (0..self.moving.len()).filter(|&index| self.is_in_motion(index, world)).collect();
         let secrets = self.moving.iter().filter(|cell| cell.driver(world) == Driver::Hand);
-        self.secrets.found = secrets.filter(|cell| cell.is_driven()).count() as u32;
+        self.secrets.found = secrets.filter(|cell| cell.is_driven).count() as u32;
     }
 
     /// Whether there is anything to open beside doors.
-    pub(super) fn has_handles(&self) -> bool {
+    pub(crate) fn has_handles(&self) -> bool {
         self.has_handles
     }
 
     /// Turns the levers of `switch`, and returns whether they are on now.
-    pub(super) fn turn(&mut self, switch: SwitchId) -> bool {
+    pub(crate) fn turn(&mut self, switch: SwitchId) -> bool {
         let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
         state.is_turned = !state.is_turned;
         state.is_turned
     }
 
-    /// The secret walls, and those of them that have been found.
-    pub(super) fn secrets(&self) -> Share {
+    /// The number of secret walls, and of those found.
+    pub(crate) fn secrets(&self) -> Share {
         self.secrets
     }
 
     /// Opens the secret wall that is the moving cell with that index.
     fn open_secret(&mut self, index: usize) {
-        self.secrets.found += u32::from(!self.moving[index].is_driven());
-        self.moving[index].drive();
+        self.secrets.found += u32::from(!self.moving[index].is_driven);
+        self.moving[index].is_driven = true;
         if let Err(place) = self.active.binary_search(&index) {
             self.active.insert(place, index);
         }
@@ -164,7 +209,7 @@ impl Mechanisms {
 
     /// The index of the moving cell in `cell`.
     fn moving_in(&self, cell: Cell) -> Option<usize> {
-        self.moving.binary_search_by_key(&by_row(cell), |moving| by_row(moving.cell())).ok()
+        self.moving.binary_search_by_key(&by_row(cell), |moving| by_row(moving.cell)).ok()
     }
 
     /// The index of the plate in `cell`.
@@ -182,17 +227,8 @@ impl Mechanisms {
     fn is_driven(&self, cell: MovingCell, world: &World) -> bool {
         match cell.driver(world) {
             Driver::Switch(switch) => self.switches[usize::from(switch.0)].is_on,
-            Driver::Hand | Driver::Weight => cell.is_driven(),
+            Driver::Hand | Driver::Weight => cell.is_driven,
         }
-    }
-
-    /// The position of each plate, the position of each moving cell, and the state of each switch,
-    /// as numbers.
-    pub(super) fn words(&self) -> impl Iterator<Item = u64> {
-        let switches =
-            self.switches.iter().map(|it| u64::from(it.is_turned) << 1 | u64::from(it.is_on));
-        let plates = self.plates.iter().map(|plate| u64::from(plate.is_down));
-        switches.chain(plates).chain(self.moving.iter().map(MovingCell::word))
     }
 
     fn is_on(&self, switch: SwitchId) -> bool {
@@ -206,8 +242,8 @@ impl Mechanisms {
 }
 
 impl Game {
-    /// Moves what is driven by switches, hands and weights.
-    pub(super) fn move_mechanisms(&mut self) {
+    /// Moves everything that switches, hands and weights drive.
+    pub(crate) fn move_mechanisms(&mut self) {
         let bodies = self.cells_of_all().count();
         *self.work += (bodies + self.mechanisms.down.len()) as u64;
         self.press_plates();
@@ -216,7 +252,7 @@ impl Game {
     }
 
     /// Whether a step would change any mechanism but a door.
-    pub(super) fn mechanisms_move(&self) -> bool {
+    pub(crate) fn mechanisms_move(&self) -> bool {
         self.changing_plates().next().is_some()
             || self.mechanisms.switches().any(|switch| {
                 self.mechanisms.is_on(switch)
@@ -261,7 +297,7 @@ impl Game {
     }
 
     /// Whether somebody would be in a wall in `cell`.
-    pub(super) fn is_in_the_way(&self, cell: Cell) -> bool {
+    pub(crate) fn is_in_the_way(&self, cell: Cell) -> bool {
         self.playing().any(|(_, it)| it.motion.touches(cell)) || self.guards.touches(cell)
     }
 
@@ -331,7 +367,7 @@ impl Game {
         if self.revision != revision {
             // What has moved may have made room.
             for &index in &movable {
-                mechanisms.moving[index].try_again();
+                mechanisms.moving[index].is_blocked = false;
             }
         }
         movable.retain(|&index| mechanisms.is_in_motion(index, world));
@@ -341,14 +377,14 @@ impl Game {
     /// The next step of a moving cell, if nothing keeps it from moving.
     fn next_step(&self, cell: MovingCell) -> Option<Step> {
         let is_stepped_on =
-            || cell.driver(&self.world) == Driver::Weight && self.weighs_on(cell.cell());
+            || cell.driver(&self.world) == Driver::Weight && self.weighs_on(cell.cell);
         let is_driven = self.mechanisms.is_driven(cell, &self.world) || is_stepped_on();
         cell.step(&self.world, is_driven)
     }
 
     /// Whether a step would change a moving cell, where nobody has moved since the last one.
     fn would_move(&self, cell: MovingCell) -> bool {
-        self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked())
+        self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked)
     }
 
     /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
@@ -360,16 +396,16 @@ impl Game {
         for (index, player) in self.playing() {
             stood[index] = player.motion.stands(&self.world);
         }
-        self.world.set_state(cell.cell(), state);
+        self.world.set_tile(cell.cell, state);
         let carries = cell.driver(&self.world) != Driver::Weight;
         if self.is_crushing(cell, state, carries) {
-            self.world.set_state(cell.cell(), before);
+            self.world.set_tile(cell.cell, before);
             self.tell_who_blocks(cell);
             return cell.blocked();
         }
         self.revision += 1;
         self.hear_crumbling(cell, step);
-        self.guards.floor_moved(&self.world, cell.cell(), carries);
+        self.guards.floor_moved(&self.world, cell.cell, carries);
         let Self { player, members, world, .. } = self;
         for (index, player) in playing_mut(player, members.as_deref_mut()) {
             if let Some(feet) = player.motion.feet_after(world, stood[index] && carries) {
@@ -382,9 +418,9 @@ impl Game {
 
     /// Says that a cell stops, once, to a player who is in the way.
     fn tell_who_blocks(&mut self, cell: MovingCell) {
-        if !cell.is_blocked() {
+        if !cell.is_blocked {
             self.for_each_player(|game| {
-                if game.player.motion.touches(cell.cell()) {
+                if game.player.motion.touches(cell.cell) {
                     game.say("It stops: you are in the way.".to_owned());
                 }
             });
@@ -394,10 +430,10 @@ impl Game {
     /// A floor that crumbles cracks, and then breaks.
     fn hear_crumbling(&mut self, cell: MovingCell, step: Step) {
         if cell.driver(&self.world) == Driver::Weight {
-            if !cell.is_driven() {
-                self.sound_in(cell.cell(), SoundKind::Mechanism, reach::CLICK);
+            if !cell.is_driven {
+                self.sound_in(cell.cell, SoundKind::Mechanism, reach::CLICK);
             } else if step.after.is_at_the_end(&self.world) {
-                self.sound_in(cell.cell(), SoundKind::Crash, reach::CRASH);
+                self.sound_in(cell.cell, SoundKind::Crash, reach::CRASH);
             }
         }
     }
@@ -409,14 +445,13 @@ impl Game {
         let tile = world.tile(state);
         let rises = tile.heights.floor() > world.tile(cell.shown(world)).heights.floor();
         if rises && matches!(tile.kind, TileKind::Wall(_)) {
-            return self.is_in_the_way(cell.cell());
+            return self.is_in_the_way(cell.cell);
         }
         let crushes = |motion: &Motion| {
-            motion.touches(cell.cell())
-                && !(motion.has_room(world) || motion.lifted(world).is_some())
+            motion.touches(cell.cell) && !(motion.has_room(world) || motion.lifted(world).is_some())
         };
         self.playing().any(|(_, player)| crushes(&player.motion))
-            || self.guards.are_crushed(world, cell.cell(), carries)
+            || self.guards.are_crushed(world, cell.cell, carries)
     }
 }
 
@@ -431,4 +466,239 @@ fn in_order(indices: impl Iterator<Item = usize>) -> Vec<usize> {
     sort::by_key(&mut indices, |&index| index);
     indices.dedup();
     indices
+}
+
+/// The steps before a floor falls on which somebody has stepped, and those in which it falls.
+const CRACKS: u16 = 30;
+const FALLS: u16 = 20;
+
+/// A cell of a [`MovingTile`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct MovingCell {
+    #[serde(skip)]
+    cell: Cell,
+    /// The index of its moving tile.
+    #[serde(skip)]
+    tile: u16,
+    /// The steps from the first state, without those in which it cracks.
+    progress: u16,
+    /// The steps for which it has cracked.
+    cracks: u16,
+    /// Whether a hand or a weight has set it in motion.
+    is_driven: bool,
+    /// Whether somebody was in the way of its last step, and no tile has moved since.
+    is_blocked: bool,
+}
+
+/// The effect of a step on a moving cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Step {
+    after: MovingCell,
+    /// The tile that it shows then, if that changes.
+    state: Option<TileId>,
+}
+
+impl OfLevel for MovingCell {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        Ok(Self { cell: start.cell, tile: start.tile, ..self })
+    }
+}
+
+impl MovingCell {
+    /// A cell at rest of the moving tile `tile`.
+    fn new(cell: Cell, tile: usize) -> Self {
+        Self {
+            cell,
+            tile: tile as u16,
+            progress: 0,
+            cracks: 0,
+            is_driven: false,
+            is_blocked: false,
+        }
+    }
+
+    fn tile(&self) -> usize {
+        usize::from(self.tile)
+    }
+
+    fn driver(&self, world: &World) -> Driver {
+        self.moving_tile(world).driver
+    }
+
+    /// The same cell, after a step in which somebody was in the way.
+    #[must_use]
+    fn blocked(self) -> Self {
+        Self { is_blocked: true, ..self }
+    }
+
+    /// The tile that it shows.
+    fn shown(&self, world: &World) -> TileId {
+        let moving = self.moving_tile(world);
+        let last = moving.states.len().saturating_sub(1);
+        let index = usize::from(self.progress) * last / usize::from(steps(moving, world));
+        // A floor that cracks shows it by sinking a little.
+        let index = index.max(usize::from(self.cracks > 0)).min(last);
+        moving.states[index]
+    }
+
+    /// Whether it shows its last state.
+    fn is_at_the_end(&self, world: &World) -> bool {
+        self.progress >= steps(self.moving_tile(world), world)
+    }
+
+    /// Its next step, towards the end if it `is_driven` and back otherwise; `None` if it rests.
+    fn step(self, world: &World, is_driven: bool) -> Option<Step> {
+        let moving = self.moving_tile(world);
+        let mut after = Self { is_blocked: false, ..self };
+        if moving.driver == Driver::Weight && is_driven && self.cracks < CRACKS {
+            after.is_driven = true;
+            after.cracks += 1;
+        } else if is_driven {
+            after.progress = (self.progress + 1).min(steps(moving, world));
+        } else {
+            after.progress = self.progress.saturating_sub(1);
+        }
+        let state = Some(after.shown(world)).filter(|&state| state != self.shown(world));
+        (after != self).then_some(Step { after, state })
+    }
+
+    /// Whether it has not gone beyond its last state.
+    fn is_possible(&self, world: &World) -> bool {
+        self.cracks <= CRACKS && self.progress <= steps(self.moving_tile(world), world)
+    }
+
+    fn moving_tile<'a>(&self, world: &'a World) -> &'a MovingTile {
+        &world.moving_tiles()[self.tile()]
+    }
+}
+
+/// The steps from the first state to the last; at least one.
+fn steps(moving: &MovingTile, world: &World) -> u16 {
+    if moving.driver == Driver::Weight {
+        return FALLS;
+    }
+    let height = |id: Option<&TileId>| id.map_or(0.0, |&id| world.tile(id).heights.floor());
+    let way = (height(moving.states.last()) - height(moving.states.first())).abs();
+    (way * f64::from(STEPS_PER_SECOND)).round().clamp(1.0, u16::MAX.into()) as u16
+}
+
+/// How far a handle's cell may be from the player who opens it, in cells.
+const REACH: f64 = 0.9;
+/// The cosine of the angle to both sides of the view in which a lever or a flame is: 50°.
+const COSINE: f64 = 0.642_787_609_686_539_3;
+/// Nearer than this the direction does not matter.
+const NEAR: f64 = 0.4;
+
+/// Something that the player can open, beside doors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Handle {
+    Lever(Cell, SwitchId),
+    Flame(Cell),
+    /// The secret wall that is the moving cell with that index.
+    Secret(usize),
+}
+
+impl Game {
+    /// The handle in front of the player.
+    pub(crate) fn handle_ahead(&self) -> Option<Handle> {
+        if !self.mechanisms.has_handles() {
+            return None;
+        }
+        self.thing_to_open().or_else(|| self.secret_ahead())
+    }
+
+    /// Turns a lever, puts a flame out or lights it, or opens a secret wall.
+    pub(crate) fn use_handle(&mut self, handle: Handle) {
+        self.revision += 1;
+        match handle {
+            Handle::Lever(cell, switch) => self.turn_lever(cell, switch),
+            Handle::Flame(cell) => {
+                let burns = self.burns(cell);
+                self.world.set_flame(cell, !burns);
+            }
+            Handle::Secret(index) => {
+                let cell = self.mechanisms.moving[index].cell;
+                self.mechanisms.open_secret(index);
+                self.sound_in(cell, SoundKind::Mechanism, reach::MECHANISM);
+                self.say("You have found a secret.".to_owned());
+            }
+        }
+    }
+
+    fn turn_lever(&mut self, cell: Cell, switch: SwitchId) {
+        let is_turned = self.mechanisms.turn(switch);
+        let is_it = |kind| kind == ThingKind::Lever(switch);
+        let levers = self.world.things().iter().filter(|thing| is_it(thing.kind));
+        let cells: Vec<Cell> = levers.map(|thing| thing.cell).collect();
+        for lever in cells {
+            let frame = if is_turned { LeverFrame::On } else { LeverFrame::Off };
+            self.world.set_frame(lever, is_it, frame.index());
+        }
+        self.sound_in(cell, SoundKind::Mechanism, reach::CLICK);
+    }
+
+    fn burns(&self, cell: Cell) -> bool {
+        let things = self.world.things_in(cell).iter();
+        things.filter(|thing| thing.kind == ThingKind::Flame).any(|thing| thing.frame.is_none())
+    }
+
+    /// The nearest lever or flame in front of the player or at their place.
+    fn thing_to_open(&self) -> Option<Handle> {
+        let Cell { column, row } = self.player.motion.cell();
+        let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
+        let cells = near(row).flat_map(|row| near(column).map(move |column| Cell { column, row }));
+        let handles = cells.filter(|&cell| self.is_within_reach(cell)).filter_map(|cell| {
+            self.world
+                .things_in(cell)
+                .iter()
+                .find_map(|thing| match thing.kind {
+                    ThingKind::Lever(switch) => Some(Handle::Lever(cell, switch)),
+                    ThingKind::Flame => Some(Handle::Flame(cell)),
+                    _ => None,
+                })
+                .map(|handle| (cell, handle))
+        });
+        let position = self.player.motion.position();
+        let distance = |cell: Cell| cell.center().distance_squared(position);
+        let nearest = handles.min_by(|one, other| distance(one.0).total_cmp(&distance(other.0)));
+        nearest.map(|(_, handle)| handle)
+    }
+
+    /// Whether the player can reach the middle of `cell`.
+    fn is_within_reach(&self, cell: Cell) -> bool {
+        let motion = &self.player.motion;
+        let position = motion.position();
+        let way = cell.center() - position;
+        let length = way.length();
+        if length < NEAR {
+            return true;
+        }
+        let is_ahead = way.dot(motion.heading().direction()) >= COSINE * length;
+        is_ahead && to_cell(position, cell) <= REACH && self.is_clear(position, way)
+    }
+
+    /// Whether nothing solid is on a way.
+    fn is_clear(&self, position: DVec2, way: DVec2) -> bool {
+        let Ok(ray) = Ray::new(position, way) else { return true };
+        let solid = Walk::new(self.world.grid(), &ray).first_solid();
+        solid.is_none_or(|solid| to_cell(position, solid.cell) >= way.length())
+    }
+
+    /// The secret wall that the player looks at, if it has not been opened.
+    fn secret_ahead(&self) -> Option<Handle> {
+        let motion = &self.player.motion;
+        let ray = Ray::new(motion.position(), motion.heading().direction()).ok()?;
+        let cell = Walk::new(self.world.grid(), &ray).first_solid()?.cell;
+        let index = self.mechanisms.moving_in(cell)?;
+        let moving = &self.mechanisms.moving[index];
+        let is_secret = moving.driver(&self.world) == Driver::Hand && !moving.is_driven;
+        let is_near = to_cell(motion.position(), cell) <= REACH;
+        (is_secret && is_near).then_some(Handle::Secret(index))
+    }
+}
+
+/// The distance from a position to the square of `cell`.
+fn to_cell(position: DVec2, cell: Cell) -> f64 {
+    let middle = cell.center();
+    position.distance(position.clamp(middle - 0.5, middle + 0.5))
 }

@@ -10,103 +10,609 @@
 //! - Treasure counts for all. Keys belong to their finders; those of a player who leaves, reaches
 //!   the exit or is dead for good lie where they were found.
 //! - What a player does to others is judged by the positions in the step that the player saw, at
-//!   most [`MOST_LAG`] steps ago. Judging by the present positions was refused: players would have to
+//!   most [`MOST_LAG`](super::MOST_LAG) steps ago. Judging by the present positions was refused: players would have to
 //!   aim ahead of everybody by as much as their connection is slow.
 //! - Bodies that collide are columns without an upper end: nobody jumps onto a head.
 
 mod entry;
-mod figures;
-mod keys;
-mod members;
-mod seen;
-mod step;
-mod stored;
 mod strike;
-mod view;
+pub(crate) mod view;
 
-use super::Intents;
-pub(super) use members::{Members, playing, playing_mut};
-pub use view::{OtherPlayer, PlayerView};
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-/// The most players in a game.
-pub const MOST_PLAYERS: usize = 16;
+use super::checkpoint::Checkpoint;
+use super::guards::Target;
+use super::player::{Motion, Player, Supplies};
+use super::rules::{Input, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules};
+use super::scratch::Scratch;
+use super::stored::{OfLevel, Unrestorable, at_most, check};
+use super::{Game, Intent, Intents};
+use crate::world::sprite::builtin::{self, PlayerColor, PlayerFrame};
+use crate::world::{Cell, Figure, SpriteId, Thing, ThingKind, World};
+use strike::Track;
 
-/// How many steps ago a player may have seen what they act upon: 250 ms.
-pub const MOST_LAG: u64 = 15;
+/// The distance in which a figure changes its foot, in cells.
+const STRIDE: f64 = 0.45;
 
-/// A player in a game for several: the number of a slot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct PlayerId(u8);
+/// What guards perceive where nobody is.
+const NOBODY: Target = Target {
+    position: DVec2::ZERO,
+    feet: 0.0,
+    head: 0.0,
+    visibility: 0,
+    has_light: false,
+    is_alive: false,
+};
 
-impl PlayerId {
-    /// The first slot, which is that of the only player of a game for one.
-    pub const FIRST: Self = Self(0);
+/// The players of a game for several.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Members {
+    #[serde(skip)]
+    rules: MultiplayerRules,
+    /// The last slot is taken, if there is any.
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
+    slots: Vec<Option<Member>>,
+    /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.
+    #[serde(skip)]
+    turn: Option<usize>,
+    /// The worth of the treasure of those who have left.
+    treasure_of_the_gone: u32,
+    /// Where the keys lay at the start.
+    #[serde(skip)]
+    keys: Vec<Thing>,
+    /// By colour.
+    #[serde(skip)]
+    sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
+    /// The blows of the last step: who has struck whom.
+    blows: Vec<(usize, usize)>,
+    /// The memory for what guards perceive, for the positions of those in the way, and for figures.
+    #[serde(skip)]
+    pub(crate) targets: Scratch<Vec<Target>>,
+    #[serde(skip)]
+    in_the_way: Scratch<Vec<DVec2>>,
+    #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
+    figures: Vec<Figure>,
+}
 
-    /// The slot with that index; `None` from [`MOST_PLAYERS`] on.
-    pub fn new(index: usize) -> Option<Self> {
-        (index < MOST_PLAYERS).then_some(Self(index as u8))
+/// A player, and what concerns them among others.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Member {
+    player: Player,
+    color: PlayerColor,
+    /// Whether the player is alive and has not reached the exit; it changes between steps.
+    is_playing: bool,
+    has_won: bool,
+    /// What the player wants in this step, and the step that they saw.
+    intents: Intents,
+    seen: u64,
+    /// The step in which they joined, and the one in which they died or reached the exit.
+    joined: u64,
+    ended: Option<u64>,
+    /// The last checkpoint; `None` for the start.
+    checkpoint: Option<Cell>,
+    /// The steps for which they lie on the floor, and until they can be struck again.
+    stunned: u16,
+    spared: u16,
+    /// The steps for which the figure strikes, and how far it has walked, in cells.
+    swing: u16,
+    walked: f64,
+    track: Track,
+}
+
+impl Member {
+    /// Whether the player lies on the floor.
+    pub(crate) fn is_down(&self) -> bool {
+        self.stunned > 0 || self.player.killed_by.is_some()
     }
 
-    /// The index of the slot, below [`MOST_PLAYERS`].
-    pub fn index(self) -> usize {
-        usize::from(self.0)
+    fn figure(&self, world: &World, sprite: SpriteId) -> Figure {
+        let motion = &self.player.motion;
+        // What has moved since their death does not carry the dead.
+        let base = if self.is_playing { motion.feet() } else { world.floor_at(motion.cell()) };
+        let (position, heading) = (motion.position(), motion.heading());
+        Figure { sprite, position, base, heading, frame: self.frame().index(), opacity: u8::MAX }
+    }
+
+    fn frame(&self) -> PlayerFrame {
+        let motion = &self.player.motion;
+        match self.swing {
+            _ if self.is_down() => PlayerFrame::Down,
+            0 => walking_frame(motion, self.walked),
+            _ => PlayerFrame::Strike,
+        }
     }
 }
 
-/// The rules among the players of a game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MultiplayerRules {
-    /// Whether players are in each other's way. Otherwise they walk through each other.
-    pub collides: bool,
-    /// Whether a dead player goes on from their last checkpoint when they want to
-    /// [retry](super::Intent::Retry).
-    pub respawns: bool,
-    /// Whom the map of a player shows.
-    pub sees: Sees,
-    /// What a blow does to another player.
-    pub strikes: Strikes,
-}
+impl Members {
+    /// The member in a slot.
+    fn member(&self, index: usize) -> Option<&Member> {
+        self.slots.get(index)?.as_ref()
+    }
 
-impl Default for MultiplayerRules {
-    /// Players walk through each other, go on after death, see each other on the map, and cannot
-    /// strike each other.
-    fn default() -> Self {
-        Self { collides: false, respawns: true, sees: Sees::All, strikes: Strikes::Nobody }
+    fn member_mut(&mut self, index: usize) -> Option<&mut Member> {
+        self.slots.get_mut(index)?.as_mut()
+    }
+
+    /// The members with the indices of their slots.
+    fn each(&self) -> impl Iterator<Item = (usize, &Member)> + Clone {
+        let slots = self.slots.iter().enumerate();
+        slots.filter_map(|(index, slot)| Some((index, slot.as_ref()?)))
+    }
+
+    fn each_mut(&mut self) -> impl Iterator<Item = (usize, &mut Member)> {
+        let slots = self.slots.iter_mut().enumerate();
+        slots.filter_map(|(index, slot)| Some((index, slot.as_mut()?)))
+    }
+
+    /// The last checkpoint of the player whose turn it is.
+    pub(crate) fn checkpoint(&self) -> Option<Cell> {
+        self.member(self.turn?)?.checkpoint
+    }
+
+    pub(crate) fn set_checkpoint(&mut self, cell: Cell) {
+        let turn = self.turn;
+        if let Some(member) = turn.and_then(|turn| self.member_mut(turn)) {
+            member.checkpoint = Some(cell);
+        }
+    }
+
+    /// Whether anybody goes on from the checkpoint in `cell`.
+    pub(crate) fn has_checkpoint(&self, cell: Cell) -> bool {
+        self.each().any(|(_, member)| member.checkpoint == Some(cell))
+    }
+
+    /// Refuses a state in which a step after the step `now` could fail.
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+        check(self.slots.last().is_none_or(Option::is_some), "a player")?;
+        self.each().try_for_each(|(_, member)| {
+            check(member.walked >= 0.0, "how far a player has walked")?;
+            member.player.check(world, now)
+        })
+    }
+
+    /// The first free slot.
+    fn free_slot(&self) -> Option<usize> {
+        let free = self.slots.iter().position(Option::is_none);
+        free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
+    }
+
+    /// The positions of those who are in the way of the player in turn.
+    pub(crate) fn in_the_way(&self) -> &[DVec2] {
+        &self.in_the_way
+    }
+
+    /// Makes the figures of the players. Returns whether they have changed.
+    pub(crate) fn pose(&mut self, world: &World) -> bool {
+        let mut figures = std::mem::take(&mut self.figures);
+        let mut count = 0;
+        let mut has_changed = false;
+        let shown = self.each().filter(|(_, member)| !member.has_won);
+        for (_, member) in shown {
+            let Some(sprite) = self.sprites[member.color as usize] else { continue };
+            let figure = member.figure(world, sprite);
+            if let Some(before) = figures.get_mut(count) {
+                has_changed |= *before != figure;
+                *before = figure;
+            } else {
+                has_changed = true;
+                figures.push(figure);
+            }
+            count += 1;
+        }
+        has_changed |= count < figures.len();
+        figures.truncate(count);
+        self.figures = figures;
+        has_changed
+    }
+
+    /// The figures of the players.
+    pub(crate) fn figures(&self) -> &[Figure] {
+        &self.figures
     }
 }
 
-/// Whom the map of a player shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Sees {
-    /// No other player.
-    Nobody,
-    /// Players in sight.
-    InSight,
-    /// All players.
-    All,
+impl OfLevel for Members {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { rules, keys, sprites, .. } = start;
+        Ok(Self { rules, keys, sprites, ..self })
+    }
 }
 
-/// What a blow does to another player. It takes no health.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Strikes {
-    /// Nothing: blows find guards only.
-    Nobody,
-    /// The other one is pushed away.
-    Push,
-    /// The other one is pushed away, and lies on the floor for 2 seconds. For 2 seconds more, nobody
-    /// can strike them.
-    Stun,
+impl Game {
+    /// A game for several at its start, with nobody in it.
+    pub fn for_players(world: World, rules: Rules, multiplayer: MultiplayerRules) -> Self {
+        let is_key = |kind| matches!(kind, ThingKind::Key(_));
+        let keys = world.things().iter().filter(|thing| is_key(thing.kind)).copied().collect();
+        // The sprites of guards come first, as in a game for one.
+        let mut game = Self::with_rules(world, rules);
+        let sprites = PlayerColor::ALL
+            .map(|color| builtin::player(color).map(|sprite| game.world.add_sprite(sprite)));
+        game.checkpoint = Checkpoint::default();
+        game.members = Some(Box::new(Members {
+            rules: multiplayer,
+            slots: Vec::new(),
+            turn: None,
+            treasure_of_the_gone: 0,
+            keys,
+            sprites,
+            blows: Vec::new(),
+            targets: Scratch::default(),
+            in_the_way: Scratch::default(),
+            figures: Vec::new(),
+        }));
+        game
+    }
+
+    /// The rules among the players; `None` in a game for one.
+    pub fn multiplayer_rules(&self) -> Option<MultiplayerRules> {
+        self.members.as_ref().map(|members| members.rules)
+    }
+
+    /// Lets a player join, at the start or the nearest free place. `None` if no slot or no place is
+    /// free, and in a game for one.
+    pub fn join(&mut self, color: PlayerColor) -> Option<PlayerId> {
+        let index = self.members.as_ref()?.free_slot()?;
+        let motion = self.free_place(self.world.start().cell)?;
+        let supplies = if self.is_mission { Supplies::AT_START } else { Supplies::default() };
+        let member = Member {
+            player: Player::new(&self.world, supplies).at(motion),
+            color,
+            is_playing: true,
+            has_won: false,
+            intents: Intents::new(),
+            seen: self.steps,
+            joined: self.steps,
+            ended: None,
+            checkpoint: None,
+            stunned: 0,
+            spared: 0,
+            swing: 0,
+            walked: 0.0,
+            track: Track::default(),
+        };
+        let members = self.members.as_deref_mut()?;
+        if index == members.slots.len() {
+            members.slots.push(None);
+        }
+        members.slots[index] = Some(member);
+        self.settle(index);
+        self.show();
+        PlayerId::new(index)
+    }
+
+    /// Lets a player leave. Their keys lie where they were found, and their treasure still counts.
+    pub fn leave(&mut self, player: PlayerId) {
+        let index = player.index();
+        self.put_keys_back(index);
+        let Some(members) = self.members.as_deref_mut() else { return };
+        let Some(member) = members.slots.get_mut(index).and_then(Option::take) else { return };
+        members.treasure_of_the_gone =
+            members.treasure_of_the_gone.saturating_add(member.player.treasure);
+        while members.slots.last().is_some_and(Option::is_none) {
+            members.slots.pop();
+        }
+        self.grey_checkpoint(member.checkpoint);
+        self.guards.forget_player(index);
+        self.show();
+    }
+
+    /// Advances the game by one step of [`STEP`](crate::game::STEP) seconds, in which each player
+    /// wants what their input says, and those without one want nothing. Of several inputs of one
+    /// player, the last counts. In a game for one, that is the input of the [first
+    /// slot](PlayerId::FIRST).
+    pub fn step_all(&mut self, inputs: &[Input]) {
+        if self.members.is_none() {
+            let own = inputs.iter().rfind(|input| input.player == PlayerId::FIRST);
+            return self.step(own.map_or_else(Intents::new, |input| input.intents));
+        }
+        *self.work = 0;
+        self.take_inputs(inputs);
+        self.revive();
+        if self.playing().next().is_none() {
+            return;
+        }
+        self.each_turn(Self::move_one);
+        self.thin_smoke();
+        self.move_doors();
+        self.each_turn(|game, intents| {
+            game.act(intents);
+            intents
+        });
+        self.move_others();
+        self.each_turn(|game, intents| {
+            game.hear();
+            game.reach_checkpoint();
+            intents
+        });
+        self.sounds.clear();
+        self.pass_time_of_members();
+        self.steps = self.steps.saturating_add(1);
+        self.settle_all();
+        self.show();
+    }
+
+    /// Gives each player who plays their turn, with their intents, which `act` may change.
+    fn each_turn(&mut self, act: impl Fn(&mut Self, Intents) -> Intents) {
+        for index in 0..self.slot_count() {
+            let member = self.members.as_ref().and_then(|members| members.member(index));
+            let Some(member) = member.filter(|member| member.is_playing) else { continue };
+            let intents = member.intents;
+            self.in_turn(index, |game| {
+                let intents = act(game, intents);
+                if let Some(member) = game.member_in_turn() {
+                    member.intents = intents;
+                }
+            });
+        }
+    }
+
+    fn slot_count(&self) -> usize {
+        self.members.as_ref().map_or(0, |members| members.slots.len())
+    }
+
+    fn take_inputs(&mut self, inputs: &[Input]) {
+        let now = self.steps;
+        let Some(members) = self.members.as_deref_mut() else { return };
+        members.blows.clear();
+        for (index, member) in members.each_mut() {
+            let input = inputs.iter().rfind(|input| input.player.index() == index);
+            member.intents = input.map_or_else(Intents::new, |input| input.intents);
+            member.seen = input.map_or(now, |input| input.seen.min(now));
+            if member.stunned > 0 {
+                member.intents = Intents::new().with_look(member.intents.look());
+            }
+        }
+    }
+
+    /// Lets dead players go on who want to, and finds out who plays.
+    fn revive(&mut self) {
+        let respawns = self.multiplayer_rules().is_some_and(|rules| rules.respawns);
+        for index in 0..self.slot_count() {
+            let member = self.members.as_ref().and_then(|members| members.member(index));
+            let Some(member) = member else { continue };
+            let (is_dead, intents) = (member.player.killed_by.is_some(), member.intents);
+            let is_playing = !is_dead && !member.has_won;
+            if is_dead {
+                self.in_turn(index, |game| {
+                    let presses = game.presses(intents);
+                    let retries = game.player.fresh(presses).contains(Intent::Retry);
+                    game.player.pressed = presses;
+                    if retries && respawns {
+                        game.respawn();
+                    }
+                });
+            }
+            if let Some(member) = self.members.as_deref_mut().and_then(|it| it.member_mut(index)) {
+                member.is_playing = is_playing;
+            }
+        }
+    }
+
+    /// Advances the clocks of figures, and of those who watch.
+    fn pass_time_of_members(&mut self) {
+        let Some(members) = self.members.as_deref_mut() else { return };
+        for (_, member) in members.each_mut() {
+            member.stunned = member.stunned.saturating_sub(1);
+            member.spared = member.spared.saturating_sub(1);
+            member.swing = member.swing.saturating_sub(1);
+            if !member.is_playing {
+                let has_ended = member.player.wait(1);
+                member.player.hearing.wait(1);
+                self.revision += u64::from(has_ended);
+            }
+        }
+    }
+
+    fn settle_all(&mut self) {
+        for index in 0..self.slot_count() {
+            self.settle(index);
+        }
+    }
+
+    /// Notes where a player is, and whether they have just died or reached the exit.
+    fn settle(&mut self, index: usize) {
+        let now = self.steps;
+        let has_reached_exit = self.in_turn(index, |game| game.is_finished());
+        let Some(members) = self.members.as_deref_mut() else { return };
+        let respawns = members.rules.respawns;
+        let Some(member) = members.member_mut(index) else { return };
+        let is_dead = member.player.killed_by.is_some();
+        let wins = has_reached_exit == Some(true) && !member.has_won;
+        if wins || is_dead && member.ended.is_none() {
+            member.ended = Some(now);
+            self.revision += 1;
+        }
+        member.has_won |= wins;
+        member.is_playing = !member.has_won && !is_dead;
+        (member.intents, member.seen) = (Intents::new(), now);
+        let is_out = member.has_won || is_dead && !respawns;
+        let stands = (!member.has_won && !is_dead).then_some(&member.player.motion);
+        member.walked += member.track.record(now, stands);
+        if is_out {
+            self.put_keys_back(index);
+        }
+    }
+
+    /// The index of the player whose turn it is.
+    pub(crate) fn turn(&self) -> usize {
+        self.members.as_ref().and_then(|members| members.turn).unwrap_or_default()
+    }
+
+    /// Lets the player in a slot have their turn while `act` runs; does nothing if nobody is there.
+    pub(crate) fn in_turn<T>(
+        &mut self,
+        index: usize,
+        act: impl FnOnce(&mut Self) -> T,
+    ) -> Option<T> {
+        if self.members.is_none() {
+            return Some(act(self));
+        }
+        let before = self.members.as_ref()?.turn;
+        if !self.swap_turn(index) {
+            return None;
+        }
+        let done = act(self);
+        self.swap_turn(index);
+        if let Some(members) = &mut self.members {
+            members.turn = before;
+        }
+        Some(done)
+    }
+
+    /// Lets each player who plays have their turn while `act` runs.
+    pub(crate) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
+        let count = self.members.as_ref().map_or(1, |members| members.slots.len());
+        for index in 0..count {
+            let is_playing = |it: &Members| it.member(index).is_some_and(|it| it.is_playing);
+            if self.members.as_deref().is_none_or(is_playing) {
+                self.in_turn(index, &act);
+            }
+        }
+    }
+
+    /// Exchanges the player who has the turn with the one in a slot. Returns whether there is one.
+    fn swap_turn(&mut self, index: usize) -> bool {
+        let Self { members, player, .. } = self;
+        let Some(members) = members.as_deref_mut() else { return false };
+        let Some(member) = members.member_mut(index) else { return false };
+        std::mem::swap(&mut member.player, player);
+        members.turn = Some(index);
+        true
+    }
+
+    /// The players who are alive and have not reached the exit, with their indices, as they were
+    /// when the step began.
+    pub(crate) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
+        playing(&self.player, self.members.as_deref())
+    }
+
+    /// Whether nobody is alive in a game for several, or has yet to reach the exit: time does not
+    /// pass in it.
+    pub fn is_deserted(&self) -> bool {
+        let stands =
+            |(_, member): (usize, &Member)| !member.has_won && member.player.killed_by.is_none();
+        self.members.as_ref().is_some_and(|members| !members.each().any(stands))
+    }
+
+    /// The member whose turn it is.
+    pub(crate) fn member_in_turn(&mut self) -> Option<&mut Member> {
+        let members = self.members.as_deref_mut()?;
+        let turn = members.turn?;
+        members.member_mut(turn)
+    }
+
+    /// The worth of the treasure that has been found, by all players together.
+    pub(crate) fn treasure_found(&self) -> u32 {
+        let Some(members) = self.members.as_deref() else { return self.player.treasure };
+        let found = members.each().map(|(index, member)| {
+            let player = if members.turn == Some(index) { &self.player } else { &member.player };
+            player.treasure
+        });
+        found.fold(members.treasure_of_the_gone, u32::saturating_add)
+    }
+
+    /// Puts the keys of a player back where they were found.
+    pub(crate) fn put_keys_back(&mut self, index: usize) {
+        let Self { members, world, .. } = self;
+        let Some(members) = members.as_deref_mut() else { return };
+        let Some(member) = members.member_mut(index) else { return };
+        let keys = std::mem::take(&mut member.player.keys);
+        if keys.is_empty() {
+            return;
+        }
+        let is_lost = |thing: &&Thing| match thing.kind {
+            ThingKind::Key(key) => keys.contains(&key),
+            _ => false,
+        };
+        for &thing in members.keys.iter().filter(is_lost) {
+            let lies_there = world.things_in(thing.cell).iter().any(|it| it.kind == thing.kind);
+            if !lies_there {
+                world.put_thing(thing);
+            }
+        }
+        self.revision += 1;
+    }
+
+    /// Finds out what guards perceive of the players of a game for several, by slot.
+    pub(crate) fn find_targets(&mut self) {
+        let Some(members) = &mut self.members else { return };
+        let mut targets = std::mem::take(&mut members.targets);
+        targets.clear();
+        targets.resize(members.slots.len(), NOBODY);
+        for (index, player) in self.playing() {
+            targets[index] = self.target_at(player);
+        }
+        if let Some(members) = &mut self.members {
+            members.targets = targets;
+        }
+    }
+
+    /// Finds out who is in the way of the player in turn.
+    pub(crate) fn find_those_in_the_way(&mut self) {
+        let Some(members) = &mut self.members else { return };
+        if !members.rules.collides {
+            return;
+        }
+        let turn = members.turn;
+        let mut in_the_way = std::mem::take(&mut members.in_the_way);
+        in_the_way.clear();
+        let others = self.playing().filter(|&(index, _)| Some(index) != turn);
+        in_the_way.extend(others.map(|(_, player)| player.motion.position()));
+        if let Some(members) = &mut self.members {
+            members.in_the_way = in_the_way;
+        }
+    }
+
+    /// The frame of a figure of the player of a game for one, who has walked so many cells.
+    pub fn frame_of_figure(&self, walked: f64) -> u8 {
+        let frame = match self.player.killed_by {
+            Some(_) => PlayerFrame::Down,
+            None => walking_frame(&self.player.motion, walked),
+        };
+        frame.index()
+    }
+
+    /// The sprite of the players of that colour; `None` in a game for one.
+    pub fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
+        self.members.as_ref()?.sprites[color as usize]
+    }
 }
 
-/// What one player wants in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Input {
-    /// The player.
-    pub player: PlayerId,
-    /// What they want.
-    pub intents: Intents,
-    /// The number of [steps](super::Game::steps) of the game in the picture that they saw last.
-    pub seen: u64,
+/// [`Game::playing`], of the parts of a game.
+pub(crate) fn playing<'a>(
+    player: &'a Player,
+    members: Option<&'a Members>,
+) -> impl Iterator<Item = (usize, &'a Player)> + Clone {
+    let turn = members.and_then(|members| members.turn);
+    let alone = members.is_none().then_some((0, player));
+    let several = members.into_iter().flat_map(Members::each);
+    let several = several.filter(|(_, member)| member.is_playing).map(move |(index, member)| {
+        (index, if turn == Some(index) { player } else { &member.player })
+    });
+    alone.into_iter().chain(several)
+}
+
+/// The same, between turns, for what moves them.
+pub(crate) fn playing_mut<'a>(
+    player: &'a mut Player,
+    members: Option<&'a mut Members>,
+) -> impl Iterator<Item = (usize, &'a mut Player)> {
+    let alone = members.is_none().then_some((0, player));
+    let several = members.into_iter().flat_map(Members::each_mut);
+    let several = several.filter(|(_, member)| member.is_playing);
+    alone.into_iter().chain(several.map(|(index, member)| (index, &mut member.player)))
+}
+
+/// The frame of somebody who stands or walks, and has walked so many cells.
+fn walking_frame(motion: &Motion, walked: f64) -> PlayerFrame {
+    match (walked / STRIDE) as u64 % 4 {
+        _ if motion.is_ducking() => PlayerFrame::Duck,
+        _ if motion.is_still() => PlayerFrame::Stand,
+        0 => PlayerFrame::WalkLeft,
+        2 => PlayerFrame::WalkRight,
+        _ => PlayerFrame::Stand,
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Noise: the sounds that players make by moving.
 //!
-//! Walking is heard close by, by those who listen; running from afar. Ducking makes a walk silent, at half the speed. A
-//! sound for each step rather than a steady one was chosen, because guards notice events.
+//! Walking is heard close by, and by listeners only; running from afar. Ducking makes a walk silent, at half the
+//! speed. Each step is a sound of its own, because guards notice events. Rejected: a steady sound.
 
 use super::Game;
 use super::intent::{Intent, Intents};
@@ -10,23 +10,23 @@ use super::sound::{Sound, SoundKind, Source};
 use crate::world::{Cell, TileEffect};
 
 /// How far sounds reach over open cells, in cells.
-pub(super) mod reach {
-    pub(in crate::game) const WALKING: u8 = 3;
-    pub(in crate::game) const RUNNING: u8 = 7;
-    pub(in crate::game) const SPLASH: u8 = 6;
-    pub(in crate::game) const DOOR: u8 = 6;
-    pub(in crate::game) const MECHANISM: u8 = 6;
-    pub(in crate::game) const CLICK: u8 = 4;
-    pub(in crate::game) const SPIKES: u8 = 5;
-    pub(in crate::game) const KNOCK: u8 = 8;
-    pub(in crate::game) const TAP: u8 = 4;
-    pub(in crate::game) const CRASH: u8 = 6;
-    pub(in crate::game) const BLOW: u8 = 3;
-    pub(in crate::game) const SWING: u8 = 2;
+pub(crate) mod reach {
+    pub(crate) const WALKING: u8 = 3;
+    pub(crate) const RUNNING: u8 = 7;
+    pub(crate) const SPLASH: u8 = 6;
+    pub(crate) const DOOR: u8 = 6;
+    pub(crate) const MECHANISM: u8 = 6;
+    pub(crate) const CLICK: u8 = 4;
+    pub(crate) const SPIKES: u8 = 5;
+    pub(crate) const KNOCK: u8 = 8;
+    pub(crate) const TAP: u8 = 4;
+    pub(crate) const CRASH: u8 = 6;
+    pub(crate) const BLOW: u8 = 3;
+    pub(crate) const SWING: u8 = 2;
     /// Of a landing from the least height that is heard, and what each further cell adds.
-    pub(in crate::game) const LANDING: u8 = 4;
-    pub(in crate::game) const LANDING_BY_CELL: u8 = 3;
-    pub(in crate::game) const LANDING_MOST: u8 = 12;
+    pub(crate) const LANDING: u8 = 4;
+    pub(crate) const LANDING_BY_CELL: u8 = 3;
+    pub(crate) const LANDING_MOST: u8 = 12;
 }
 
 /// The lowest fall whose landing is heard, in cells.
@@ -39,18 +39,18 @@ const SLOW: f64 = 0.5;
 
 impl Game {
     /// The player makes a sound.
-    pub(super) fn sound(&mut self, kind: SoundKind, reach: u8) {
+    pub(crate) fn sound(&mut self, kind: SoundKind, reach: u8) {
         let (cell, by) = (self.player.motion.cell(), Source::Player(self.turn()));
         self.sounds.push(Sound { kind, cell, reach, by });
     }
 
     /// Something in `cell` makes a sound.
-    pub(super) fn sound_in(&mut self, cell: Cell, kind: SoundKind, reach: u8) {
+    pub(crate) fn sound_in(&mut self, cell: Cell, kind: SoundKind, reach: u8) {
         self.sounds.push(Sound { kind, cell, reach, by: Source::Object });
     }
 
     /// The part of the usual speed at which the player walks.
-    pub(super) fn pace(&self) -> f64 {
+    pub(crate) fn pace(&self) -> f64 {
         if !self.is_mission {
             return 1.0;
         }
@@ -61,14 +61,14 @@ impl Game {
     }
 
     /// Whether the player stands in water.
-    pub(super) fn is_in_water(&self) -> bool {
+    pub(crate) fn is_in_water(&self) -> bool {
         let motion = &self.player.motion;
         self.world.effect_in(motion.cell()) == Some(TileEffect::Water)
             && motion.feet() <= self.world.floor_at(motion.cell())
     }
 
     /// The sounds of the player's motion in this step, which began at `before`.
-    pub(super) fn hear_steps(&mut self, before: &Motion, intents: Intents) {
+    pub(crate) fn hear_steps(&mut self, before: &Motion, intents: Intents) {
         let motion = self.player.motion;
         if motion == *before || !motion.stands(&self.world) {
             return;
@@ -89,7 +89,7 @@ impl Game {
     }
 
     /// The sound of a landing after a fall of that many cells.
-    pub(super) fn hear_landing(&mut self, cells: f64) {
+    pub(crate) fn hear_landing(&mut self, cells: f64) {
         if cells >= LEAST_FALL && !self.is_in_water() {
             let more = (cells - LEAST_FALL) * f64::from(reach::LANDING_BY_CELL);
             let reach = (f64::from(reach::LANDING) + more).min(reach::LANDING_MOST.into());

@@ -4,8 +4,7 @@
 use super::Game;
 use super::guards::Alarm;
 use super::health::Flash;
-use super::player::Player;
-use super::tools::Supplies;
+use super::player::{Player, Supplies};
 use crate::world::{Cell, Difficulty, Supply, ThingKind};
 
 /// The least worth of a cup and of a crown.
@@ -18,7 +17,7 @@ impl Game {
         self.note_reached_by(&self.player)
     }
 
-    pub(super) fn note_reached_by(&self, player: &Player) -> Option<&str> {
+    pub(crate) fn note_reached_by(&self, player: &Player) -> Option<&str> {
         self.things_reached_by(player).find_map(|thing| match thing.kind {
             ThingKind::Note(id) => Some(self.world.note(id)),
             _ => None,
@@ -26,7 +25,7 @@ impl Game {
     }
 
     /// What the player has reached and would take.
-    pub(super) fn find(&self) -> Option<ThingKind> {
+    pub(crate) fn find(&self) -> Option<ThingKind> {
         if self.world.things().is_empty() {
             return None;
         }
@@ -39,7 +38,7 @@ impl Game {
     }
 
     /// Takes what the player has reached: one thing in a step.
-    pub(super) fn take_finds(&mut self) {
+    pub(crate) fn take_finds(&mut self) {
         let Some(kind) = self.find() else { return };
         match kind {
             ThingKind::Key(key) => {
@@ -70,7 +69,7 @@ impl Game {
     }
 
     /// Says what keeps a player who comes from `before` from taking something or leaving.
-    pub(super) fn refuse(&mut self, before: Cell) {
+    pub(crate) fn refuse(&mut self, before: Cell) {
         if self.player.motion.cell() == before || !self.is_mission {
             return;
         }
@@ -97,12 +96,12 @@ impl Game {
     }
 
     /// The treasure without which the exit stays closed.
-    pub(super) fn treasure_missing(&self) -> u32 {
+    pub(crate) fn treasure_missing(&self) -> u32 {
         self.world.treasure_needed().saturating_sub(self.treasure_found())
     }
 
     /// Whether the exits are closed because guards follow somebody: so it is in the hardest game.
-    pub(super) fn alarm_closes_exits(&self) -> bool {
+    pub(crate) fn alarm_closes_exits(&self) -> bool {
         self.rules.difficulty == Difficulty::Hard && self.guards.alarm() == Alarm::Raised
     }
 }

@@ -4,62 +4,54 @@ mod motion;
 
 use std::collections::BTreeSet;
 
-use super::health::{Cause, Flash, Health};
+pub use motion::FRICTION;
+pub(crate) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+use serde::{Deserialize, Serialize};
+
+use super::health::{Cause, Flash, Health, Warnings};
 use super::intent::Intents;
-use super::notice::Notice;
 use super::sound::Hearing;
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use super::tally::Counts;
-use super::tools::Supplies;
-use super::warnings::Warnings;
-use crate::world::{KeyId, World};
-pub(crate) use motion::FRICTION;
-pub(super) use motion::{JUMP_HEIGHT, Motion, RADIUS, RUN, STEP_HEIGHT, STILL, WALK};
+use crate::world::{KeyId, Supply, World};
 
 /// More than a player ever counts: it grows for years before it overflows.
 const MOST_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Player {
-    pub(super) motion: Motion,
-    pub(super) health: Health,
-    pub(super) supplies: Supplies,
-    pub(super) keys: BTreeSet<KeyId>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Player {
+    pub(crate) motion: Motion,
+    pub(crate) health: Health,
+    pub(crate) supplies: Supplies,
+    pub(crate) keys: BTreeSet<KeyId>,
     /// The worth of the treasure found.
-    pub(super) treasure: u32,
-    pub(super) has_light: bool,
+    pub(crate) treasure: u32,
+    pub(crate) has_light: bool,
     /// The steps until the player can strike again.
-    pub(super) strike_wait: u16,
+    pub(crate) strike_wait: u16,
     /// The intents of the last step that act once for each press.
-    pub(super) pressed: Intents,
+    pub(crate) pressed: Intents,
     /// The height from which the player falls: the highest since they last stood.
-    pub(super) fell_from: f64,
+    pub(crate) fell_from: f64,
     /// How far the player has walked since the last audible step, in cells.
-    pub(super) stride: f64,
+    pub(crate) stride: f64,
     /// The number of steps in cold water, without a break.
-    pub(super) in_water: u32,
+    pub(crate) in_water: u32,
     /// The last thrust of spikes that hurt the player, by the step in which it began.
-    pub(super) last_thrust: Option<u64>,
-    pub(super) warnings: Warnings,
-    pub(super) hearing: Hearing,
-    pub(super) flash: Option<Flash>,
-    pub(super) notice: Notice,
+    pub(crate) last_thrust: Option<u64>,
+    pub(crate) warnings: Warnings,
+    pub(crate) hearing: Hearing,
+    pub(crate) flash: Option<Flash>,
+    pub(crate) notice: Notice,
     /// What has killed the player, if something has.
-    pub(super) killed_by: Option<Cause>,
-    pub(super) counts: Counts,
-}
-
-stored! {
-    struct Player {
-        motion, health, supplies, keys, treasure, has_light, strike_wait, pressed, fell_from, stride,
-        in_water, last_thrust, warnings, hearing, flash, notice, killed_by, counts,
-    }
+    pub(crate) killed_by: Option<Cause>,
+    pub(crate) counts: Counts,
 }
 
 impl Player {
     /// A player at the start of `world`, with these supplies.
-    pub(super) fn new(world: &World, supplies: Supplies) -> Self {
+    pub(crate) fn new(world: &World, supplies: Supplies) -> Self {
         let motion = Motion::new(world);
         Self {
             fell_from: motion.feet(),
@@ -84,31 +76,33 @@ impl Player {
     }
 
     /// Refuses a state in which a step after the step `now` could fail.
-    pub(super) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
+        check(self.health.is_possible(), "the health")?;
+        check(self.supplies.are_possible(), "the number of a tool")?;
         let Counts { alarms, deaths, stunned } = self.counts;
         let counts = [alarms, deaths, stunned, self.in_water];
         check(counts.iter().all(|&count| count < MOST_COUNT), "a count")?;
         self.motion.check(world)?;
         self.warnings.check(now)?;
-        self.hearing.check()
+        self.hearing.check(world)
     }
 
     /// The same player at another place.
     #[must_use]
-    pub(super) fn at(self, motion: Motion) -> Self {
+    pub(crate) fn at(self, motion: Motion) -> Self {
         Self { motion, fell_from: motion.feet(), ..self }
     }
 
     /// Those of `presses` that begin in this step.
-    pub(super) fn fresh(&self, presses: Intents) -> Intents {
+    pub(crate) fn fresh(&self, presses: Intents) -> Intents {
         presses.without(self.pressed)
     }
 
     /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever
     /// will.
-    pub(super) fn quiet_steps(&self) -> Option<u64> {
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
         let flash = self.flash.map(Flash::quiet_steps);
         let quiet = [self.notice.quiet_steps(), self.hearing.quiet_steps(), flash];
         quiet.into_iter().flatten().min()
@@ -116,12 +110,117 @@ impl Player {
 
     /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a
     /// message ended, or a flash faded.
-    pub(super) fn wait(&mut self, steps: u64) -> bool {
+    pub(crate) fn wait(&mut self, steps: u64) -> bool {
         let short = u16::try_from(steps).unwrap_or(u16::MAX);
         self.strike_wait = self.strike_wait.saturating_sub(short);
         let shown = |flash: Option<Flash>| flash.map_or(0, |flash| flash.left.min(Flash::FADE));
         let before = shown(self.flash);
         self.flash = self.flash.and_then(|flash| flash.after(short));
         self.notice.wait(steps) | (shown(self.flash) != before)
+    }
+}
+
+/// The duration of a message in steps: 3 seconds.
+const DURATION: u64 = 180;
+
+/// The tools that a player carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Supplies([u8; Supply::ALL.len()]);
+
+impl Supplies {
+    /// The most of each that a player carries.
+    pub(crate) const MOST: u8 = 9;
+
+    /// Those of a player at the start.
+    pub(crate) const AT_START: Self = Self([3, 0, 0]);
+
+    /// Whether a player can carry them.
+    pub(crate) fn are_possible(self) -> bool {
+        self.0.iter().all(|&count| count <= Self::MOST)
+    }
+
+    /// The number of `supply`.
+    pub(crate) fn count(self, supply: Supply) -> u8 {
+        self.0[supply as usize]
+    }
+
+    /// Adds `more` of `supply`, as many as the player can carry.
+    pub(crate) fn add(&mut self, supply: Supply, more: u8) {
+        let count = &mut self.0[supply as usize];
+        *count = count.saturating_add(more).min(Self::MOST);
+    }
+
+    /// The larger number of each.
+    #[must_use]
+    pub(crate) fn or_more(mut self, other: Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
+        self
+    }
+
+    /// Takes one of `supply`; returns whether there was one.
+    pub(crate) fn take(&mut self, supply: Supply) -> bool {
+        let count = &mut self.0[supply as usize];
+        let has_one = *count > 0;
+        *count -= u8::from(has_one);
+        has_one
+    }
+}
+
+/// A message that is shown for some more steps.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Notice {
+    text: String,
+    steps_left: u64,
+}
+
+impl Notice {
+    /// Shows `text` from now on.
+    pub(crate) fn new(text: String) -> Self {
+        Self { text, steps_left: DURATION }
+    }
+
+    /// The current message.
+    pub(crate) fn text(&self) -> Option<&str> {
+        (self.steps_left > 0).then_some(&self.text)
+    }
+
+    /// The number of steps until the message ends; `None` if there is none.
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        self.steps_left.checked_sub(1)
+    }
+
+    /// Advances by `steps` steps, and returns whether the message ended.
+    pub(crate) fn wait(&mut self, steps: u64) -> bool {
+        let was_said = self.steps_left > 0;
+        self.steps_left = self.steps_left.saturating_sub(steps);
+        if self.steps_left == 0 {
+            self.text.clear();
+        }
+        was_said && self.steps_left == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nobody_carries_more_than_nine_or_less_than_nothing(
+            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
+        ) {
+            let mut supplies = Supplies::AT_START;
+            for (supply, more) in changes {
+                let before = supplies.count(supply);
+                if let Some(more) = more {
+                    supplies.add(supply, more);
+                } else {
+                    prop_assert_eq!(supplies.take(supply), before > 0);
+                }
+                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
+            }
+        }
     }
 }

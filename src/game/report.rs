@@ -172,17 +172,17 @@ impl Game {
             && !self.alarm_closes_exits()
     }
 
-    pub(super) fn is_dead(&self) -> bool {
+    pub(crate) fn is_dead(&self) -> bool {
         self.player.killed_by.is_some()
     }
 
     /// The things in the player's cell that are neither above the player's head nor below their
     /// feet.
-    pub(super) fn things_reached(&self) -> impl Iterator<Item = &Thing> {
+    pub(crate) fn things_reached(&self) -> impl Iterator<Item = &Thing> {
         self.things_reached_by(&self.player)
     }
 
-    pub(super) fn things_reached_by(&self, player: &Player) -> impl Iterator<Item = &Thing> {
+    pub(crate) fn things_reached_by(&self, player: &Player) -> impl Iterator<Item = &Thing> {
         let motion = player.motion;
         let cell = motion.cell();
         let heights = self.world.room_in(cell);

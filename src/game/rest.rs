@@ -22,14 +22,10 @@ impl Game {
         }
         if !self.is_finished() && !self.is_dead() {
             self.steps = self.steps.saturating_add(steps);
-            self.doors.wait(steps);
             self.player.wait(steps);
             if self.is_mission {
                 self.player.hearing.wait(steps);
                 self.guards.wait(steps);
-            }
-            if self.quiet_steps_in_water().is_some() {
-                self.player.in_water += steps as u32;
             }
         }
     }
@@ -42,7 +38,7 @@ impl Game {
     }
 
     /// The number of steps with these intents in which nothing changes but clocks: the game's own,
-    /// and those of waiting doors and of the message. [`u64::MAX`] if the game is [at
+    /// and those of what the player is told. [`u64::MAX`] if the game is [at
     /// rest](Game::is_at_rest).
     pub fn quiet_steps(&self, intents: Intents) -> u64 {
         if self.members.is_some() {
@@ -58,17 +54,11 @@ impl Game {
         if self.would_change(intents) {
             return 0;
         }
-        let waits = [
-            self.doors.quiet_steps(),
-            self.player.quiet_steps(),
-            self.quiet_steps_in_water(),
-            self.spikes.quiet_steps(self.steps),
-            self.guards.quiet_steps(),
-        ];
-        waits.into_iter().flatten().min().unwrap_or(u64::MAX)
+        self.player.quiet_steps().unwrap_or(u64::MAX)
     }
 
-    /// Whether anything would change in a step with these intents that is no clock.
+    /// Whether a step with these intents would change anything but clocks. Doors that wait, spikes, water, and guards
+    /// who lie on the floor count as changes, for they have clocks of their own.
     fn would_change(&self, intents: Intents) -> bool {
         let intents = self.at_a_door(intents);
         let motion = self.player.motion;
@@ -77,7 +67,11 @@ impl Game {
             || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
             || self.find().is_some()
             || self.is_at_a_new_checkpoint()
-            || self.is_in_water() != (self.player.in_water > 0)
+            || self.is_in_water()
+            || self.player.in_water > 0
+            || !self.doors.are_at_rest()
+            || !self.guards.are_at_rest()
+            || self.spikes.count() > 0
             || !self.missiles.is_empty()
             || !self.smoke.is_empty()
             || self.mechanisms_move()

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 /// Memory that a step fills before it reads it. It is kept for the next step, so that none allocates.
 /// Games that differ in it are equal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch<T>(T);
+pub(crate) struct Scratch<T>(T);
 
 impl<T> Deref for Scratch<T> {
     type Target = T;

@@ -24,17 +24,13 @@
 //! Lists of presses and releases with times were refused: their authors would have to add up times,
 //! and a missing line would hold a key for ever.
 
-mod header;
-mod parse;
-mod recorder;
+use std::io::Write;
+use std::ops::Range;
+use std::{fmt, io};
 
-use std::fmt;
-
-use super::{Intents, STEPS_PER_SECOND};
-use crate::fault::Faults;
-
-pub use header::{Header, LevelName};
-pub use recorder::Recorder;
+use super::{Intent, Intents, Rules, STEPS_PER_SECOND, intent};
+use crate::fault::{Fault, Faults, nearest, quoted};
+use crate::world::Difficulty;
 
 /// A script.
 ///
@@ -80,7 +76,15 @@ impl Script {
     /// # Errors
     /// All faults of the text.
     pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
-        parse::parse(text, name)
+        let mut reader =
+            Reader { text, header: Header::default(), sections: Vec::new(), faults: Vec::new() };
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let end = line.find('#').unwrap_or(line.len());
+            reader.read_line(trimmed(text, start..start + end));
+            start += line.len();
+        }
+        reader.end(name)
     }
 
     /// As [`parse`](Self::parse), from the content of a file.
@@ -169,17 +173,480 @@ impl fmt::Display for Stretch {
 
 impl Intents {
     /// The words of a script for the set.
-    pub(crate) fn words(self) -> String {
+    pub fn words(self) -> String {
         let names = self.iter().map(|intent| intent.name().to_owned());
         let wanted: Vec<String> = names.chain(self.look().words()).collect();
         if wanted.is_empty() { STAND.to_owned() } else { wanted.join(" ") }
     }
 
     /// The set that words of a script name; `None` if they name none.
-    #[cfg(feature = "serve")]
-    pub(crate) fn from_words(words: &str) -> Option<Self> {
-        parse::intents(words)
+    pub fn from_words(text: &str) -> Option<Self> {
+        let header = Header::default();
+        let reader = Reader { text, header, sections: Vec::new(), faults: Vec::new() };
+        let words = words(text, 0..text.len());
+        if words.is_empty() { None } else { reader.intents(&words).ok() }
     }
+}
+
+/// The game that a script belongs to, as far as it says so.
+///
+/// ```
+/// use cellcaster::game::Script;
+///
+/// let script = Script::parse("level cellar\nseed 7\n2 s forward\n", "walk.script")?;
+/// assert_eq!(script.header().level.as_ref().unwrap().as_str(), "cellar");
+/// assert_eq!((script.header().difficulty, script.header().seed), (None, Some(7)));
+/// # Ok::<(), cellcaster::fault::Faults>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Header {
+    /// The level.
+    pub level: Option<LevelName>,
+    /// The difficulty.
+    pub difficulty: Option<Difficulty>,
+    /// The seed of the game's chance, and of the descent if the level is a floor. The levels of maps are
+    /// played with the seed 0, so that they are the same for all and a route can be learnt.
+    pub seed: Option<u64>,
+}
+
+/// The name of a level in a header: that of a built-in level, `floor` and a number for a
+/// [descent](crate::generate::descent) from that floor on, or the path of a map file. It is one line without `#`, and has no
+/// blanks at its ends.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LevelName(String);
+
+/// The words with which the lines of a header begin.
+const WORDS: [&str; 3] = [LEVEL, DIFFICULTY, SEED];
+const LEVEL: &str = "level";
+const DIFFICULTY: &str = "difficulty";
+const SEED: &str = "seed";
+/// The word before the number of a floor.
+const FLOOR: &str = "floor ";
+
+impl LevelName {
+    /// The name `name`, if a header can have it.
+    pub fn new(name: &str) -> Option<Self> {
+        let is_line = !name.is_empty() && name.trim() == name;
+        let is_plain = !name.contains(|c: char| c == '#' || c.is_control());
+        (is_line && is_plain).then(|| Self(name.to_owned()))
+    }
+
+    /// The name of a floor of the descent, counted from 1.
+    pub fn of_floor(number: u32) -> Self {
+        Self(format!("{FLOOR}{number}"))
+    }
+
+    /// The name.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// The number of the floor, if it is one.
+    pub fn floor(&self) -> Option<u32> {
+        let number = self.0.strip_prefix(FLOOR)?.trim_start().parse().ok();
+        number.filter(|&number| number > 0)
+    }
+}
+
+impl fmt::Display for Header {
+    /// Writes its lines.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(level) = &self.level {
+            writeln!(f, "{LEVEL:<10} {}", level.as_str())?;
+        }
+        if let Some(difficulty) = self.difficulty {
+            writeln!(f, "{DIFFICULTY:<10} {}", difficulty.name())?;
+        }
+        if let Some(seed) = self.seed {
+            writeln!(f, "{SEED:<10} {seed}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Header {
+    /// The header of a game in `level` with these rules.
+    pub fn of(level: Option<LevelName>, rules: Rules) -> Self {
+        Self { level, difficulty: Some(rules.difficulty), seed: Some(rules.seed) }
+    }
+
+    /// The rules, with defaults where it does not say.
+    pub fn rules(&self) -> Rules {
+        let Rules { difficulty, seed } = Rules::default();
+        Rules { difficulty: self.difficulty.unwrap_or(difficulty), seed: self.seed.unwrap_or(seed) }
+    }
+
+    /// Whether it says nothing.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether a line that begins with `word` belongs to a header.
+    pub(crate) fn has(word: &str) -> bool {
+        WORDS.contains(&word)
+    }
+
+    /// Reads a line that begins with one of the words.
+    pub(crate) fn read_line(&mut self, text: &str, line: Range<usize>) -> Result<(), Fault> {
+        let Some(first) = words(text, line.clone()).into_iter().next() else { return Ok(()) };
+        let word = &text[first.clone()];
+        let value_place = trimmed(text, first.end..line.end);
+        let value = &text[value_place.clone()];
+        let is_said = match word {
+            LEVEL => self.level.is_some(),
+            DIFFICULTY => self.difficulty.is_some(),
+            _ => self.seed.is_some(),
+        };
+        if is_said {
+            return Err(
+                Fault::new(line, format!("{} is set twice", quoted(word))).label("once is enough")
+            );
+        }
+        if value.is_empty() {
+            return Err(Fault::new(first, format!("{} has no value", quoted(word)))
+                .label("which one?")
+                .help(example(word)));
+        }
+        let is_read = match word {
+            LEVEL => {
+                self.level = LevelName::new(value);
+                self.level.is_some()
+            }
+            DIFFICULTY => {
+                self.difficulty = Difficulty::named(value);
+                self.difficulty.is_some()
+            }
+            _ => {
+                self.seed = value.parse().ok();
+                self.seed.is_some()
+            }
+        };
+        if is_read { Ok(()) } else { Err(no_value(word, value, value_place)) }
+    }
+}
+
+fn no_value(word: &str, value: &str, place: Range<usize>) -> Fault {
+    let message = match word {
+        LEVEL => "a level's name has no control characters".to_owned(),
+        DIFFICULTY => format!("there is no difficulty {}", quoted(value)),
+        _ => "a seed is a whole number from 0 to 18446744073709551615".to_owned(),
+    };
+    let names = Difficulty::ALL.map(Difficulty::name);
+    let meant = if word == DIFFICULTY { nearest(value, &names) } else { None };
+    let help = match meant {
+        Some(meant) => format!("the nearest is {}", quoted(meant)),
+        None => example(word),
+    };
+    Fault::new(place, message).label("not valid").help(help)
+}
+
+fn example(word: &str) -> String {
+    match word {
+        LEVEL => "write level cellar, level floor 3 or level my.toml".to_owned(),
+        DIFFICULTY => "write difficulty easy, difficulty normal or difficulty hard".to_owned(),
+        _ => "write seed 7".to_owned(),
+    }
+}
+
+/// Writes a script while the game is played.
+///
+/// A stretch is written when it ends, in one piece, so that the output is a script at any time. The
+/// last stretch is written when the recorder is [finished](Recorder::finish) or dropped.
+#[derive(Debug)]
+pub struct Recorder<W: Write> {
+    output: W,
+    /// It is written before the first stretch, so that a game that did not start leaves nothing.
+    header: Option<Header>,
+    current: Option<Stretch>,
+}
+
+impl<W: Write> Recorder<W> {
+    /// A recorder that writes to `output`.
+    pub fn new(output: W) -> Self {
+        Self { output, header: None, current: None }
+    }
+
+    /// A recorder that writes `header` before the script.
+    pub fn with_header(output: W, header: Header) -> Self {
+        let header = Some(header).filter(|header| !header.is_empty());
+        Self { output, header, current: None }
+    }
+
+    /// Records that the player wants `intents` for `steps` more steps.
+    ///
+    /// # Errors
+    /// If `output` fails.
+    pub fn record(&mut self, intents: Intents, mut steps: u64) -> io::Result<()> {
+        while steps > 0 {
+            let before = match self.current {
+                Some(stretch) if stretch.intents == intents => stretch.steps,
+                _ => {
+                    self.write_current()?;
+                    0
+                }
+            };
+            let taken = steps.min(u64::from(Stretch::MOST_STEPS - before)) as u32;
+            steps -= u64::from(taken);
+            self.current = Some(Stretch { steps: before + taken, intents });
+            if steps > 0 {
+                self.write_current()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the last stretch.
+    ///
+    /// # Errors
+    /// If `output` fails.
+    pub fn finish(&mut self) -> io::Result<()> {
+        self.write_current()?;
+        self.output.flush()
+    }
+
+    fn write_current(&mut self) -> io::Result<()> {
+        let Some(stretch) = self.current.take() else { return Ok(()) };
+        if let Some(header) = self.header.take() {
+            self.output.write_all(format!("{header}\n").as_bytes())?;
+        }
+        self.output.write_all(format!("{stretch}\n").as_bytes())
+    }
+}
+
+impl<W: Write> Drop for Recorder<W> {
+    fn drop(&mut self) {
+        // Callers who need the error have called `finish`.
+        _ = self.finish();
+    }
+}
+
+/// What has been read so far.
+struct Reader<'t> {
+    text: &'t str,
+    header: Header,
+    sections: Vec<Named>,
+    faults: Vec<Fault>,
+}
+
+/// A section, and the place of its name.
+struct Named {
+    section: Section,
+    place: Range<usize>,
+}
+
+impl Reader<'_> {
+    fn read_line(&mut self, line: Range<usize>) {
+        if line.is_empty() {
+            return;
+        }
+        if self.text[line.clone()].starts_with('[') {
+            return self.read_name(line);
+        }
+        if words(self.text, line.clone())
+            .first()
+            .is_some_and(|it| Header::has(&self.text[it.clone()]))
+        {
+            return self.read_header(line);
+        }
+        match self.stretch(line) {
+            Ok(stretch) => self.section().stretches.push(stretch),
+            Err(fault) => {
+                // One fault is enough: if this line were correct, the section would not be empty.
+                self.faults.push(fault);
+            }
+        }
+    }
+
+    fn read_header(&mut self, line: Range<usize>) {
+        let read = if self.sections.is_empty() {
+            self.header.read_line(self.text, line)
+        } else {
+            Err(Fault::new(line, "what a script is about stands before everything else")
+                .label("too late")
+                .help("move this line to the top"))
+        };
+        self.faults.extend(read.err());
+    }
+
+    /// The current section.
+    fn section(&mut self) -> &mut Section {
+        if self.sections.is_empty() {
+            self.begin_section(String::new(), 0..0);
+        }
+        let last = self.sections.len() - 1;
+        &mut self.sections[last].section
+    }
+
+    fn begin_section(&mut self, name: String, place: Range<usize>) {
+        self.sections.push(Named { section: Section { name, stretches: Vec::new() }, place });
+    }
+
+    fn read_name(&mut self, line: Range<usize>) {
+        let text = &self.text[line.clone()];
+        let name = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
+        let name =
+            name.map(str::trim).filter(|name| !name.is_empty() && !name.contains(['[', ']']));
+        match name {
+            Some(name) => self.begin_section(name.to_owned(), line),
+            None => self.faults.push(
+                Fault::new(
+                    line,
+                    "a section begins with its name in brackets, on a line of its own",
+                )
+                .help("write [walking]"),
+            ),
+        }
+    }
+
+    fn stretch(&self, line: Range<usize>) -> Result<Stretch, Fault> {
+        let (steps, rest) = self.duration(line.clone())?;
+        let words = words(self.text, rest);
+        if words.is_empty() {
+            return Err(Fault::new(line, "a line says what is wanted after how long it is")
+                .label("and then?")
+                .help(format!("write {STAND:?} where nothing is")));
+        }
+        Ok(Stretch { steps, intents: self.intents(&words)? })
+    }
+
+    /// The number of steps of a line, and the rest of the line.
+    fn duration(&self, line: Range<usize>) -> Result<(u32, Range<usize>), Fault> {
+        let text = &self.text[line.clone()];
+        let length = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+        let number = line.start..line.start + length;
+        let Ok(amount) = text[..length].parse::<f64>() else {
+            let first = words(self.text, line).swap_remove(0);
+            return Err(Fault::new(first, "a line begins with how long it lasts")
+                .label("not a number")
+                .help("write 2.5 s forward, or 12 steps forward turn-left"));
+        };
+        let rest = trimmed(self.text, number.end..line.end);
+        let unit = words(self.text, rest.clone()).into_iter().next().unwrap_or(number.clone());
+        let steps = match &self.text[unit.clone()] {
+            "s" => (amount * f64::from(STEPS_PER_SECOND)).round(),
+            "step" | "steps" if amount.fract() == 0.0 => amount,
+            "step" | "steps" => {
+                return Err(Fault::new(number, "there is no part of a step")
+                    .label("not a whole number")
+                    .help(format!("a second has {STEPS_PER_SECOND} steps")));
+            }
+            _ => {
+                return Err(Fault::new(unit, "a time is in seconds or in steps")
+                    .label("no unit of time")
+                    .help("write 2.5 s, or 150 steps"));
+            }
+        };
+        if !(1.0..=f64::from(Stretch::MOST_STEPS)).contains(&steps) {
+            return Err(Fault::new(number, "a line lasts from one step to one hour")
+                .label(if steps < 1.0 { "too short" } else { "too long" })
+                .help(format!("a second has {STEPS_PER_SECOND} steps")));
+        }
+        Ok((steps as u32, unit.end..rest.end))
+    }
+
+    fn intents(&self, words: &[Range<usize>]) -> Result<Intents, Fault> {
+        let mut intents = Intents::new();
+        for place in words.iter().cloned() {
+            match (&self.text[place.clone()], words.len()) {
+                (STAND, 1) => {}
+                (STAND, _) => {
+                    return Err(Fault::new(place, "who stands wants nothing else")
+                        .label("take this away, or all the rest"));
+                }
+                (word, _) if word.contains(':') => intents = looking(intents, word, place)?,
+                (word, _) => match Intent::named(word) {
+                    None => return Err(unknown(word, place)),
+                    Some(intent) if intents.contains(intent) => {
+                        return Err(wanted_twice(word, place));
+                    }
+                    Some(intent) => intents.insert(intent),
+                },
+            }
+        }
+        Ok(intents)
+    }
+
+    fn end(mut self, name: &str) -> Result<Script, Faults> {
+        if self.faults.is_empty() && self.sections.is_empty() {
+            return Err(Faults::of_whole_file(
+                name,
+                &format!("{name} holds no stretch of time"),
+                "write a line such as 2.5 s forward",
+            ));
+        }
+        if self.faults.is_empty() {
+            let empty = self.sections.iter().filter(|named| named.section.stretches.is_empty());
+            self.faults.extend(empty.map(|named| {
+                Fault::new(named.place.clone(), "a section holds at least one stretch of time")
+                    .label("this one is empty")
+            }));
+        }
+        if self.faults.is_empty() {
+            let sections = self.sections.into_iter().map(|named| named.section).collect();
+            Ok(Script { header: self.header, sections })
+        } else {
+            Err(Faults::new(name, self.text, self.faults))
+        }
+    }
+}
+
+/// `intents` with the turn or tilt of `word`, such as `turn:-1.5`.
+fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
+    let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
+    let mut look = intents.look();
+    let amount = match name {
+        intent::TURN => &mut look.turn,
+        intent::TILT => &mut look.tilt,
+        _ => return Err(unknown(word, place)),
+    };
+    if *amount != 0 {
+        return Err(wanted_twice(name, place));
+    }
+    let Some(hundredths) = intent::hundredths(degrees) else {
+        let help = format!("write {name}:2.5, or {name}:-0.25; 327.67 is the most");
+        return Err(Fault::new(
+            place,
+            "an angle is in degrees and not 0, with two digits at most after the point",
+        )
+        .label("no such angle")
+        .help(help));
+    };
+    *amount = hundredths;
+    Ok(intents.with_look(look))
+}
+
+fn wanted_twice(word: &str, place: Range<usize>) -> Fault {
+    Fault::new(place, format!("{} is wanted twice", quoted(word))).label("once is enough")
+}
+
+fn unknown(word: &str, place: Range<usize>) -> Fault {
+    let names: Vec<&str> = Intent::ALL.into_iter().map(Intent::name).chain([STAND]).collect();
+    let help = match nearest(word, &names) {
+        Some(meant) => format!("the nearest is {}", quoted(meant)),
+        None => format!("there are {}", names.join(", ")),
+    };
+    Fault::new(place, format!("nobody can want {}", quoted(word))).label("unknown").help(help)
+}
+
+/// The words in a part of `text`.
+fn words(text: &str, part: Range<usize>) -> Vec<Range<usize>> {
+    let mut words = Vec::new();
+    let mut start = part.start;
+    for piece in text[part].split_inclusive(char::is_whitespace) {
+        let word = trimmed(text, start..start + piece.len());
+        if !word.is_empty() {
+            words.push(word);
+        }
+        start += piece.len();
+    }
+    words
+}
+
+/// A part of `text` without surrounding blanks.
+fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
+    let whole = &text[part.clone()];
+    let start = part.start + (whole.len() - whole.trim_start().len());
+    start..(part.start + whole.trim_end().len()).max(start)
 }
 
 #[cfg(test)]
@@ -190,7 +657,7 @@ mod tests {
     use crate::game::{Intent, Look};
     use crate::world::Difficulty;
 
-    pub(super) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
+    pub(crate) fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
         let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
         let stretch = (1..=Stretch::MOST_STEPS, intents)
             .prop_map(|(steps, intents)| Stretch { steps, intents: intents.into_iter().collect() });
@@ -268,6 +735,47 @@ mod tests {
         assert_eq!(
             script.to_string(),
             "1 step    forward\n\n[b]\n3 steps   stand\n2 steps   run open\n"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn what_was_recorded_is_what_happened(
+            happened in prop::collection::vec((0..3_usize, 0..400_u64), 1..20)
+        ) {
+            let wants = [Intents::new(), [Intent::Run].into_iter().collect(), Intent::ALL.into_iter().collect()];
+            prop_assume!(happened.iter().any(|&(_, steps)| steps > 0));
+            let mut text = Vec::new();
+            let mut recorder = Recorder::new(&mut text);
+            for &(want, steps) in &happened {
+                recorder.record(wants[want], steps)?;
+            }
+            drop(recorder);
+            let script = Script::parse(&String::from_utf8(text)?, "it").unwrap();
+            let each = |&(want, steps): &(usize, u64)| (0..steps).map(move |_| wants[want]);
+            prop_assert!(script.iter().map(|(_, intents)| intents).eq(happened.iter().flat_map(each)));
+        }
+    }
+
+    #[test]
+    fn the_header_comes_with_the_first_stretch() {
+        let header = Header { seed: Some(7), ..Header::default() };
+        let mut text = Vec::new();
+        drop(Recorder::with_header(&mut text, header.clone()));
+        assert!(text.is_empty());
+        Recorder::with_header(&mut text, header).record(Intents::new(), 60).unwrap();
+        assert_eq!(String::from_utf8(text).unwrap(), "seed       7\n\n1 s       stand\n");
+    }
+
+    #[test]
+    fn a_stretch_longer_than_a_line_may_be_takes_several() {
+        let mut text = Vec::new();
+        Recorder::new(&mut text)
+            .record(Intents::new(), 2 * u64::from(Stretch::MOST_STEPS) + 1)
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(text).unwrap(),
+            "3600 s    stand\n3600 s    stand\n1 step    stand\n"
         );
     }
 }

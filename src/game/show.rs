@@ -11,7 +11,7 @@ use crate::world::{Figure, Heading, Lamp, Light, Reach, SpriteId, World};
 
 /// The sprites of what flies; each is `None` where nothing can fly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Sprites {
+pub(crate) struct Sprites {
     pebble: Option<SpriteId>,
     dart: Option<SpriteId>,
     flask: Option<SpriteId>,
@@ -23,7 +23,7 @@ pub(super) struct Sprites {
 
 impl Sprites {
     /// The sprites, which are added to `world`.
-    pub(super) fn added_to(world: &mut World) -> Self {
+    pub(crate) fn added_to(world: &mut World) -> Self {
         let mut add = |name| builtin::named(name).map(|sprite| world.add_sprite(sprite));
         Self {
             pebble: add("pebble"),
@@ -36,12 +36,12 @@ impl Sprites {
     }
 
     /// Whether there is a sprite for a guest.
-    pub(super) fn has_player(self) -> bool {
+    pub(crate) fn has_player(self) -> bool {
         self.player.is_some()
     }
 
     /// Adds the sprite for a guest to `world`, if it is not there yet.
-    pub(super) fn add_player(&mut self, world: &mut World) {
+    pub(crate) fn add_player(&mut self, world: &mut World) {
         if self.player.is_none() {
             self.player = builtin::named("player").map(|sprite| world.add_sprite(sprite));
         }
@@ -81,13 +81,13 @@ impl Sprites {
 impl Game {
     /// The game, which shows its figures and lamps.
     #[must_use]
-    pub(super) fn shown(mut self) -> Self {
+    pub(crate) fn shown(mut self) -> Self {
         self.show();
         self
     }
 
     /// Shows figures and lamps where they are now.
-    pub(super) fn show(&mut self) {
+    pub(crate) fn show(&mut self) {
         self.show_lamps();
         if self.is_mission || self.members.is_some() {
             self.show_figures();
@@ -113,11 +113,11 @@ impl Game {
     }
 
     /// What guards can perceive of the player.
-    pub(super) fn target(&self) -> Target {
+    pub(crate) fn target(&self) -> Target {
         self.target_at(&self.player)
     }
 
-    pub(super) fn target_at(&self, player: &Player) -> Target {
+    pub(crate) fn target_at(&self, player: &Player) -> Target {
         let motion = &player.motion;
         let light = self.world.light_in(motion.cell()).in_256ths();
         let posed = if motion.is_ducking() { light / 2 } else { light };
@@ -149,7 +149,7 @@ impl Game {
     }
 
     /// Shows lamps where they are now.
-    pub(super) fn show_lamps(&mut self) {
+    pub(crate) fn show_lamps(&mut self) {
         let lit = playing(&self.player, self.members.as_deref());
         let lit = lit.filter(|(_, player)| player.has_light);
         let of_players = lit.map(|(_, player)| (player.motion.cell(), lamp()));

@@ -1,20 +1,19 @@
 //! Sounds: where they are made, how far they reach, and who hears them.
 //!
 //! A sound spreads over open cells, around corners and through open doors. A closed door weakens
-//! it, and walls stop it. A straight line from ear to source was refused: sounds would pass
-//! through walls, and a guard behind a wall would know what happens on its other side.
+//! it, and walls stop it. It also passes over low walls and through the holes of
+//! masks; a closed door or glass counts as [`DAMPING`] more half cells. Rejected: a straight line from ear to source.
+//! Sounds would pass through walls, and a guard would know what happens behind one.
 
-mod field;
-mod hearing;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use crate::game::stored::stored;
-use crate::world::Cell;
-pub(crate) use field::{SoundField, half_cells};
-pub use hearing::Heard;
-pub(crate) use hearing::Hearing;
+use super::distances::{Costs, Distances, STRAIGHT};
+use super::stored::{Unrestorable, check};
+use crate::world::{Cell, Heading, Tile, TileKind, World};
 
 /// A sound of one step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sound {
     /// The kind of sound.
     pub kind: SoundKind,
@@ -26,15 +25,13 @@ pub struct Sound {
     pub by: Source,
 }
 
-stored! { struct Sound { kind, cell, reach, by } }
-
 impl Sound {
     /// The largest reach that has an effect, in cells.
     pub const FARTHEST: u8 = 24;
 }
 
 /// What makes a sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// The player with that index.
     Player(usize),
@@ -44,10 +41,8 @@ pub enum Source {
     Object,
 }
 
-stored! { enum Source { 0: Player(index), 1: Guard(index), 2: Object } }
-
 /// A kind of sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SoundKind {
     /// Steps of walking.
     Walking,
@@ -93,10 +88,243 @@ pub enum SoundKind {
     Swing,
 }
 
-stored! {
-    enum SoundKind {
-        0: Walking, 1: Running, 2: Landing, 3: Splash, 4: Door, 5: Mechanism, 6: Spikes, 7: Knock,
-        8: Crash, 9: Blow, 10: Cry, 11: Fall, 12: Wonder, 13: GiveUp, 14: Shout, 15: Bell, 16: Bark,
-        17: Windup, 18: Draw, 19: Shot, 20: Swing,
+/// The additional cost of a closed door or of glass, in half cells.
+const DAMPING: u16 = 12;
+/// Sound passes over walls that are at most this much higher than the floor beside them, in cells.
+const LOW_WALL: f64 = 0.75;
+/// The number of steps after which the field is computed again, since doors may have moved.
+const OLD: u64 = 30;
+
+/// How far sounds have to go from one cell to those around it.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct SoundField {
+    center: Option<Cell>,
+    distances: Distances,
+    begun: u64,
+}
+
+impl SoundField {
+    /// Finds the distances of the cells within `reach` around `center`. `now` is the number of the
+    /// step. Returns the number of cells that were not known before.
+    pub(crate) fn reach_out(&mut self, world: &World, center: Cell, reach: u16, now: u64) -> usize {
+        let grid = world.grid();
+        let is_old = now.saturating_sub(self.begun) > OLD;
+        if self.center != Some(center) || is_old {
+            self.distances.begin(center, (grid.width(), grid.height()));
+            (self.center, self.begun) = (Some(center), now);
+        }
+        let reach = reach.min(half_cells(Sound::FARTHEST));
+        let mut found = 0;
+        while self.distances.radius() <= reach && self.distances.advance(&Air { world }) {
+            found += 1;
+        }
+        found
+    }
+
+    /// The distance of `cell` from the centre, in half cells; `None` if that is beyond the reach.
+    pub(crate) fn distance(&self, cell: Cell) -> Option<u16> {
+        self.distances.distance(cell)
+    }
+
+    /// Whether the search fits a map with that many columns and rows.
+    pub(crate) fn is_possible(&self, map: (u32, u32)) -> bool {
+        self.center.is_none_or(|center| self.distances.is_around(center, map))
+    }
+
+    /// Forgets the distances.
+    pub(crate) fn forget(&mut self) {
+        self.center = None;
+    }
+}
+
+/// A reach in half cells.
+pub(crate) fn half_cells(reach: u8) -> u16 {
+    u16::from(reach) * STRAIGHT
+}
+
+/// The way of sound from cell to cell.
+struct Air<'a> {
+    world: &'a World,
+}
+
+impl Air<'_> {
+    fn tile(&self, cell: Cell) -> Option<&Tile> {
+        self.world.tile_in(cell)
+    }
+
+    /// Whether sound passes between two neighbours.
+    fn passes(&self, one: Cell, other: Cell) -> bool {
+        let (Some(one), Some(other)) = (self.tile(one), self.tile(other)) else { return false };
+        is_low_beside(one, other) && is_low_beside(other, one) && have_common_air(one, other)
+    }
+}
+
+impl Costs for Air<'_> {
+    type Origin = Cell;
+
+    fn origin(&self, cell: Cell) -> Cell {
+        cell
+    }
+
+    fn straight(&self, &from: &Cell, to: Cell) -> Option<u16> {
+        let is_dampened = self.tile(to).is_some_and(dampens);
+        let cost = if is_dampened { STRAIGHT + DAMPING } else { STRAIGHT };
+        self.passes(from, to).then_some(cost)
+    }
+
+    fn has_diagonal(&self, &from: &Cell, to: Cell, beside: [bool; 2]) -> bool {
+        let is_free = |cell| self.tile(cell).is_some_and(|tile| !dampens(tile));
+        let corners =
+            [Cell { column: to.column, row: from.row }, Cell { column: from.column, row: to.row }];
+        let passes =
+            |corner| is_free(corner) && self.passes(from, corner) && self.passes(corner, to);
+        beside != [false, false]
+            && is_free(from)
+            && is_free(to)
+            && self.passes(from, to)
+            && corners.into_iter().any(passes)
+    }
+}
+
+fn dampens(tile: &Tile) -> bool {
+    matches!(tile.kind, TileKind::Door(_) | TileKind::Glass(_))
+}
+
+/// Whether `tile` is no wall, or a low one beside the floor of `other`.
+fn is_low_beside(tile: &Tile, other: &Tile) -> bool {
+    let is_wall = matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
+    !is_wall || tile.heights.floor() - other.heights.floor() <= LOW_WALL
+}
+
+/// Whether a gap of one tile overlaps a gap of the other.
+fn have_common_air(one: &Tile, other: &Tile) -> bool {
+    one.gaps()
+        .any(|gap| other.gaps().any(|there| gap.bottom.max(there.bottom) < gap.top.min(there.top)))
+}
+
+/// The steps for which a sound is shown.
+const DURATION: u16 = 45;
+/// The number of sounds that are shown at a time.
+const MOST: usize = 8;
+
+/// A sound as a player hears it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heard {
+    /// The direction on the map from which it comes.
+    pub bearing: Heading,
+    /// How loud it is, from 1 to 3.
+    pub strength: u8,
+    /// The kind of sound.
+    pub kind: SoundKind,
+    /// The steps for which it is still shown.
+    pub left: u16,
+}
+
+/// The ears of a player: what was heard in the last steps.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Hearing {
+    field: SoundField,
+    heard: Vec<Heard>,
+    /// What was heard as each of them.
+    sounds: Vec<Sound>,
+    steps: u64,
+}
+
+impl Hearing {
+    /// The sounds that were heard in the last steps, the newest last.
+    pub(crate) fn heard(&self) -> &[Heard] {
+        &self.heard
+    }
+
+    /// Advances by one step, in which `sounds` are made; the player `listener`, at `position`,
+    /// hears those of others. Returns whether a sound is heard or fades away.
+    pub(crate) fn step(
+        &mut self,
+        world: &World,
+        listener: usize,
+        position: DVec2,
+        sounds: &[Sound],
+    ) -> bool {
+        let before = self.heard.len();
+        self.wait(1);
+        let has_faded = self.heard.len() != before;
+        let mut has_heard = false;
+        for sound in sounds.iter().filter(|sound| sound.by != Source::Player(listener)) {
+            if let Some(strength) = self.strength(world, position, sound) {
+                self.hear(sound, position, strength);
+                has_heard = true;
+            }
+        }
+        has_faded || has_heard
+    }
+
+    /// Refuses a state that no sounds lead to.
+    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        let map = (world.grid().width(), world.grid().height());
+        check(self.field.is_possible(map), "the search of a sound")?;
+        let is_audible = |heard: &Heard| {
+            (1..=3).contains(&heard.strength) && (1..=DURATION).contains(&heard.left)
+        };
+        let is_known = self.sounds.len() == self.heard.len() && self.heard.len() <= MOST;
+        check(is_known && self.heard.iter().all(is_audible), "what a player hears")
+    }
+
+    /// The number of steps in which no sound fades away; `None` if there is none.
+    pub(crate) fn quiet_steps(&self) -> Option<u64> {
+        self.heard.iter().map(|heard| u64::from(heard.left.saturating_sub(1))).min()
+    }
+
+    /// Advances the clocks by `steps`.
+    pub(crate) fn wait(&mut self, steps: u64) {
+        self.steps = self.steps.saturating_add(steps);
+        let steps = u16::try_from(steps).unwrap_or(u16::MAX);
+        self.heard.iter_mut().for_each(|heard| heard.left = heard.left.saturating_sub(steps));
+        while let Some(index) = self.heard.iter().position(|heard| heard.left == 0) {
+            self.remove(index);
+        }
+    }
+
+    /// Forgets the distances of sounds, as when the whole map has changed.
+    pub(crate) fn forget(&mut self) {
+        self.field.forget();
+    }
+
+    /// How loud a sound is at `position`, from 1 to 3; `None` if it does not reach there.
+    fn strength(&mut self, world: &World, position: DVec2, sound: &Sound) -> Option<u8> {
+        let reach = half_cells(sound.reach.min(Sound::FARTHEST));
+        let from = sound.cell.center();
+        if from.distance(position) > f64::from(sound.reach) * 1.1 + 1.5 {
+            return None;
+        }
+        let cell = Cell::at(position);
+        self.field.reach_out(world, cell, reach, self.steps);
+        let distance = self.field.distance(sound.cell).filter(|&distance| distance <= reach)?;
+        Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)
+    }
+
+    /// Records a sound. A newer one of the same source and kind replaces an older one, and of those in
+    /// one step the nearest is kept.
+    fn hear(&mut self, sound: &Sound, position: DVec2, strength: u8) {
+        let way = sound.cell.center() - position;
+        let degrees = libm::atan2(way.y, way.x).to_degrees();
+        let bearing = Heading::from_degrees(degrees).unwrap_or_default();
+        let is_same = |other: &Sound| (other.by, other.kind) == (sound.by, sound.kind);
+        if let Some(index) = self.sounds.iter().position(is_same) {
+            let is_new = self.heard[index].left == DURATION;
+            let distance = self.sounds[index].cell.center().distance(position);
+            if is_new && distance <= way.length() {
+                return;
+            }
+            self.remove(index);
+        } else if self.heard.len() == MOST {
+            self.remove(0);
+        }
+        self.sounds.push(*sound);
+        self.heard.push(Heard { bearing, strength, kind: sound.kind, left: DURATION });
+    }
+
+    fn remove(&mut self, index: usize) {
+        self.heard.remove(index);
+        self.sounds.remove(index);
     }
 }

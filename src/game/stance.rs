@@ -3,14 +3,16 @@
 //! The eye follows the feet smoothly over steps: it lags by the height of the step and catches up.
 //! The body, which collides with ceilings, moves with the feet.
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::approach;
 use crate::world::Camera;
 
 /// The height of the body, standing and ducking, in cells.
 const STANDING: f64 = 0.7;
-pub(super) const DUCKING: f64 = 0.5;
+pub(crate) const DUCKING: f64 = 0.5;
 /// The height of the eye above the feet when ducking, in cells.
 const EYE_DUCKING: f64 = 0.3;
 /// The least room above the eye, in cells.
@@ -23,41 +25,39 @@ const FOLLOWING: f64 = 14.0;
 /// Less than this is nothing, in cells.
 const STILL: f64 = 1e-4;
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Stance {
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Stance {
     /// From 0 for standing to 1 for ducking.
     ducking: f64,
     /// How much higher the eye is than it will be, in cells.
     lag: f64,
 }
 
-stored! { struct Stance { ducking, lag } }
-
 impl Stance {
     /// Refuses a body that is neither standing, ducking nor between.
-    pub(super) fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), Unrestorable> {
         check((0.0..=1.0).contains(&self.ducking), "a stance")
     }
 
     /// The height of the body, in cells.
-    pub(super) fn height(self) -> f64 {
+    pub(crate) fn height(self) -> f64 {
         STANDING + (DUCKING - STANDING) * self.ducking
     }
 
     /// Whether the body is nearer to ducking than to standing upright.
-    pub(super) fn is_ducking(self) -> bool {
+    pub(crate) fn is_ducking(self) -> bool {
         self.ducking > 0.5
     }
 
     /// The height of the eye above the feet, in cells, below a ceiling at that height above them.
-    pub(super) fn eye(self, headroom: f64) -> f64 {
+    pub(crate) fn eye(self, headroom: f64) -> f64 {
         let eye = Camera::STANDING + (EYE_DUCKING - Camera::STANDING) * self.ducking + self.lag;
         eye.min(headroom - FOREHEAD).max(FOREHEAD)
     }
 
     /// The stance after one step of ducking or standing up.
     #[must_use]
-    pub(super) fn after_a_step(self, wants_to_duck: bool) -> Self {
+    pub(crate) fn after_a_step(self, wants_to_duck: bool) -> Self {
         let target = f64::from(u8::from(wants_to_duck));
         let ducking = approach(self.ducking, target, SUPPLENESS, STEP).velocity;
         let is_there = (ducking - target).abs() < STILL;
@@ -67,7 +67,7 @@ impl Stance {
     /// The stance after a step in which the feet have risen by `climbed` cells; negative for
     /// falling.
     #[must_use]
-    pub(super) fn following(self, climbed: f64) -> Self {
+    pub(crate) fn following(self, climbed: f64) -> Self {
         let lag = approach(self.lag - climbed, 0.0, FOLLOWING, STEP).velocity;
         let lag = if lag.abs() < STILL { 0.0 } else { lag };
         Self { lag, ..self }

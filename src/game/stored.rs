@@ -1,58 +1,61 @@
-//! Stored games: the whole state of a game as bytes, and back.
-//!
-//! Only what changes is stored. A game at its start, of the same level and rules, gives the rest: the
-//! map, the posts of guards, sprites and textures. What is computed from the stored state is not stored
-//! either: the openings of doors and the states of moving tiles in the grid, and the light of lamps.
-//!
-//! The bytes may come from a network. Whatever they are, reading them ends, takes memory in proportion
-//! to them and to the level, and gives a game in which every index points at something and every step
-//! succeeds, or an error. Whether the game was ever played like that is not checked.
+//! The format of stored games, and checksums, which are hashes of stored bytes.
 //!
 //! The first line says who can read the rest:
 //!
 //! ```text
-//! cellcaster-game 1 rules 2 version 0.1.0
+//! cellcaster-game 2 rules 2 version 0.1.0
 //! ```
 //!
-//! The script so far was refused: playing it again takes a second for each minute. So was `serde` with
-//! a compact format: the engine would depend on both, and derived code accepts any number where the
-//! rules need one of a range.
+//! The rest is the state as [`postcard`] writes it. The bytes may come from a network, so that [`Reader`], which
+//! reads them, is stricter than the one of `postcard`: it accepts only numbers that a game can add for years, and
+//! only cells on the map. Each type checks what else must hold in it. Whatever the bytes are, reading them ends,
+//! takes memory in proportion to them and to the level, and returns an error or a game in which every index points
+//! at something and every step succeeds. It does not prove that the game was ever played like that.
+//!
+//! Rejected: storing the script so far, since playing it again takes a second for each minute; and `postcard`'s own
+//! reader with a check of each number afterwards, since a new field would be unchecked until somebody notices.
 
-mod codec;
-mod lists;
-mod macros;
-mod numbers;
-mod parts;
 #[cfg(test)]
 pub(crate) mod tests;
-mod whole;
 
 use std::fmt;
 
-pub(crate) use self::codec::{Reader, Stored, StoredPart, Writer, check, check_on_map};
-pub(crate) use self::macros::stored;
-#[cfg(feature = "cluster")]
-pub(crate) use self::numbers::MOST_COUNT;
+use glam::DVec2;
+use postcard::ser_flavors::Flavor;
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, EnumAccess, Error as _, IntoDeserializer, MapAccess,
+    SeqAccess, VariantAccess, Visitor,
+};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
+
+use crate::rng::hash;
+use crate::world::World;
 
 /// The version of the rules. It grows with every change after which the same intents may give another
 /// game.
 pub const RULES_VERSION: u32 = 2;
 
+/// The version of the format.
+const FORMAT_VERSION: u32 = 2;
 /// The most bytes that are read.
-pub(crate) const MOST_BYTES: usize = 1 << 20;
+pub const MOST_BYTES: usize = 1 << 20;
+/// The largest real number that a game has anywhere: above twice the greatest height of a map.
+const MOST_REAL: f64 = 4e9;
+/// The largest time or count. Numbers below it can be added for millions of years.
+pub const MOST_COUNT: u64 = 1 << 53;
 
-/// Why bytes give no game.
+/// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unrestorable {
-    /// They are of no stored game, or of one of another version of the format, the rules or the crate.
+    /// The bytes are no stored game, or one of another version of the format, the rules or the crate.
     OtherVersion,
-    /// They are of another level, or of other rules.
+    /// The game is of another level, or of other rules.
     OtherLevel,
-    /// They end too early.
+    /// The bytes end too early.
     Cut,
-    /// They go on after the end.
+    /// The bytes go on after the end.
     Longer,
-    /// They are more than the 2²⁰ bytes that are read.
+    /// There are more than the 2²⁰ bytes that are read.
     TooLong,
     /// This part is out of its range.
     Damaged(&'static str),
@@ -77,16 +80,422 @@ impl fmt::Display for Unrestorable {
 
 impl std::error::Error for Unrestorable {}
 
-/// The first line of what is stored as `kind`.
-pub(crate) fn first_line(kind: &str) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    format!("cellcaster-{kind} 1 rules {RULES_VERSION} version {version}\n")
+impl serde::de::Error for Unrestorable {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self::Damaged("a value")
+    }
 }
 
-/// What follows the first line of what is stored as `kind`.
-pub(crate) fn after_first_line<'a>(kind: &str, bytes: &'a [u8]) -> Result<&'a [u8], Unrestorable> {
-    if bytes.len() > MOST_BYTES {
-        return Err(Unrestorable::TooLong);
+/// The first line of `kind`, and `value`.
+///
+/// # Panics
+/// If a list of `value` does not know its length, which is so for no type of the game.
+pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
+    let line = first_line(kind).into_bytes();
+    postcard::to_extend(value, line).expect("all lists have a length, and memory takes all bytes")
+}
+
+/// The hash of the bytes that are stored of `value`.
+///
+/// # Panics
+/// As [`written`].
+pub fn checksum(value: &impl Serialize) -> u64 {
+    postcard::serialize_with_flavor(value, Hash::default()).expect("all lists have a length")
+}
+
+/// The hash of the bytes that are written, eight at a time.
+#[derive(Default)]
+struct Hash {
+    bits: u64,
+    word: u64,
+    count: u64,
+}
+
+impl Flavor for Hash {
+    type Output = u64;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.word = self.word << 8 | u64::from(byte);
+        self.count += 1;
+        if self.count.is_multiple_of(8) {
+            self.bits = hash(self.bits, [self.word]);
+        }
+        Ok(())
     }
-    bytes.strip_prefix(first_line(kind).as_bytes()).ok_or(Unrestorable::OtherVersion)
+
+    fn finalize(self) -> postcard::Result<u64> {
+        Ok(hash(self.bits, [self.word, self.count]))
+    }
+}
+
+/// The first line of what is stored as `kind`.
+pub fn first_line(kind: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!("cellcaster-{kind} {FORMAT_VERSION} rules {RULES_VERSION} version {version}\n")
+}
+
+/// A state of which the level gives the fields that serde skips.
+pub(crate) trait OfLevel: DeserializeOwned {
+    /// The state with those fields of `start`, the state at the start of the same level.
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable>;
+}
+
+impl<T: OfLevel> OfLevel for Vec<T> {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        if self.len() != start.len() {
+            return Err(Unrestorable::OtherLevel);
+        }
+        self.into_iter().zip(start).map(|(state, start)| state.of_level(start)).collect()
+    }
+}
+
+/// Numbers of any size as eight bytes, for `#[serde(with)]`.
+pub mod bits {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Writes all 64 bits, whatever number they are.
+    ///
+    /// # Errors
+    /// As `to`.
+    pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
+        bits.to_le_bytes().serialize(to)
+    }
+
+    /// Reads any 64 bits.
+    ///
+    /// # Errors
+    /// As `from`.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
+        Deserialize::deserialize(from).map(u64::from_le_bytes)
+    }
+}
+
+/// Checks a part of what is restored.
+///
+/// # Errors
+/// Names `what`, unless it holds.
+pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
+    if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
+}
+
+/// An error, unless a position is on the map of `world`.
+pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
+    let end = DVec2::new(world.grid().width().into(), world.grid().height().into());
+    let is_on_map = position.cmpge(DVec2::ZERO).all() && position.cmplt(end).all();
+    check(is_on_map, "a position")
+}
+
+/// Reads a list of at most `MOST` values, for `#[serde(deserialize_with)]`. Values that are much larger than their
+/// bytes need it.
+pub(crate) fn at_most<'de, const MOST: usize, T, D>(from: D) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    struct List<T, const MOST: usize>(std::marker::PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            write!(f, "at most {MOST} values")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
+            let mut values = Vec::new();
+            while let Some(value) = list.next_element()? {
+                if values.len() == MOST {
+                    return Err(A::Error::custom("a list is too long"));
+                }
+                values.push(value);
+            }
+            Ok(values)
+        }
+    }
+
+    from.deserialize_seq(List::<T, MOST>(std::marker::PhantomData))
+}
+
+/// Bytes that are left to read, and the size of the map that they are about.
+///
+/// - A whole number is a variable-length integer: 7 bits in a byte, the lowest first. A signed one is
+///   first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
+/// - A real number is the eight bytes of its bits. It is finite, and at most [`MOST_REAL`].
+/// - A list is its length and its elements, each of at least one byte.
+/// - A [`Cell`](crate::world::Cell) is on the map.
+#[derive(Clone, Debug)]
+pub struct Reader<'de> {
+    bytes: &'de [u8],
+    size: (u32, u32),
+}
+
+impl<'de> Reader<'de> {
+    /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
+    ///
+    /// # Errors
+    /// If the bytes are too many, or of another kind or version.
+    pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
+        if bytes.len() > MOST_BYTES {
+            return Err(Unrestorable::TooLong);
+        }
+        let bytes = bytes.strip_prefix(first_line(kind).as_bytes());
+        Ok(Self { bytes: bytes.ok_or(Unrestorable::OtherVersion)?, size })
+    }
+
+    /// The bytes that are left.
+    pub fn rest(&self) -> &'de [u8] {
+        self.bytes
+    }
+
+    /// Reads a value.
+    ///
+    /// # Errors
+    /// If the bytes end too early, or a part is out of its range.
+    pub fn read<T: Deserialize<'de>>(&mut self) -> Result<T, Unrestorable> {
+        T::deserialize(self)
+    }
+
+    /// Reads a value of which `start`, the one at the start of the level, gives a part.
+    pub(crate) fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
+        self.read::<T>()?.of_level(start)
+    }
+
+    fn take(&mut self, count: usize) -> Result<&'de [u8], Unrestorable> {
+        let (taken, rest) = self.bytes.split_at_checked(count).ok_or(Unrestorable::Cut)?;
+        self.bytes = rest;
+        Ok(taken)
+    }
+
+    fn number(&mut self) -> Result<u64, Unrestorable> {
+        let mut number = 0;
+        for shift in (0..=49).step_by(7) {
+            let byte = self.take(1)?[0];
+            number |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                check(number <= MOST_COUNT, "a number")?;
+                return Ok(number);
+            }
+        }
+        Err(Unrestorable::Damaged("a number"))
+    }
+
+    fn signed_number(&mut self) -> Result<i64, Unrestorable> {
+        let number = self.number()?;
+        Ok((number >> 1) as i64 ^ -((number & 1) as i64))
+    }
+
+    fn flag(&mut self) -> Result<bool, Unrestorable> {
+        let byte = self.take(1)?[0];
+        check(byte <= 1, "a flag")?;
+        Ok(byte == 1)
+    }
+
+    /// Reads the length of a list whose elements have at least one byte.
+    fn length(&mut self) -> Result<usize, Unrestorable> {
+        let length = self.number()?;
+        if length > self.bytes.len() as u64 { Err(Unrestorable::Cut) } else { Ok(length as usize) }
+    }
+}
+
+macro_rules! numbers {
+    ($($method:ident: $read:ident, $visit:ident;)*) => {$(
+        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+            visitor.$visit(self.$read()?)
+        }
+    )*};
+}
+
+impl<'de> Deserializer<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+
+    numbers! {
+        deserialize_bool: flag, visit_bool;
+        deserialize_u16: number, visit_u64;
+        deserialize_u32: number, visit_u64;
+        deserialize_u64: number, visit_u64;
+        deserialize_i16: signed_number, visit_i64;
+        deserialize_i32: signed_number, visit_i64;
+    }
+
+    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        visitor.visit_u8(self.take(1)?[0])
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let mut bits = [0; 8];
+        bits.copy_from_slice(self.take(8)?);
+        let real = f64::from_le_bytes(bits);
+        check(real.abs() <= MOST_REAL, "a real number")?;
+        visitor.visit_f64(real)
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let length = self.length()?;
+        let text = std::str::from_utf8(self.take(length)?);
+        visitor.visit_borrowed_str(text.map_err(|_| Unrestorable::Damaged("a text"))?)
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        if self.flag()? { visitor.visit_some(self) } else { visitor.visit_none() }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let left = self.length()?;
+        visitor.visit_seq(Elements { input: self, left })
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unrestorable> {
+        let left = self.length()?;
+        visitor.visit_map(Elements { input: self, left })
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(
+        self,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_seq(Elements { input: self, left })
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(left, visitor)
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        if name == "Cell" {
+            let mut ahead = self.clone();
+            let (column, row) = (ahead.number()?, ahead.number()?);
+            check(column < self.size.0.into() && row < self.size.1.into(), "a cell")?;
+        }
+        self.deserialize_tuple(fields.len(), visitor)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        visitor.visit_enum(self)
+    }
+
+    /// The bytes do not say what they are.
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Unrestorable> {
+        Err(Unrestorable::Damaged("a value"))
+    }
+
+    forward_to_deserialize_any! {
+        i8 i64 f32 char bytes byte_buf unit unit_struct identifier ignored_any
+    }
+
+    fn is_human_readable(&self) -> bool {
+        false
+    }
+}
+
+/// The elements of a list that are left to read.
+struct Elements<'a, 'de> {
+    input: &'a mut Reader<'de>,
+    left: usize,
+}
+
+impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
+    type Error = Unrestorable;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(
+        &mut self,
+        seed: T,
+    ) -> Result<Option<T::Value>, Unrestorable> {
+        let Some(left) = self.left.checked_sub(1) else { return Ok(None) };
+        self.left = left;
+        seed.deserialize(&mut *self.input).map(Some)
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.left)
+    }
+}
+
+impl<'de> MapAccess<'de> for Elements<'_, 'de> {
+    type Error = Unrestorable;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, Unrestorable> {
+        self.next_element_seed(seed)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(
+        &mut self,
+        seed: V,
+    ) -> Result<V::Value, Unrestorable> {
+        seed.deserialize(&mut *self.input)
+    }
+}
+
+impl<'de> EnumAccess<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(
+        self,
+        seed: V,
+    ) -> Result<(V::Value, Self), Unrestorable> {
+        let variant = self.number()?;
+        Ok((seed.deserialize(variant.into_deserializer())?, self))
+    }
+}
+
+impl<'de> VariantAccess<'de> for &mut Reader<'de> {
+    type Error = Unrestorable;
+
+    fn unit_variant(self) -> Result<(), Unrestorable> {
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(
+        self,
+        seed: T,
+    ) -> Result<T::Value, Unrestorable> {
+        seed.deserialize(self)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(
+        self,
+        left: usize,
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(left, visitor)
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Unrestorable> {
+        self.deserialize_tuple(fields.len(), visitor)
+    }
 }

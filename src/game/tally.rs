@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Game, STEPS_PER_SECOND};
-use crate::game::stored::stored;
 
 /// A part of a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -94,14 +95,12 @@ impl fmt::Display for Rank {
 }
 
 /// What a game counts, whatever is restored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) struct Counts {
-    pub(super) alarms: u32,
-    pub(super) deaths: u32,
-    pub(super) stunned: u32,
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub(crate) struct Counts {
+    pub(crate) alarms: u32,
+    pub(crate) deaths: u32,
+    pub(crate) stunned: u32,
 }
-
-stored! { struct Counts { alarms, deaths, stunned } }
 
 impl Game {
     /// The worth of the treasure found, by all players together, and of all in the level.

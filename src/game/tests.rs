@@ -4,13 +4,13 @@ mod encounters;
 mod finds;
 mod hazards;
 mod mechanisms;
-pub(super) mod missions;
+pub(crate) mod missions;
 mod stage;
 mod tools;
 
 use glam::DVec2;
 use proptest::prelude::*;
-pub(super) use stage::Stage;
+pub(crate) use stage::Stage;
 
 use super::*;
 use crate::color::Rgb;
@@ -103,7 +103,7 @@ fn to_nearest_wall(grid: &Grid, point: DVec2) -> f64 {
 }
 
 /// Intents that are held for a few steps each.
-pub(super) fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
+pub(crate) fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
     prop::collection::vec((1..60_usize, held), 0..30)
 }

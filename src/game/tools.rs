@@ -11,10 +11,9 @@ use super::intent::{Intent, Intents};
 use super::multiplayer::playing;
 use super::noise::reach;
 use super::sound::{Sound, SoundKind, Source};
-use super::stored::{Reader, Stored, Unrestorable, Writer, check};
 use crate::world::{Camera, GuardKind, Supply};
-pub(super) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
-pub(super) use smoke::{Puff, Smoke};
+pub(crate) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
+pub(crate) use smoke::{Puff, Smoke};
 
 /// How far a blow reaches, in cells, and the cosine of the angle to both sides: 60°.
 const ARM: f64 = 1.0;
@@ -32,60 +31,9 @@ const STUNNED: u16 = 1200;
 const HOUND_STUNNED: u16 = 480;
 const WARDEN_SHOT: u16 = 300;
 
-/// The tools that a player carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) struct Supplies([u8; Supply::ALL.len()]);
-
-impl Supplies {
-    /// The most of each that a player carries.
-    pub(super) const MOST: u8 = 9;
-
-    /// Those of a player at the start.
-    pub(super) const AT_START: Self = Self([3, 0, 0]);
-
-    /// The number of `supply`.
-    pub(super) fn count(self, supply: Supply) -> u8 {
-        self.0[supply as usize]
-    }
-
-    /// Adds `more` of `supply`, as many as the player can carry.
-    pub(super) fn add(&mut self, supply: Supply, more: u8) {
-        let count = &mut self.0[supply as usize];
-        *count = count.saturating_add(more).min(Self::MOST);
-    }
-
-    /// The larger number of each.
-    #[must_use]
-    pub(super) fn or_more(mut self, other: Self) -> Self {
-        self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
-        self
-    }
-
-    /// Takes one of `supply`; returns whether there was one.
-    fn take(&mut self, supply: Supply) -> bool {
-        let count = &mut self.0[supply as usize];
-        let has_one = *count > 0;
-        *count -= u8::from(has_one);
-        has_one
-    }
-}
-
-impl Stored for Supplies {
-    fn write(&self, out: &mut Writer) {
-        let Self(counts) = self;
-        counts.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let counts: [u8; Supply::ALL.len()] = Stored::read(input)?;
-        check(counts.iter().all(|&count| count <= Self::MOST), "the number of a tool")?;
-        Ok(Self(counts))
-    }
-}
-
 impl Game {
     /// Uses the tools that the player begins to want.
-    pub(super) fn use_tools(&mut self, fresh: Intents) {
+    pub(crate) fn use_tools(&mut self, fresh: Intents) {
         if fresh.contains(Intent::Lamp) {
             self.turn_lamp();
         }
@@ -179,7 +127,7 @@ impl Game {
     }
 
     /// Moves what flies, and lets it do what it does where it ends.
-    pub(super) fn move_missiles(&mut self) {
+    pub(crate) fn move_missiles(&mut self) {
         if self.missiles.is_empty() {
             return;
         }
@@ -227,27 +175,7 @@ fn title(kind: GuardKind) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
-
-    proptest! {
-        #[test]
-        fn nobody_carries_more_than_nine_or_less_than_nothing(
-            changes in prop::collection::vec((prop::sample::select(&Supply::ALL[..]), any::<Option<u8>>()), 0..40)
-        ) {
-            let mut supplies = Supplies::AT_START;
-            for (supply, more) in changes {
-                let before = supplies.count(supply);
-                if let Some(more) = more {
-                    supplies.add(supply, more);
-                } else {
-                    prop_assert_eq!(supplies.take(supply), before > 0);
-                }
-                prop_assert!(Supply::ALL.iter().all(|&supply| supplies.count(supply) <= Supplies::MOST));
-            }
-        }
-    }
 
     #[test]
     fn a_dart_finds_what_is_within_15_degrees() {

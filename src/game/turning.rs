@@ -1,21 +1,27 @@
-//! Turning: for as long as it is wanted, or by an exact angle.
+//! Turning and looking up and down: for as long as it is wanted, or by an exact angle.
 //!
 //! An exact turn is a whole number of steps of the same angle, independent of the motion that
 //! begins and ends smoothly. However the two are mixed, their angles add up.
+//!
+//! The pitch never returns by itself, since the player may want to walk around something that they
+//! look up at. A key to look ahead returns it fully, even if it is only tapped.
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use super::STEP;
 use super::intent::{Intent, Intents};
-use super::stored::{Unrestorable, check, stored};
+use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::{DampedMotion, approach};
+use crate::world::Pitch;
 
 /// Radians per second.
 const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
 /// How fast a turn begins and ends, per second.
-pub(super) const FRICTION: f64 = 20.0;
+pub(crate) const FRICTION: f64 = 20.0;
 /// Below this the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
@@ -31,8 +37,8 @@ const MOST_WAITING: u32 = 72;
 /// Each press of these is one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(super) struct Turning {
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
     /// The steps left of turns by 5 degrees, clockwise.
@@ -43,12 +49,10 @@ pub(super) struct Turning {
     wanted: Intents,
 }
 
-stored! { struct Turning { speed, fine, about, wanted } }
-
 impl Turning {
     /// The state after one step, and the angle of that step in radians, clockwise.
     #[must_use]
-    pub(super) fn after_a_step(self, intents: Intents) -> (Self, f64) {
+    pub(crate) fn after_a_step(self, intents: Intents) -> (Self, f64) {
         let speed = if intents.contains(Intent::Aim) { AIM } else { TURN };
         let target = speed * intents.balance(Intent::TurnRight, Intent::TurnLeft);
         let DampedMotion { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
@@ -58,7 +62,7 @@ impl Turning {
     }
 
     /// Refuses more exact turns than may wait.
-    pub(super) fn check(self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
         check(is_possible, "a turn")
@@ -86,9 +90,53 @@ impl Turning {
     }
 }
 
+/// How fast the pitch changes, as a slope per second; and while aiming.
+const TILT: f64 = 0.8;
+const TILT_AIM: f64 = 0.2;
+/// How fast it returns to straight ahead, per second.
+const RETURN: f64 = 10.0;
+/// Less than this is nothing, as a slope or a slope per second: it is less than a row of pixels.
+const LEVEL_STILL: f64 = 1e-3;
+
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct PitchControl {
+    pub(crate) pitch: Pitch,
+    /// Slope per second, upwards.
+    speed: f64,
+    returns: bool,
+}
+
+impl PitchControl {
+    /// The pitch after one step.
+    #[must_use]
+    pub(crate) fn after_a_step(self, intents: Intents) -> Self {
+        let upwards = intents.balance(Intent::LookUp, Intent::LookDown);
+        let tilt = intents.look().tilt_radians();
+        let returns =
+            upwards == 0.0 && tilt == 0.0 && (self.returns || intents.contains(Intent::LookAhead));
+        if returns {
+            return Self { returns, ..self }.returned();
+        }
+        let target = upwards * if intents.contains(Intent::Aim) { TILT_AIM } else { TILT };
+        let DampedMotion { velocity, displacement } = approach(self.speed, target, FRICTION, STEP);
+        let pitch = self.pitch.tilted(displacement + tilt);
+        let is_still = velocity.abs() < LEVEL_STILL || pitch == self.pitch;
+        Self { pitch, speed: if is_still { 0.0 } else { velocity }, returns }
+    }
+
+    fn returned(self) -> Self {
+        let slope = approach(self.pitch.slope(), 0.0, RETURN, STEP).velocity;
+        if slope.abs() < LEVEL_STILL {
+            return Self::default();
+        }
+        Self { pitch: Pitch::LEVEL.tilted(slope), speed: 0.0, ..self }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::game::Look;
 
     /// The degrees that `steps` steps turn.
     fn degrees(turning: &mut Turning, steps: usize, intents: &[Intent]) -> f64 {
@@ -136,5 +184,32 @@ mod tests {
             let turned = turned + degrees(&mut turning, 90, &[]);
             assert!((turned - sign * 5.0).abs() < 1e-3, "{turned}");
         }
+    }
+
+    fn after(pitch_control: PitchControl, steps: usize, intents: &[Intent]) -> PitchControl {
+        let intents = intents.iter().copied().collect();
+        (0..steps).fold(pitch_control, |pitch_control, _| pitch_control.after_a_step(intents))
+    }
+
+    #[test]
+    fn it_goes_as_far_as_it_goes_and_comes_to_rest() {
+        let up = after(PitchControl::default(), 600, &[Intent::LookUp]);
+        assert_eq!(up.pitch, Pitch::from_degrees(Pitch::MAX_DEGREES).unwrap());
+        assert_eq!(after(up, 1, &[Intent::LookUp]), up);
+        assert_eq!(after(up, 600, &[]), up);
+        assert_eq!(after(up, 600, &[Intent::LookUp, Intent::LookDown]), up);
+        let down = after(up, 600, &[Intent::LookDown]);
+        assert_eq!(down.pitch.slope(), -up.pitch.slope());
+    }
+
+    #[test]
+    fn a_tap_takes_it_back_unless_one_looks_elsewhere() {
+        let up = after(PitchControl::default(), 40, &[Intent::LookUp]);
+        let returning = after(up, 1, &[Intent::LookAhead]);
+        assert_eq!(after(returning, 120, &[]), PitchControl::default());
+        let tilted = returning.after_a_step(Intents::new().with_look(Look { turn: 0, tilt: 50 }));
+        assert!(after(tilted, 120, &[]).pitch.slope() > 0.0);
+        let elsewhere = after(returning, 10, &[Intent::LookUp]);
+        assert!(after(elsewhere, 120, &[]).pitch.slope() > 0.0);
     }
 }

@@ -8,15 +8,14 @@
 //! gate in each of its sides. The place of a gate depends on the position of the side only, so that
 //! all hubs are connected. Caverns beside the tunnels stay as they are, and some cannot be reached.
 
-use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, every_cell};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain, every_cell};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
 /// The cave of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Cave {
-    pub(super) seed: u64,
+pub(crate) struct Cave {
+    pub(crate) seed: u64,
 }
 
 const STONE: u8 = b'#';

@@ -1,17 +1,19 @@
 //! Chunks: squares in which a level is generated.
 //!
 //! A chunk is a function of the seed and its own position, so that the level does not depend on the
-//! player's way. What two neighbours must agree about, such as a passage between them, is a
-//! function of the position of their common side. A function of single cells was refused: a cave of
-//! several generations would be computed again for every cell, and structures larger than a cell,
-//! such as rooms or spanning trees, would not be possible.
+//! player's way. Features that two neighbours share, such as a passage between them, are a function
+//! of the position of their common side. Rejected: a function of single cells. A cave of several
+//! generations would be computed again for every cell, and structures larger than a cell, such as
+//! rooms or spanning trees, would not be possible.
 //!
 //! Positions wrap around: after the last cell that a number can name comes the first one, so that
 //! no arithmetic on them overflows.
 
-use std::collections::VecDeque;
 use std::fmt;
+use std::iter;
 use std::ops::Range;
+
+use crate::world::{Cell, Flood};
 
 /// The cells along each side of a chunk.
 pub const CHUNK_SIDE: usize = 32;
@@ -148,6 +150,35 @@ impl ChunkArea {
     }
 }
 
+/// The contents of a level, as a function of the position.
+///
+/// The same area always has the same chunk, whatever was generated before.
+pub trait Terrain: fmt::Debug + Send + Sync {
+    /// The seed for decisions outside the terrain, such as the place of the exit.
+    fn seed(&self) -> u64;
+
+    /// A map file that defines the characters of the chunks: its grid has each of them at least
+    /// once. It has no keys; its walls include `#`; it has an exit. Patterns of floors and ceilings
+    /// must have a scale that is a power of two up to 16: others would jump when the window moves.
+    fn legend(&self) -> String;
+
+    /// The cells of a chunk. Cells outside `area` do not matter: they become wall.
+    ///
+    /// Doors stand between solid cells, with open floor before and behind them. Chunks whose areas
+    /// have a [hub](Terrain::hub) are connected with their neighbours that have one.
+    fn chunk(&self, area: &ChunkArea) -> Chunk;
+
+    /// An open cell of the chunk from which the player can reach the neighbours; `None` if the area
+    /// is too small to have one.
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)>;
+
+    /// The cell of the chunk at which the player starts by default: its corner, unless the terrain
+    /// knows a better one. If there is no way out of that cell, the hub is used.
+    fn start(&self, _plot: &ChunkArea) -> (usize, usize) {
+        (0, 0)
+    }
+}
+
 /// The cells of a chunk, as the characters of a map.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Chunk {
@@ -185,7 +216,7 @@ impl Chunk {
     }
 
     /// Fills what is not in `area` with wall.
-    pub(super) fn clip(&mut self, area: &ChunkArea, character: u8) {
+    pub(crate) fn clip(&mut self, area: &ChunkArea, character: u8) {
         for (column, row) in every_cell().filter(|&(column, row)| !area.contains(column, row)) {
             self.set(column, row, character);
         }
@@ -193,42 +224,25 @@ impl Chunk {
 
     /// The cells that can be reached from `start` inside the chunk through characters for which
     /// `is_open` is true, in the order of their distance.
-    pub(super) fn reachable(
+    pub(crate) fn reachable(
         &self,
         start: (usize, usize),
         is_open: impl Fn(u8) -> bool,
     ) -> Vec<(usize, usize)> {
-        let mut seen = [[false; CHUNK_SIDE]; CHUNK_SIDE];
-        let mut queue = VecDeque::from([start]);
-        let mut found = Vec::new();
-        seen[start.1][start.0] = true;
-        while let Some((column, row)) = queue.pop_front() {
-            found.push((column, row));
-            for (column, row) in beside(column, row) {
-                if is_open(self.get(column, row)) && !seen[row][column] {
-                    seen[row][column] = true;
-                    queue.push_back((column, row));
-                }
-            }
-        }
-        found
+        let start = Cell { column: start.0 as u32, row: start.1 as u32 };
+        let place = |cell: Cell| (cell.column as usize, cell.row as usize);
+        let mut flood = Flood::new((CHUNK_SIDE as u32, CHUNK_SIDE as u32), start);
+        let is_open = |cell| {
+            let (column, row) = place(cell);
+            is_open(self.get(column, row))
+        };
+        iter::from_fn(|| flood.next(is_open)).map(|(cell, _)| place(cell)).collect()
     }
 }
 
 /// All cells of a chunk, row by row.
-pub(super) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn every_cell() -> impl Iterator<Item = (usize, usize)> {
     (0..CHUNK_SIDE).flat_map(|row| (0..CHUNK_SIDE).map(move |column| (column, row)))
-}
-
-/// The neighbours of a cell in the west, east, north and south, in the same chunk.
-fn beside(column: usize, row: usize) -> impl Iterator<Item = (usize, usize)> {
-    let places = [
-        (column.wrapping_sub(1), row),
-        (column + 1, row),
-        (column, row.wrapping_sub(1)),
-        (column, row + 1),
-    ];
-    places.into_iter().filter(|&(column, row)| column < CHUNK_SIDE && row < CHUNK_SIDE)
 }
 
 /// The rows as text.

@@ -6,7 +6,7 @@
 //! - All cells that matter are reachable from the start on foot, through doors without locks: the exit,
 //!   the treasure, the guards and their waypoints.
 //! - The exit is among the cells farthest from the start, and opens for a third of the treasure.
-//! - Guards begin at least [`GUARD_DISTANCE`] cells from the start and out of its sight. Their number,
+//! - Guards begin at least [`GUARD_DISTANCE`](population::GUARD_DISTANCE) cells from the start and out of its sight. Their number,
 //!   and the kinds among them, grow with the depth. Half as many again are there from normal
 //!   difficulty on, and as many more on hard.
 //! - At most [`MOST_OPEN`] percent of an office are open: without an opaque cell around them. A
@@ -15,29 +15,27 @@
 //! - Deeper floors are darker, so that lamps and lit rooms matter more.
 //! - Nothing but the seed and the number of the floor decides: nothing is carried from floor to floor.
 //!
-//! A window into a level without an end, as the generators have, was refused: guards outside it would
-//! have to be simulated or forgotten. So was a map text for each floor: it would take a character for
+//! Rejected: a window into a level without an end, as the generators have, since guards outside it would
+//! have to be simulated or forgotten; and a map text for each floor, which would need a character for
 //! each waypoint.
 
 mod ground;
-mod guards;
-mod items;
-mod loops;
-mod terrain;
+mod population;
 
 use std::num::NonZeroU32;
+use std::sync::Arc;
 
+use super::chunk::{Chunk, ChunkArea, Extent, Terrain};
+use super::level::{Generator, Level};
 use super::purpose::{Purpose, generator, hash};
-use super::{Extent, Generator, Level};
+use super::tileset::Tileset;
+use super::window::best_heading;
 use crate::fault::Faults;
 use crate::rng::SplitMix64;
 use crate::world::{Mission, Start, World};
 use ground::Ground;
-use items::Items;
-use terrain::FloorTerrain;
+use population::Items;
 
-/// The distance of guards from the start at first, in cells.
-const GUARD_DISTANCE: u32 = 8;
 /// The columns and rows of the first floor, of each further one, and of the largest.
 const COLUMNS: (u32, u32, u32) = (24, 4, 64);
 const ROWS: (u32, u32, u32) = (24, 3, 48);
@@ -48,6 +46,11 @@ const REACHABLE: u32 = 6;
 const MOST_OPEN: usize = 40;
 /// The levels that are tried before the last one is taken as it is.
 const ATTEMPTS: i64 = 16;
+/// The share of light that each floor loses, and the floor that is darkest.
+const DIMMING: f64 = 0.05;
+const DARKEST: u32 = 10;
+/// One of this many walls between two passages is opened.
+const OPENED: usize = 7;
 
 /// A floor of the descent of `seed`. The first one is 1; 0 is the same.
 ///
@@ -112,7 +115,7 @@ impl Draft {
         let start = (start.column as u32, start.row as u32);
         let mut cells = level.rows_without_exit(columns, rows);
         if kind == Generator::Maze {
-            loops::open(&mut cells, level.tileset(), &mut random);
+            open_loops(&mut cells, level.tileset(), &mut random);
         }
         let ground = Ground::new(cells, start, level.tileset());
         Ok(Some(Self { floor, generator: kind, level, ground, random }))
@@ -133,10 +136,10 @@ impl Draft {
         let exit = self.ground.place_exit(tileset, &mut self.random);
         let mut world = tileset.world();
         let items = Items::place(self.floor, &self.ground, exit, &mut world, &mut self.random)?;
-        let guards = guards::place(self.floor, &self.ground, &items, &mut self.random);
+        let guards = population::guards(self.floor, &self.ground, &items, &mut self.random);
         let (width, rows) = (self.ground.width(), self.ground.rows());
         tileset.draw(&mut world, width, rows.into_iter(), items.things(), |grid| {
-            let heading = super::window::best_heading(grid, start);
+            let heading = best_heading(grid, start);
             Start { cell: start, heading }
         });
         world.set_mission(Mission {
@@ -170,6 +173,81 @@ fn size(floor: u32) -> (NonZeroU32, NonZeroU32) {
         NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN)
     };
     (side(COLUMNS), side(ROWS))
+}
+
+/// Opens walls between the passages of a maze: a player who meets a guard in a passage needs another
+/// way.
+fn open_loops(cells: &mut [Vec<u8>], tileset: &Tileset, random: &mut SplitMix64) {
+    for row in 1..cells.len().saturating_sub(1) {
+        for column in 1..cells[row].len().saturating_sub(1) {
+            let bare = |column: usize, row: usize| tileset.is_bare(cells[row][column]);
+            let walkable = |column: usize, row: usize| tileset.is_walkable(cells[row][column]);
+            let across = (walkable(column - 1, row), walkable(column + 1, row));
+            let down = (walkable(column, row - 1), walkable(column, row + 1));
+            let floor = match (across, down) {
+                _ if walkable(column, row) => None,
+                ((true, true), (false, false)) if bare(column - 1, row) => {
+                    cells[row].get(column - 1)
+                }
+                ((false, false), (true, true)) if bare(column, row - 1) => {
+                    cells[row - 1].get(column)
+                }
+                _ => None,
+            };
+            let floor = floor.copied().filter(|_| random.one_in(OPENED));
+            if let Some(floor) = floor {
+                cells[row][column] = floor;
+            }
+        }
+    }
+}
+
+/// The terrain of a floor: a generator's, with another title and less light.
+#[derive(Debug)]
+struct FloorTerrain {
+    terrain: Arc<dyn Terrain>,
+    floor: u32,
+}
+
+impl FloorTerrain {
+    fn new(terrain: Arc<dyn Terrain>, floor: u32) -> Arc<Self> {
+        Arc::new(Self { terrain, floor })
+    }
+
+    /// A line of the legend as the floor has it.
+    fn line(&self, line: &str) -> String {
+        match line.split_once('=').map(|(key, value)| (key.trim(), value.trim())) {
+            Some(("title", _)) => format!("title = \"Floor {}\"\n", self.floor),
+            Some(("light", value)) => {
+                let share = 1.0 - DIMMING * f64::from(self.floor.min(DARKEST) - 1);
+                let light = value.parse::<f64>().unwrap_or(1.0) * share;
+                format!("light = {light:.3}\n")
+            }
+            _ => format!("{line}\n"),
+        }
+    }
+}
+
+impl Terrain for FloorTerrain {
+    fn seed(&self) -> u64 {
+        self.terrain.seed()
+    }
+
+    fn legend(&self) -> String {
+        self.terrain.legend().lines().map(|line| self.line(line)).collect()
+    }
+
+    fn chunk(&self, area: &ChunkArea) -> Chunk {
+        self.terrain.chunk(area)
+    }
+
+    fn hub(&self, area: &ChunkArea) -> Option<(usize, usize)> {
+        self.terrain.hub(area)
+    }
+
+    fn start(&self, area: &ChunkArea) -> (usize, usize) {
+        self.terrain.start(area)
+    }
 }
 
 #[cfg(test)]

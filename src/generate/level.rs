@@ -3,10 +3,12 @@
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site};
+use super::cave::Cave;
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Extent, Site, Terrain};
+use super::maze::Maze;
+use super::office::Office;
 use super::purpose::{Purpose, generator};
 use super::tileset::{ROCK, Tileset};
-use super::{Generator, Terrain};
 use crate::fault::Faults;
 
 /// A generated level.
@@ -83,12 +85,12 @@ impl Level {
         chunk
     }
 
-    pub(super) fn tileset(&self) -> &Tileset {
+    pub(crate) fn tileset(&self) -> &Tileset {
         &self.tileset
     }
 
     /// The characters of a level with an end, row by row, without its exit.
-    pub(super) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
+    pub(crate) fn rows_without_exit(&self, columns: NonZeroU32, rows: NonZeroU32) -> Vec<Vec<u8>> {
         let (columns, rows) = (columns.get() as usize, rows.get() as usize);
         let mut cells = vec![vec![ROCK; columns]; rows];
         for first_row in (0..rows).step_by(CHUNK_SIDE) {
@@ -157,20 +159,57 @@ impl Level {
     }
 }
 
+/// Two levels are equal if they come from one call of [`Level::new`].
+impl PartialEq for Level {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.tileset, &other.tileset)
+    }
+}
+
+/// A built-in generator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Generator {
+    /// Passages one cell wide, and some halls.
+    Maze,
+    /// Caverns and tunnels.
+    Cave,
+    /// Rooms, doors, glass and corridors.
+    Office,
+}
+
 impl Generator {
+    /// All generators.
+    pub const ALL: [Self; 3] = [Self::Maze, Self::Cave, Self::Office];
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Maze => "maze",
+            Self::Cave => "cave",
+            Self::Office => "office",
+        }
+    }
+
+    /// The generator with that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|generator| generator.name() == name)
+    }
+
+    /// The terrain of a seed.
+    pub fn terrain(self, seed: u64) -> Arc<dyn Terrain> {
+        match self {
+            Self::Maze => Arc::new(Maze { seed }),
+            Self::Cave => Arc::new(Cave { seed }),
+            Self::Office => Arc::new(Office { seed }),
+        }
+    }
+
     /// The level of that extent and a seed.
     ///
     /// # Errors
     /// None in practice: the tests read the legend of every generator.
     pub fn level(self, seed: u64, extent: Extent) -> Result<Level, Faults> {
         Level::new(self.terrain(seed), extent)
-    }
-}
-
-/// Two levels are equal if they come from one call of [`Level::new`].
-impl PartialEq for Level {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.tileset, &other.tileset)
     }
 }
 

@@ -3,21 +3,20 @@
 //! Cells with an odd column and an odd row in the chunk are nodes. The cell between two nodes is
 //! open or wall. Each chunk has a random spanning tree of its nodes (depth-first search with
 //! backtracking), and passages to its northern and western neighbours. So all nodes are connected
-//! through the chunks between them, and the passages between chunks close loops. A spanning tree of
-//! the whole level was refused: a local rule for one gives a comb, with long parallel passages.
+//! through the chunks between them, and the passages between chunks close loops. Rejected: a
+//! spanning tree of the whole level. A local rule for one gives a comb, with long parallel passages.
 //!
 //! No straight view crosses two borders of chunks: passages are in the first half of every other
 //! border, and in the second half of the ones between.
 
-use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain};
 use super::purpose::{Purpose, generator, hash};
 use crate::rng::SplitMix64;
 
 /// The maze of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Maze {
-    pub(super) seed: u64,
+pub(crate) struct Maze {
+    pub(crate) seed: u64,
 }
 
 /// The contents of a district.

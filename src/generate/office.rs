@@ -8,19 +8,17 @@
 //! wall ends at a door, each door stands between walls, and the even columns and rows connect all
 //! cells of a room: furniture is never in the way, and no check is necessary.
 
-mod block;
-mod decor;
+use std::iter;
+use std::ops::Range;
 
-use super::Terrain;
-use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, every_cell};
+use super::chunk::{CHUNK_SIDE, Chunk, ChunkArea, Terrain, every_cell};
 use super::purpose::{Purpose, generator};
-use block::Block;
-use decor::Decor;
+use crate::rng::SplitMix64;
 
 /// The office of a seed.
 #[derive(Clone, Debug)]
-pub(super) struct Office {
-    pub(super) seed: u64,
+pub(crate) struct Office {
+    pub(crate) seed: u64,
 }
 
 const WALL: u8 = b'#';
@@ -32,7 +30,7 @@ const FIRE_DOOR: u8 = b'=';
 const ROOM_FLOORS: [u8; 3] = [b'.', b'_', b'"'];
 
 /// The place and the width of the corridors.
-const CORRIDORS: std::ops::Range<usize> = 1..3;
+const CORRIDORS: Range<usize> = 1..3;
 /// The cells between two lamps of a corridor.
 const LAMP_SPACING: usize = 7;
 
@@ -105,7 +103,7 @@ fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
         let step = move |&(column, row): &(usize, usize)| {
             Some((column.wrapping_add_signed(across), row.wrapping_add_signed(down)))
         };
-        std::iter::successors(Some((column, row)), step).take_while(is_floor).count()
+        iter::successors(Some((column, row)), step).take_while(is_floor).count()
     };
     [(1, 0), (-1, 0), (0, 1), (0, -1)]
         .map(|(across, down)| along(across, down))
@@ -115,7 +113,7 @@ fn longest_view(chunk: &Chunk, (column, row): (usize, usize)) -> usize {
 }
 
 fn carve_corridors(chunk: &mut Chunk, area: &ChunkArea) {
-    let inside = |range: &std::ops::Range<usize>| range.start.max(1)..range.end;
+    let inside = |range: &Range<usize>| range.start.max(1)..range.end;
     let lamp_at = |along: usize| along % LAMP_SPACING == LAMP_SPACING / 2;
     let floor = |along, across: usize| {
         if lamp_at(along) && across == CORRIDORS.start { CORRIDOR_LAMP } else { CORRIDOR }
@@ -127,5 +125,254 @@ fn carve_corridors(chunk: &mut Chunk, area: &ChunkArea) {
         for column in inside(&area.columns).filter(|&column| area.contains(column, across)) {
             chunk.set(column, across, floor(column, across));
         }
+    }
+}
+
+/// The area between the corridors of a chunk.
+#[derive(Clone, Debug)]
+struct Block {
+    /// Its inside, from west to east, between walls in odd columns. The last wall may be in any
+    /// column.
+    columns: Range<usize>,
+    /// The same from north to south.
+    rows: Range<usize>,
+}
+
+const GLASS: u8 = b'G';
+const DOOR: u8 = b'+';
+
+/// The least inside of a room along each side.
+const LEAST_ROOM: usize = 3;
+/// Longer or wider areas are always divided.
+const LONGEST_ROOM: usize = 11;
+/// The columns and rows between pillars of a hall.
+const PILLAR_SPACING: usize = 6;
+
+/// The furniture of a room.
+#[derive(Clone, Copy, Debug)]
+struct Furniture {
+    floor: u8,
+    /// The furniture, and how many of [`PLACES`] have it.
+    pieces: &'static [(u8, usize)],
+    /// A lamp, which hangs from the ceiling where the player can walk.
+    lamp: Option<u8>,
+    /// The pillars of a hall.
+    pillar: u8,
+}
+
+const PLACES: usize = 32;
+/// The cells between lamps.
+const ROOM_LAMP_SPACING: usize = 8;
+
+const CARPETED: Furniture =
+    Furniture { floor: b'.', pieces: &[(b't', 10), (b'p', 3)], lamp: Some(b'l'), pillar: b'o' };
+const PANELLED: Furniture =
+    Furniture { floor: b'_', pieces: &[(b'T', 6), (b'P', 4)], lamp: None, pillar: b'o' };
+const STORE: Furniture = Furniture { floor: b'%', pieces: &[(b'q', 14)], lamp: None, pillar: b'o' };
+const HALL: Furniture =
+    Furniture { floor: b'.', pieces: &[(b't', 16), (b'p', 2)], lamp: Some(b'l'), pillar: b'o' };
+const GARDEN: Furniture =
+    Furniture { floor: b'"', pieces: &[(b'y', 10), (b's', 1)], lamp: None, pillar: b'O' };
+
+impl Block {
+    /// The block of an area whose corridors end before `first`, if there is room for it.
+    fn of(area: &ChunkArea, first: usize) -> Option<Self> {
+        let inside = |range: &Range<usize>| first + 1..range.end;
+        let block = Self { columns: inside(&area.columns), rows: inside(&area.rows) };
+        (block.columns.len() >= LEAST_ROOM && block.rows.len() >= LEAST_ROOM).then_some(block)
+    }
+
+    /// Builds the block.
+    fn build(self, chunk: &mut Chunk, random: SplitMix64) {
+        let mut building = Building { chunk, random };
+        match building.random.below(8) {
+            0 => building.hall(&self, HALL),
+            1 => building.hall(&self, GARDEN),
+            _ => building.divide(self.clone()),
+        }
+        building.open_to_corridors(&self);
+    }
+
+    /// The columns where a wall from north to south could divide it.
+    fn cuts_across(&self) -> Vec<usize> {
+        cuts(&self.columns)
+    }
+
+    fn cuts_down(&self) -> Vec<usize> {
+        cuts(&self.rows)
+    }
+}
+
+/// The odd positions that leave enough room on both sides.
+fn cuts(inside: &Range<usize>) -> Vec<usize> {
+    let places = inside.start + LEAST_ROOM..(inside.end).saturating_sub(LEAST_ROOM);
+    places.filter(|place| place % 2 == 1).collect()
+}
+
+struct Building<'c> {
+    chunk: &'c mut Chunk,
+    random: SplitMix64,
+}
+
+impl Building<'_> {
+    /// One room of any size, with pillars.
+    fn hall(&mut self, block: &Block, furniture: Furniture) {
+        self.furnish(block, furniture);
+        let is_pillars = |place: usize| place % PILLAR_SPACING == 1;
+        for row in block.rows.clone().filter(|&row| is_pillars(row)) {
+            for column in block.columns.clone().filter(|&column| is_pillars(column)) {
+                self.chunk.set(column, row, furniture.pillar);
+            }
+        }
+    }
+
+    /// Divides large areas into two, with a door between them, and furnishes the others.
+    fn divide(&mut self, block: Block) {
+        let (across, down) = (block.cuts_across(), block.cuts_down());
+        let longest = block.columns.len().max(block.rows.len());
+        let is_done = longest <= LONGEST_ROOM && self.random.one_in(3);
+        let is_wide = block.columns.len() > block.rows.len();
+        let (cuts, is_across) = match (across.is_empty(), down.is_empty()) {
+            _ if is_done => (Vec::new(), true),
+            (false, true) => (across, true),
+            (false, false) if is_wide => (across, true),
+            _ => (down, false),
+        };
+        if cuts.is_empty() {
+            let kinds = [CARPETED, CARPETED, PANELLED, STORE];
+            let furniture = kinds[self.random.below(kinds.len())];
+            return self.furnish(&block, furniture);
+        }
+        let cut = cuts[self.random.below(cuts.len())];
+        let Block { columns, rows } = block;
+        if is_across {
+            self.divide(Block { columns: columns.start..cut, rows: rows.clone() });
+            self.divide(Block { columns: cut + 1..columns.end, rows: rows.clone() });
+            let wall: Vec<_> = rows.map(|row| (cut, row)).collect();
+            self.open_wall(&wall, 1);
+        } else {
+            self.divide(Block { columns: columns.clone(), rows: rows.start..cut });
+            self.divide(Block { columns: columns.clone(), rows: cut + 1..rows.end });
+            let wall: Vec<_> = columns.map(|column| (column, cut)).collect();
+            self.open_wall(&wall, 1);
+        }
+    }
+
+    fn open_to_corridors(&mut self, block: &Block) {
+        let in_west: Vec<_> =
+            block.rows.clone().map(|row| (block.columns.start - 1, row)).collect();
+        let in_north: Vec<_> =
+            block.columns.clone().map(|column| (column, block.rows.start - 1)).collect();
+        for wall in [in_west, in_north] {
+            self.open_wall(&wall, 1 + wall.len() / 12);
+        }
+    }
+
+    /// Places doors into a wall, beginning where it may have one, and glass elsewhere.
+    fn open_wall(&mut self, wall: &[(usize, usize)], doors: usize) {
+        let openings: Vec<_> = wall.iter().copied().step_by(2).collect();
+        if self.random.one_in(2) {
+            for &(column, row) in &openings {
+                if !self.random.one_in(3) {
+                    self.chunk.set(column, row, GLASS);
+                }
+            }
+        }
+        for _ in 0..doors {
+            let (column, row) = openings[self.random.below(openings.len())];
+            self.chunk.set(column, row, DOOR);
+        }
+    }
+
+    fn furnish(&mut self, room: &Block, furniture: Furniture) {
+        let lamps_in =
+            |range: &Range<usize>| ((range.start + range.len() / 2) % ROOM_LAMP_SPACING) & !1;
+        let lamps = (lamps_in(&room.columns), lamps_in(&room.rows));
+        for row in room.rows.clone() {
+            for column in room.columns.clone() {
+                let is_out_of_the_way = column % 2 == 1 && row % 2 == 1;
+                let is_below_lamp = (column % ROOM_LAMP_SPACING, row % ROOM_LAMP_SPACING) == lamps;
+                let piece = if is_out_of_the_way {
+                    self.piece(furniture)
+                } else {
+                    furniture.lamp.filter(|_| is_below_lamp)
+                };
+                self.chunk.set(column, row, piece.unwrap_or(furniture.floor));
+            }
+        }
+    }
+
+    /// One of the pieces, or none.
+    fn piece(&mut self, furniture: Furniture) -> Option<u8> {
+        let mut number = self.random.below(PLACES);
+        furniture.pieces.iter().find_map(|&(character, count)| {
+            let is_it = number < count;
+            number = number.saturating_sub(count);
+            is_it.then_some(character)
+        })
+    }
+}
+
+/// The surfaces of an office, as values of a map file.
+#[derive(Clone, Copy, Debug)]
+struct Decor {
+    wall: &'static str,
+    carpet: &'static str,
+    corridor: &'static str,
+    ceiling: &'static str,
+    fog: &'static str,
+}
+
+const DECORS: [Decor; 5] = [
+    Decor {
+        wall: r#""brick""#,
+        carpet: r##""#5c5348""##,
+        corridor: r##"{ checker = ["wood", "#6f5138"] }"##,
+        ceiling: r##"{ checker = ["#c4b8a4", "#b6aa96"], scale = 0.5 }"##,
+        fog: "#6a6258",
+    },
+    Decor {
+        wall: r#""plaster""#,
+        carpet: r##""#4a5866""##,
+        corridor: r##"{ checker = ["marble", "#39444e"] }"##,
+        ceiling: r##"{ checker = ["#b4bac0", "#a6adb4"], scale = 0.5 }"##,
+        fog: "#59626b",
+    },
+    Decor {
+        wall: r#""wood""#,
+        carpet: r##""#6e343a""##,
+        corridor: r##"{ checker = ["#7c3b40", "#66302f"] }"##,
+        ceiling: r#"{ texture = "coffer", scale = 2 }"#,
+        fog: "#5e4c40",
+    },
+    Decor {
+        wall: r#""tile""#,
+        carpet: r##""#56787a""##,
+        corridor: r##"{ checker = ["tile", "#c3cfcb"], scale = 0.5 }"##,
+        ceiling: r##"{ checker = ["#d3dcda", "#c2ccca"], scale = 0.5 }"##,
+        fog: "#7b8a8a",
+    },
+    Decor {
+        wall: r#""sandstone""#,
+        carpet: r##""#3f5f4c""##,
+        corridor: r##"{ checker = ["sandstone", "#7a5a3c"] }"##,
+        ceiling: r##"{ checker = ["#cfc3a4", "#c2b494"], scale = 0.5 }"##,
+        fog: "#6e6650",
+    },
+];
+
+impl Decor {
+    /// The decor of a seed. The next seed has another one.
+    fn of(seed: u64) -> Self {
+        DECORS[(seed % DECORS.len() as u64) as usize]
+    }
+
+    /// The map file `legend` with this decor: keys above its grid, and tiles below it.
+    fn legend(self, legend: &str) -> String {
+        let Self { wall, carpet, corridor, ceiling, fog } = self;
+        format!(
+            "floor = {carpet}\nceiling = {ceiling}\nfog = {{ color = \"{fog}\", distance = 16 }}\n\
+             {legend}\n[tiles.\"#\"]\nwall = {wall}\n[tiles.\",\"]\nfloor = {corridor}\n"
+        )
     }
 }

@@ -5,42 +5,42 @@
 
 use crate::rng::{self, SplitMix64};
 
-/// What is being decided. Each has numbers of its own, so that no decision tells about another.
+/// The purpose of a decision. Each has numbers of its own, so that no decision reveals another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(crate) enum Purpose {
     /// The layout of a chunk.
     Plan = 1,
-    /// Where one passes to the chunk in the north.
+    /// The passage to the chunk in the north.
     NorthPassage = 2,
-    /// Where one passes to the chunk in the west.
+    /// The passage to the chunk in the west.
     WestPassage = 3,
-    /// How a district looks.
+    /// The look of a district.
     District = 4,
-    /// Whether there is rock in a cell at first.
+    /// The rock in a cell at first.
     Rock = 5,
-    /// What stands around.
+    /// The furniture.
     Furniture = 6,
-    /// Where the middle of a chunk is.
+    /// The middle of a chunk.
     Hub = 7,
-    /// Whether a cell is dry at first.
+    /// Dry ground in a cell at first.
     Dry = 9,
-    /// Where the way out is.
+    /// The place of the exit.
     Exit = 8,
-    /// Where one starts.
+    /// The place of the start.
     Start = 10,
     /// The level of a floor.
     Floor = 11,
-    /// Who and what is on a floor.
+    /// The guards and items of a floor.
     Population = 12,
 }
 
 /// A number that looks random, determined by a seed, a purpose and a place.
-pub(super) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
+pub(crate) fn hash(seed: u64, purpose: Purpose, column: i64, row: i64) -> u64 {
     rng::hash(seed, [purpose as u64, column as u64, row as u64])
 }
 
 /// The generator that a seed, a purpose and a place determine.
-pub(super) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
+pub(crate) fn generator(seed: u64, purpose: Purpose, column: i64, row: i64) -> SplitMix64 {
     SplitMix64::new(hash(seed, purpose, column, row))
 }
 

@@ -1,4 +1,4 @@
-//! The tileset: the meanings of the characters of chunks, read from a map that has each of them.
+//! The tileset: the meanings of the characters of chunks, read from a map that draws each of them.
 //!
 //! Tiles, textures, sprites, sky and fog of a level are therefore parsed and checked like those of
 //! any map. The map is read once; chunks refer to its tiles by their number.
@@ -10,11 +10,11 @@ use crate::map::{self, NoFiles};
 use crate::world::{Cell, Grid, SpriteId, Start, Thing, ThingKind, Tile, TileId, TileKind, World};
 
 /// The character of cells outside the areas.
-pub(super) const ROCK: u8 = b'#';
+pub(crate) const ROCK: u8 = b'#';
 
 /// The meanings of the characters of chunks.
 #[derive(Clone, Debug)]
-pub(super) struct Tileset {
+pub(crate) struct Tileset {
     /// The world of the legend's map.
     world: World,
     /// By character. Characters without a meaning are rock.
@@ -35,7 +35,7 @@ impl Tileset {
     ///
     /// # Errors
     /// All faults of the map, or that it has no rock.
-    pub(super) fn of(legend: &str) -> Result<Self, Faults> {
+    pub(crate) fn of(legend: &str) -> Result<Self, Faults> {
         const NAME: &str = "the legend";
         let world = map::parse(legend, NAME, &NoFiles)?;
         let drawn = drawn(&world, legend);
@@ -56,47 +56,47 @@ impl Tileset {
     }
 
     /// A world whose cells can be replaced.
-    pub(super) fn world(&self) -> World {
+    pub(crate) fn world(&self) -> World {
         self.world.clone()
     }
 
     /// The character of an exit that stands on the floor `character`, or else on any other; `None`
     /// if the legend has no exit.
-    pub(super) fn exit_on(&self, character: u8) -> Option<u8> {
+    pub(crate) fn exit_on(&self, character: u8) -> Option<u8> {
         let floor = self.meaning(character).tile;
         let fits = |&&exit: &&u8| self.meaning(exit).tile == floor;
         self.exits.iter().find(fits).or(self.exits.first()).copied()
     }
 
     #[cfg(test)]
-    pub(super) fn is_exit(&self, character: u8) -> bool {
+    pub(crate) fn is_exit(&self, character: u8) -> bool {
         self.exits.contains(&character)
     }
 
     /// Whether the player can walk on a cell with `character`.
-    pub(super) fn is_walkable(&self, character: u8) -> bool {
+    pub(crate) fn is_walkable(&self, character: u8) -> bool {
         self.meaning(character).is_walkable
     }
 
     /// Whether `character` is floor, with or without a thing on it.
-    pub(super) fn is_floor(&self, character: u8) -> bool {
+    pub(crate) fn is_floor(&self, character: u8) -> bool {
         matches!(self.world.tile(self.meaning(character).tile).kind, TileKind::Open)
     }
 
     /// Whether `character` is floor without a thing on it.
-    pub(super) fn is_bare(&self, character: u8) -> bool {
+    pub(crate) fn is_bare(&self, character: u8) -> bool {
         self.is_floor(character) && self.meaning(character).thing.is_none()
     }
 
     /// Whether nobody sees through `character`: a wall, or a door that is closed.
-    pub(super) fn is_opaque(&self, character: u8) -> bool {
+    pub(crate) fn is_opaque(&self, character: u8) -> bool {
         let kind = self.world.tile(self.meaning(character).tile).kind;
         matches!(kind, TileKind::Wall(_) | TileKind::Mirror(_) | TileKind::Door(_))
     }
 
     /// Replaces the cells of `world`, a world of this tileset, by `rows`, which all have the length
     /// `width`, with further `items` that neither block nor shine. All its doors are closed.
-    pub(super) fn draw<'a>(
+    pub(crate) fn draw<'a>(
         &self,
         world: &mut World,
         width: NonZeroU32,
@@ -141,7 +141,7 @@ fn drawn(world: &World, legend: &str) -> Vec<(u8, Meaning)> {
         line.bytes().zip(0..).map(move |(byte, column)| (byte, Cell { column, row }))
     });
     let meaning = |cell: Cell| {
-        let tile = world.grid().tile(cell.column.into(), cell.row.into())?;
+        let tile = world.grid().tile_in(cell)?;
         let thing = world.things_in(cell).first().map(|thing| (thing.kind, thing.sprite));
         let is_free = !world.grid().is_occupied(cell.column.into(), cell.row.into());
         let Tile { kind, .. } = world.tile(tile);

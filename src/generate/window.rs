@@ -15,8 +15,8 @@ use std::num::NonZeroU32;
 
 use glam::DVec2;
 
-use super::Level;
 use super::chunk::{CHUNK_SIDE, Chunk, ChunkIndex, Site};
+use super::level::Level;
 use super::tileset::ROCK;
 use crate::world::{Cell, Grid, Heading, Start, World};
 
@@ -57,7 +57,7 @@ impl Shift {
         Some(Cell { column: along(cell.column, self.columns)?, row: along(cell.row, self.rows)? })
     }
 
-    /// Whether `cell` was not in the window before.
+    /// Returns whether `cell` has just come into the window.
     pub(crate) fn is_new(self, cell: Cell) -> bool {
         Self { columns: -self.columns, rows: -self.rows }.cell(cell).is_none()
     }
@@ -175,7 +175,7 @@ fn chunks_off(place: u32) -> i64 {
 }
 
 /// The direction, of the four along the grid, with the farthest view from `cell`.
-pub(super) fn best_heading(grid: &Grid, cell: Cell) -> Heading {
+pub(crate) fn best_heading(grid: &Grid, cell: Cell) -> Heading {
     let ways = [(0.0, (1, 0)), (90.0, (0, 1)), (180.0, (-1, 0)), (270.0, (0, -1))];
     let is_open =
         |column, row| grid.tile(column, row).is_some_and(|tile| !grid.is_solid_tile(tile));

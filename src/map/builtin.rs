@@ -1,7 +1,6 @@
 //! The built-in levels, compiled in from `maps/`.
 
-use super::parse;
-use super::textures::NoFiles;
+use super::{NoFiles, parse};
 use crate::fault::Faults;
 use crate::world::World;
 

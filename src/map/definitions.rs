@@ -1,88 +1,52 @@
 //! Definitions: all keys of a map except its grid, each read by itself.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use toml::de::DeTable;
 
-use super::air::{self, SkyText};
-use super::covering::{CeilingText, CoveringText};
-use super::heights;
-use super::items::whole;
-use super::legend::{self, Legend, Section};
+use super::checks::LEAST_HEADROOM;
+use super::keys::{self, Section};
+use super::legend::Legend;
+use super::surfaces::{self, CeilingText, CoveringText, SkyText};
 use super::textures::Surface;
-use crate::color::Rgb;
-use crate::fault::Fault;
+use super::values::{HEIGHT, LIGHT, whole};
 use crate::fault::document::{Entry, FaultList, entries};
-use crate::world::{Fog, Heights, Light};
+use crate::world::{Fog, Light};
 
-/// The keys of a map.
-pub(super) const KEYS: &[&str] = &[
-    "title",
-    "goal",
-    "par",
-    "treasure_needed",
-    "ceiling",
-    "ceiling_height",
-    "floor",
-    "riser",
-    "lintel",
-    "light",
-    "sky",
-    "fog",
-    "grid",
-    "tiles",
-    "things",
-];
-/// In seconds, up to a day.
-const LONGEST_PAR: RangeInclusive<u32> = 1..=86_400;
-const MOST_TREASURE: RangeInclusive<u32> = 1..=1_000_000;
-const DEFAULT_CEILING: Rgb = Rgb::new(0x30, 0x30, 0x30);
-const DEFAULT_FLOOR: Rgb = Rgb::new(0x58, 0x58, 0x58);
+/// The longest goal, in characters.
+const MAX_GOAL: usize = 40;
+/// The longest par time, in seconds: a day.
+const MAX_PAR: u32 = 86_400;
 
 /// All that a map defines besides its grid.
-pub(super) struct Definitions<'a, 't> {
-    pub(super) title: String,
-    pub(super) goal: Option<String>,
+#[derive(Default)]
+pub(crate) struct Definitions<'a, 't> {
+    pub(crate) title: String,
+    pub(crate) goal: Option<String>,
     /// The time in which a good player finishes, in seconds.
-    pub(super) par: Option<u32>,
+    pub(crate) par: Option<u32>,
     /// The treasure without which exits do not let anybody out, with its place in the map.
-    pub(super) treasure_needed: Option<(u32, Range<usize>)>,
-    pub(super) ceiling: CeilingText<'a>,
+    pub(crate) treasure_needed: Option<(u32, Range<usize>)>,
+    pub(crate) ceiling: Option<CeilingText<'a>>,
     /// The height of the ceiling and of walls.
-    pub(super) ceiling_height: f64,
-    pub(super) floor: CoveringText<'a>,
+    pub(crate) ceiling_height: Option<f64>,
+    pub(crate) floor: Option<CoveringText<'a>>,
     /// The sides of raised floors, for tiles without their own.
-    pub(super) riser: Option<Surface<'a>>,
+    pub(crate) riser: Option<Surface<'a>>,
     /// The sides of what is above lowered ceilings, for tiles without their own.
-    pub(super) lintel: Option<Surface<'a>>,
-    pub(super) sky: Option<SkyText<'a>>,
-    pub(super) fog: Option<Fog>,
+    pub(crate) lintel: Option<Surface<'a>>,
+    pub(crate) sky: Option<SkyText<'a>>,
+    pub(crate) fog: Option<Fog>,
     /// The light of tiles without their own.
-    pub(super) light: Option<Light>,
-    pub(super) grid: Option<Entry<'a, 't>>,
-    pub(super) legend: Legend<'a>,
+    pub(crate) light: Option<Light>,
+    pub(crate) grid: Option<Entry<'a, 't>>,
+    pub(crate) legend: Legend<'a>,
 }
 
 impl<'a, 't> Definitions<'a, 't> {
-    /// Reads the definitions in `document`. Faults are reported, and their definitions
-    /// replaced by defaults.
-    pub(super) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
-        let mut definitions = Self {
-            title: String::new(),
-            goal: None,
-            par: None,
-            treasure_needed: None,
-            ceiling: CeilingText::plain(DEFAULT_CEILING),
-            ceiling_height: Heights::LEVEL.ceiling(),
-            floor: CoveringText::plain(DEFAULT_FLOOR),
-            riser: None,
-            lintel: None,
-            sky: None,
-            fog: None,
-            light: None,
-            grid: None,
-            legend: Legend::new(),
-        };
+    /// Reads the definitions in `document`. Those with a fault are reported and missing.
+    pub(crate) fn read(document: &'a DeTable<'t>, faults: &'a FaultList) -> Self {
+        let mut definitions = Self::default();
         for entry in entries(document, faults) {
             definitions.read_entry(entry);
         }
@@ -93,66 +57,60 @@ impl<'a, 't> Definitions<'a, 't> {
         match entry.key {
             "title" => self.title = title(&entry).unwrap_or_default(),
             "goal" => self.goal = goal(&entry),
-            "par" => self.par = whole(&entry, LONGEST_PAR),
+            "par" => self.par = whole(&entry, 1..=MAX_PAR),
             "treasure_needed" => {
-                let worth = whole(&entry, MOST_TREASURE);
+                let worth = whole(&entry, 1..=1_000_000);
                 self.treasure_needed = worth.map(|worth| (worth, entry.value_place));
             }
-            "ceiling" => {
-                if let Some(ceiling) = CeilingText::read(&entry, r##"ceiling = "#202028""##) {
-                    self.ceiling = ceiling;
-                }
-            }
-            "ceiling_height" => {
-                if let Some(height) = heights::map_ceiling(&entry) {
-                    self.ceiling_height = height;
-                }
-            }
-            "floor" => {
-                if let Some(floor) = CoveringText::read(&entry, r#"floor = "stone""#) {
-                    self.floor = floor;
-                }
-            }
+            "ceiling" => self.ceiling = CeilingText::read(&entry, r##"ceiling = "#202028""##),
+            "ceiling_height" => self.ceiling_height = ceiling_height(&entry),
+            "floor" => self.floor = CoveringText::read(&entry, r#"floor = "stone""#),
             "riser" => self.riser = Surface::read(&entry, r#"riser = "stone""#),
             "lintel" => self.lintel = Surface::read(&entry, r#"lintel = "brick""#),
             "sky" => self.sky = SkyText::read(&entry),
-            "light" => self.light = legend::light(&entry),
-            "fog" => self.fog = air::fog(&entry),
+            "light" => self.light = LIGHT.read(&entry),
+            "fog" => self.fog = surfaces::fog(&entry),
             "grid" => self.grid = Some(entry),
             "tiles" => self.legend.read_section(Section::Tiles, &entry),
             "things" => self.legend.read_section(Section::Things, &entry),
-            _ => entry.faults.push(entry.unknown_key("a map", KEYS)),
+            _ => entry.faults.push(entry.unknown_key("a map", keys::MAP)),
         }
     }
 }
 
-/// Reads the goal, a line of at most 40 characters.
+/// Reads the goal, a line of at most [`MAX_GOAL`] characters.
 fn goal(entry: &Entry<'_, '_>) -> Option<String> {
-    const LONGEST_GOAL: usize = 40;
     let goal = entry.string(r#"goal = "Find the way out""#)?;
     let length = goal.chars().count();
     let message = if goal.contains(char::is_control) {
         "the goal has a line break or another control character".to_owned()
     } else if goal.trim().is_empty() {
         "the goal is empty".to_owned()
-    } else if length > LONGEST_GOAL {
-        format!("the goal has {length} characters, and {LONGEST_GOAL} fit the screen")
+    } else if length > MAX_GOAL {
+        format!("the goal has {length} characters, and {MAX_GOAL} fit the screen")
     } else {
         return Some(goal.to_owned());
     };
-    let help = "write what to do in one short line, or leave it out";
-    entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
-    None
+    entry.reject(message, "", "write what to do in one short line, or leave it out")
 }
 
-pub(super) fn title(entry: &Entry<'_, '_>) -> Option<String> {
+pub(crate) fn title(entry: &Entry<'_, '_>) -> Option<String> {
     let title = entry.string(r#"title = "Cellar""#)?;
     if title.contains(char::is_control) {
         let message = "the title has a line break or another control character";
-        entry
-            .faults
-            .push(Fault::new(entry.value_place.clone(), message).help("write it on one line"));
-        return None;
+        return entry.reject(message, "", "write it on one line");
     }
     Some(title.to_owned())
+}
+
+/// Reads the height of the map's ceiling, which is also the height of walls.
+fn ceiling_height(entry: &Entry<'_, '_>) -> Option<f64> {
+    let height = HEIGHT.read(entry)?;
+    (height >= LEAST_HEADROOM).then_some(height).or_else(|| {
+        entry.reject(
+            format!("the ceiling of a map is at {LEAST_HEADROOM} cells or above"),
+            "nobody has room to stand below this",
+            "lower the ceiling in places, by a tile with a ceiling_height",
+        )
+    })
 }

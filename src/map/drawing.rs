@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-use super::MAX_SIDE;
-use super::per_character::PerCharacter;
 use crate::fault::Fault;
 use crate::fault::document::Entry;
 use crate::world::Cell;
 
+/// The largest number of columns, and of rows, of a grid.
+pub const MAX_SIDE: u32 = 4096;
 const EXAMPLE: &str = "grid = ''' on a line, the rows below it, and ''' again";
 
 /// The grid as it is drawn. Its sides are within the limits; rows may differ in length, and
 /// characters may be undefined.
-pub(super) struct Drawing<'a> {
+pub(crate) struct Drawing<'a> {
     text: DrawnText<'a>,
-    pub(super) width: NonZeroU32,
-    pub(super) height: NonZeroU32,
+    pub(crate) width: NonZeroU32,
+    pub(crate) height: NonZeroU32,
     /// The place of the key `grid`.
-    pub(super) key_place: Range<usize>,
+    pub(crate) key_place: Range<usize>,
     sightings: PerCharacter<Sightings>,
     /// The first byte of each row in the grid's text.
     row_starts: Vec<usize>,
@@ -27,8 +27,8 @@ pub(super) struct Drawing<'a> {
 
 /// The occurrences of a character in the grid.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Sightings {
-    pub(super) count: usize,
+struct Sightings {
+    count: usize,
     /// The first two, as bytes from the start of the grid's text.
     places: [usize; 2],
 }
@@ -36,18 +36,14 @@ pub(super) struct Sightings {
 impl<'a> Drawing<'a> {
     /// Reads the drawing in `entry` of the map `text`; reports its faults. `None` where it has
     /// no usable width and height.
-    pub(super) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
+    pub(crate) fn read(entry: &Entry<'a, '_>, text: &str) -> Option<Self> {
         let value = entry.string(EXAMPLE)?;
         let text = DrawnText::new(value, entry.value_place.clone(), text);
         let (widths, sightings) = text.survey();
         let width = usual_width(&widths);
         let height = NonZeroU32::new(widths.len() as u32);
         let (Some(width), Some(height)) = (width, height) else {
-            entry.faults.push(
-                Fault::new(entry.value_place.clone(), "the grid is empty")
-                    .help("draw at least one row"),
-            );
-            return None;
+            return entry.reject("the grid is empty", "", "draw at least one row");
         };
         let widest = widths.iter().copied().max().unwrap_or_default();
         if widest > MAX_SIDE || height.get() > MAX_SIDE {
@@ -63,23 +59,30 @@ impl<'a> Drawing<'a> {
         Some(Self { text, width, height, key_place, sightings, row_starts })
     }
 
-    /// The characters of the grid with their occurrences, in the order of the characters.
-    pub(super) fn characters(&self) -> impl Iterator<Item = (char, Sightings)> {
-        self.sightings.iter().filter(|(_, sightings)| sightings.count > 0)
+    /// The characters of the grid in their order.
+    pub(crate) fn characters(&self) -> impl Iterator<Item = char> {
+        let drawn = self.sightings.iter().filter(|(_, sightings)| sightings.count > 0);
+        drawn.map(|(character, _)| character)
     }
 
-    /// The occurrences of a character.
-    pub(super) fn sightings(&self, character: char) -> Sightings {
-        self.sightings.get(character)
+    /// The number of cells with `character`.
+    pub(crate) fn count(&self, character: char) -> usize {
+        self.sightings.get(character).count
+    }
+
+    /// The places in the map where `character` is drawn first, at most two.
+    pub(crate) fn first_places(&self, character: char) -> Vec<Range<usize>> {
+        let Sightings { count, places } = self.sightings.get(character);
+        places.into_iter().take(count).map(|at| self.place(character, at)).collect()
     }
 
     /// The place in the map of a `character` at byte `at` of the grid's text.
-    pub(super) fn place(&self, character: char, at: usize) -> Range<usize> {
+    fn place(&self, character: char, at: usize) -> Range<usize> {
         self.text.place(at..at + character.len_utf8())
     }
 
     /// The place in the map of a cell.
-    pub(super) fn place_of(&self, cell: Cell) -> Range<usize> {
+    pub(crate) fn place_of(&self, cell: Cell) -> Range<usize> {
         let drawn = self.row_starts.get(cell.row as usize).and_then(|&start| {
             let row = &self.text.value[start..];
             let (at, character) = row.char_indices().nth(cell.column as usize)?;
@@ -89,58 +92,43 @@ impl<'a> Drawing<'a> {
     }
 
     /// The rows from the north.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &'a str> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &'a str> {
         self.text.rows().map(|(_, row)| row)
     }
 
     /// The cells with their characters, row by row from the north.
-    pub(super) fn cells(&self) -> impl Iterator<Item = (Cell, char)> {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (Cell, char)> {
         self.rows().zip(0..).flat_map(move |(line, row)| {
             line.chars().zip(0..).map(move |(drawn, column)| (Cell { column, row }, drawn))
         })
     }
 
+    /// The cells whose characters are `wanted`, row by row from the north. Where none is drawn, no cell
+    /// is looked at.
+    pub(crate) fn cells_of(
+        &self,
+        is_wanted: impl Fn(char) -> bool,
+    ) -> impl Iterator<Item = (Cell, char)> {
+        let wanted = self.characters().filter(|&character| is_wanted(character));
+        let wanted: PerCharacter<bool> = wanted.map(|character| (character, true)).collect();
+        let is_any_drawn = wanted.iter().any(|(_, is_wanted)| is_wanted);
+        let cells = is_any_drawn.then(|| self.cells()).into_iter().flatten();
+        cells.filter(move |&(_, character)| wanted.get(character))
+    }
+
     /// For each character that `is_asked`, the first of its cells that `is_such`, and the number of
     /// others; none for a character without any. All characters take one pass over the cells.
-    pub(super) fn first_of_each(
+    pub(crate) fn first_of_each(
         &self,
         is_asked: impl Fn(char) -> bool,
         is_such: impl Fn(Cell) -> bool,
     ) -> Vec<(Cell, usize)> {
-        let asked: Vec<char> =
-            self.characters().map(|(it, _)| it).filter(|&it| is_asked(it)).collect();
-        if asked.is_empty() {
-            return Vec::new();
+        let mut found = PerCharacter::<Option<(Cell, usize)>>::new();
+        for (cell, character) in self.cells_of(is_asked).filter(|&(cell, _)| is_such(cell)) {
+            let found = found.get_mut(character);
+            *found = Some(found.map_or((cell, 0), |(first, others)| (first, others + 1)));
         }
-        let mut found = PerCharacter::<Option<Asked>>::new();
-        for character in asked {
-            *found.get_mut(character) = Some(Asked::default());
-        }
-        for (cell, character) in self.cells() {
-            if found.get(character).is_some()
-                && is_such(cell)
-                && let Some(asked) = found.get_mut(character)
-            {
-                asked.record(cell);
-            }
-        }
-        found.iter().filter_map(|(_, asked)| asked?.0).collect()
-    }
-
-    /// The cells with `character`, row by row from the north.
-    pub(super) fn cells_of(&self, character: char) -> impl Iterator<Item = Cell> {
-        self.cells().filter(move |&(_, drawn)| drawn == character).map(|(cell, _)| cell)
-    }
-}
-
-/// The first cell found of a character, and the number of others.
-#[derive(Clone, Copy, Default)]
-struct Asked(Option<(Cell, usize)>);
-
-impl Asked {
-    fn record(&mut self, cell: Cell) {
-        let Self(found) = self;
-        *found = Some(found.map_or((cell, 0), |(first, others)| (first, others + 1)));
+        found.iter().filter_map(|(_, found)| found).collect()
     }
 }
 
@@ -150,11 +138,6 @@ impl Sightings {
             *place = at;
         }
         self.count += 1;
-    }
-
-    /// The first places, at most two.
-    pub(super) fn first_places(&self) -> &[usize] {
-        &self.places[..self.count.min(2)]
     }
 }
 
@@ -264,6 +247,48 @@ fn without_first_line_break(inner: &str) -> &str {
     inner.strip_prefix("\r\n").or_else(|| inner.strip_prefix('\n')).unwrap_or(inner)
 }
 
+/// A value for each character, the default at first: an array for ASCII, a tree for other characters.
+pub(crate) struct PerCharacter<T> {
+    ascii: [T; 128],
+    others: BTreeMap<char, T>,
+}
+
+impl<T: Copy + Default> PerCharacter<T> {
+    pub(crate) fn new() -> Self {
+        Self { ascii: [T::default(); 128], others: BTreeMap::new() }
+    }
+
+    pub(crate) fn get(&self, character: char) -> T {
+        match self.ascii.get(character as usize) {
+            Some(value) => *value,
+            None => self.others.get(&character).copied().unwrap_or_default(),
+        }
+    }
+
+    pub(crate) fn get_mut(&mut self, character: char) -> &mut T {
+        match self.ascii.get_mut(character as usize) {
+            Some(value) => value,
+            None => self.others.entry(character).or_default(),
+        }
+    }
+
+    /// The characters and their values, in the order of the characters.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (char, T)> {
+        let ascii = (0..).map(|code: u8| char::from(code)).zip(self.ascii);
+        ascii.chain(self.others.iter().map(|(&character, &value)| (character, value)))
+    }
+}
+
+impl<T: Copy + Default> FromIterator<(char, T)> for PerCharacter<T> {
+    fn from_iter<I: IntoIterator<Item = (char, T)>>(values: I) -> Self {
+        let mut collected = Self::new();
+        for (character, value) in values {
+            *collected.get_mut(character) = value;
+        }
+        collected
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -289,5 +314,17 @@ mod tests {
         assert_eq!(usual_width(&[0, 0, 1]), NonZeroU32::new(1));
         assert_eq!(usual_width(&[0, 0]), None);
         assert_eq!(usual_width(&[]), None);
+    }
+
+    #[test]
+    fn characters_come_in_their_order() {
+        let mut counts = PerCharacter::<u32>::new();
+        for character in "éxaé\u{7f}\u{80}\0".chars() {
+            *counts.get_mut(character) += 1;
+        }
+        let seen: Vec<_> = counts.iter().filter(|&(_, count)| count > 0).collect();
+        let expected = [('\0', 1), ('a', 1), ('x', 1), ('\u{7f}', 1), ('\u{80}', 1), ('é', 2)];
+        assert_eq!(seen, expected);
+        assert_eq!((counts.get('é'), counts.get('b'), counts.get('ß')), (2, 0, 0));
     }
 }

@@ -1,150 +1,128 @@
-//! The legend: what each character of the grid means, from the tables `[tiles]` and `[things]`.
+//! The legend: the meaning of each character of the grid, from the tables `[tiles]` and `[things]`.
 
-mod property;
-mod section;
-mod surroundings;
+pub(crate) mod things;
+pub(crate) mod tiles;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::definitions::KEYS;
-use super::doors::{DoorSymbol, KeySymbol};
-use super::drawing::Drawing;
-use super::guards::GuardSymbol;
-use super::items::ItemSymbol;
-use super::mechanisms::MovingWallSymbol;
-use super::per_character::PerCharacter;
-use super::see_through::MaskSymbol;
-use super::shapes::ShapeSymbol;
-use super::sprites::SpriteSymbol;
+use super::keys::{self, Section};
 use super::textures::Surface;
+use super::values::{HEADING, Name, is_true};
 use crate::fault::document::Entry;
 use crate::fault::{Fault, quoted};
-use crate::world::{Cell, Glass, Heading};
-use property::property;
-pub(super) use property::{heading, light};
-pub(super) use section::Section;
-pub(super) use surroundings::Surroundings;
-use surroundings::Taken;
+use crate::world::{Glass, Heading, ThingKind};
+use things::{GuardText, SpriteText};
+use tiles::{DoorText, ShapeText, Surroundings, WallText};
+
+const ANOTHER: &str = "draw it with another character";
 
 /// The meanings of the characters that the grid may use.
-pub(super) struct Legend<'a> {
-    pub(super) symbols: BTreeMap<char, Symbol<'a>>,
-    /// Whether `symbols` has all definitions: not those without a valid character.
-    pub(super) is_complete: bool,
+pub(crate) struct Legend<'a> {
+    pub(crate) symbols: BTreeMap<char, Symbol<'a>>,
+    /// `false` if a definition is missing from `symbols` because its character is not valid.
+    pub(crate) is_complete: bool,
 }
 
-/// What a character means.
-pub(super) struct Symbol<'a> {
+/// The definition of a character.
+pub(crate) struct Symbol<'a> {
     /// The place of its definition.
-    pub(super) place: Range<usize>,
-    pub(super) meaning: Meaning<'a>,
-    pub(super) surroundings: Surroundings<'a>,
-    /// The tile that a thing stands on, if it names one.
-    pub(super) support: Option<Support>,
+    pub(crate) place: Range<usize>,
+    pub(crate) meaning: Meaning<'a>,
+    pub(crate) surroundings: Surroundings<'a>,
+    /// The character of the tile that a thing stands on, if it names one, and the place of the name.
+    pub(crate) support: Option<(char, Range<usize>)>,
 }
 
-/// The tile that a thing stands on.
-pub(super) struct Support {
-    /// The character of the tile.
-    pub(super) tile: char,
-    /// The place of the name in the map.
-    pub(super) place: Range<usize>,
-}
-
-/// What a character means in the grid.
-pub(super) enum Meaning<'a> {
+/// The meaning of a character in the grid.
+pub(crate) enum Meaning<'a> {
     Open,
-    /// With its own height, if it has one.
-    Wall(Surface<'a>, Option<f64>),
-    /// A wall that sinks into the floor.
-    MovingWall(MovingWallSymbol<'a>),
     /// Open floor with surroundings of its own.
     Floor,
-    Door(DoorSymbol<'a>),
-    Mask(MaskSymbol<'a>),
+    Wall(WallText<'a>),
+    Door(DoorText<'a>),
+    Mask(Surface<'a>),
     Glass(Glass),
     /// With its own height, if it has one.
     Mirror(Glass, Option<f64>),
-    Shape(ShapeSymbol<'a>),
+    Shape(ShapeText<'a>),
     Start(Heading),
-    Exit,
-    Key(KeySymbol<'a>),
-    Ornament(SpriteSymbol<'a>),
-    Item(ItemSymbol<'a>),
-    Guard(GuardSymbol<'a>),
+    Key(Name<'a>),
+    Lever(Name<'a>),
+    Note(&'a str),
+    /// A thing with a built-in sprite that refers to nothing else.
+    Item(ThingKind),
+    Sprite(SpriteText<'a>),
+    Guard(GuardText<'a>),
     Waypoint,
     /// A definition with a fault.
     Unclear,
 }
 
-impl<'a> Legend<'a> {
+impl<'a> Symbol<'a> {
+    /// The switch that moves a tile, if one does.
+    pub(crate) fn driver(&self) -> Option<&Name<'a>> {
+        match &self.meaning {
+            Meaning::Door(door) => door.switch.as_ref(),
+            Meaning::Wall(wall) => wall.switch.as_ref(),
+            Meaning::Floor => self.surroundings.switch.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The switch that a lever or a plate sets, if the symbol is one.
+    pub(crate) fn sets(&self) -> Option<&Name<'a>> {
+        match &self.meaning {
+            Meaning::Lever(switch) => Some(switch),
+            Meaning::Floor => self.surroundings.plate.as_ref(),
+            _ => None,
+        }
+    }
+}
+
+impl Default for Legend<'_> {
     /// The characters with the same meaning in every map.
-    pub(super) fn new() -> Self {
+    fn default() -> Self {
         let open = |character| {
             let (meaning, surroundings) = (Meaning::Open, Surroundings::default());
             (character, Symbol { place: 0..0, meaning, surroundings, support: None })
         };
         Self { symbols: ['.', ' '].map(open).into(), is_complete: true }
     }
+}
 
+impl<'a> Legend<'a> {
     /// Whether no definition has a fault.
-    pub(super) fn is_clear(&self) -> bool {
+    pub(crate) fn is_clear(&self) -> bool {
         let is_unclear = |symbol: &Symbol<'_>| matches!(symbol.meaning, Meaning::Unclear);
         self.is_complete && !self.symbols.values().any(is_unclear)
     }
 
-    /// The characters that occur in `drawing`, with their definitions.
-    pub(super) fn used_in<'l>(
-        &'l self,
-        drawing: &'l Drawing<'_>,
-    ) -> impl Iterator<Item = (char, &'l Symbol<'a>)> {
-        drawing
-            .characters()
-            .filter_map(|(character, _)| Some((character, self.symbols.get(&character)?)))
-    }
-
-    /// The cells of `drawing` whose characters are more than floor or a wall, with their definitions, row by
-    /// row from the north.
-    pub(super) fn of_cells<'l>(
-        &'l self,
-        drawing: &'l Drawing<'_>,
-    ) -> impl Iterator<Item = (Cell, &'l Symbol<'a>)> {
-        let mut is_more = PerCharacter::<bool>::new();
-        for (character, symbol) in self.used_in(drawing) {
-            let is_floor = matches!(symbol.meaning, Meaning::Open | Meaning::Floor);
-            let is_wall = matches!(symbol.meaning, Meaning::Wall(..));
-            let is_plate = symbol.surroundings.mechanism.plate.is_some();
-            *is_more.get_mut(character) = !is_floor && !is_wall || is_plate;
-        }
-        let cells = drawing.cells().filter(move |&(_, character)| is_more.get(character));
-        cells.filter_map(|(cell, character)| Some((cell, self.symbols.get(&character)?)))
-    }
-
     /// Reads the definitions in the table of `entry`; reports its faults.
-    pub(super) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
+    pub(crate) fn read_section(&mut self, section: Section, entry: &Entry<'a, '_>) {
         let Some(table) = entry.table(section.name()) else {
             self.is_complete = false;
             return;
         };
         for entry in entry.entries(table) {
-            let character = match character(section, &entry) {
-                Ok(character) => character,
-                Err(fault) => {
-                    entry.faults.push(fault);
-                    self.is_complete = false;
-                    continue;
-                }
+            let Some(character) = character(section, &entry) else {
+                self.is_complete = false;
+                continue;
             };
             let (mut meaning, surroundings) = meaning(section, &entry);
             if self.symbols.contains_key(&character) {
-                entry.faults.push(defined_twice(character, entry.key_place.clone()));
+                let message = format!("{character:?} is both a tile and a thing");
+                entry.faults.push(
+                    Fault::new(entry.key_place.clone(), message)
+                        .label("also defined in the other table")
+                        .help("a thing stands on open floor: draw one of the two with another character"),
+                );
                 meaning = Meaning::Unclear;
             }
             let support = match (section, entry.value) {
-                (Section::Things, DeValue::Table(thing)) => Support::read(&entry, thing),
+                (Section::Things, DeValue::Table(thing)) => support(&entry, thing),
                 _ => None,
             };
             let place = entry.key_place;
@@ -153,49 +131,41 @@ impl<'a> Legend<'a> {
     }
 }
 
-impl Support {
-    /// Reads the tile that the table of a thing names, if it does.
-    fn read(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<Self> {
-        let entry = owner.entries(thing).find(|entry| entry.key == "on")?;
-        let text = entry.string(r#"on = ",""#)?;
-        let mut characters = text.chars();
-        if let (Some(tile), None) = (characters.next(), characters.next()) {
-            return Some(Self { tile, place: entry.value_place });
-        }
-        entry.faults.push(
-            Fault::new(
-                entry.value_place,
-                format!("{} is not the character of a tile", quoted(text)),
-            )
-            .help("write the character that the floor is drawn with elsewhere"),
-        );
-        None
+/// Reads the tile that the table of a thing names, if it does.
+fn support(owner: &Entry<'_, '_>, thing: &DeTable<'_>) -> Option<(char, Range<usize>)> {
+    let entry = owner.beside(thing, "on")?;
+    let text = entry.string(r#"on = ",""#)?;
+    let mut characters = text.chars();
+    if let (Some(tile), None) = (characters.next(), characters.next()) {
+        return Some((tile, entry.value_place));
     }
+    let message = format!("{} is not the character of a tile", quoted(text));
+    entry.reject(message, "", "write the character that the floor is drawn with elsewhere")
 }
 
 /// Reads the character that `entry` defines.
-fn character(section: Section, entry: &Entry<'_, '_>) -> Result<char, Fault> {
-    const ANOTHER: &str = "draw it with another character";
-    let fault = |message: String| Fault::new(entry.key_place.clone(), message);
+fn character(section: Section, entry: &Entry<'_, '_>) -> Option<char> {
     let mut characters = entry.key.chars();
-    match (characters.next(), characters.next()) {
+    let (message, help) = match (characters.next(), characters.next()) {
         (Some(open @ ('.' | ' ')), None) => {
-            Err(fault(format!("{open:?} is open floor and cannot be defined")).help(ANOTHER))
+            (format!("{open:?} is open floor and cannot be defined"), ANOTHER.to_owned())
         }
         (Some(control), None) if control.is_control() => {
-            Err(fault(format!("the control character {control:?} cannot be drawn")).help(ANOTHER))
+            (format!("the control character {control:?} cannot be drawn"), ANOTHER.to_owned())
         }
-        (Some(character), None) => Ok(character),
+        (Some(character), None) => return Some(character),
         _ => {
             let (noun, key) = (section.noun(), quoted(entry.key));
-            let fault = fault(format!("{noun} is drawn with one character, not {key}"));
-            Err(if KEYS.contains(&entry.key) {
-                fault.help(format!("move {} above {}", entry.key, section.name()))
+            let help = if keys::MAP.contains(&entry.key) {
+                format!("move {} above {}", entry.key, section.name())
             } else {
-                fault.help(format!("write, for example, {}", section.example()))
-            })
+                format!("write, for example, {}", section.example())
+            };
+            (format!("{noun} is drawn with one character, not {key}"), help)
         }
-    }
+    };
+    entry.faults.push(Fault::new(entry.key_place.clone(), message).help(help));
+    None
 }
 
 /// Reads the meaning and the surroundings in `entry`.
@@ -205,53 +175,106 @@ fn meaning<'a>(section: Section, entry: &Entry<'a, '_>) -> (Meaning<'a>, Surroun
         return (Meaning::Unclear, surroundings);
     };
     let faults_before = entry.faults.len();
-    let mut meanings: Vec<_> = entry
-        .entries(table)
-        .filter_map(|entry| match surroundings.take(section, &entry, table) {
-            Taken::Yes => None,
-            Taken::No => property(section, &entry, table),
-        })
-        .collect();
+    let mut meanings = Vec::new();
+    for entry in entry.entries(table) {
+        if section == Section::Things || !surroundings.take(&entry, table) {
+            meanings.extend(property(section, &entry, table));
+        }
+    }
     if entry.faults.len() > faults_before {
         return (Meaning::Unclear, surroundings);
     }
-    let place = || entry.key_place.clone();
-    let several_at_once = || {
-        Fault::new(place(), format!("{:?} is several things at once", entry.key))
-            .help("draw each with a character of its own")
-    };
-    match (meanings.pop(), meanings.is_empty()) {
-        (Some(meaning), true) if surroundings.suit(&meaning) => return (meaning, surroundings),
-        (Some(_), true) if !surroundings.mechanism.is_empty() => {
-            entry.faults.extend(surroundings.mechanism.not_on_a_floor());
-        }
-        (Some(Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_)), true) => {
-            // These may have anything else.
-            let light = entry.entries(table).find(|entry| entry.key == "light");
-            entry.faults.extend(light.map(|light| no_light_of_its_own(light.key_place)));
-        }
-        (None, _) if !surroundings.is_empty() => match surroundings.mechanism.contradiction() {
-            None => return (Meaning::Floor, surroundings),
-            fault => entry.faults.extend(fault),
+    let fault = |message: String| Fault::new(entry.key_place.clone(), message);
+    let key = entry.key;
+    let fault = match (meanings.pop(), meanings.is_empty()) {
+        (Some(meaning), true) => match unsuitable(&surroundings, &meaning, entry, table) {
+            None => return (meaning, surroundings),
+            Some(fault) => fault,
         },
-        (Some(_), _) => entry.faults.push(several_at_once()),
-        (None, _) => entry.faults.push(
-            Fault::new(place(), format!("{:?} does not say what it is", entry.key))
-                .help(format!("write, for example, {}", section.example())),
-        ),
-    }
+        (None, _) if !surroundings.is_empty() => match surroundings.contradiction() {
+            None => return (Meaning::Floor, surroundings),
+            Some(fault) => fault,
+        },
+        (Some(_), false) => several_at_once(entry),
+        (None, _) => fault(format!("{key:?} does not say what it is"))
+            .help(format!("write, for example, {}", section.example())),
+    };
+    entry.faults.push(fault);
     (Meaning::Unclear, surroundings)
 }
 
-/// The fault of a door, a mask or glass with the light at `place`.
-fn no_light_of_its_own(place: Range<usize>) -> Fault {
-    Fault::new(place, "a door, a mask or glass has no light of its own")
-        .label("open floor, walls and shapes have one")
-        .help("leave it out, and give the floor beside it a light")
+/// The fault of a tile, defined in `entry` by `table`, whose `meaning` cannot have these surroundings.
+fn unsuitable(
+    surroundings: &Surroundings<'_>,
+    meaning: &Meaning<'_>,
+    entry: &Entry<'_, '_>,
+    table: &DeTable<'_>,
+) -> Option<Fault> {
+    if let Some(place) = surroundings.mechanism.clone() {
+        let message = "only a floor can be water, a plate, or move to another height";
+        let fault = Fault::new(place, message).label("this tile is no floor");
+        return Some(fault.help("draw the two with characters of their own"));
+    }
+    match meaning {
+        Meaning::Wall(_) | Meaning::Mirror(..) if surroundings.has_extent() => {
+            Some(several_at_once(entry))
+        }
+        Meaning::Door(_) | Meaning::Mask(_) | Meaning::Glass(_) if surroundings.light.is_some() => {
+            let light = entry.beside(table, "light")?.key_place;
+            let message = "a door, a mask or glass has no light of its own";
+            let fault = Fault::new(light, message);
+            let fault = fault.label("open floor, walls and shapes have one");
+            Some(fault.help("leave it out, and give the floor beside it a light"))
+        }
+        _ => None,
+    }
 }
 
-fn defined_twice(character: char, place: Range<usize>) -> Fault {
-    Fault::new(place, format!("{character:?} is both a tile and a thing"))
-        .label("also defined in the other table")
-        .help("a thing stands on open floor: draw one of the two with another character")
+fn several_at_once(entry: &Entry<'_, '_>) -> Fault {
+    Fault::new(entry.key_place.clone(), format!("{:?} is several things at once", entry.key))
+        .help("draw each with a character of its own")
+}
+
+/// Reads one property of a tile or a thing, which may be its meaning.
+fn property<'a>(
+    section: Section,
+    entry: &Entry<'a, '_>,
+    table: &'a DeTable<'_>,
+) -> Option<Meaning<'a>> {
+    if section.owners(entry.key).iter().any(|&owner| table.contains_key(owner)) {
+        return None;
+    }
+    match (section, entry.key) {
+        (Section::Tiles, "wall" | "secret") => WallText::read(entry, table).map(Meaning::Wall),
+        (Section::Tiles, "door") => DoorText::read(entry, table).map(Meaning::Door),
+        (Section::Tiles, "mask") => {
+            Surface::read(entry, r#"{ mask = "grate" }"#).map(Meaning::Mask)
+        }
+        (Section::Tiles, "glass") => tiles::glass(entry, table).map(Meaning::Glass),
+        (Section::Tiles, "mirror") => {
+            let (tint, height) = (tiles::mirror(entry, table), tiles::wall_height(entry, table));
+            tint.map(|tint| Meaning::Mirror(tint, height))
+        }
+        (Section::Tiles, "pillar" | "diagonal" | "thin") => {
+            ShapeText::read(entry, table).map(Meaning::Shape)
+        }
+        (Section::Things, "start") => HEADING.read(entry).map(Meaning::Start),
+        (Section::Things, "key") => {
+            Name::read(entry, "key", r#"{ key = "brass" }"#).map(Meaning::Key)
+        }
+        (Section::Things, "lever") => {
+            Name::read(entry, "switch", r#"{ lever = "gate" }"#).map(Meaning::Lever)
+        }
+        (Section::Things, "note") => things::note(entry).map(Meaning::Note),
+        (Section::Things, "sprite") => SpriteText::read(entry, table).map(Meaning::Sprite),
+        (Section::Things, "guard") => GuardText::read(entry, table).map(Meaning::Guard),
+        (Section::Things, "waypoint") => is_true(entry).then_some(Meaning::Waypoint),
+        (Section::Things, key) if things::ITEMS.contains(&key) => {
+            things::item(entry, table).map(Meaning::Item)
+        }
+        _ => {
+            entry.faults.push(section.unknown_property(entry));
+            None
+        }
+    }
 }

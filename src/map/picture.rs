@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 
 use png::{ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
-use super::textures::TextureFileError;
+use super::files::TextureFileError;
 use crate::color::Rgb;
 use crate::world::Texture;
 
@@ -26,7 +26,7 @@ const MOST_BYTES: usize = 64 << 20;
 /// The texels that a map may still decode, and the bytes of files that it may still read.
 ///
 /// A picture that is decoded takes its texels from the budget before memory is allocated for them.
-pub(super) struct Budget {
+pub(crate) struct Budget {
     texels: u32,
     bytes: usize,
 }
@@ -49,7 +49,7 @@ impl Budget {
 
 /// Why there is no picture.
 #[derive(Debug)]
-pub(super) enum PictureError {
+pub(crate) enum PictureError {
     Unreadable(TextureFileError),
     Broken(DecodingError),
     /// The palette ends within a colour.
@@ -85,13 +85,14 @@ impl fmt::Display for PictureError {
 }
 
 impl PictureError {
-    /// What to do about it. `use_of_file` says what the picture is for.
-    pub(super) fn help(&self, use_of_file: &'static str) -> &'static str {
+    /// The remedy. The map uses the picture as a `use_of_file`.
+    pub(crate) fn help(&self, use_of_file: &str) -> String {
+        let size = "64×64 texels are plenty in a terminal";
         match self {
-            Self::Unreadable(_) => use_of_file,
-            Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG",
-            Self::TooLarge { .. } => "scale it down: 64×64 texels are plenty in a terminal",
-            Self::OneTooMany => "scale them down: 64×64 texels are plenty in a terminal",
+            Self::Unreadable(_) => format!("a {use_of_file} is a PNG file beside the map"),
+            Self::Broken(_) | Self::BrokenPalette => "save the picture again, as PNG".to_owned(),
+            Self::TooLarge { .. } => format!("scale it down: {size}"),
+            Self::OneTooMany => format!("scale them down: {size}"),
         }
     }
 }
@@ -102,14 +103,8 @@ impl From<DecodingError> for PictureError {
     }
 }
 
-impl From<TextureFileError> for PictureError {
-    fn from(error: TextureFileError) -> Self {
-        Self::Unreadable(error)
-    }
-}
-
 /// A decoded picture, which has no mip levels.
-pub(super) struct Picture {
+pub(crate) struct Picture {
     width: NonZeroU32,
     height: NonZeroU32,
     color_type: ColorType,
@@ -119,21 +114,21 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn width(&self) -> u32 {
+    pub(crate) fn width(&self) -> u32 {
         self.width.get()
     }
 
-    pub(super) fn height(&self) -> u32 {
+    pub(crate) fn height(&self) -> u32 {
         self.height.get()
     }
 
     /// All of it as a texture.
-    pub(super) fn texture(&self) -> Texture {
+    pub(crate) fn texture(&self) -> Texture {
         self.part(0, 0, self.width, self.height)
     }
 
     /// The part from `(left, top)` on as a texture. It is inside the picture.
-    pub(super) fn part(
+    pub(crate) fn part(
         &self,
         left: u32,
         top: u32,
@@ -150,7 +145,7 @@ impl Picture {
 
 /// Decodes a PNG file of any colour type and depth; the first picture of an animation. The size is
 /// checked, and taken from `budget`, before memory is allocated.
-pub(super) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
+pub(crate) fn decode(bytes: &[u8], budget: &mut Budget) -> Result<Picture, PictureError> {
     budget.take(0, bytes.len())?;
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), DECODER_LIMITS);
     decoder.set_ignore_text_chunk(true);

@@ -1,91 +1,117 @@
-//! Textures by name: built in, or a PNG file beside the map.
+//! Textures and sheets of sprites by name: built in, or a PNG file beside the map.
 //!
-//! A texture is computed or decoded once, and only if the map uses it.
-
-mod files;
-mod surface;
+//! Each is computed or decoded once, and only if the map uses it.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
+use super::files::TextureFiles;
 use super::picture::{self, Picture, PictureError};
+use crate::color::Rgb;
+use crate::fault::document::FaultList;
 use crate::fault::{Fault, quoted};
 use crate::world::texture::builtin;
-use crate::world::{Paint, Texture, TextureId};
-pub use files::{Folder, NoFiles, TextureFileError, TextureFiles};
-pub(super) use files::{is_png, stays_inside};
-use surface::Source;
-pub(super) use surface::Surface;
+use crate::world::{Paint, Sprite, Texture, TextureId};
 
-/// The textures that a map uses, each once.
-pub(super) struct Textures<'f> {
-    files: &'f dyn TextureFiles,
+/// A sheet's name and its numbers of frames and of facings.
+type SheetKey = (String, Option<u32>, Option<u32>);
+
+/// The textures that a map uses, each once, and the faults found in the map.
+pub(crate) struct Textures<'m> {
+    pub(crate) faults: &'m FaultList,
+    files: &'m dyn TextureFiles,
     /// `None` after a picture exceeded it.
     budget: Option<picture::Budget>,
     list: Vec<Texture>,
     /// The texture of a name; `None` where it has a fault.
     known: BTreeMap<String, Option<TextureId>>,
+    /// The sprite of a sheet; `None` where it has a fault.
+    sheets: BTreeMap<SheetKey, Option<Sprite>>,
 }
 
-impl<'f> Textures<'f> {
-    pub(super) fn new(files: &'f dyn TextureFiles) -> Self {
-        let budget = Some(picture::Budget::default());
-        Self { files, budget, list: Vec::new(), known: BTreeMap::new() }
+/// A surface as the map writes it.
+pub(crate) struct Surface<'a> {
+    pub(crate) source: Source<'a>,
+    /// Its place in the map.
+    pub(crate) place: Range<usize>,
+}
+
+/// The source of a surface.
+pub(crate) enum Source<'a> {
+    Color(Rgb),
+    /// The name of a built-in texture or of a file.
+    Texture(&'a str),
+}
+
+impl<'m> Textures<'m> {
+    /// Textures from `files` where they are not built in.
+    pub(crate) fn new(faults: &'m FaultList, files: &'m dyn TextureFiles) -> Self {
+        let (budget, list) = (Some(picture::Budget::default()), Vec::new());
+        Self { faults, files, budget, list, known: BTreeMap::new(), sheets: BTreeMap::new() }
     }
 
     /// The paint for `surface`. Reports a fault where its texture is missing, once for each
     /// texture.
-    pub(super) fn paint(&mut self, surface: &Surface<'_>) -> Result<Paint, Option<Fault>> {
-        match surface.source {
-            Source::Color(color) => Ok(Paint::Color(color)),
-            Source::BuiltIn(name) | Source::File(name) => {
-                self.texture(name, surface).map(Paint::Texture)
-            }
+    pub(crate) fn paint(&mut self, surface: &Surface<'_>) -> Option<Paint> {
+        let name = match surface.source {
+            Source::Color(color) => return Some(Paint::Color(color)),
+            Source::Texture(name) => name,
+        };
+        if let Some(known) = self.known.get(name) {
+            return known.map(Paint::Texture);
         }
-    }
-
-    fn texture(&mut self, name: &str, surface: &Surface<'_>) -> Result<TextureId, Option<Fault>> {
-        if let Some(id) = self.known.get(name) {
-            return id.ok_or(None);
-        }
-        let made = self.make(name, surface).map(|texture| {
+        let texture = builtin::named(name).or_else(|| builtin::panorama(name));
+        let texture =
+            texture.or_else(|| Some(self.picture("texture", name, &surface.place)?.texture()));
+        let id = texture.map(|texture| {
             self.list.push(texture);
             TextureId(self.list.len() as u16 - 1)
         });
-        self.known.insert(name.to_owned(), made.as_ref().ok().copied());
-        made
+        self.known.insert(name.to_owned(), id);
+        id.map(Paint::Texture)
     }
 
-    fn make(&mut self, name: &str, surface: &Surface<'_>) -> Result<Texture, Option<Fault>> {
-        if let Some(texture) = builtin::named(name).or_else(|| builtin::panorama(name)) {
-            return Ok(texture);
+    /// The sprite of the sheet `key`, which `cut` divides. Its picture is decoded once for all sprites
+    /// that divide it alike.
+    pub(crate) fn sheet(
+        &mut self,
+        key: SheetKey,
+        place: &Range<usize>,
+        cut: impl FnOnce(&Picture, &FaultList) -> Option<Sprite>,
+    ) -> Option<Sprite> {
+        if let Some(known) = self.sheets.get(&key) {
+            return known.clone();
         }
-        let picture = self.picture(name).map_err(|error| {
-            let error = error?;
-            let message = format!("the texture {} {error}", quoted(name));
-            let help = error.help("a texture is a PNG file beside the map");
-            Some(Fault::new(surface.place.clone(), message).help(help))
-        })?;
-        Ok(picture.texture())
+        let sheet = self.picture("sprite", &key.0, place);
+        let sprite = sheet.and_then(|sheet| cut(&sheet, self.faults));
+        self.sheets.insert(key, sprite.clone());
+        sprite
     }
 
-    /// Decodes the picture in the file `name`. The error is `None` after a picture has exceeded the
-    /// budget, which is reported once.
-    pub(super) fn picture(&mut self, name: &str) -> Result<Picture, Option<PictureError>> {
-        let budget = self.budget.as_mut().ok_or(None)?;
-        let bytes = self.files.read(name).map_err(PictureError::from)?;
-        let picture = picture::decode(&bytes, budget);
-        if let Err(PictureError::OneTooMany) = picture {
+    /// Decodes the picture in the file `name`, which the map uses as a `use_of_file`. Of the pictures
+    /// that exceed the budget, only the first is reported.
+    fn picture(&mut self, use_of_file: &str, name: &str, place: &Range<usize>) -> Option<Picture> {
+        let budget = self.budget.as_mut()?;
+        let bytes = self.files.read(name).map_err(PictureError::Unreadable);
+        let picture = bytes.and_then(|bytes| picture::decode(&bytes, budget));
+        let error = match picture {
+            Ok(picture) => return Some(picture),
+            Err(error) => error,
+        };
+        if let PictureError::OneTooMany = error {
             self.budget = None;
         }
-        Ok(picture?)
+        let message = format!("the {use_of_file} {} {error}", quoted(name));
+        self.faults.push(Fault::new(place.clone(), message).help(error.help(use_of_file)));
+        None
     }
 
     /// A texture that [`Textures::paint`] returned.
-    pub(super) fn get(&self, id: TextureId) -> &Texture {
+    pub(crate) fn get(&self, id: TextureId) -> &Texture {
         &self.list[usize::from(id.0)]
     }
 
-    pub(super) fn into_list(self) -> Vec<Texture> {
+    pub(crate) fn into_list(self) -> Vec<Texture> {
         self.list
     }
 }

@@ -1,168 +1,175 @@
-//! Things in the drawing, and their sprites.
+//! Things and guards in a plan.
 
-use super::doors::Keys;
-use super::drawing::Drawing;
-use super::items::ItemSymbol;
-use super::lamp_budget::{self, LampBudget};
-use super::legend::{Legend, Meaning, Symbol};
-use super::per_character::PerCharacter;
-use super::reader::Reader;
-use super::switches::Switches;
+use super::checks;
+use super::drawing::PerCharacter;
+use super::legend::{Meaning, Symbol};
+use super::plan::{Names, Plan};
+use super::textures::Textures;
 use crate::fault::Fault;
 use crate::world::sprite::builtin;
-use crate::world::{NoteId, Sprite, SpriteId, Thing, ThingKind};
+use crate::world::{
+    Cell, Duty, GuardPost, KeyId, Lamp, NoteId, Sprite, SpriteId, SwitchId, Thing, ThingKind,
+};
 
 /// The largest number of sprites, and of notes.
-const MOST_KINDS: usize = 1000;
+const MAX_KINDS: usize = 1000;
 /// The largest number of things.
-const MOST_THINGS: usize = 1 << 20;
-/// The largest number of spikes. All of them may come out in one step, and each is heard.
-const MOST_SPIKES: usize = 512;
+const MAX_THINGS: usize = 1 << 20;
+/// The largest number of cells that lamps light, a cell counted for each lamp that reaches it: ten
+/// thousand lamps of the longest reach.
+///
+/// A lamp takes time for each cell within its reach, so a number of lamps alone would be no limit.
+/// Walls do not count, because lamps are counted before any of them is lit.
+const MAX_LIT_CELLS: u64 = 1 << 25;
+/// The cells that a kind of lamp lights are computed once, which takes as long as to light this many
+/// lamps.
+const COST_OF_LAMP_KIND: u64 = 32;
 
-/// The things in a drawing except the start, with what they refer to.
+/// The things in a plan except the start, with what they refer to.
 #[derive(Default)]
-pub(super) struct ThingList {
-    pub(super) things: Vec<Thing>,
-    pub(super) sprites: Vec<Sprite>,
+pub(crate) struct ThingList {
+    pub(crate) things: Vec<Thing>,
+    pub(crate) sprites: Vec<Sprite>,
     /// The texts of notes.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// The built-in sprites that several characters may share.
     built_in: Vec<(&'static str, SpriteId)>,
 }
 
 impl ThingList {
-    /// The things in the drawing. Reports the faults of their sprites.
-    pub(super) fn of(
-        drawing: &Drawing<'_>,
-        legend: &Legend<'_>,
-        keys: &Keys,
-        switches: &Switches,
-        reader: &mut Reader<'_>,
+    /// The things in `plan`. Reports the faults of their sprites.
+    pub(crate) fn of(
+        plan: Plan<'_>,
+        keys: &Names<'_>,
+        switches: &Names<'_>,
+        textures: &mut Textures<'_>,
     ) -> Self {
         let mut list = Self::default();
         let mut thing_of = PerCharacter::<Option<(ThingKind, SpriteId)>>::new();
-        let mut lamp_budget = LampBudget::default();
+        // `None` after lamps exceeded it.
+        let mut cells_to_light = Some(MAX_LIT_CELLS);
         let mut count = 0;
-        for (character, symbol) in legend.used_in(drawing) {
-            if list.sprites.len().max(list.notes.len()) >= MOST_KINDS {
-                let message = format!("the grid has more than {MOST_KINDS} kinds of thing");
-                reader.faults.push(Fault::new(symbol.place.clone(), message).label("one too many"));
+        for (character, symbol) in plan.symbols() {
+            if list.sprites.len().max(list.notes.len()) >= MAX_KINDS {
+                let message = format!("the grid has more than {MAX_KINDS} kinds of thing");
+                let fault = Fault::new(symbol.place.clone(), message).label("one too many");
+                textures.faults.push(fault);
                 break;
             }
-            let thing = match &symbol.meaning {
-                Meaning::Exit => list.add_built_in(ThingKind::Exit, builtin::EXIT),
-                Meaning::Key(key) => keys
-                    .id(key.name)
-                    .and_then(|key| list.add_built_in(ThingKind::Key(key), builtin::KEY)),
-                Meaning::Ornament(sprite) => {
-                    let kind =
-                        if sprite.is_doused { ThingKind::Flame } else { ThingKind::Ornament };
-                    let sprite = sprite.sprite(reader);
-                    list.add(kind, sprite)
-                }
-                Meaning::Item(item) => list.add_item(item, switches),
-                _ => None,
-            };
-            let Some((_, sprite)) = thing else { continue };
-            let drawn = drawing.sightings(character).count;
+            let Some(thing) = list.add(symbol, keys, switches, textures) else { continue };
+            let drawn = plan.drawing.count(character);
             count += drawn;
-            let lamp = list.sprites[usize::from(sprite.0)].lamp;
-            if lamp.is_some_and(|lamp| lamp_budget.is_exceeded_by(lamp, drawn)) {
-                reader.faults.push(too_many_lamps(symbol));
+            if let (Some(lamp), Some(left)) =
+                (list.sprites[usize::from(thing.1.0)].lamp, cells_to_light)
+            {
+                cells_to_light = left.checked_sub(cost_of_lamps(lamp, drawn));
+                if cells_to_light.is_none() {
+                    textures.faults.push(too_many_lamps(symbol));
+                }
             }
-            *thing_of.get_mut(character) = thing;
+            *thing_of.get_mut(character) = Some(thing);
         }
-        reader.faults.extend(too_many_spikes(drawing, legend));
-        if count > MOST_THINGS {
-            reader.faults.push(too_many_things(drawing, count));
+        textures.faults.extend(checks::too_many_spikes(plan));
+        let place = plan.drawing.key_place.clone();
+        if let Some(fault) = checks::too_many(place, count, MAX_THINGS, "things") {
+            textures.faults.push(fault);
             return list;
         }
-        list.things.extend(drawing.cells().filter_map(|(cell, character)| {
+        list.things.extend(plan.drawing.cells().filter_map(|(cell, character)| {
             let (kind, sprite) = thing_of.get(character)?;
-            Some(Thing { kind, cell, sprite, frame: first_frame(kind) })
+            // Other things show the frame of the time.
+            let shows_its_state =
+                matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
+            Some(Thing { kind, cell, sprite, frame: shows_its_state.then_some(0) })
         }));
         list
     }
 
-    /// Adds a sprite; returns it with the kind of thing that has it.
-    fn add(&mut self, kind: ThingKind, sprite: Option<Sprite>) -> Option<(ThingKind, SpriteId)> {
-        let id = SpriteId(u16::try_from(self.sprites.len()).ok()?);
-        self.sprites.push(sprite?);
-        Some((kind, id))
-    }
-
-    fn add_item(
+    /// Adds the sprite of a thing; returns it with the kind of thing.
+    fn add(
         &mut self,
-        item: &ItemSymbol<'_>,
-        switches: &Switches,
+        symbol: &Symbol<'_>,
+        keys: &Names<'_>,
+        switches: &Names<'_>,
+        textures: &mut Textures<'_>,
     ) -> Option<(ThingKind, SpriteId)> {
-        let kind = match item {
-            &ItemSymbol::Treasure(worth) => ThingKind::Treasure(worth),
-            &ItemSymbol::Healing(points) => ThingKind::Healing(points),
-            &ItemSymbol::Supply(supply, count) => ThingKind::Supply(supply, count),
-            ItemSymbol::Note(text) => ThingKind::Note(self.note(text)),
-            ItemSymbol::Checkpoint => ThingKind::Checkpoint,
-            ItemSymbol::Lever(switch) => ThingKind::Lever(switches.id(switch.name)?),
-            &ItemSymbol::Spikes(rhythm) => ThingKind::Spikes(rhythm),
+        let kind = match &symbol.meaning {
+            Meaning::Sprite(text) => {
+                let kind = if text.is_doused { ThingKind::Flame } else { ThingKind::Ornament };
+                return Some((kind, self.push(text.sprite(textures)?)));
+            }
+            Meaning::Item(kind) => *kind,
+            Meaning::Key(key) => ThingKind::Key(KeyId(keys.id(key.text)?)),
+            Meaning::Lever(switch) => ThingKind::Lever(SwitchId(switches.id(switch.text)?)),
+            Meaning::Note(text) => {
+                self.notes.push((*text).to_owned());
+                ThingKind::Note(NoteId(self.notes.len() as u16 - 1))
+            }
+            _ => return None,
         };
-        self.add_built_in(kind, item.sprite_name())
-    }
-
-    /// Adds a built-in sprite, once for each name; returns it with the kind of thing that has it.
-    fn add_built_in(
-        &mut self,
-        kind: ThingKind,
-        name: &'static str,
-    ) -> Option<(ThingKind, SpriteId)> {
+        let name = sprite_name(kind);
         if let Some(&(_, id)) = self.built_in.iter().find(|(known, _)| *known == name) {
             return Some((kind, id));
         }
-        let (_, id) = self.add(kind, builtin::named(name))?;
+        let id = self.push(builtin::named(name)?);
         self.built_in.push((name, id));
         Some((kind, id))
     }
 
-    fn note(&mut self, text: &str) -> NoteId {
-        let id = NoteId(self.notes.len() as u16);
-        self.notes.push(text.to_owned());
-        id
+    fn push(&mut self, sprite: Sprite) -> SpriteId {
+        self.sprites.push(sprite);
+        SpriteId(self.sprites.len() as u16 - 1)
     }
 }
 
+/// The name of the built-in sprite of a kind of thing.
+fn sprite_name(kind: ThingKind) -> &'static str {
+    match kind {
+        ThingKind::Exit => builtin::EXIT,
+        ThingKind::Treasure(..25) => "coins",
+        ThingKind::Treasure(25..100) => "cup",
+        ThingKind::Treasure(100..) => "crown",
+        ThingKind::Healing(_) => "heart",
+        ThingKind::Supply(supply, _) => supply.name(),
+        ThingKind::Note(_) => "note",
+        ThingKind::Checkpoint => "checkpoint",
+        ThingKind::Lever(_) => "lever",
+        ThingKind::Spikes(_) => "spikes",
+        _ => builtin::KEY,
+    }
+}
+
+/// The cells that `count` lamps light, as [`MAX_LIT_CELLS`] counts them.
+fn cost_of_lamps(lamp: Lamp, count: usize) -> u64 {
+    lamp.reach.cell_count() * (count as u64 + COST_OF_LAMP_KIND)
+}
+
 fn too_many_lamps(symbol: &Symbol<'_>) -> Fault {
-    let most = lamp_budget::MOST_CELLS;
-    let message = format!("the lamps of a map light {most} cells at most, counted for each lamp");
+    let message =
+        format!("the lamps of a map light {MAX_LIT_CELLS} cells at most, counted for each lamp");
     Fault::new(symbol.place.clone(), message)
         .label("with these, they light more")
         .help("draw fewer lamps, or let them reach less far")
 }
 
-fn too_many_things(drawing: &Drawing<'_>, count: usize) -> Fault {
-    let message = format!("the grid has {count} things, and {MOST_THINGS} at most can be there");
-    Fault::new(drawing.key_place.clone(), message).help("draw fewer of them")
-}
-
-/// The frame that a thing shows first; `None` if it depends on the time.
-fn first_frame(kind: ThingKind) -> Option<u8> {
-    let shows_its_state =
-        matches!(kind, ThingKind::Checkpoint | ThingKind::Lever(_) | ThingKind::Spikes(_));
-    shows_its_state.then_some(0)
-}
-
-/// The fault of more than [`MOST_SPIKES`].
-fn too_many_spikes(drawing: &Drawing<'_>, legend: &Legend<'_>) -> Option<Fault> {
-    let is_it =
-        |symbol: &&Symbol<'_>| matches!(symbol.meaning, Meaning::Item(ItemSymbol::Spikes(_)));
-    let spikes = legend.used_in(drawing).filter(|(_, symbol)| is_it(symbol));
-    let spikes = spikes.map(|(character, symbol)| (symbol, drawing.sightings(character).count));
-    let spikes: Vec<_> = spikes.collect();
-    let count: usize = spikes.iter().map(|(_, count)| count).sum();
-    let (symbol, most) = spikes.into_iter().max_by_key(|&(_, count)| count)?;
-    (count > MOST_SPIKES).then(|| {
-        let message =
-            format!("the grid has {count} spikes, and {MOST_SPIKES} at most can be there");
-        Fault::new(symbol.place.clone(), message)
-            .label(format!("{most} of them here"))
-            .help("draw fewer of them")
-    })
+/// The guards in the plan, row by row from the north, and within a row from the west.
+pub(crate) fn posts(plan: Plan<'_>) -> Vec<GuardPost> {
+    let is_guard = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Guard(_));
+    let is_waypoint = |meaning: &Meaning<'_>| matches!(meaning, Meaning::Waypoint);
+    let waypoints = plan.drawing.cells_of(|it| plan.means(it, is_waypoint));
+    let waypoints: PerCharacter<Option<Cell>> =
+        waypoints.map(|(cell, character)| (character, Some(cell))).collect();
+    let guards = plan.drawing.cells_of(|it| plan.means(it, is_guard));
+    let posts = guards.filter_map(|(cell, character)| {
+        let Meaning::Guard(guard) = &plan.symbol(character)?.meaning else { return None };
+        let duty = match &guard.patrol {
+            Some(patrol) => {
+                Duty::Patrol(patrol.text.chars().filter_map(|it| waypoints.get(it)).collect())
+            }
+            None => guard.duty.clone(),
+        };
+        let (kind, heading, from) = (guard.kind, guard.heading, guard.from);
+        Some(GuardPost { kind, cell, heading, duty, from })
+    });
+    posts.collect()
 }

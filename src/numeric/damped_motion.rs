@@ -2,24 +2,24 @@
 //!
 //! The velocity v obeys dv/dt = rate · (target − v), so that the difference decays exponentially.
 //! Velocity and displacement at the end of a step are the analytic solution of that equation: steps
-//! may be of any length and rates of any size, and two steps equal one step of their sum. The
-//! explicit Euler method was refused: it overshoots as soon as `rate * dt` exceeds 1.
+//! may be of any length and rates of any size, and two steps equal one step of their sum. Rejected:
+//! the explicit Euler method, which overshoots as soon as `rate * dt` exceeds 1.
 
 use glam::DVec2;
 
 /// The state of a motion at the end of a step, and the displacement during it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DampedMotion<V> {
+pub struct DampedMotion<V> {
     /// Units per second.
-    pub(crate) velocity: V,
+    pub velocity: V,
     /// Units.
-    pub(crate) displacement: V,
+    pub displacement: V,
 }
 
 /// The motion after `duration` seconds. It begins with `velocity` and approaches `target`; the
 /// difference between the two shrinks by the factor e every 1 / `rate` seconds. The result is
 /// finite if all arguments are finite, `rate` is above 0 and `duration` at least 0.
-pub(crate) fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
+pub fn approach(velocity: f64, target: f64, rate: f64, duration: f64) -> DampedMotion<f64> {
     let remains = libm::exp(-rate * duration);
     // The displacement is that of the first velocity for this time, and of the target for the rest.
     let first_part = (-libm::expm1(-rate * duration) / rate).min(duration);

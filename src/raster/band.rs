@@ -1,8 +1,8 @@
 //! Bands: ranges of rows of a frame, each drawn by one thread.
 //!
 //! All passes draw into a band, and the pixels do not depend on its first and last row: a picture
-//! is the same in one band and in many. Bands of columns were refused: rows are contiguous in
-//! memory, so that a band is a slice, which no other thread can write to, and needs no lock.
+//! is the same in one band and in many. Rejected: bands of columns. Rows are contiguous in memory,
+//! so a band of them is a slice, which no other thread can write to and which needs no lock.
 
 use std::ops::Range;
 

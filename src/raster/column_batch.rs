@@ -1,16 +1,16 @@
 //! Column batches: neighbouring wall columns that are drawn together, row by row.
 //!
 //! The pixels of such a row are contiguous, so that a processor predicts the accesses and prefetches
-//! the memory. Drawing one column after the other was refused: each pixel would be far in memory
+//! the memory. Rejected: drawing one column after the other. Each pixel would be far in memory
 //! from the one before, which took most of the time of a frame in large pictures.
 
 use std::ops::Range;
 use std::{iter, ptr};
 
 use super::band::Band;
-use super::direct_columns::{self, DirectColumn};
-use super::lanes::{LANES, Lanes, QueuedColumn};
-use super::shaded_texels::{ShadedRange, ShadedTexels};
+use super::direct_columns;
+use super::direct_columns::DirectColumn;
+use super::shaded_texels::{ShadedRange, ShadedTexels, TexelAddress};
 use super::target::Target;
 use crate::color::Rgb;
 use crate::visibility::{Lighting, Pass, TextureStepper};
@@ -18,7 +18,7 @@ use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// The most columns that are drawn together.
-const MOST_COLUMNS: usize = 15 * LANES;
+const MAX_COLUMNS: usize = 15 * LANES;
 /// The number of rows of some columns that are drawn before those of the columns beside them.
 const ROWS_AT_ONCE: u32 = 8;
 
@@ -31,7 +31,7 @@ pub(crate) struct BatchMemory {
 }
 
 /// Columns of texels in a lighting `L`, queued until they are drawn.
-pub(super) struct ColumnBatch<'m, 't, 'a, L> {
+pub(crate) struct ColumnBatch<'m, 't, 'a, L> {
     memory: &'m mut BatchMemory,
     target: &'m mut Target<'t>,
     /// The texels and the lighting of the latest shaded range.
@@ -43,7 +43,7 @@ pub(super) struct ColumnBatch<'m, 't, 'a, L> {
 }
 
 impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
-    pub(super) fn new(
+    pub(crate) fn new(
         memory: &'m mut BatchMemory,
         target: &'m mut Target<'t>,
         are_direct: bool,
@@ -51,24 +51,24 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         let mut batch = Self { memory, target, latest: None, next: 0, are_direct };
         batch.clear();
         // Enough for any later view of a wall.
-        batch.memory.columns.reserve(MOST_COLUMNS);
-        batch.memory.lanes.reserve(MOST_COLUMNS / LANES);
+        batch.memory.columns.reserve(MAX_COLUMNS);
+        batch.memory.lanes.reserve(MAX_COLUMNS / LANES);
         batch
     }
 
     /// The target, for pixels that no queued column has.
-    pub(super) fn target_mut(&mut self) -> &mut Target<'t> {
+    pub(crate) fn target_mut(&mut self) -> &mut Target<'t> {
         self.target
     }
 
     /// Counts a column of `pixels` pixels in `paint`.
     #[inline]
-    pub(super) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
+    pub(crate) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
         self.target.count_painted(pass, pixels, paint);
     }
 
     /// Queues `rows` of column `x` for a fill with one colour.
-    pub(super) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
+    pub(crate) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
         self.make_room_for(x, 1);
         let shaded = &mut self.memory.shaded;
         let address = shaded.make(&[color], |color| lighting.apply(color)).start();
@@ -78,7 +78,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     /// Draws `rows` of column `x` with the column of `level` at `u`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
-    pub(super) fn draw_wall(
+    pub(crate) fn draw_wall(
         &mut self,
         (x, rows): (u32, Range<u32>),
         (level, u): (&'a MipLevel, f64),
@@ -97,13 +97,13 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
 
     /// Whether columns of `level` are drawn without a batch.
     #[inline]
-    pub(super) fn is_direct(&self, level: &MipLevel) -> bool {
+    pub(crate) fn is_direct(&self, level: &MipLevel) -> bool {
         self.are_direct && direct_columns::have(level.height() as usize)
     }
 
     /// Draws `rows` of column `x` with the column of `level` at `u`, which a face may repeat or show in part.
     #[inline]
-    pub(super) fn draw_face(
+    pub(crate) fn draw_face(
         &mut self,
         (x, rows): (u32, Range<u32>),
         (level, u): (&'a MipLevel, f64),
@@ -122,7 +122,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     /// Queues `rows` of column `x` for drawing with `texels`.
     #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
     #[inline(always)]
-    pub(super) fn queue_texels(
+    pub(crate) fn queue_texels(
         &mut self,
         x: u32,
         rows: Range<u32>,
@@ -130,7 +130,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MOST {
+        if texels.len() > 2 * rows.len() || texels.len() > ShadedTexels::MAX {
             self.draw_at_once(x, rows, texels, stepper, lighting);
             return;
         }
@@ -157,7 +157,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         stepper: TextureStepper,
         lighting: L,
     ) {
-        let most = ShadedTexels::MOST.min(2 * rows.len()) as i64;
+        let most = ShadedTexels::MAX.min(2 * rows.len()) as i64;
         let places = stepper.places(&rows).filter(|places| places.end - places.start <= most);
         let Some(places) = places else {
             self.draw_at_once(x, rows, texels, stepper, lighting);
@@ -200,7 +200,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     #[inline]
     fn make_room_for(&mut self, x: u32, texels: usize) {
         let BatchMemory { shaded, columns, .. } = &self.memory;
-        let is_full = columns.len() == MOST_COLUMNS || !shaded.have_room_for(texels);
+        let is_full = columns.len() == MAX_COLUMNS || !shaded.have_room_for(texels);
         if is_full || x < self.next {
             self.draw();
         }
@@ -208,7 +208,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
     }
 
     /// Draws the queued columns.
-    pub(super) fn draw(&mut self) {
+    pub(crate) fn draw(&mut self) {
         self.memory.draw(self.target.band_mut());
         self.clear();
     }
@@ -255,6 +255,83 @@ impl BatchMemory {
         columns.clear();
         lanes.clear();
     }
+}
+
+/// The number of columns whose loop variables fit in registers.
+const LANES: usize = 8;
+
+/// A queued column of pixels.
+#[derive(Clone, Debug)]
+struct QueuedColumn {
+    x: u32,
+    rows: Range<u32>,
+    /// The address of the texel of the first row, and the step from each row to the next.
+    address: TexelAddress,
+    step: u64,
+}
+
+impl QueuedColumn {
+    /// Draws the part of the column in `rows`.
+    #[inline]
+    fn draw(&self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+        let mut address = self.address_in(rows.start);
+        for pixel in band.column_mut(self.x, rows) {
+            *pixel = shaded.at(address);
+            address = address.further(self.step);
+        }
+    }
+
+    #[inline]
+    fn address_in(&self, row: u32) -> TexelAddress {
+        self.address.further(self.step.wrapping_mul(u64::from(row - self.rows.start)))
+    }
+}
+
+/// Neighbouring columns, in the rows that all of them have.
+#[derive(Clone, Debug)]
+struct Lanes {
+    x: u32,
+    rows: Range<u32>,
+    /// The address of each column's texel in the next row to be drawn.
+    addresses: [TexelAddress; LANES],
+    /// The step of each column from one row to the next.
+    steps: [u64; LANES],
+}
+
+impl Lanes {
+    /// The lanes of `columns`; `None` if they are not neighbours or have no common row.
+    #[inline]
+    fn new(columns: &[QueuedColumn; LANES]) -> Option<Self> {
+        let [QueuedColumn { x, .. }, .., last] = columns;
+        let rows = columns.iter().map(|column| column.rows.clone()).reduce(common)?;
+        // No two columns have the same `x`.
+        let are_side_by_side = last.x - x == LANES as u32 - 1;
+        (are_side_by_side && !rows.is_empty()).then(|| Self {
+            x: *x,
+            addresses: columns.each_ref().map(|column| column.address_in(rows.start)),
+            steps: columns.each_ref().map(|column| column.step),
+            rows,
+        })
+    }
+
+    /// Draws the part of the lanes in `rows`, which follow the rows drawn before.
+    #[inline]
+    fn draw(&mut self, shaded: &ShadedTexels, rows: Range<u32>, band: &mut Band<'_>) {
+        let Self { x, mut addresses, steps, .. } = *self;
+        band.for_each_in_block(x, common(rows, self.rows.clone()), |pixels: &mut [Rgb; LANES]| {
+            for lane in 0..LANES {
+                pixels[lane] = shaded.at(addresses[lane]);
+                addresses[lane] = addresses[lane].further(steps[lane]);
+            }
+        });
+        self.addresses = addresses;
+    }
+}
+
+/// The rows common to both.
+fn common(one: Range<u32>, other: Range<u32>) -> Range<u32> {
+    let start = one.start.max(other.start);
+    start..one.end.min(other.end).max(start)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Direct columns: the wall columns of small pictures, drawn without a batch.
 //!
-//! A small picture is in the cache as a whole, so that pixels far apart cost no more than neighbours,
-//! and a batch would take longer to prepare than to draw. Each column is drawn straight from its texture,
-//! four rows at a time, which take 6.5 instructions a pixel. Four columns at a time were refused: they
-//! take 7, and where the columns differ in height, the rest has to be drawn column by column.
+//! A small picture is in the cache as a whole, so that pixels far apart cost no more than neighbours, and
+//! a batch would take longer to prepare than to draw. Each column is drawn straight from its texture,
+//! four rows at a time, which take 6.5 instructions a pixel. Rejected: four columns at a time. They take
+//! 7, and if the columns differ in height, the rest has to be drawn column by column.
 
 use std::mem;
 use std::ops::Range;
@@ -14,16 +14,16 @@ use crate::visibility::{Lighting, Scene, TextureStepper};
 use crate::world::texture::MipLevel;
 
 /// The most rows of a band, and the most pixels, for which direct columns take less time.
-const MOST_ROWS: usize = 256;
-const MOST_PIXELS: usize = 1 << 17;
+const MAX_ROWS: usize = 256;
+const MAX_PIXELS: usize = 1 << 17;
 /// The bytes of a level-1 data cache, and of each of its ways, as most processors have them.
 const CACHE: usize = 1 << 15;
 const WAY: usize = 1 << 12;
 
 /// Whether the columns of `band` are better drawn directly.
-pub(super) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
+pub(crate) fn are_for(scene: Scene<'_>, band: &Band<'_>) -> bool {
     let (rows, width) = (band.rows().len(), band.width());
-    let is_small = rows <= MOST_ROWS && rows * width <= MOST_PIXELS;
+    let is_small = rows <= MAX_ROWS && rows * width <= MAX_PIXELS;
     is_small && is_column_cached(rows, width) && scene.projection.is_horizon_near()
 }
 
@@ -38,22 +38,22 @@ fn is_column_cached(rows: usize, width: usize) -> bool {
 /// Whether there is a loop for columns of this number of texels: a power of two, up to 256. Others are
 /// drawn faster in a batch.
 #[inline]
-pub(super) fn have(texels: usize) -> bool {
+pub(crate) fn have(texels: usize) -> bool {
     texels.is_power_of_two() && texels <= 256
 }
 
 /// A column of pixels, which is not empty, of a face. All its rows but the first and the last are on the face.
 #[derive(Clone, Debug)]
-pub(super) struct DirectColumn {
-    pub(super) x: u32,
-    pub(super) rows: Range<u32>,
-    pub(super) u: f64,
-    pub(super) stepper: TextureStepper,
+pub(crate) struct DirectColumn {
+    pub(crate) x: u32,
+    pub(crate) rows: Range<u32>,
+    pub(crate) u: f64,
+    pub(crate) stepper: TextureStepper,
 }
 
 /// Draws `columns` of `level` in this `lighting`. There must be a loop for them.
 #[inline]
-pub(super) fn draw<L: Lighting>(
+pub(crate) fn draw<L: Lighting>(
     level: &MipLevel,
     lighting: L,
     columns: impl Iterator<Item = DirectColumn>,

@@ -19,7 +19,7 @@ const LEAST_WIDTH: u64 = 8;
 const PIECE: u64 = 1 << 63;
 
 /// Draws `span` in two samples: as a checker, or else in stripes along the x axis.
-pub(super) fn draw<const IS_CHECKER: bool, L: Lighting>(
+pub(crate) fn draw<const IS_CHECKER: bool, L: Lighting>(
     span: &PlaneSpan<'_>,
     samples: &[Sample<'_>; 2],
     lighting: L,

@@ -13,7 +13,7 @@ use crate::world::Texture;
 use crate::world::texture::{AreaLod, MipLevel, Repeat};
 
 /// A kind of levels.
-pub(super) trait Sampling: Copy {
+pub(crate) trait Sampling: Copy {
     /// What distinguishes the levels of a texture.
     type Lod: Copy + PartialEq + fmt::Debug;
 
@@ -46,11 +46,11 @@ pub(super) trait Sampling: Copy {
 
 /// Mip levels, by the area of a pixel.
 #[derive(Clone, Copy)]
-pub(super) struct MipLevels;
+pub(crate) struct MipLevels;
 
 /// Means over boxes, by the width and the height of a pixel.
 #[derive(Clone, Copy)]
-pub(super) struct Means;
+pub(crate) struct Means;
 
 impl Sampling for MipLevels {
     type Lod = usize;

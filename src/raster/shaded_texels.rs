@@ -40,11 +40,11 @@ impl Default for ShadedTexels {
 
 impl ShadedTexels {
     /// The most texels of a range.
-    pub(crate) const MOST: usize = TEXELS - 2;
+    pub(crate) const MAX: usize = TEXELS - 2;
 
     /// Whether there is room for a range of `texels` more.
     pub(crate) fn have_room_for(&self, texels: usize) -> bool {
-        self.used + texels <= Self::MOST
+        self.used + texels <= Self::MAX
     }
 
     /// A range of these texels, shaded, if there is room for them.

@@ -63,7 +63,7 @@ impl<'a> SkyView<'a> {
     }
 
     /// Draws the sky in `columns` of `row`, seen in the mirrors of `image` if there is one.
-    pub(super) fn draw(
+    pub(crate) fn draw(
         &self,
         row: u32,
         columns: Range<usize>,

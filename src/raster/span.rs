@@ -11,7 +11,7 @@ use crate::world::texture::{MipLevel, MipLevelByShifts};
 use crate::world::{Paint, Pattern, Texture};
 
 /// Draws `span`.
-pub(super) fn draw<M: Sampling>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_>) {
+pub(crate) fn draw<M: Sampling>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_>) {
     match Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance) {
         None => draw_lit::<M, _>(scene, span, FullyLit, target),
         Some(faded) => draw_lit::<M, _>(scene, span, faded, target),
@@ -58,7 +58,7 @@ fn draw_lit<M: Sampling, L: Lighting>(
 }
 
 /// Draws `level` on `pixels`.
-pub(super) fn draw_level<L: Lighting>(
+pub(crate) fn draw_level<L: Lighting>(
     level: &MipLevel,
     lighting: L,
     places: TexelPlaces,
@@ -126,7 +126,7 @@ fn draw_texels<L: Lighting, const N: usize>(
 /// Passes each of `blocks`, of this number of pixels, to `draw` with the indices of its texels. They
 /// are computed in a loop that reads no texel, so that a compiler vectorizes it.
 #[inline]
-pub(super) fn for_each_block<B>(
+pub(crate) fn for_each_block<B>(
     level: MipLevelByShifts<'_>,
     mut places: TexelPlaces,
     blocks: impl Iterator<Item = (usize, B)>,
@@ -145,22 +145,22 @@ pub(super) fn for_each_block<B>(
 }
 
 /// The most pixels that are drawn at once.
-pub(super) const AT_ONCE: usize = 64;
+pub(crate) const AT_ONCE: usize = 64;
 /// A multiple of the number of indices that a processor computes at once.
 const LANES: usize = 4;
-pub(super) const UNROLLED: usize = 8;
+pub(crate) const UNROLLED: usize = 8;
 
 /// The inputs for sampling the paints of a span.
 #[derive(Clone, Copy)]
-pub(super) struct Sampler<'a> {
-    pub(super) scene: Scene<'a>,
-    pub(super) mapping: &'a SpanMapping,
+pub(crate) struct Sampler<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) mapping: &'a SpanMapping,
     /// The number of repeats of the paints in a cell.
-    pub(super) per_cell: f64,
+    pub(crate) per_cell: f64,
 }
 
 /// A paint at one distance.
-pub(super) enum Sample<'a> {
+pub(crate) enum Sample<'a> {
     Color(Rgb),
     Level(&'a MipLevel),
 }
@@ -197,7 +197,7 @@ impl<'a> Sampler<'a> {
 
     /// The level of detail of `texture`, which is a repeat.
     #[inline]
-    pub(super) fn lod_of<M: Sampling>(self, texture: &Texture) -> M::Lod {
+    pub(crate) fn lod_of<M: Sampling>(self, texture: &Texture) -> M::Lod {
         M::lod_on_plane(self.scene, texture, self.mapping, self.per_cell)
     }
 

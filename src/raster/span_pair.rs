@@ -14,7 +14,7 @@ use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
 /// The drawing of a frame's span pairs.
-pub(super) struct SpanPairs<'a, M: Sampling> {
+pub(crate) struct SpanPairs<'a, M: Sampling> {
     /// Whether there was a pair.
     is_begun: bool,
     /// The textures of the planes, if they have textures of one size.
@@ -41,12 +41,12 @@ struct LevelPair<'a, M: Sampling> {
 
 impl<'a, M: Sampling> SpanPairs<'a, M> {
     /// The drawing before the first pair.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { is_begun: false, textures: None }
     }
 
     /// Draws `pair`, whose planes are those of the pairs before.
-    pub(super) fn draw(&mut self, scene: Scene<'a>, pair: &SpanPair<'_>, target: &mut Target<'_>) {
+    pub(crate) fn draw(&mut self, scene: Scene<'a>, pair: &SpanPair<'_>, target: &mut Target<'_>) {
         if !self.is_begun {
             self.is_begun = true;
             self.textures = TexturePair::new(scene, pair.planes);

@@ -1,9 +1,11 @@
-//! The target: the pixels that items are drawn to.
+//! The target: the pixels that items are drawn to, and the surfaces of the layers that cover them.
+//!
+//! Only glyph sets that distinguish surfaces need these; for all others nothing is stored.
 
+use std::num::NonZeroU32;
 use std::ops::Range;
 
 use super::band::Band;
-use super::surface_buffer::SurfaceRows;
 use crate::color::Rgb;
 use crate::visibility::{Pass, Stats, Surface};
 use crate::world::Paint;
@@ -29,23 +31,23 @@ impl<'a> Target<'a> {
     }
 
     /// Whether it counts.
-    pub(super) fn counts(&self) -> bool {
+    pub(crate) fn counts(&self) -> bool {
         self.stats.are_kept()
     }
 
     /// The indices of its rows in the frame.
-    pub(super) fn rows(&self) -> Range<u32> {
+    pub(crate) fn rows(&self) -> Range<u32> {
         self.band.rows()
     }
 
     /// The part of `rows` in the band.
     #[inline]
-    pub(super) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
+    pub(crate) fn clip(&self, rows: &Range<u32>) -> Range<u32> {
         self.band.clip(rows)
     }
 
     /// All pixels of `rows`, to be written for `pass`.
-    pub(super) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
+    pub(crate) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
         let pixels = self.band.rows_mut(rows);
         self.stats.change(|stats| stats.of_mut(pass).pixels += pixels.len() as u64);
         pixels
@@ -53,7 +55,7 @@ impl<'a> Target<'a> {
 
     /// The pixels of `columns` in `row`, to be written for `pass`.
     #[inline]
-    pub(super) fn span_mut(&mut self, pass: Pass, row: u32, columns: Range<usize>) -> &mut [Rgb] {
+    pub(crate) fn span_mut(&mut self, pass: Pass, row: u32, columns: Range<usize>) -> &mut [Rgb] {
         self.stats.change(|stats| {
             stats.spans += 1;
             stats.of_mut(pass).pixels += columns.len() as u64;
@@ -65,7 +67,7 @@ impl<'a> Target<'a> {
     /// each.
     #[expect(clippy::inline_always, reason = "a call would cost a fiftieth of a small picture")]
     #[inline(always)]
-    pub(super) fn two_spans_mut(
+    pub(crate) fn two_spans_mut(
         &mut self,
         passes: [Pass; 2],
         rows: [u32; 2],
@@ -84,7 +86,7 @@ impl<'a> Target<'a> {
 
     /// The pixels of `rows` in column `x`, from the top.
     #[inline]
-    pub(super) fn column_mut(
+    pub(crate) fn column_mut(
         &mut self,
         x: u32,
         rows: Range<u32>,
@@ -94,19 +96,19 @@ impl<'a> Target<'a> {
 
     /// The band, for callers that count its pixels themselves.
     #[inline]
-    pub(super) fn band_mut(&mut self) -> &mut Band<'a> {
+    pub(crate) fn band_mut(&mut self) -> &mut Band<'a> {
         &mut self.band
     }
 
     /// Counts `count` pixels that are written for `pass`.
     #[inline]
-    pub(super) fn count_pixels(&mut self, pass: Pass, count: usize) {
+    pub(crate) fn count_pixels(&mut self, pass: Pass, count: usize) {
         self.stats.change(|stats| stats.of_mut(pass).pixels += count as u64);
     }
 
     /// Counts `count` pixels in `paint` that are written for `pass`.
     #[inline]
-    pub(super) fn count_painted(&mut self, pass: Pass, count: usize, paint: Paint) {
+    pub(crate) fn count_painted(&mut self, pass: Pass, count: usize, paint: Paint) {
         self.stats.change(|stats| {
             let stats = stats.of_mut(pass);
             stats.pixels += count as u64;
@@ -118,13 +120,13 @@ impl<'a> Target<'a> {
 
     /// Counts `count` texels that are read for `pass`.
     #[inline]
-    pub(super) fn count_texels(&mut self, pass: Pass, count: usize) {
+    pub(crate) fn count_texels(&mut self, pass: Pass, count: usize) {
         self.stats.change(|stats| stats.of_mut(pass).texels += count as u64);
     }
 
     /// Records `surface` for the pixels of column `x` from `row` on, if their item in `shown` is
     /// true.
-    pub(super) fn mark(
+    pub(crate) fn mark(
         &mut self,
         x: u32,
         row: u32,
@@ -132,5 +134,83 @@ impl<'a> Target<'a> {
         shown: impl Iterator<Item = bool>,
     ) {
         self.surfaces.mark(x as usize, row, surface, shown);
+    }
+}
+
+/// The surfaces of single pixels.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfaceBuffer {
+    are_kept: bool,
+    width: usize,
+    /// The surfaces in rows, as the pixels of a frame; empty if none are kept.
+    surfaces: Vec<Option<Surface>>,
+}
+
+impl SurfaceBuffer {
+    /// Sets whether surfaces are kept from now on.
+    pub(crate) fn keep(&mut self, are_kept: bool) {
+        self.are_kept = are_kept;
+        self.surfaces.clear();
+    }
+
+    /// Whether surfaces are kept.
+    pub(crate) fn are_kept(&self) -> bool {
+        self.are_kept
+    }
+
+    /// Removes all surfaces, and prepares for a frame of this size.
+    pub(crate) fn begin(&mut self, width: u32, height: u32) {
+        if self.are_kept {
+            self.width = width as usize;
+            self.surfaces.clear();
+            self.surfaces.resize(width as usize * height as usize, None);
+        }
+    }
+
+    /// The surfaces in bands of `rows` rows each, without end: bands below the frame are empty.
+    pub(crate) fn bands(&mut self, rows: NonZeroU32) -> impl Iterator<Item = SurfaceRows<'_>> {
+        let (width, rows) = (self.width, rows.get());
+        let mut rest = &mut self.surfaces[..];
+        (0..).step_by(rows as usize).map(move |first| {
+            let count = rest.len().min(width * rows as usize);
+            let surfaces = rest.split_off_mut(..count).unwrap_or_default();
+            SurfaceRows { width, first, surfaces }
+        })
+    }
+
+    /// The surface of pixel `(x, y)`, if it was recorded.
+    pub(crate) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
+        *self.surfaces.get(y as usize * self.width + x as usize)?
+    }
+}
+
+/// The surfaces of the pixels of some rows.
+#[derive(Debug)]
+pub(crate) struct SurfaceRows<'a> {
+    width: usize,
+    /// The first row.
+    first: u32,
+    /// The surfaces in rows; empty if none are kept.
+    surfaces: &'a mut [Option<Surface>],
+}
+
+impl SurfaceRows<'_> {
+    /// Records `surface` for the pixels of column `x` from `row` on, which is in the band, if their
+    /// item in `shown` is true.
+    pub(crate) fn mark(
+        &mut self,
+        x: usize,
+        row: u32,
+        surface: Surface,
+        shown: impl Iterator<Item = bool>,
+    ) {
+        if self.surfaces.is_empty() {
+            return;
+        }
+        let start = (row - self.first) as usize * self.width + x;
+        let column = self.surfaces.iter_mut().skip(start).step_by(self.width);
+        for (mark, shown) in column.zip(shown) {
+            *mark = if shown { Some(surface) } else { *mark };
+        }
     }
 }

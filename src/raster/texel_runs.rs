@@ -4,8 +4,8 @@
 //! are then computed instead of the texel of each pixel: in whole steps and a remainder, as a
 //! straight line is drawn on a grid, so that all pixels are identical.
 //!
-//! Testing whether the first and the last of eight pixels show the same texel was refused: if
-//! texels are sixteen pixels wide, nearly half of the groups of eight contain an edge. No processor
+//! Rejected: testing whether the first and the last of eight pixels show the same texel. If texels
+//! are sixteen pixels wide, nearly half of the groups of eight contain an edge. No processor
 //! predicts which, and their pixels have to be drawn one by one.
 
 use crate::color::Rgb;

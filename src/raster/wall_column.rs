@@ -3,24 +3,26 @@
 //! A wall column is one column of its texture, stretched. The texel of each pixel is computed from
 //! its row, not from the texel above it, so that no error accumulates from row to row. If a wall is
 //! so near that only a few of its texels are in view, they are the right ones.
+//!
+//! Most columns show the same texture at the same level of detail as the one before. Looking it up for each
+//! of them takes as long as a dozen pixels, so it is kept from one column to the next.
 
 use std::ops::Range;
 
 use super::column_batch::{BatchMemory, ColumnBatch};
-use super::direct_columns;
 use super::sampling::Sampling;
 use super::target::Target;
-use super::wall_level::WallLevel;
-use super::wall_run;
+use super::{direct_columns, wall_run};
 use crate::cast::Side;
 use crate::visibility::{
     DrawList, Extent, FaceTexels, Facing, Faded, Lighting, Pass, Projection, Scene, SideLit,
-    WallColumn, WallSink,
+    WallColumn, WallSink, WallTexels,
 };
-use crate::world::{Light, Paint};
+use crate::world::texture::{MipLevel, Texture};
+use crate::world::{Light, Paint, TextureId};
 
 /// Draws all wall columns of `list`.
-pub(super) fn draw<M: Sampling>(
+pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,
@@ -49,7 +51,7 @@ pub(super) fn draw<M: Sampling>(
 
 /// The side that `wall` is, in a scene without shapes.
 #[inline]
-pub(super) fn side_of(wall: &WallColumn) -> Side {
+pub(crate) fn side_of(wall: &WallColumn) -> Side {
     match wall.facing {
         Facing::Side(side) => side,
         // Only shapes have such a normal.
@@ -58,7 +60,7 @@ pub(super) fn side_of(wall: &WallColumn) -> Side {
 }
 
 /// The lighting of a face.
-pub(super) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
+pub(crate) fn lighting_of(scene: Scene<'_>, facing: Facing, light: Light, t: f64) -> Faded {
     let fog = scene.world.fog();
     match facing {
         Facing::Side(side) => Faded::of_wall(side, light, fog, t),
@@ -140,5 +142,45 @@ where
                 batch.draw_face((column, rows), (level, wall.u), stepper, lighting(wall));
             }
         }
+    }
+}
+
+/// A texture at one level of detail.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallLevel<'a, M: Sampling> {
+    id: TextureId,
+    texture: &'a Texture,
+    lod: M::Lod,
+    pub(crate) level: &'a MipLevel,
+    /// The texels of a wall that one texture of the level covers.
+    pub(crate) texels: WallTexels,
+}
+
+impl<'a, M: Sampling> WallLevel<'a, M> {
+    /// The level of the texture `id` for a face at distance `t`, which the ray approaches by `slope` cells
+    /// per unit of `t`. `latest` is that of the column before.
+    #[inline]
+    pub(crate) fn on_face(
+        scene: Scene<'a>,
+        id: TextureId,
+        (t, slope): (f64, f64),
+        latest: &mut Option<Self>,
+    ) -> Self {
+        let known = (*latest).filter(|known| known.id == id);
+        let texture = known.map_or_else(|| scene.world.texture(id), |known| known.texture);
+        let lod = M::lod_on_face(scene, texture, t, slope);
+        match known {
+            Some(known) if known.lod == lod => known,
+            _ => *latest.insert(Self::new(scene, id, lod)),
+        }
+    }
+
+    /// The level `lod` of the texture `id`.
+    #[inline(never)]
+    pub(crate) fn new(scene: Scene<'a>, id: TextureId, lod: M::Lod) -> Self {
+        let texture = scene.world.texture(id);
+        let level = M::level_on_face(texture, lod);
+        let texels = scene.projection.wall_texels(level.height() as usize);
+        Self { id, texture, lod, level, texels }
     }
 }

@@ -11,8 +11,7 @@ use super::column_batch::{BatchMemory, ColumnBatch};
 use super::direct_columns;
 use super::sampling::Sampling;
 use super::target::Target;
-use super::wall_column::{lighting_of, side_of};
-use super::wall_level::WallLevel;
+use super::wall_column::{WallLevel, lighting_of, side_of};
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
 use crate::visibility::{
@@ -22,7 +21,7 @@ use crate::world::Paint;
 use crate::world::texture::MipLevel;
 
 /// Draws all parts of walls of `list`.
-pub(super) fn draw<M: Sampling>(
+pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
     list: &DrawList,
     memory: &mut BatchMemory,

@@ -8,12 +8,12 @@ use std::ops::Range;
 use super::column_batch::ColumnBatch;
 use super::direct_columns::{self, DirectColumn};
 use super::sampling::Sampling;
-use super::wall_level::WallLevel;
+use super::wall_column::WallLevel;
 use crate::visibility::{Column, Facing, Pass, Scene, SideLit, WallRun};
 use crate::world::{Paint, TextureId};
 
 /// Draws the part of `run` in the rows of `batch`.
-pub(super) fn draw<'a, M: Sampling>(
+pub(crate) fn draw<'a, M: Sampling>(
     scene: Scene<'a>,
     run: &WallRun<'_>,
     batch: &mut ColumnBatch<'_, '_, 'a, SideLit>,

@@ -68,7 +68,7 @@ proptest! {
         is_nearest in any::<bool>(),
     ) {
         let (name, world) = choice.get(&MAPS);
-        let extent = DVec2::new(f64::from(world.grid().width()), f64::from(world.grid().height()));
+        let extent = world.grid().extent();
         let mut position = DVec2::from(place) * extent;
         if is_in_the_middle {
             position = position.floor() + 0.5;

@@ -1,13 +1,12 @@
 //! Threads: how many draw a frame, and how they share it.
 //!
 //! Each frame that is large enough starts its own threads. Starting one takes tens of microseconds,
-//! and drawing such a frame takes milliseconds. A thread pool was refused: it would need a shutdown
+//! and drawing such a frame takes milliseconds. Rejected: a thread pool. It would need a shutdown
 //! and sharing between renderers, and save little.
 
-use std::fmt;
 use std::num::{NonZero, NonZeroU32};
 use std::sync::{LazyLock, Mutex, PoisonError};
-use std::thread;
+use std::{fmt, thread};
 
 use super::{Frame, FrameSize};
 use crate::raster::{SurfaceBuffer, Target};
@@ -46,7 +45,7 @@ pub enum WhyOne {
 impl Threads {
     /// The threads for a frame of this size, at most `most` or the number that the machine runs at
     /// once.
-    pub(super) fn new(size: FrameSize, most: Option<NonZero<usize>>) -> Self {
+    pub(crate) fn new(size: FrameSize, most: Option<NonZero<usize>>) -> Self {
         let (width, height) = (size.width.get() as usize, size.height.get() as usize);
         let worthwhile = (width * height / PIXELS_OF_A_THREAD).min(height);
         if worthwhile < 2 {
@@ -69,7 +68,7 @@ impl Threads {
 
     /// The number of rows of a band, for a frame of this height: all rows for one thread, else few
     /// enough that a thread which finishes early takes bands from another.
-    pub(super) fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
+    fn rows_of_band(self, height: NonZeroU32) -> NonZeroU32 {
         match self {
             Self::One(_) => height,
             Self::Bands(count) => {
@@ -92,7 +91,7 @@ impl fmt::Display for Threads {
 
 /// Draws all bands of `frame` and its surface buffer by these threads, each with its own memory.
 /// Adds the counts to `stats`.
-pub(super) fn draw_bands<M: Default + Send>(
+pub(crate) fn draw_bands<M: Default + Send>(
     threads: Threads,
     (frame, surfaces): (&mut Frame, &mut SurfaceBuffer),
     memories: &mut Vec<M>,

@@ -9,9 +9,9 @@ use super::relative_shape::{RelativeBlock, RelativeShape, RelativeSphere};
 
 /// A rectangle of pixels.
 #[derive(Clone, Debug)]
-pub(super) struct Bounds {
-    pub(super) columns: Range<u32>,
-    pub(super) rows: Range<u32>,
+pub(crate) struct Bounds {
+    pub(crate) columns: Range<u32>,
+    pub(crate) rows: Range<u32>,
 }
 
 /// The least and the greatest slope relative to the middle of the picture, to the right or upwards.
@@ -24,7 +24,7 @@ const NEAR: f64 = 1e-9;
 
 impl Bounds {
     /// The pixels whose rays may meet `shape`; `None` if there are none.
-    pub(super) fn new(shape: &RelativeShape, projection: &Projection) -> Option<Self> {
+    pub(crate) fn new(shape: &RelativeShape, projection: &Projection) -> Option<Self> {
         let (across, upwards) = match shape {
             RelativeShape::Plane(_) => (EVERYWHERE, EVERYWHERE),
             RelativeShape::Sphere(sphere) => of_sphere(sphere, projection)?,
@@ -39,7 +39,7 @@ impl Bounds {
     }
 
     /// The number of pixels in the rectangle.
-    pub(super) fn pixel_count(&self) -> u64 {
+    pub(crate) fn pixel_count(&self) -> u64 {
         self.columns.len() as u64 * self.rows.len() as u64
     }
 }

@@ -1,56 +1,11 @@
 //! The camera: a position, a heading, and an elevation.
 
-use std::f64::consts::FRAC_PI_2;
-
 use glam::DVec3;
 
-use super::FARTHEST;
 use super::ray::Ray;
 use crate::render::{FrameSize, PixelAspect};
+use crate::world::scene::{Elevation, Scene, Start, is_near};
 use crate::world::{FieldOfView, Heading};
-
-/// The distance that the player's eye keeps from all bodies, in cells.
-pub const EYE_CLEARANCE: f64 = 0.25;
-
-/// The angle by which a camera looks up or down, between straight down and straight up.
-///
-/// Beyond these limits the picture would be upside down, and left and right would be swapped.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Elevation {
-    radians: f64,
-}
-
-impl Elevation {
-    /// Neither up nor down.
-    pub const LEVEL: Self = Self { radians: 0.0 };
-
-    /// An elevation in degrees, from −90 (straight down) to 90 (straight up). `None` outside that
-    /// range.
-    pub fn from_degrees(degrees: f64) -> Option<Self> {
-        let is_within = (-90.0..=90.0).contains(&degrees);
-        is_within.then(|| Self::LEVEL.raised(degrees.to_radians()))
-    }
-
-    /// The elevation in degrees; positive is up.
-    pub fn degrees(self) -> f64 {
-        self.radians.to_degrees()
-    }
-
-    /// The elevation in radians; positive is up.
-    pub fn radians(self) -> f64 {
-        self.radians
-    }
-
-    /// The elevation changed by `radians`, clamped to the limits; negative values lower it. A NaN
-    /// changes nothing.
-    #[must_use]
-    pub fn raised(self, radians: f64) -> Self {
-        if radians.is_nan() {
-            return self;
-        }
-        Self { radians: (self.radians + radians).clamp(-FRAC_PI_2, FRAC_PI_2) }
-    }
-}
 
 /// A position with a viewing direction and a field of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +20,10 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`].
+    /// A level camera at `position`, in cells. `None` if a coordinate is beyond [`FARTHEST`](super::FARTHEST).
     pub fn new(position: DVec3, heading: Heading, field_of_view: FieldOfView) -> Option<Self> {
-        let is_near = position.is_finite() && position.abs().max_element() <= FARTHEST;
         let elevation = Elevation::LEVEL;
-        is_near.then_some(Self { position, heading, elevation, field_of_view })
+        is_near(position).then_some(Self { position, heading, elevation, field_of_view })
     }
 
     /// The same camera with another elevation.
@@ -93,13 +47,24 @@ impl Camera {
     /// The unit vectors to the right, to the top and into the picture.
     pub fn axes(&self) -> Axes {
         let level = self.heading.direction();
-        let radians = self.elevation.radians;
+        let radians = self.elevation.radians();
         let (sin, cos) = (libm::sin(radians), libm::cos(radians));
         Axes {
             right: level.perp().extend(0.0),
             up: (level * -sin).extend(cos),
             forward: (level * cos).extend(sin),
         }
+    }
+}
+
+impl Scene {
+    /// A camera at the player's start.
+    #[expect(clippy::missing_panics_doc, reason = "a start is where a camera can be")]
+    pub fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
+        let Start { heading, elevation, .. } = self.start;
+        Camera::new(self.start.position(), heading, field_of_view)
+            .expect("a start is where a camera can be")
+            .with_elevation(elevation)
     }
 }
 
@@ -117,19 +82,19 @@ pub struct Axes {
 /// The mapping from the world to the pixels of one frame. A cube looks like a cube for any shape of
 /// a pixel, as with the grid's renderer.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Projection {
-    pub(super) origin: DVec3,
-    pub(super) axes: Axes,
-    pub(super) width: u32,
-    pub(super) height: u32,
+pub(crate) struct Projection {
+    pub(crate) origin: DVec3,
+    pub(crate) axes: Axes,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
     /// The number of columns from the middle to a point 1 to the side at distance 1.
-    pub(super) columns_a_cell: f64,
+    pub(crate) columns_a_cell: f64,
     /// The number of rows from the middle to a point 1 above at distance 1.
-    pub(super) rows_a_cell: f64,
+    pub(crate) rows_a_cell: f64,
 }
 
 impl Projection {
-    pub(super) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+    pub(crate) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
         Self {
@@ -145,26 +110,28 @@ impl Projection {
     /// The direction through the middle of a column, at the middle of the picture's height. The sum
     /// of it and [`Projection::upwards`] is the direction of a ray, whose `t` is the distance to
     /// the camera plane.
-    pub(super) fn across(&self, column: u32) -> DVec3 {
+    pub(crate) fn across(&self, column: u32) -> DVec3 {
         // These are halves of integers, so that a column and its mirror image have opposite slopes.
         let slope = (f64::from(column) + 0.5 - f64::from(self.width) / 2.0) / self.columns_a_cell;
         self.axes.forward + self.axes.right * slope
     }
 
     /// The vector from the direction at the middle of the picture's height to the middle of a row.
-    pub(super) fn upwards(&self, row: u32) -> DVec3 {
+    pub(crate) fn upwards(&self, row: u32) -> DVec3 {
         let slope = (f64::from(self.height) / 2.0 - f64::from(row) - 0.5) / self.rows_a_cell;
         self.axes.up * slope
     }
 
     /// The changes of direction from a pixel to the next column and to the next row upwards.
-    pub(super) fn steps(&self) -> [DVec3; 2] {
+    pub(crate) fn steps(&self) -> [DVec3; 2] {
         [self.axes.right / self.columns_a_cell, self.axes.up / self.rows_a_cell]
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     #[test]
@@ -182,14 +149,5 @@ mod tests {
             // To the right of a camera that looks east is the south.
             assert!(right.dot(heading.turned(FRAC_PI_2).direction().extend(0.0)) > 0.999);
         }
-    }
-
-    #[test]
-    fn elevation_ends_at_straight_up() {
-        let up = Elevation::from_degrees(90.0).unwrap();
-        assert_eq!(Elevation::LEVEL.raised(f64::INFINITY), up);
-        assert_eq!(up.raised(f64::NAN), up);
-        assert_eq!(Elevation::from_degrees(90.5), None);
-        assert_eq!(Elevation::from_degrees(f64::NAN), None);
     }
 }

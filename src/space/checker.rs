@@ -7,15 +7,18 @@
 //! of a pixel on the surface follows from the movement of a ray's end from pixel to pixel (Igehy,
 //! "Tracing Ray Differentials", 1999). Along each axis, the box has the variance of that area.
 //!
-//! Several rays for each pixel were refused: near the horizon a pixel covers hundreds of squares,
-//! and any number of samples still shimmers there.
+//! Rejected: several rays for each pixel. Near the horizon a pixel covers hundreds of squares, and any
+//! number of samples still shimmers there.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
 
 use glam::DVec3;
 
-use super::lanes::{LANES, Lanes, Vectors, are_finite, floor, floor_of_small, greatest, least};
+use super::lanes::{LANES, Lanes, Vectors, are_finite, greatest, least};
+use crate::color::Rgb;
+use crate::numeric::rounding::{floor_double, floor_of_small};
+use crate::world::scene::SolidTexture;
 
 /// For larger widths, the mean is closer to 0 than the resolution of colours.
 const WIDEST: f64 = 65_536.0;
@@ -29,7 +32,7 @@ const MOST: f64 = (1_u64 << 50) as f64;
 /// changes of a direction to the next column and to the next row. `are_alike` says that all normals are
 /// equal, and that their products with the directions are.
 #[inline(never)]
-pub(super) fn find_footprints(
+pub(crate) fn find_footprints(
     directions: &Vectors,
     t: &Lanes,
     normals: &Vectors,
@@ -59,15 +62,31 @@ pub(super) fn find_footprints(
 
 /// Sets `means` to the mean of a checkerboard of +1 and −1 over a box with these `widths` around each of
 /// `points`. Both are in cubes; the cube at the origin is +1.
-pub(super) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
+pub(crate) fn find_means(points: &Vectors, widths: &Vectors, means: &mut Lanes) {
     means.fill(1.0);
     points.axes().into_iter().zip(widths.axes()).for_each(|(places, widths)| {
         multiply_by_means_along(places, widths, means);
     });
 }
 
+impl SolidTexture {
+    /// The colour at `point`.
+    pub fn color_at(&self, point: DVec3) -> Rgb {
+        match *self {
+            Self::Plain(color) => color,
+            Self::Checker([first, second], scale) => {
+                if is_first(point / scale.cells()) {
+                    first
+                } else {
+                    second
+                }
+            }
+        }
+    }
+}
+
 /// Whether the cube at `point` is one of +1. The coordinates are in cubes.
-pub(super) fn is_first(point: DVec3) -> bool {
+fn is_first(point: DVec3) -> bool {
     point.to_array().into_iter().map(|place| mean_along(place, 0.0)).product::<f64>() > 0.0
 }
 
@@ -109,7 +128,7 @@ fn mean_of_all([least, greatest]: [f64; 2], width: f64) -> Option<f64> {
 /// The mean of a square wave, +1 from 0 to 1 and −1 from 1 to 2, over `width` around `place`.
 fn mean_along(place: f64, width: f64) -> f64 {
     // With a large place, the difference of two close ends would lose its digits.
-    let place = place - 2.0 * floor(place / 2.0);
+    let place = place - 2.0 * floor_double(place / 2.0);
     let mean = mean_within(place, width);
     if width < WIDEST || mean.abs() == 1.0 { mean } else { 0.0 }
 }

@@ -1,6 +1,9 @@
-//! The ray, and its hit.
+//! A single ray, and its hit.
 
 use glam::DVec3;
+
+use super::relative_shape::RelativeShape;
+use crate::world::scene::Scene;
 
 /// A half-line. A ray with a direction of zero hits nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,4 +35,20 @@ pub struct Hit {
     pub t: f64,
     /// The unit normal of the body's surface, on the side of the ray's start.
     pub normal: DVec3,
+}
+
+impl Scene {
+    /// The first hit of `ray`.
+    pub fn cast(&self, ray: &Ray) -> Option<Hit> {
+        let mut nearest: Option<(RelativeShape, usize, f64)> = None;
+        for (index, body) in self.bodies.iter().enumerate() {
+            let relative = RelativeShape::new(&body.shape, ray.origin);
+            let Some(t) = relative.distance(ray.direction) else { continue };
+            if nearest.is_none_or(|(_, _, before)| t < before) {
+                nearest = Some((relative, index, t));
+            }
+        }
+        let (relative, body, t) = nearest?;
+        Some(Hit { body, t, normal: relative.normal(ray.direction, t) })
+    }
 }

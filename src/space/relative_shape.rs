@@ -10,44 +10,44 @@
 
 use glam::{BVec3, DVec3};
 
-use super::body::{Block, Plane, Shape, Sphere};
 use super::lanes::{Lanes, Vectors};
 use crate::numeric::{two_product, two_sum};
+use crate::world::scene::{Block, Plane, Shape, Sphere};
 
 /// A shape relative to an eye.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum RelativeShape {
+pub(crate) enum RelativeShape {
     Sphere(RelativeSphere),
     Plane(RelativePlane),
     Block(RelativeBlock),
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RelativeSphere {
+pub(crate) struct RelativeSphere {
     /// The vector from the eye to the center.
-    pub(super) center: DVec3,
-    pub(super) radius: f64,
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
     /// The squared distance to the center minus the squared radius: negative inside.
     power: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RelativePlane {
+pub(crate) struct RelativePlane {
     normal: DVec3,
     /// The distance of the plane along its normal.
     distance: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RelativeBlock {
+pub(crate) struct RelativeBlock {
     /// The vectors from the eye to two corners.
-    pub(super) low: DVec3,
-    pub(super) high: DVec3,
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
 }
 
 impl RelativeShape {
     /// `shape` relative to `origin`.
-    pub(super) fn new(shape: &Shape, origin: DVec3) -> Self {
+    pub(crate) fn new(shape: &Shape, origin: DVec3) -> Self {
         match shape {
             Shape::Sphere(sphere) => Self::Sphere(RelativeSphere::new(sphere, origin)),
             Shape::Plane(plane) => Self::Plane(RelativePlane::new(plane, origin)),
@@ -57,7 +57,7 @@ impl RelativeShape {
 
     /// The distance to the shape in lengths of `direction`: 0 or more, and finite.
     #[inline]
-    pub(super) fn distance(&self, direction: DVec3) -> Option<f64> {
+    pub(crate) fn distance(&self, direction: DVec3) -> Option<f64> {
         let t = match self {
             Self::Sphere(sphere) => sphere.distance(direction),
             Self::Plane(plane) => plane.distance(direction),
@@ -67,7 +67,7 @@ impl RelativeShape {
     }
 
     /// The unit normal of the shape where `direction` meets it at `t`, on the side of the eye.
-    pub(super) fn normal(&self, direction: DVec3, t: f64) -> DVec3 {
+    pub(crate) fn normal(&self, direction: DVec3, t: f64) -> DVec3 {
         match self {
             Self::Sphere(sphere) => sphere.normal(direction, t),
             Self::Plane(plane) => facing_eye(unit(plane.normal), direction),
@@ -76,7 +76,7 @@ impl RelativeShape {
     }
 
     /// The unit normal on the side of the eye, if it is the same wherever a ray hits the shape.
-    pub(super) fn common_normal(&self) -> Option<DVec3> {
+    pub(crate) fn common_normal(&self) -> Option<DVec3> {
         let Self::Plane(RelativePlane { normal, distance }) = *self else { return None };
         // With another normal, or with an eye on the plane, the side depends on the rounding of each ray.
         let is_certain = unit(normal) == normal && distance != 0.0;
@@ -85,7 +85,7 @@ impl RelativeShape {
 
     /// Sets each lane of `normals` to that for its direction and its `t`.
     #[inline(never)]
-    pub(super) fn find_normals(&self, directions: &Vectors, t: &Lanes, normals: &mut Vectors) {
+    pub(crate) fn find_normals(&self, directions: &Vectors, t: &Lanes, normals: &mut Vectors) {
         match self {
             Self::Sphere(sphere) => {
                 normals.fill(|lane| sphere.normal(directions.get(lane), t[lane]));
@@ -123,7 +123,7 @@ impl RelativeSphere {
     /// The distance to the sphere; NaN or negative if it is not ahead. Without branches, neighbouring
     /// rays are calculated together.
     #[inline(always)]
-    pub(super) fn distance(&self, direction: DVec3) -> f64 {
+    pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         let Self { center, radius, power } = *self;
         let square = direction.dot(direction);
         let along = center.dot(direction);
@@ -194,30 +194,30 @@ impl RelativePlane {
     /// The distance to the plane; negative if it is not ahead, infinite or NaN if the direction is
     /// parallel to it.
     #[inline(always)]
-    pub(super) fn distance(&self, direction: DVec3) -> f64 {
+    pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         self.distance / self.normal.dot(direction)
     }
 
     /// Whether the distance depends on nothing but the `z` of a direction.
-    pub(super) fn is_horizontal(&self) -> bool {
+    pub(crate) fn is_horizontal(&self) -> bool {
         self.normal.x == 0.0 && self.normal.y == 0.0
     }
 
     /// Whether a ray in this direction approaches the plane.
-    pub(super) fn is_ahead(&self, direction: DVec3) -> bool {
+    pub(crate) fn is_ahead(&self, direction: DVec3) -> bool {
         self.distance * self.normal.dot(direction) >= 0.0
     }
 }
 
 impl RelativeBlock {
     #[inline(always)]
-    pub(super) fn new(block: &Block, origin: DVec3) -> Self {
+    pub(crate) fn new(block: &Block, origin: DVec3) -> Self {
         Self { low: block.low() - origin, high: block.high() - origin }
     }
 
     /// The distance to the block; NaN or negative if it is not ahead.
     #[inline(always)]
-    pub(super) fn distance(&self, direction: DVec3) -> f64 {
+    pub(crate) fn distance(&self, direction: DVec3) -> f64 {
         let (enters, leaves) = self.crossings(direction);
         let (enter, leave) = (enters.max_element(), leaves.min_element());
         let nearest = if enter >= 0.0 { enter } else { leave };
@@ -227,7 +227,7 @@ impl RelativeBlock {
     /// The distances at which a ray enters and leaves the slab between the two faces of each axis,
     /// as in the slab method of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986).
     #[inline(always)]
-    pub(super) fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
+    pub(crate) fn crossings(&self, direction: DVec3) -> (DVec3, DVec3) {
         let slabs = [
             slab(self.low.x, self.high.x, direction.x),
             slab(self.low.y, self.high.y, direction.y),

@@ -1,17 +1,19 @@
 //! The renderer of a scene: for each row of pixels, it tests each body that reaches the row against
 //! the pixels in the body's bounds.
 
+use std::fmt;
+
 use super::bounds::Bounds;
 use super::camera::{Camera, Projection};
-use super::explanation::Explanation;
 use super::relative_shape::RelativeShape;
 use super::row::Row;
-use super::scene::Scene;
 use super::shading::{Shader, Shading};
 use super::shadows::Shadows;
 use super::tree::Tree;
 use crate::color::Rgb;
-use crate::render::Frame;
+use crate::render::{Frame, Options, Renderable};
+use crate::world::FieldOfView;
+use crate::world::scene::Scene;
 
 /// With more tests of a ray on average, the tree is faster than the bounds on the screen.
 const MOST_TESTS_OF_RAY: u64 = 32;
@@ -30,6 +32,25 @@ pub struct Renderer {
     tree: Tree,
     shadows: Shadows,
     shading: Shading,
+}
+
+/// The counts of a frame of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// Bodies in the scene.
+    pub bodies: u64,
+    /// Bodies that can cover a pixel.
+    pub in_view: u64,
+    /// Rays cast from the camera, one for each pixel.
+    pub rays: u64,
+    /// Tests of these rays against bodies.
+    pub tests: u64,
+    /// Rays that hit a body.
+    pub hits: u64,
+    /// Rays cast from these hits towards the sun.
+    pub shadow_rays: u64,
+    /// Tests of shadow rays against bodies, and of neighbouring ones together against boxes around them.
+    pub shadow_tests: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -164,10 +185,64 @@ impl Renderer {
             match found.map(|index| &in_view[index]) {
                 None => shader.shade_sky(shading, pixels),
                 Some(InView { body, shape, .. }) => {
-                    shader.shade(*body, shape, shadows, shading, pixels, explanation);
+                    let (rays, tests) = shader.shade(*body, shape, shadows, shading, pixels);
+                    explanation.hits += pixels.len() as u64;
+                    explanation.shadow_rays += rays;
+                    explanation.shadow_tests += tests;
                 }
             }
             column = end;
         }
+    }
+}
+
+impl Renderable for Scene {
+    type Camera = Camera;
+    type Renderer = Renderer;
+    type Explanation = Explanation;
+
+    fn start_camera(&self, field_of_view: FieldOfView) -> Camera {
+        Self::start_camera(self, field_of_view)
+    }
+
+    /// Draws the view of `camera`. No option applies: bodies have neither textures nor animations.
+    fn render(&self, camera: &Camera, _: Options, renderer: &mut Renderer, frame: &mut Frame) {
+        renderer.render(self, camera, frame);
+    }
+
+    fn render_while(
+        &self,
+        camera: &Camera,
+        _: Options,
+        renderer: &mut Renderer,
+        frame: &mut Frame,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> bool {
+        renderer.render_while(self, camera, frame, go_on)
+    }
+
+    fn explain(
+        &self,
+        camera: &Camera,
+        _: Options,
+        renderer: &mut Renderer,
+        frame: &mut Frame,
+    ) -> Explanation {
+        renderer.explain(self, camera, frame)
+    }
+}
+
+impl fmt::Display for Explanation {
+    /// Writes a few lines for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { bodies, in_view, rays, tests, hits, shadow_rays, shadow_tests } = self;
+        let without_bounds = rays * bodies;
+        writeln!(f, "bodies   {in_view:>10} of {bodies} in view")?;
+        writeln!(f, "rays     {rays:>10} cast, one a pixel, {hits} of them hit a body")?;
+        writeln!(
+            f,
+            "tests    {tests:>10} of a ray against a body, of {without_bounds} without bounds"
+        )?;
+        writeln!(f, "shadows  {shadow_rays:>10} rays cast towards the sun, {shadow_tests} tests")
     }
 }

@@ -19,7 +19,7 @@ const NONE: u64 = u64::MAX;
 
 /// The rays of a row, in memory that is reused.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Row {
+pub(crate) struct Row {
     width: usize,
     /// The directions at the middle of the picture's height, by component. As many as there are lanes follow
     /// after the last column.
@@ -39,14 +39,14 @@ pub(super) struct Row {
 
 /// Neighbouring rays of a row that hit the same body, or none.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Stretch {
-    pub(super) directions: Vectors,
-    pub(super) t: Lanes,
+pub(crate) struct Stretch {
+    pub(crate) directions: Vectors,
+    pub(crate) t: Lanes,
 }
 
 impl Row {
     /// Begins a picture.
-    pub(super) fn begin(&mut self, projection: &Projection) {
+    pub(crate) fn begin(&mut self, projection: &Projection) {
         let Self { x, y, z, .. } = self;
         for components in [&mut *x, y, z] {
             components.clear();
@@ -62,12 +62,12 @@ impl Row {
     }
 
     /// Whether all directions have the same `z`.
-    pub(super) fn is_level(&self) -> bool {
+    pub(crate) fn is_level(&self) -> bool {
         self.is_level
     }
 
     /// Begins the row that is `up` from the middle of the picture.
-    pub(super) fn begin_row(&mut self, up: DVec3) {
+    pub(crate) fn begin_row(&mut self, up: DVec3) {
         self.up = up;
         self.t.clear();
         self.t.resize(self.width, f64::INFINITY);
@@ -77,7 +77,7 @@ impl Row {
 
     /// Tests the rays of these `columns` against the body with this index. Of bodies at the same distance,
     /// the first tested is hit. Returns the number of tests.
-    pub(super) fn test(
+    pub(crate) fn test(
         &mut self,
         columns: Range<usize>,
         index: usize,
@@ -113,7 +113,7 @@ impl Row {
     }
 
     /// Finds the hits of all rays in `tree`. `distance` returns that of the body with this index.
-    pub(super) fn search(
+    pub(crate) fn search(
         &mut self,
         tree: &Tree,
         mut distance: impl FnMut(usize, DVec3) -> Option<f64>,
@@ -129,7 +129,7 @@ impl Row {
 
     /// The index of the body that the rays from `column` on hit, and the end of these columns, at most one
     /// for each lane.
-    pub(super) fn same_from(&self, column: usize) -> (Option<usize>, usize) {
+    pub(crate) fn same_from(&self, column: usize) -> (Option<usize>, usize) {
         let found = self.found[column];
         let rest = &self.found[column..];
         let count = match rest.first_chunk::<LANES>() {
@@ -141,7 +141,7 @@ impl Row {
 
     /// Sets `stretch` to the rays of these columns, at most one for each lane. In the lanes after them, the
     /// directions go on, and the last distance is repeated.
-    pub(super) fn take(&self, columns: Range<usize>, stretch: &mut Stretch) {
+    pub(crate) fn take(&self, columns: Range<usize>, stretch: &mut Stretch) {
         let Stretch { directions, t } = stretch;
         let count = columns.len();
         let distances = &self.t[columns.clone()];

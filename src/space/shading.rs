@@ -4,21 +4,19 @@
 
 use glam::DVec3;
 
-use super::body::SolidTexture;
 use super::camera::Projection;
 use super::checker;
-use super::explanation::Explanation;
-use super::lanes::{LANES, Lanes, Vectors, rounded};
-use super::light::sky_share;
+use super::lanes::{LANES, Lanes, Vectors};
 use super::relative_shape::RelativeShape;
 use super::row::Stretch;
-use super::scene::Scene;
 use super::shadows::Shadows;
 use crate::color::Rgb;
 use crate::color::srgb::{from_linear_16, linear_16};
+use crate::numeric::rounding::rounded_short;
+use crate::world::scene::{Scene, SolidTexture};
 
 /// The values that all pixels of a frame share.
-pub(super) struct Shader<'a> {
+pub(crate) struct Shader<'a> {
     scene: &'a Scene,
     origin: DVec3,
     /// The changes of direction to the next column and to the next row.
@@ -29,9 +27,9 @@ pub(super) struct Shader<'a> {
 
 /// Memory for shading, which is reused.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shading {
+pub(crate) struct Shading {
     /// The rays of the pixels.
-    pub(super) stretch: Stretch,
+    pub(crate) stretch: Stretch,
     points: Vectors,
     normals: Vectors,
     brightness: Lanes,
@@ -52,14 +50,21 @@ struct Light {
     fog: [u32; LANES],
 }
 
+impl Scene {
+    /// The colour of the sky in this direction. It changes linearly with the slope.
+    pub fn sky_color(&self, direction: DVec3) -> Rgb {
+        self.sky.zenith.over(self.sky.horizon, sky_share(direction) as u8)
+    }
+}
+
 impl<'a> Shader<'a> {
-    pub(super) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
+    pub(crate) fn new(scene: &'a Scene, projection: &Projection, is_level: bool) -> Self {
         Self { scene, origin: projection.origin, steps: projection.steps(), is_level }
     }
 
     /// Colours `pixels`, which show the sky.
     #[inline(never)]
-    pub(super) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
+    pub(crate) fn shade_sky(&self, shading: &Shading, pixels: &mut [Rgb]) {
         let sky = self.scene.sky;
         let mut shares = [0; LANES];
         for (lane, share) in shares.iter_mut().enumerate() {
@@ -75,17 +80,15 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Colours `pixels`, which show `body`.
-    pub(super) fn shade(
+    /// Colours `pixels`, which show `body`. Returns the number of shadow rays and of their tests.
+    pub(crate) fn shade(
         &self,
         body: usize,
         shape: &RelativeShape,
         shadows: &Shadows,
         shading: &mut Shading,
         pixels: &mut [Rgb],
-        explanation: &mut Explanation,
-    ) {
-        explanation.hits += pixels.len() as u64;
+    ) -> (u64, u64) {
         let Shading { stretch: Stretch { directions, t }, points, normals, .. } = shading;
         let normal = shape.common_normal();
         match normal {
@@ -103,11 +106,11 @@ impl<'a> Shader<'a> {
         let ambient = self.scene.sun.ambient.get();
         let Shading { points, brightness, .. } = &mut *shading;
         let count = pixels.len();
-        let rays = brightness[..count].iter().filter(|&&it| it > ambient).count();
+        let rays = brightness[..count].iter().filter(|&&it| it > ambient).count() as u64;
+        let mut tests = 0;
         if rays > 0 {
-            explanation.shadow_rays += rays as u64;
             let (boxes, exact) = shadows.darken(points, bounds, body, ambient, brightness);
-            explanation.shadow_tests += boxes + exact * count as u64;
+            tests = boxes + exact * count as u64;
         }
         let is_level = self.is_level && normal.is_some_and(|it| it.x == 0.0 && it.y == 0.0);
         self.find_light(is_level, shading);
@@ -123,6 +126,7 @@ impl<'a> Shader<'a> {
         for ((pixel, &own), &share) in pixels.iter_mut().zip(own).zip(shares) {
             *pixel = pixel.blended(own, fog, share);
         }
+        (rays, tests)
     }
 
     /// Sets the brightness without shadows. `normal` is that of all pixels, if they have the same one.
@@ -148,15 +152,15 @@ impl<'a> Shader<'a> {
         let clearness = |t: f64| self.scene.fog.map_or(1.0, |fog| fog.clearness(t));
         if is_level || self.scene.fog.is_none() {
             let clearness = clearness(t[0]);
-            light.fog = [256 - rounded(WHOLE * clearness); LANES];
+            light.fog = [256 - rounded_short(WHOLE * clearness); LANES];
             for (own, brightness) in light.own.iter_mut().zip(&*brightness) {
-                *own = rounded(WHOLE * brightness * clearness);
+                *own = rounded_short(WHOLE * brightness * clearness);
             }
         } else {
             for lane in 0..LANES {
                 let clearness = clearness(t[lane]);
-                light.own[lane] = rounded(WHOLE * brightness[lane] * clearness);
-                light.fog[lane] = 256 - rounded(WHOLE * clearness);
+                light.own[lane] = rounded_short(WHOLE * brightness[lane] * clearness);
+                light.fog[lane] = 256 - rounded_short(WHOLE * clearness);
             }
         }
     }
@@ -199,11 +203,40 @@ fn mix([one, other]: [Rgb; 2], shares: &Lanes, pixels: &mut [Rgb]) {
     for (channels, (one, other)) in channels.iter_mut().zip(one.into_iter().zip(other)) {
         let [one, other] = [one, other].map(f64::from);
         for (channel, share) in channels.iter_mut().zip(shares) {
-            *channel = rounded(one + (other - one) * share);
+            *channel = rounded_short(one + (other - one) * share);
         }
     }
     let [red, green, blue] = channels;
     for (lane, pixel) in pixels.iter_mut().enumerate() {
         *pixel = from_linear_16([red[lane], green[lane], blue[lane]].map(|it| it as u16));
+    }
+}
+
+/// The share of the zenith's colour in this direction, in 255ths.
+#[inline(always)]
+fn sky_share(direction: DVec3) -> u32 {
+    const STEEPEST: f64 = 0.5;
+    let DVec3 { x, y, z } = direction;
+    let away = (x * x + y * y).sqrt();
+    let height = z / STEEPEST;
+    let above = if height > 0.0 { height } else { 0.0 };
+    let height = if above < away { above } else { away };
+    // Straight up or down, the horizontal distance is zero.
+    let vertical = if z > 0.0 { 1.0 } else { 0.0 };
+    let share = if away > 0.0 { height / away } else { vertical };
+    rounded_short(share * 255.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sky_is_above() {
+        let scene = Scene::default();
+        assert_eq!(scene.sky_color(DVec3::Z), scene.sky.zenith);
+        assert_eq!(scene.sky_color(DVec3::new(1.0, 0.0, 0.5)), scene.sky.zenith);
+        assert_eq!(scene.sky_color(DVec3::X), scene.sky.horizon);
+        assert_eq!(scene.sky_color(-DVec3::Z), scene.sky.horizon);
     }
 }

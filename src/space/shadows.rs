@@ -8,18 +8,17 @@
 //! axis perpendicular to the light. Only bodies whose interval overlaps that of the rays of
 //! neighbouring pixels are tested: first by boxes around the body and the pixels, and then exactly for
 //! each ray. An interval tree in a sorted array finds them; Li and Rong ("Bedtk", 2021) describe this
-//! layout. A grid perpendicular to the light, as in the light buffer of Haines and Greenberg
-//! (1986), was refused: a few huge bodies would fill all its cells.
+//! layout. Rejected: a grid perpendicular to the light, as in the light buffer of Haines and
+//! Greenberg (1986), since a few huge bodies would fill all its cells.
 
 #![expect(clippy::inline_always, reason = "lanes pass through memory in each call")]
 #![expect(clippy::needless_bitwise_bool, reason = "a branch keeps lanes from being one vector")]
 
 use glam::DVec3;
 
-use super::body::{Body, Shape};
 use super::lanes::{Lanes, Vectors, greatest};
-use super::light::Sun;
 use super::relative_shape::RelativeBlock;
+use crate::world::scene::{Body, Shape, Sun};
 
 /// A bound on the rounding of a position, as a fraction of it.
 const MARGIN: f64 = 1e-9;
@@ -29,7 +28,7 @@ const MOST_IN_LEAF: usize = 8;
 
 /// The bodies of a scene that cast shadows.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shadows {
+pub(crate) struct Shadows {
     /// The bodies and the sun for which the tree was made.
     bodies: Vec<Body>,
     sun: Option<Sun>,
@@ -83,7 +82,7 @@ struct LightBox {
 
 impl Shadows {
     /// Prepares the tree for `bodies` under `sun`, unless it is that of the last frame.
-    pub(super) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
+    pub(crate) fn begin(&mut self, bodies: &[Body], sun: &Sun) {
         if self.sun == Some(*sun) && self.bodies == bodies {
             return;
         }
@@ -103,7 +102,7 @@ impl Shadows {
     /// Sets the `brightness` of each of `points` to `ambient` if a body is between it and the sun. All of
     /// them are on the surface of `body`, and in the box between two corners, up to rounding. Returns the
     /// number of bodies whose boxes are tested, and that of those against which the points are tested.
-    pub(super) fn darken(
+    pub(crate) fn darken(
         &self,
         points: &Vectors,
         bounds: [DVec3; 2],

@@ -4,8 +4,8 @@
 //! Each node has a box around its bodies (Rubin and Whitted, "A 3-Dimensional Representation for Fast
 //! Rendering of Complex Scenes", 1980). A ray visits the nearer box first, and skips boxes that begin
 //! beyond the nearest hit so far. A node is split at the median of its centers along the axis on which
-//! they differ most. The surface area heuristic was refused: the tree is built for each frame, and
-//! that takes longer to build.
+//! they differ most. Rejected: the surface area heuristic. The tree is built for each frame, and that
+//! takes longer to build.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ const MARGIN: f64 = 1e-9;
 
 /// The tree over some shapes, which are named by their indices. Its memory is reused.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     /// A node comes before its first child, which comes before the second one.
     nodes: Vec<Node>,
     /// The bounded shapes. Those of a node are next to each other.
@@ -46,26 +46,26 @@ struct Leaf {
 
 /// The nearest hit of a ray so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest {
-    pub(super) t: f64,
+pub(crate) struct Nearest {
+    pub(crate) t: f64,
     /// The index of the shape.
-    pub(super) index: usize,
+    pub(crate) index: usize,
 }
 
 impl Tree {
     /// Removes all shapes.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.nodes.clear();
         self.leaves.clear();
         self.unbounded.clear();
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.nodes.is_empty() && self.unbounded.is_empty()
     }
 
     /// Builds the tree over `shapes`, whose indices are their positions.
-    pub(super) fn build<'s>(&mut self, shapes: impl Iterator<Item = &'s RelativeShape>) {
+    pub(crate) fn build<'s>(&mut self, shapes: impl Iterator<Item = &'s RelativeShape>) {
         self.clear();
         for (index, shape) in shapes.enumerate() {
             match bounds(shape) {
@@ -80,7 +80,7 @@ impl Tree {
 
     /// The nearest hit of the ray in this direction. `distance` returns that of a shape. Of hits at the
     /// same distance, it is the one with the lowest index.
-    pub(super) fn nearest(
+    pub(crate) fn nearest(
         &self,
         direction: DVec3,
         mut distance: impl FnMut(usize) -> Option<f64>,

@@ -12,47 +12,45 @@
 //! blocks or characters, in true colour or in a palette. A screen that does not change becomes
 //! exact in ten frames.
 
-mod ascii;
-mod backend;
-mod block_element;
+mod block;
 mod bytes;
-mod control;
-mod exact;
-mod glyph_table;
-mod inexact;
 mod ink;
 mod motion;
 mod packed_cell;
-mod packed_position;
 mod palette;
 mod pen;
+mod quantizer;
 mod refinement;
+mod row;
 mod screen;
-mod shape;
 mod shift;
 mod style;
-mod symbol;
 mod trellis;
 
-use std::io::Write;
+use std::io::{self, Write};
 
-use ratatui::layout::Size;
+use crossterm::cursor::{Hide, Show};
+use crossterm::terminal::{self, Clear};
+use ratatui::backend::{Backend, ClearType, WindowSize};
+use ratatui::buffer::Cell;
+use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
 #[cfg(feature = "cli")]
 pub(crate) use self::bytes::Bytes;
-use self::inexact::RowEncoder;
-use self::ink::{Notation, Price};
+use self::ink::Price;
 use self::pen::Pen;
 use self::refinement::Refinement;
+use self::row::{RowEncoder, draw_row};
 pub use self::screen::Screen;
 use self::shift::Shifts;
-use self::style::Shade;
 #[cfg(feature = "cli")]
 pub(crate) use self::style::Style;
+#[cfg(not(feature = "cli"))]
+use self::style::Style;
+use self::style::{Notation, Shade};
 use super::fidelity::Fidelity;
-#[cfg(feature = "lab")]
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A ratatui backend that writes to `W`.
 ///
@@ -79,7 +77,6 @@ use crate::canvas::Mosaic;
 #[derive(Debug)]
 pub struct CellWriter<W> {
     output: W,
-    size: Size,
     screen: Screen,
     pen: Pen,
     cursor_visible: bool,
@@ -95,7 +92,6 @@ impl<W: Write> CellWriter<W> {
     pub fn new(output: W, size: Size) -> Self {
         Self {
             output,
-            size,
             screen: Screen::blank(size),
             pen: Pen::new(size),
             cursor_visible: false,
@@ -181,14 +177,12 @@ impl<W: Write> CellWriter<W> {
     }
 
     /// The mosaic that a cell shows in its colours; `None` if it shows none, or an unknown one.
-    #[cfg(feature = "lab")]
-    pub(crate) fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
+    pub fn shown_mosaic(&self, column: u16, row: u16) -> Option<Mosaic> {
         self.screen.shown_mosaic(column, row)
     }
 
     /// Sets the size of the window. Ratatui clears it in the next frame.
     pub fn set_size(&mut self, size: Size) {
-        self.size = size;
         self.screen.resize(size);
         self.pen.set_size(size);
     }
@@ -206,7 +200,7 @@ impl<W: Write> CellWriter<W> {
     ///
     /// ```
     /// use cellcaster::terminal::CellWriter;
-    /// use cellcaster::canvas::Canvas;
+    /// use cellcaster::tui::canvas::Canvas;
     /// use ratatui::backend::Backend;
     /// use ratatui::layout::Size;
     ///
@@ -217,10 +211,10 @@ impl<W: Write> CellWriter<W> {
     /// # Ok::<(), std::io::Error>(())
     /// ```
     pub fn draw_frame(&mut self, draw: impl FnOnce(&mut Screen)) {
-        self.screen.begin_frame();
+        let before = self.screen.begin_frame();
         draw(&mut self.screen);
         self.pen.quantize(&mut self.screen);
-        self.screen.end_frame();
+        self.screen.end_frame(before);
         self.update();
     }
 
@@ -244,10 +238,94 @@ impl<W: Write> CellWriter<W> {
         pen.define_colors(&self.screen, price);
         let rows = self.screen.changed_rows();
         if is_exact {
-            rows.for_each(|row| exact::draw_row(pen, shifts, row));
+            rows.for_each(|row| draw_row(pen, shifts, row));
         } else {
             RowEncoder::draw_rows(pen, shifts, rows, self.fidelity);
         }
+    }
+}
+
+impl<W: Write> Backend for CellWriter<W> {
+    type Error = io::Error;
+
+    fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
+    where
+        I: Iterator<Item = (u16, u16, &'a Cell)>,
+    {
+        for (x, y, cell) in content {
+            self.screen.want(x, y, cell);
+        }
+        self.pen.quantize(&mut self.screen);
+        self.update();
+        Ok(())
+    }
+
+    fn hide_cursor(&mut self) -> io::Result<()> {
+        if self.cursor_visible {
+            self.pen.command(Hide);
+            self.cursor_visible = false;
+        }
+        Ok(())
+    }
+
+    fn show_cursor(&mut self) -> io::Result<()> {
+        if !self.cursor_visible {
+            self.pen.command(Show);
+            self.cursor_visible = true;
+        }
+        Ok(())
+    }
+
+    /// The position of the next character, as far as it is known without a query to the terminal.
+    fn get_cursor_position(&mut self) -> io::Result<Position> {
+        Ok(self.pen.position().unwrap_or(Position::ORIGIN))
+    }
+
+    fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
+        self.pen.move_to(position.into());
+        Ok(())
+    }
+
+    fn clear(&mut self) -> io::Result<()> {
+        self.clear_region(ClearType::All)
+    }
+
+    fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
+        self.pen.set_style(Style::RESET);
+        let cursor = match region {
+            ClearType::All => Position::ORIGIN,
+            _ => self.pen.settle(),
+        };
+        self.screen.clear(region, cursor);
+        let region = match region {
+            ClearType::All => terminal::ClearType::All,
+            ClearType::AfterCursor => terminal::ClearType::FromCursorDown,
+            ClearType::BeforeCursor => terminal::ClearType::FromCursorUp,
+            ClearType::CurrentLine => terminal::ClearType::CurrentLine,
+            ClearType::UntilNewLine => terminal::ClearType::UntilNewLine,
+        };
+        self.pen.command(Clear(region));
+        Ok(())
+    }
+
+    fn size(&self) -> io::Result<Size> {
+        Ok(self.pen.size())
+    }
+
+    fn window_size(&mut self) -> io::Result<WindowSize> {
+        Ok(WindowSize { columns_rows: self.pen.size(), pixels: Size::ZERO })
+    }
+
+    /// Writes the frame, unless it is empty.
+    fn flush(&mut self) -> io::Result<()> {
+        let Some(frame) = self.pen.finish_frame() else { return Ok(()) };
+        let written = self.output.write_all(frame).and_then(|()| self.output.flush());
+        match written {
+            Ok(()) => self.bytes_written += frame.len() as u64,
+            Err(_) => self.forget(),
+        }
+        self.pen.clear();
+        written
     }
 }
 

@@ -8,53 +8,32 @@ use std::{fmt, io};
 #[derive(Debug)]
 pub struct Error(Kind);
 
+/// The kinds of errors.
 #[derive(Debug)]
-enum Kind {
+pub(crate) enum Kind {
+    /// `stream` (such as "standard input") is not a terminal.
     #[cfg(unix)]
-    NotATerminal {
-        stream: &'static str,
-    },
+    NotATerminal { stream: &'static str },
+    /// The game cannot run on this platform yet.
     #[cfg(not(unix))]
     UnsupportedPlatform,
-    Teletype {
-        term: &'static str,
-    },
+    /// The terminal cannot move its cursor, according to this value of `TERM`.
+    Teletype { term: &'static str },
+    /// This process has a session already.
     AlreadyTaken,
+    /// A panic in another thread has ended the session.
     GivenBack,
-    Io {
-        doing: &'static str,
-        source: io::Error,
-    },
+    /// An error occurred while `doing` something (such as "reading keys").
+    Io { doing: &'static str, source: io::Error },
+}
+
+impl From<Kind> for Error {
+    fn from(kind: Kind) -> Self {
+        Self(kind)
+    }
 }
 
 impl Error {
-    /// `stream` (such as "standard input") is not a terminal.
-    #[cfg(unix)]
-    pub(super) fn not_a_terminal(stream: &'static str) -> Self {
-        Self(Kind::NotATerminal { stream })
-    }
-
-    /// The game cannot run on this platform yet.
-    #[cfg(not(unix))]
-    pub(super) fn unsupported_platform() -> Self {
-        Self(Kind::UnsupportedPlatform)
-    }
-
-    /// The terminal cannot move its cursor, according to this value of `TERM`.
-    pub(super) fn teletype(term: &'static str) -> Self {
-        Self(Kind::Teletype { term })
-    }
-
-    /// This process has a session already.
-    pub(super) fn already_taken() -> Self {
-        Self(Kind::AlreadyTaken)
-    }
-
-    /// A panic in another thread has ended the session.
-    pub(super) fn given_back() -> Self {
-        Self(Kind::GivenBack)
-    }
-
     /// Whether the user can avoid it, with a terminal or another platform.
     pub fn is_mistake(&self) -> bool {
         match self.0 {
@@ -66,7 +45,7 @@ impl Error {
     }
 
     /// Wraps an error that occurred while `doing` something (such as "reading keys").
-    pub(super) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+    pub(crate) fn while_doing(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |source| Self(Kind::Io { doing, source })
     }
 }

@@ -1,40 +1,41 @@
 //! Takes the terminal and restores its previous state.
 //!
 //! The session, the panic hook and the thread that handles signals share a guard. The first of them
-//! that ends gives the terminal back, and the others do nothing. Restoring a part of the state in
-//! each was refused: a mode that is pushed or popped twice is worse than neither.
+//! that ends gives the terminal back, and the others do nothing.
+//!
+//! Rejected: restoring a part of the state in each. A mode that is pushed or popped twice is worse than neither.
 
-mod output_queue;
-mod panic_hook;
-
-use std::io;
+use std::any::Any;
+use std::fmt;
+use std::io::{self, Write};
+use std::panic::{self, PanicHookInfo};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, Once, PoisonError};
 use std::time::{Duration, Instant};
 
 use crossterm::terminal::LeaveAlternateScreen;
+use ratatui::layout::Size;
 
-use self::output_queue::OutputQueue;
-use super::Error;
+use super::error::Kind;
 use super::input::{Answer, Decoder, Input};
-use super::platform::Device;
 use super::protocol::Changes;
-use super::recorder::{Recorder, Recording};
-use super::sequence;
+use super::unix::Device;
+use super::{Error, sequence};
+use crate::fault::printable;
 
 /// The time that a terminal has to accept the bytes that restore its state.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(250);
 
 /// The changes to the terminal's state, and the way to undo them.
 #[derive(Debug)]
-pub(super) struct Guard {
+pub(crate) struct Guard {
     device: Device,
     begun_at: Instant,
     state: Mutex<State>,
     given_back: Condvar,
     shutting_down: AtomicBool,
     output_queue: Mutex<OutputQueue>,
-    recording: Mutex<Recording>,
+    recorder: Option<Mutex<Box<dyn Recorder>>>,
 }
 
 #[derive(Debug, Default)]
@@ -48,7 +49,7 @@ impl Guard {
     ///
     /// # Errors
     /// If the process has a guard already.
-    pub(super) fn install(
+    pub(crate) fn install(
         device: Device,
         recorder: Option<Box<dyn Recorder>>,
     ) -> Result<Arc<Self>, Error> {
@@ -59,34 +60,41 @@ impl Guard {
             given_back: Condvar::new(),
             shutting_down: AtomicBool::new(false),
             output_queue: Mutex::default(),
-            recording: Mutex::new(Recording::by(recorder)),
+            recorder: recorder.map(Mutex::new),
         });
-        panic_hook::protect(&guard)?;
+        protect(&guard)?;
         Ok(guard)
     }
 
     /// Gives the terminal back at the end of the session.
-    pub(super) fn uninstall(&self) {
+    pub(crate) fn uninstall(&self) {
         self.give_back();
-        panic_hook::release(self);
+        release(self);
     }
 
-    pub(super) fn device(&self) -> &Device {
+    pub(crate) fn device(&self) -> &Device {
         &self.device
     }
 
-    /// The recorder of the sent bytes.
-    pub(super) fn recording(&self) -> MutexGuard<'_, Recording> {
-        self.recording.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Whether a recorder receives the sent bytes.
+    pub(crate) fn is_recorded(&self) -> bool {
+        self.recorder.is_some()
+    }
+
+    /// Calls `record` with the recorder of the sent bytes, if there is one.
+    pub(crate) fn record(&self, record: impl FnOnce(&mut dyn Recorder)) {
+        if let Some(recorder) = &self.recorder {
+            record(&mut **recorder.lock().unwrap_or_else(PoisonError::into_inner));
+        }
     }
 
     /// The time since the session began.
-    pub(super) fn now(&self) -> Duration {
+    pub(crate) fn now(&self) -> Duration {
         self.begun_at.elapsed()
     }
 
     /// Takes the terminal, and sets raw mode.
-    pub(super) fn take(&self) -> io::Result<()> {
+    pub(crate) fn take(&self) -> io::Result<()> {
         let mut state = self.lock();
         self.device.make_raw()?;
         state.taken = true;
@@ -95,59 +103,59 @@ impl Guard {
     }
 
     /// Sets what must be undone.
-    pub(super) fn set_changes(&self, changes: Changes) {
+    pub(crate) fn set_changes(&self, changes: Changes) {
         self.lock().changes = changes;
     }
 
     /// Whether the terminal is taken, so that the program may write to it.
-    pub(super) fn is_taken(&self) -> bool {
+    pub(crate) fn is_taken(&self) -> bool {
         self.lock().taken
     }
 
     /// Writes `bytes` after all earlier bytes, as far as the terminal accepts them at once. The
     /// rest is [written later](Self::write_queued). After them, `changes` must be undone.
-    pub(super) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
+    pub(crate) fn write(&self, bytes: &[u8], changes: Changes) -> io::Result<()> {
         let mut state = self.lock_taken()?;
         state.changes = changes;
-        self.recording().sent(bytes);
+        self.record(|recorder| recorder.sent(bytes));
         self.output_queue().send(bytes, &self.device)
     }
 
     /// Writes the queued bytes, as far as the terminal accepts them at once.
-    pub(super) fn write_queued(&self) -> io::Result<()> {
+    pub(crate) fn write_queued(&self) -> io::Result<()> {
         let _taken = self.lock_taken()?;
         self.output_queue().write_to(&self.device)
     }
 
     /// Reads as [`Device::read`] does.
-    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+    pub(crate) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         let _taken = self.lock_taken()?;
         self.device.read(buffer)
     }
 
     /// Whether the terminal has accepted all bytes.
-    pub(super) fn has_written_all(&self) -> bool {
+    pub(crate) fn has_written_all(&self) -> bool {
         self.output_queue().is_empty()
     }
 
     /// Makes all functions stop waiting for a terminal that is not ready for a frame.
-    pub(super) fn shut_down(&self) {
+    pub(crate) fn shut_down(&self) {
         self.shutting_down.store(true, Ordering::SeqCst);
     }
 
     /// Whether [`Guard::shut_down`] was called.
-    pub(super) fn is_shutting_down(&self) -> bool {
+    pub(crate) fn is_shutting_down(&self) -> bool {
         self.shutting_down.load(Ordering::SeqCst)
     }
 
     /// Gives the terminal back, unless that was done before. Takes six seconds at most.
-    pub(super) fn give_back(&self) {
+    pub(crate) fn give_back(&self) {
         self.give_back_and(|| ());
     }
 
     /// Gives the terminal back, unless that was done before, and then calls `end`. Threads that want to
     /// write or read wait until both are done, so that none ends the program in another way.
-    pub(super) fn give_back_and(&self, end: impl FnOnce()) {
+    pub(crate) fn give_back_and(&self, end: impl FnOnce()) {
         let mut state = self.lock();
         if state.taken {
             state.taken = false;
@@ -158,7 +166,7 @@ impl Guard {
     }
 
     /// Waits until the terminal is given back; returns whether that happened within `timeout`.
-    pub(super) fn wait_until_given_back(&self, timeout: Duration) -> bool {
+    pub(crate) fn wait_until_given_back(&self, timeout: Duration) -> bool {
         let state = self.lock();
         let waited = self.given_back.wait_timeout_while(state, timeout, |state| state.taken);
         !waited.unwrap_or_else(PoisonError::into_inner).0.taken
@@ -169,7 +177,7 @@ impl Guard {
     /// shell again.
     fn lock_taken(&self) -> io::Result<MutexGuard<'_, State>> {
         let state = self.lock();
-        if state.taken { Ok(state) } else { Err(io::Error::other(Error::given_back())) }
+        if state.taken { Ok(state) } else { Err(io::Error::other(Error::from(Kind::GivenBack))) }
     }
 
     fn output_queue(&self) -> MutexGuard<'_, OutputQueue> {
@@ -205,7 +213,7 @@ impl Guard {
 
     /// Writes `text`, and returns the length of the part that the terminal accepts in time.
     fn write_patiently(&self, text: &str) -> io::Result<usize> {
-        self.recording().sent(text.as_bytes());
+        self.record(|recorder| recorder.sent(text.as_bytes()));
         let deadline = Instant::now() + WRITE_TIMEOUT;
         self.device.write(text.as_bytes(), || Instant::now() < deadline)
     }
@@ -230,5 +238,152 @@ impl Guard {
                 }),
             }
         }
+    }
+}
+
+/// A recorder of all bytes that a [`Session`](super::Session) sends.
+pub trait Recorder: Send {
+    /// The window has this `size`. Called once before any bytes, and after each change.
+    fn resized(&mut self, size: Size);
+
+    /// These `bytes` are sent to the terminal. They are whole characters and whole sequences.
+    fn sent(&mut self, bytes: &[u8]);
+}
+
+impl fmt::Debug for dyn Recorder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Recorder")
+    }
+}
+
+/// Bytes for a terminal that does not accept more at present. They are few, since no frame is drawn
+/// while there are any.
+#[derive(Debug, Default)]
+struct OutputQueue {
+    bytes: Vec<u8>,
+    /// The number of accepted bytes.
+    taken: usize,
+}
+
+impl OutputQueue {
+    /// Writes `bytes` after the waiting ones, as far as `device` accepts them at once. Keeps the rest.
+    fn send(&mut self, bytes: &[u8], device: &Device) -> io::Result<()> {
+        if self.is_empty() {
+            let accepted = device.write_some(bytes);
+            if !accepted.as_ref().is_ok_and(|&count| count == bytes.len()) {
+                self.bytes.extend_from_slice(bytes);
+                self.taken = accepted?;
+            }
+            return Ok(());
+        }
+        self.bytes.extend_from_slice(bytes);
+        self.write_to(device)
+    }
+
+    /// Writes the waiting bytes, as far as `device` accepts them at once.
+    fn write_to(&mut self, device: &Device) -> io::Result<()> {
+        self.taken += device.write_some(&self.bytes[self.taken..])?;
+        if self.taken == self.bytes.len() {
+            self.clear();
+        }
+        Ok(())
+    }
+
+    /// Whether `sequence` is among the bytes, and the device has not accepted all of it.
+    fn withholds(&self, sequence: &str) -> bool {
+        let mut places = self.bytes.windows(sequence.len());
+        let last = places.rposition(|bytes| bytes == sequence.as_bytes());
+        last.is_some_and(|place| place + sequence.len() > self.taken)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    fn clear(&mut self) {
+        self.bytes.clear();
+        self.taken = 0;
+    }
+}
+
+/// The guard of the current session. The hook runs in all threads, so that this belongs to the
+/// process and not to the session.
+static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
+
+/// Sets the guard that the hook uses.
+fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
+    static HOOK: Once = Once::new();
+    let mut current = lock();
+    if current.is_some() {
+        return Err(Kind::AlreadyTaken.into());
+    }
+    *current = Some(Arc::clone(guard));
+    HOOK.call_once(install_hook);
+    Ok(())
+}
+
+/// Removes `guard`; panics are then handled as before.
+fn release(guard: &Guard) {
+    let mut current = lock();
+    if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
+        *current = None;
+    }
+}
+
+/// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
+/// panics outside of sessions. It is never removed: this would also remove a hook installed after it.
+fn install_hook() {
+    let outside = panic::take_hook();
+    panic::set_hook(Box::new(move |info| match lock().clone() {
+        Some(guard) => {
+            guard.give_back();
+            report(info);
+        }
+        None => outside(info),
+    }));
+}
+
+/// Prints one sentence. If standard error is closed, nothing can be reported.
+fn report(info: &PanicHookInfo) {
+    let message = printable(message(info.payload()));
+    _ = match info.location() {
+        Some(place) => writeln!(
+            io::stderr(),
+            "This program has a fault, and had to end: {message} (at {}:{}).",
+            place.file(),
+            place.line()
+        ),
+        None => writeln!(io::stderr(), "This program has a fault, and had to end: {message}."),
+    };
+}
+
+fn message(payload: &dyn Any) -> &str {
+    payload
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| payload.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("it does not say which")
+}
+
+fn lock() -> MutexGuard<'static, Option<Arc<Guard>>> {
+    CURRENT.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sequence_is_withheld_until_all_of_it_is_accepted() {
+        let mut queue = OutputQueue::default();
+        assert!(!queue.withholds("flags"));
+        queue.bytes.extend_from_slice(b"frame flags frame");
+        for (taken, withheld) in [(0, true), (6, true), (10, true), (11, false), (17, false)] {
+            queue.taken = taken;
+            assert_eq!(queue.withholds("flags"), withheld, "{taken} bytes");
+        }
+        queue.bytes.extend_from_slice(b" flags");
+        assert!(queue.withholds("flags"));
+        assert!(!queue.withholds("other"));
     }
 }

@@ -2,25 +2,26 @@
 //!
 //! The stream is divided into complete units first, and only whole units are interpreted. So an
 //! answer never becomes typed text, however the bytes arrive, and an unknown unit is dropped at its
-//! end. Dividing by a parser of keys was refused: the known ones keep a buffer for ever after a
-//! complete report that they do not know.
+//! end.
+//!
+//! Rejected: dividing by a parser of keys. The known ones keep a buffer for ever after a complete report that they do
+//! not know.
 
-mod answer;
-mod key;
-mod mouse;
 mod unit;
 
 use std::time::Duration;
 
-pub(super) use answer::Answer;
-use unit::{Cutter, Kind, Rest};
+use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
-use super::key::KeyEvent;
-use super::mouse::MouseReport;
+use self::unit::{Cutter, Kind, Rest};
+use super::event::{MouseButton, MouseEventKind, MouseReport};
+use super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
+use super::known::{Known, known};
+use super::sequence;
 
 /// An input from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Input {
+pub(crate) enum Input {
     /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse was moved, or one of its buttons pressed or released.
@@ -33,13 +34,13 @@ pub(super) enum Input {
 
 /// A decoder of a stream of bytes.
 #[derive(Debug, Default)]
-pub(super) struct Decoder {
+pub(crate) struct Decoder {
     cutter: Cutter,
 }
 
 impl Decoder {
     /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
-    pub(super) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
+    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
         for byte in bytes {
             self.cutter
                 .push(*byte, &mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
@@ -47,7 +48,7 @@ impl Decoder {
     }
 
     /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
-    pub(super) fn patience(&self) -> Option<Duration> {
+    pub(crate) fn patience(&self) -> Option<Duration> {
         /// Longer than the gaps within a sequence, shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
         /// This is certainly a sequence, but the link may be slow.
@@ -60,7 +61,7 @@ impl Decoder {
     }
 
     /// Ends the wait: an escape without more bytes is the Escape key.
-    pub(super) fn give_up(&mut self, mut take: impl FnMut(Input)) {
+    pub(crate) fn give_up(&mut self, mut take: impl FnMut(Input)) {
         self.cutter.give_up(&mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
     }
 }
@@ -68,19 +69,197 @@ impl Decoder {
 fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
     match kind {
         Kind::ControlSequence if unit.starts_with(b"\x1b[<") => {
-            mouse::parse(unit).map(Input::Mouse)
+            mouse_report(unit).map(Input::Mouse)
         }
-        Kind::MouseBytes => mouse::parse_bytes(unit).map(Input::Mouse),
+        Kind::MouseBytes => mouse_bytes(unit).map(Input::Mouse),
         Kind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
             Some(Input::Focus(unit.ends_with(b"I")))
         }
-        Kind::ControlSequence if answer::is_report(unit) => {
-            answer::parse_report(unit).map(Input::Answer)
-        }
-        Kind::Key | Kind::ControlSequence => key::parse(unit).map(Input::Key),
-        Kind::DeviceControl => answer::parse_device_control(unit).map(Input::Answer),
-        Kind::OtherString => answer::parse_string(unit).map(Input::Answer),
+        Kind::ControlSequence if is_report(unit) => report(unit).map(Input::Answer),
+        Kind::Key | Kind::ControlSequence => key_event(unit).map(Input::Key),
+        Kind::DeviceControl => device_control(unit).map(Input::Answer),
+        Kind::OtherString => string_answer(unit).map(Input::Answer),
     }
+}
+
+/// An answer of the terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// The terminal supports the kitty keyboard protocol.
+    KeyFlags,
+    /// The terminal shows 24-bit colours.
+    TrueColor,
+    /// The terminal can report mouse positions in pixels.
+    PixelMouse,
+    /// The terminal's name and version.
+    Version(Known),
+    /// The answer to a fence, after those to all earlier queries.
+    Fence,
+    /// The answer to a status request.
+    Status,
+    /// The terminal has repeated a half block.
+    Repeats,
+    /// An entry of the terminal's palette has this colour, in 16 bits a channel.
+    PaletteEntry([u16; 3]),
+}
+
+/// Whether `unit`, a control sequence, has the form of a report, which no key has.
+fn is_report(unit: &[u8]) -> bool {
+    matches!(unit, [_, _, b'<'..=b'?', ..] | [.., b'n'] | [_, _, b'2', b';', .., b'R'])
+}
+
+/// The answer in the report `unit`; `None` if it answers no query of this program.
+fn report(unit: &[u8]) -> Option<Answer> {
+    match unit {
+        [_, _, b'?', b'0'..=b'9' | b';', .., b'c'] => Some(Answer::Fence),
+        [_, _, b'?', b'0'..=b'9', .., b'u'] => Some(Answer::KeyFlags),
+        // Set, not set, and permanently set; 0 means an unknown mode.
+        b"\x1b[?1016;1$y" | b"\x1b[?1016;2$y" | b"\x1b[?1016;3$y" => Some(Answer::PixelMouse),
+        [_, _, b'0'..=b'9', b'n'] => Some(Answer::Status),
+        _ if unit == sequence::REPEATED => Some(Answer::Repeats),
+        _ => None,
+    }
+}
+
+/// The answer in the string `unit`, which is neither a control sequence nor a device control
+/// string.
+fn string_answer(unit: &[u8]) -> Option<Answer> {
+    let color = unit.strip_prefix(b"\x1b")?.strip_prefix(sequence::PALETTE_REPORT)?;
+    let end = color.iter().position(|byte| !byte.is_ascii_hexdigit() && *byte != b'/');
+    let mut channels = color[..end.unwrap_or(color.len())].split(|byte| *byte == b'/').map(channel);
+    let color = [channels.next()??, channels.next()??, channels.next()??];
+    channels.next().is_none().then_some(Answer::PaletteEntry(color))
+}
+
+/// A channel of one to four hexadecimal digits, scaled to 16 bits (Xlib's `XParseColor`).
+fn channel(digits: &[u8]) -> Option<u16> {
+    let most = (1_u32 << (4 * u32::try_from(digits.len()).ok().filter(|count| *count <= 4)?)) - 1;
+    let value = u32::from_str_radix(str::from_utf8(digits).ok()?, 16).ok()?;
+    u16::try_from(value * u32::from(u16::MAX) / most).ok()
+}
+
+/// The answer in the device control string `unit`; `None` for a refusal, and if it answers no query
+/// of this program.
+fn device_control(unit: &[u8]) -> Option<Answer> {
+    if let Some(name) = unit.strip_prefix(b"\x1bP>|") {
+        let name = name.strip_suffix(b"\x1b\\").unwrap_or(name);
+        return str::from_utf8(name).ok().map(|name| Answer::Version(known(name)));
+    }
+    let capability = unit.strip_prefix(b"\x1bP1+r")?;
+    capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
+}
+
+/// The key event of `unit`; `None` if it is not a key, or one that cannot be bound.
+fn key_event(unit: &[u8]) -> Option<KeyEvent> {
+    match unit {
+        [0x1b, character] => {
+            let event = key_event(&[*character])?;
+            Some(KeyEvent { modifiers: Modifiers { alt: true, ..event.modifiers }, ..event })
+        }
+        _ => translate(reported(unit)?, told_base(unit)),
+    }
+}
+
+/// The third part of the first number of `CSI … u` in the kitty protocol: the character of the key
+/// in the US layout.
+fn told_base(unit: &[u8]) -> Option<char> {
+    let numbers = unit.strip_prefix(b"\x1b[")?.strip_suffix(b"u")?;
+    let number = numbers.split(|&byte| byte == b';').next()?.split(|&byte| byte == b':').nth(2)?;
+    char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
+}
+
+/// The parser's event for `unit`. Each unit has a new parser: one that has kept bytes of an unknown
+/// unit would prefix them to the next.
+fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
+    let mut parser = termina::Parser::default();
+    parser.parse(unit, false);
+    match parser.pop() {
+        Some(termina::Event::Key(event)) => Some(event),
+        _ => None,
+    }
+}
+
+fn translate(event: termina::event::KeyEvent, told_base: Option<char>) -> Option<KeyEvent> {
+    // The parser drops Shift if the terminal reports the character that it types, too.
+    let is_upper = matches!(event.code, KeyCode::Char(character) if character.is_uppercase());
+    let modifiers = Modifiers {
+        shift: is_upper || event.modifiers.contains(Reported::SHIFT),
+        control: event.modifiers.contains(Reported::CONTROL),
+        alt: event.modifiers.contains(Reported::ALT),
+    };
+    let phase = match event.kind {
+        KeyEventKind::Press => Phase::Press,
+        KeyEventKind::Repeat => Phase::Repeat,
+        KeyEventKind::Release => Phase::Release,
+    };
+    let key = name(event.code)?;
+    Some(KeyEvent { key, base: base_key(key, told_base), modifiers, phase })
+}
+
+fn name(code: KeyCode) -> Option<Key> {
+    Some(match code {
+        KeyCode::Char(character) if character.is_control() => return None,
+        KeyCode::Char(character) => Key::typing(character),
+        KeyCode::Enter => Key::Enter,
+        KeyCode::Backspace => Key::Backspace,
+        KeyCode::Tab | KeyCode::BackTab => Key::Tab,
+        KeyCode::Escape => Key::Escape,
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::Up => Key::Up,
+        KeyCode::Down => Key::Down,
+        KeyCode::Home => Key::Home,
+        KeyCode::End => Key::End,
+        KeyCode::PageUp => Key::PageUp,
+        KeyCode::PageDown => Key::PageDown,
+        KeyCode::Insert => Key::Insert,
+        KeyCode::Delete => Key::Delete,
+        KeyCode::Function(number) => Key::Function(number),
+        KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) => Key::Shift,
+        KeyCode::Modifier(ModifierKeyCode::LeftControl | ModifierKeyCode::RightControl) => {
+            Key::Control
+        }
+        KeyCode::Modifier(ModifierKeyCode::LeftAlt | ModifierKeyCode::RightAlt) => Key::Alt,
+        _ => return None,
+    })
+}
+
+/// Bits of a report's first number besides those of the button.
+const MOTION: u32 = 32;
+/// The bits of the wheel and of buttons beyond the third.
+const OTHERS: u32 = 64 | 128;
+
+/// The report in `unit`, a control sequence: `CSI < button ; column ; row` and `M`, or `m` for a
+/// released button (xterm's control sequences, "Extended coordinates").
+fn mouse_report(unit: &[u8]) -> Option<MouseReport> {
+    let text = str::from_utf8(unit.strip_prefix(b"\x1b[<")?).ok()?;
+    let (numbers, is_release) = match text.strip_suffix('M') {
+        Some(numbers) => (numbers, false),
+        None => (text.strip_suffix('m')?, true),
+    };
+    let mut numbers = numbers.split(';').map(|number| number.parse().ok());
+    let [code, column, row] = [numbers.next()??, numbers.next()??, numbers.next()??];
+    let kind = kind(code, is_release)?;
+    numbers.next().is_none().then_some(MouseReport { kind, place: [column, row] })
+}
+
+/// The report in `unit`: `CSI M` and three bytes, from old terminals without the other form.
+fn mouse_bytes(unit: &[u8]) -> Option<MouseReport> {
+    let &[code, column, row] = unit.strip_prefix(b"\x1b[M")? else { return None };
+    let [code, column, row] = [code, column, row].map(|byte| u32::from(byte.saturating_sub(32)));
+    Some(MouseReport { kind: kind(code, false)?, place: [column, row] })
+}
+
+fn kind(code: u32, is_release: bool) -> Option<MouseEventKind> {
+    Some(match code & 3 {
+        _ if code & OTHERS != 0 => return None,
+        _ if code & MOTION != 0 => MouseEventKind::Moved,
+        _ if is_release => MouseEventKind::Released,
+        0 => MouseEventKind::Pressed(MouseButton::Left),
+        1 => MouseEventKind::Pressed(MouseButton::Middle),
+        2 => MouseEventKind::Pressed(MouseButton::Right),
+        _ => MouseEventKind::Released,
+    })
 }
 
 #[cfg(test)]

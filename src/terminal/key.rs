@@ -1,15 +1,17 @@
 //! Keys and key events.
 //!
 //! A key is a physical key, not the text that it types: letters are lower-case, and Shift is a
-//! modifier. The types of a parser were refused: files with bindings contain these names, and must
-//! outlive any parser.
-
-mod layout;
+//! modifier.
+//!
+//! Bindings name Latin letters. For layouts without them, a key also has the key of a US keyboard at its place. The
+//! kitty protocol reports it. Other terminals send the letter alone, and its place is derived from the most common
+//! layout of its script. Latin letters are not mapped: users of an AZERTY or Dvorak keyboard choose keys by their
+//! letters.
+//!
+//! Rejected: the types of a parser. Files with bindings contain these names, and must outlive any parser.
 
 use std::fmt;
 use std::str::FromStr;
-
-pub(super) use layout::base_key;
 
 /// An event of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -145,7 +147,7 @@ const NAMES: [(&str, Key); 18] = [
 
 impl Key {
     /// The key that types `character`, in upper or lower case.
-    pub(super) fn typing(character: char) -> Self {
+    pub(crate) fn typing(character: char) -> Self {
         let mut lower = character.to_lowercase();
         match (lower.next(), lower.next()) {
             (Some(single), None) => Self::Char(single),
@@ -201,6 +203,41 @@ impl fmt::Display for UnknownKey {
 
 impl std::error::Error for UnknownKey {}
 
+/// Letters, and the keys of a US keyboard at their places: of the Russian layout, with the
+/// different letters of the Ukrainian and Belarusian ones, and of the Greek layout.
+const PLACES: [(&str, &str); 7] = [
+    ("йцукенгшщзхъ", "qwertyuiop[]"),
+    ("фывапролджэ", "asdfghjkl;'"),
+    ("ячсмитьбюё", "zxcvbnm,.`"),
+    ("іїєґў", "s]'\\o"),
+    ("ςερτυθιοπ", "wertyuiop"),
+    ("ασδφγηξκλ", "asdfghjkl"),
+    ("ζχψωβνμ", "zxcvbnm"),
+];
+
+/// The key of a US keyboard at the place of `key`, if `key` types a non-Latin letter: the key that
+/// the terminal has reported (`told`), or else the one in the table.
+pub(crate) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
+    let Key::Char(letter) = key else { return None };
+    if !letter.is_alphabetic() || is_latin(letter) {
+        return None;
+    }
+    let told = told.filter(char::is_ascii_graphic);
+    told.or_else(|| known_base(letter)).map(Key::typing)
+}
+
+fn known_base(letter: char) -> Option<char> {
+    let place = |(letters, keys): (&str, &str)| {
+        letters.chars().zip(keys.chars()).find(|&(known, _)| known == letter)
+    };
+    PLACES.into_iter().find_map(place).map(|(_, key)| key)
+}
+
+/// Whether `letter` is in one of Unicode's Latin blocks.
+fn is_latin(letter: char) -> bool {
+    matches!(letter, '\0'..='\u{24f}' | '\u{1e00}'..='\u{1eff}' | '\u{ff00}'..='\u{ff5e}')
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -242,5 +279,34 @@ mod tests {
             let key = Key::typing(character);
             prop_assert_eq!(key.to_string().parse::<Key>(), Ok(key));
         }
+    }
+
+    #[test]
+    fn every_letter_in_the_table_has_one_place() {
+        let mut letters = Vec::new();
+        for (row, keys) in PLACES {
+            assert_eq!(row.chars().count(), keys.chars().count(), "{row}");
+            letters.extend(row.chars());
+        }
+        for &letter in &letters {
+            assert_eq!(letters.iter().filter(|&&other| other == letter).count(), 1, "{letter}");
+            assert!(base_key(Key::Char(letter), None).is_some(), "{letter}");
+        }
+    }
+
+    #[test]
+    fn latin_letters_and_signs_are_not_mapped() {
+        for character in ['z', 'é', 'ß', 'ő', 'ĳ', 'ạ', ';', ' ', '7', '—'] {
+            assert_eq!(base_key(Key::Char(character), Some('w')), None, "{character}");
+        }
+        assert_eq!(base_key(Key::Up, Some('w')), None);
+    }
+
+    #[test]
+    fn the_key_that_the_terminal_reports_comes_first() {
+        // A phonetic layout has this letter at the place of S.
+        assert_eq!(base_key(Key::Char('с'), Some('s')), Some(Key::Char('s')));
+        assert_eq!(base_key(Key::Char('с'), None), Some(Key::Char('c')));
+        assert_eq!(base_key(Key::Char('ש'), None), None);
     }
 }

@@ -11,19 +11,19 @@
 use crate::color::palette::ShadeInk;
 use crate::tui::GlyphSet;
 
-/// What is known of a terminal from its name and version.
+/// The properties of a terminal, by its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Known {
-    pub(super) colors: Colors,
+pub(crate) struct Known {
+    pub(crate) colors: Colors,
     /// The finest blocks that it is known to draw well.
-    pub(super) blocks: GlyphSet,
-    pub(super) shades: ShadeInk,
-    pub(super) is_tmux: bool,
+    pub(crate) blocks: GlyphSet,
+    pub(crate) shades: ShadeInk,
+    pub(crate) is_tmux: bool,
 }
 
-/// What a name and version say about 24-bit colours.
+/// Whether a terminal of some name and version shows 24-bit colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Colors {
+pub(crate) enum Colors {
     #[default]
     Unknown,
     /// The terminal shows them.
@@ -38,7 +38,6 @@ pub(super) enum Colors {
 struct Terminal {
     /// The reported name, in lower case.
     name: &'static str,
-    colors: Colors,
     /// The first versions that draw quadrants, sextants and octants themselves.
     blocks: [Option<Version>; 3],
     shades: ShadeInk,
@@ -76,11 +75,12 @@ const TERMINALS: [Terminal; 13] = [
 ];
 
 const fn terminal(name: &'static str, blocks: [Option<Version>; 3], shades: ShadeInk) -> Terminal {
-    Terminal { name, colors: Colors::True, blocks, shades }
+    Terminal { name, blocks, shades }
 }
 
-/// What the name and version in `report` say, such as `kitty(0.42.1)` or `WezTerm 20240203-110809`.
-pub(super) fn known(report: &str) -> Known {
+/// The properties of the terminal that reports this name and version, such as `kitty(0.42.1)` or `WezTerm
+/// 20240203-110809`.
+pub(crate) fn known(report: &str) -> Known {
     let end = report.find(|letter: char| letter == '(' || letter.is_ascii_digit());
     let (name, version) = report.split_at(end.unwrap_or(report.len()));
     let name = name.trim().to_ascii_lowercase();
@@ -105,7 +105,7 @@ pub(super) fn known(report: &str) -> Known {
     let mut drawn = kinds.into_iter().zip(terminal.blocks);
     let blocks = drawn.rfind(|(_, since)| since.is_some_and(|since| version >= since));
     Known {
-        colors: terminal.colors,
+        colors: Colors::True,
         blocks: blocks.map_or(GlyphSet::Half, |(kind, _)| kind),
         shades: terminal.shades,
         is_tmux: false,

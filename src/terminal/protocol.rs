@@ -2,30 +2,36 @@
 //!
 //! A [`Protocol`] has neither a device nor a clock: times are arguments, durations since any fixed
 //! moment. So one implementation serves the terminal of the process ([`Session`](super::Session)), a
-//! channel of an SSH server, and a test that decides what arrives when. A trait of a device was
-//! refused: a server waits for many channels at once, and a device that blocks would need a thread
-//! for each of them.
+//! channel of an SSH server, and a test that decides what arrives when.
+//!
+//! Some control sequences make frames shorter, and are used if the terminal proves that they work. The program probes
+//! two at the beginning. A repeated half block (REP) must move the cursor as far as it should. An entry of the
+//! palette, defined in the form that frames use (OSC 4), must be reported as defined, and with its old colour after a
+//! reset (OSC 104). Some terminals claim to repeat characters and fail on half blocks, so that no terminal is trusted
+//! by its name or version. A terminal of 256 colours whose palette can be defined and reset shows 24-bit colours as
+//! entries of its own. Neither is probed in a multiplexer, which would answer for itself, nor if a recorder receives
+//! the sent bytes, since a recording must play on any terminal.
+//!
+//! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a
+//! thread for each of them.
 
 mod changes;
-mod extensions;
-mod fences;
-mod receive;
-mod reports;
-mod show;
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use crossterm::terminal::LeaveAlternateScreen;
+use ratatui::backend::Backend;
 
-pub(super) use self::changes::Changes;
-use self::extensions::Extensions;
+pub(crate) use self::changes::Changes;
+use self::changes::KeyFlags;
+use super::event::{MouseReport, MouseUnits};
 use super::flow::{Flow, Request};
-use super::input::Decoder;
-use super::known::Known;
-use super::mouse::MouseUnits;
+use super::input::{Answer, Decoder, Input};
+use super::known::{Colors, Known};
 use super::{
-    CellWriter, ColorSource, Detected, Event, Fidelity, Options, TmuxClient, WindowSize, sequence,
+    CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Options, Phase, QuitReason,
+    Screen, TmuxClient, WindowSize, sequence,
 };
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::tui::GlyphSet;
@@ -40,7 +46,7 @@ use crate::tui::GlyphSet;
 /// ```
 /// use std::time::Duration;
 ///
-/// use cellcaster::canvas::Canvas;
+/// use cellcaster::tui::canvas::Canvas;
 /// use cellcaster::terminal::{Event, Key, Options, Protocol, WindowSize};
 /// use ratatui::style::Color;
 ///
@@ -58,6 +64,7 @@ use crate::tui::GlyphSet;
 /// ```
 #[derive(Debug)]
 pub struct Protocol {
+    /// How to use the terminal, and what is known of it by now.
     options: Options,
     /// Bytes that the caller has not taken yet.
     output: Vec<u8>,
@@ -67,20 +74,17 @@ pub struct Protocol {
     received_at: Duration,
     events: VecDeque<Event>,
     size: WindowSize,
-    color_depth: Detected,
-    color_source: ColorSource,
-    /// What the terminal's name says.
+    /// The terminal's properties, by its name.
     known: Known,
     /// The client of the tmux in which the program runs.
     tmux: Option<TmuxClient>,
-    key_releases: KeyReleases,
+    /// Whether the terminal has not answered yet if it reports key releases.
+    awaits_key_releases: bool,
     mouse: Mouse,
     flow: Flow,
-    /// `None` for the best fidelity that the link allows.
-    fidelity: Option<Fidelity>,
     /// The frame that is encoded and not yet in `output`.
     drawn: Option<Drawn>,
-    extensions: Extensions,
+    palette: PaletteProbe,
     changes: Changes,
     /// Whether the terminal is given back, so that no report is switched on any more.
     is_ending: bool,
@@ -88,7 +92,7 @@ pub struct Protocol {
     frames_before_key_flags: u64,
 }
 
-/// What a frame shows.
+/// The kind of a frame.
 #[derive(Clone, Copy, Debug)]
 enum Drawn {
     /// A new picture, at this fidelity.
@@ -108,16 +112,8 @@ struct Mouse {
     is_changing: bool,
 }
 
-/// Whether the terminal reports when keys are released.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum KeyReleases {
-    Unasked,
-    Asked,
-    Settled,
-}
-
 impl Protocol {
-    /// The protocol with a terminal of which `options` are known. Nothing is sent yet.
+    /// The protocol with a terminal that has these `options`. Nothing is sent yet.
     pub fn new(options: Options, size: WindowSize) -> Self {
         let mut writer = CellWriter::new(Vec::new(), size.cells());
         writer.set_ascii(options.is_ascii);
@@ -129,16 +125,13 @@ impl Protocol {
             received_at: Duration::ZERO,
             events: VecDeque::new(),
             size,
-            color_depth: options.color_depth,
-            color_source: options.color_source,
             known: Known::default(),
             tmux: None,
-            key_releases: KeyReleases::Unasked,
+            awaits_key_releases: false,
             mouse: Mouse::default(),
             flow: Flow::new(options.is_remote),
-            fidelity: options.fidelity,
             drawn: None,
-            extensions: Extensions::default(),
+            palette: PaletteProbe::default(),
             changes: Changes::default(),
             is_ending: false,
             frames_before_key_flags: 0,
@@ -151,7 +144,7 @@ impl Protocol {
         let mut queries = String::new();
         if self.options.ask_for_key_releases {
             queries.push_str(sequence::QUERY_KEY_FLAGS);
-            self.key_releases = KeyReleases::Asked;
+            self.awaits_key_releases = true;
         }
         if self.options.ask_for_mouse_pixels {
             queries.push_str(sequence::QUERY_MOUSE_PIXELS);
@@ -171,7 +164,7 @@ impl Protocol {
     }
 
     /// Takes the screen again after others had it; the next frame is drawn whole.
-    pub(super) fn begin_again(&mut self, size: WindowSize) {
+    pub(crate) fn begin_again(&mut self, size: WindowSize) {
         self.take_screen();
         self.repaint(size);
     }
@@ -186,7 +179,7 @@ impl Protocol {
     }
 
     /// Forgets what the terminal has not answered, and half a key: others have the terminal now.
-    pub(super) fn interrupt(&mut self) {
+    pub(crate) fn interrupt(&mut self) {
         self.output.clear();
         self.writer.output_mut().clear();
         self.drawn = None;
@@ -215,8 +208,7 @@ impl Protocol {
         self.output.extend_from_slice(sequence::of(LeaveAlternateScreen).as_bytes());
     }
 
-    /// The bytes to send at `now`. The caller removes those that it has taken, and sends them in this
-    /// order.
+    /// The bytes to send at `now`, in this order. The caller removes the bytes that it has taken.
     pub fn output(&mut self, now: Duration) -> &mut Vec<u8> {
         self.queue_frame(now);
         &mut self.output
@@ -227,8 +219,8 @@ impl Protocol {
         self.flow.written(now);
     }
 
-    /// What must be undone at the end, and which answers may still arrive.
-    pub(super) fn changes(&self) -> Changes {
+    /// The changes to undo at the end, and the answers that may still arrive.
+    pub(crate) fn changes(&self) -> Changes {
         self.changes
     }
 
@@ -239,12 +231,12 @@ impl Protocol {
 
     /// The number of colours that the terminal shows, as far as it is known.
     pub fn color_depth(&self) -> ColorDepth {
-        self.color_depth.depth()
+        self.options.color_depth.depth()
     }
 
     /// The source of [`Protocol::color_depth`].
     pub fn color_source(&self) -> ColorSource {
-        self.color_source
+        self.options.color_source
     }
 
     /// The finest block glyphs that the terminal is known to draw.
@@ -265,6 +257,471 @@ impl Protocol {
     /// The client of the tmux in which the program runs, if that has answered.
     pub fn tmux_client(&self) -> Option<&TmuxClient> {
         self.tmux.as_ref()
+    }
+
+    /// Interprets bytes from the terminal. They may be cut at any place.
+    pub fn receive(&mut self, bytes: &[u8], now: Duration) {
+        self.received_at = now;
+        let mut inputs = Vec::new();
+        self.decoder.feed(bytes, |input| inputs.push(input));
+        for input in inputs {
+            self.take_input(input, now);
+        }
+    }
+
+    /// The next event, in the order of arrival.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// Records a new size of the window; the next frame is drawn whole.
+    pub fn resize(&mut self, size: WindowSize, now: Duration) {
+        self.repaint(size);
+        self.update_mouse_units(now);
+    }
+
+    /// The time at which to call [`Protocol::wake`], if no bytes arrive before; `None` for never.
+    pub fn wakes_at(&self) -> Option<Duration> {
+        self.gives_up_at().into_iter().chain(self.opens_at()).min()
+    }
+
+    /// Does what is due: ends the wait for the rest of a key, and asks a terminal that answers no
+    /// more whether it is still there.
+    pub fn wake(&mut self, now: Duration) {
+        if self.gives_up_at().is_some_and(|time| time <= now) {
+            self.give_up();
+        }
+        self.probe(now);
+    }
+
+    /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
+    /// terminal can report them.
+    pub fn set_mouse(&mut self, is_reported: bool) {
+        if self.mouse.units.is_some() != is_reported && !self.is_ending {
+            self.mouse.units = is_reported.then(|| self.mouse_units());
+            self.mouse.is_changing = false;
+            self.send_mouse_units();
+        }
+    }
+
+    pub(crate) fn push_event(&mut self, event: Event) {
+        self.events.push_back(event);
+    }
+
+    /// Whether `is_such` holds for an event that was not taken yet.
+    pub(crate) fn has_event(&self, is_such: impl Fn(&Event) -> bool) -> bool {
+        self.events.iter().any(is_such)
+    }
+
+    /// Whether an event asks the program to end.
+    pub(crate) fn is_asked_to_quit(&self) -> bool {
+        self.has_event(|event| matches!(event, Event::Quit(_)))
+    }
+
+    /// The time at which half a key is taken for a whole one.
+    pub(crate) fn gives_up_at(&self) -> Option<Duration> {
+        self.decoder.patience().map(|patience| self.received_at + patience)
+    }
+
+    /// Stops waiting for the rest of a key.
+    pub(crate) fn give_up(&mut self) {
+        let events = &mut self.events;
+        self.decoder.give_up(|input| {
+            // An answer is always a whole unit, never the rest of one.
+            if let Input::Key(event) = input {
+                events.push_back(meaning(event));
+            }
+        });
+    }
+
+    fn take_input(&mut self, input: Input, now: Duration) {
+        match input {
+            Input::Key(event) => {
+                self.flow.received_input();
+                self.events.push_back(meaning(event));
+            }
+            Input::Focus(true) => self.events.push_back(Event::FocusGained),
+            Input::Focus(false) => self.events.push_back(Event::FocusLost),
+            Input::Mouse(report) => {
+                self.flow.received_input();
+                self.events.extend(self.mouse_event(report));
+            }
+            Input::Answer(answer) => self.take_answer(answer, now),
+        }
+    }
+
+    fn take_answer(&mut self, answer: Answer, now: Duration) {
+        match answer {
+            Answer::PixelMouse => {
+                self.mouse.has_pixels = true;
+                self.update_mouse_units(now);
+            }
+            Answer::KeyFlags => self.settle_key_releases(true),
+            Answer::TrueColor => self.raise_color_depth(),
+            Answer::Version(known) => self.identify(known, now),
+            Answer::Repeats => self.repeats_blocks(),
+            Answer::PaletteEntry(color) => self.palette_reported(color),
+            Answer::Status => {
+                self.flow.answered(now);
+                self.changes.awaits_statuses = self.flow.awaits_answers();
+                self.confirm_key_flags();
+            }
+            Answer::Fence => {
+                self.changes.fences.answered();
+                self.mouse.is_changing &= self.changes.fences.are_open();
+                self.flow.fence_answered(now);
+                self.changes.awaits_statuses = self.flow.awaits_answers();
+                self.confirm_key_flags();
+                self.settle_key_releases(false);
+                if !self.changes.fences.are_open() {
+                    self.use_own_palette();
+                }
+            }
+        }
+    }
+
+    /// The event of `report`; `None` if the mouse is not reported or its unit is changing.
+    fn mouse_event(&self, report: MouseReport) -> Option<Event> {
+        let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
+        report.event(units, self.size).map(Event::Mouse)
+    }
+
+    /// The finest unit in which the terminal reports positions.
+    fn mouse_units(&self) -> MouseUnits {
+        if self.mouse.has_pixels && self.size.pixels.is_some() {
+            MouseUnits::Pixels
+        } else {
+            MouseUnits::Cells
+        }
+    }
+
+    /// If the mouse is reported, switches to the finest unit that is available.
+    fn update_mouse_units(&mut self, now: Duration) {
+        let finest = self.mouse_units();
+        if self.mouse.units.is_none_or(|units| units == finest) || self.is_ending {
+            return;
+        }
+        self.mouse.units = Some(finest);
+        self.mouse.is_changing = true;
+        self.send_mouse_units();
+        // Reports after the answer are in the new unit.
+        self.queue_queries("", now);
+    }
+
+    fn send_mouse_units(&mut self) {
+        let mut text = String::new();
+        self.changes.change_mouse(self.mouse.units, &mut text);
+        self.output.extend_from_slice(text.as_bytes());
+    }
+
+    fn settle_key_releases(&mut self, agreed: bool) {
+        if std::mem::take(&mut self.awaits_key_releases) {
+            let agreed = agreed && !self.is_ending;
+            if agreed {
+                self.changes.key_flags = KeyFlags::Pushed;
+                self.frames_before_key_flags = self.flow.frames_sent();
+                self.output.extend_from_slice(sequence::PUSH_KEY_FLAGS.as_bytes());
+                self.confirm_key_flags();
+            }
+            self.events.push_back(Event::KeyReleases(agreed));
+        }
+    }
+
+    /// Records that the terminal has received the keyboard flags, if it has answered all frames before
+    /// them.
+    fn confirm_key_flags(&mut self) {
+        let key_flags = &mut self.changes.key_flags;
+        if *key_flags == KeyFlags::Pushed
+            && self.flow.frames_answered() >= self.frames_before_key_flags
+        {
+            *key_flags = KeyFlags::Received;
+        }
+    }
+
+    fn identify(&mut self, known: Known, now: Duration) {
+        match known.colors {
+            Colors::True => self.raise_color_depth(),
+            Colors::Ask => self.ask_for_true_color(now),
+            Colors::Unknown => {}
+        }
+        // In tmux, its answer about the terminal around it says more.
+        if self.tmux.is_none() {
+            self.set_known(known);
+        }
+    }
+
+    fn set_known(&mut self, known: Known) {
+        if self.known != known {
+            self.known = known;
+            self.events.push_back(Event::Identified);
+        }
+    }
+
+    /// Records what tmux says of the client that shows the program. A depth that the user has chosen
+    /// stays.
+    pub(crate) fn take_tmux_client(&mut self, client: TmuxClient) {
+        if let Detected::Guess(before) = self.options.color_depth {
+            let depth =
+                if client.has_true_color() { ColorDepth::True } else { ColorDepth::Indexed256 };
+            self.options.color_depth = Detected::Guess(depth);
+            self.options.color_source = ColorSource::Tmux;
+            if depth != before {
+                self.events.push_back(Event::ColorDepth(depth));
+            }
+        }
+        if self.tmux.as_ref() != Some(&client) {
+            self.known = client.known();
+            self.tmux = Some(client);
+            self.events.push_back(Event::Identified);
+        }
+    }
+
+    fn ask_for_true_color(&mut self, now: Duration) {
+        if matches!(self.options.color_depth, Detected::Guess(_)) {
+            self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
+        }
+    }
+
+    fn raise_color_depth(&mut self) {
+        if let Detected::Guess(_) = self.options.color_depth {
+            self.options.color_depth = Detected::Certain(ColorDepth::True);
+            self.options.color_source = ColorSource::Answer;
+            self.events.push_back(Event::ColorDepth(ColorDepth::True));
+            self.use_palette();
+        }
+    }
+
+    /// Forgets the screen, so that the next frame is drawn whole, in a window of this size.
+    pub(crate) fn repaint(&mut self, size: WindowSize) {
+        self.size = size;
+        self.writer.forget();
+        self.writer.set_size(self.size.cells());
+        // The writer writes only to memory, so that nothing can fail.
+        _ = Backend::clear(&mut self.writer);
+        if self.events.back() != Some(&Event::Resized) {
+            self.events.push_back(Event::Resized);
+        }
+    }
+
+    /// Draws a frame on a blank screen. The changes since the last frame are added to the
+    /// [output](Protocol::output).
+    pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) {
+        let fidelity = self.fidelity();
+        self.writer.set_fidelity(fidelity);
+        self.writer.draw_frame(render);
+        self.drawn = Some(Drawn::Motion(fidelity));
+    }
+
+    /// Shows the last frame more exactly, unless it is exact.
+    pub fn refine(&mut self) {
+        self.writer.refine();
+        self.drawn = Some(Drawn::Refinement);
+    }
+
+    /// Rings the terminal's bell with the next frame.
+    pub fn ring_bell(&mut self) {
+        self.writer.output_mut().push(BELL);
+    }
+
+    /// Whether the terminal shows exactly the last frame drawn. If it does not, a few calls of
+    /// [`Protocol::refine`] make it exact.
+    pub fn is_settled(&self) -> bool {
+        self.writer.is_settled()
+    }
+
+    /// Whether a frame would be shown at once, not behind others in flight.
+    pub fn is_ready(&self, now: Duration) -> bool {
+        self.output.is_empty() && self.flow.may_send(now)
+    }
+
+    /// Sets the fidelity of frames of motion; `None` for the best that the link allows.
+    pub fn set_fidelity(&mut self, fidelity: Option<Fidelity>) {
+        self.options.fidelity = fidelity;
+    }
+
+    /// Sets whether frames are restricted to ASCII. If that changes, the next one is sent whole.
+    pub fn set_ascii(&mut self, is_ascii: bool) {
+        if self.options.is_ascii != is_ascii {
+            self.options.is_ascii = is_ascii;
+            self.writer.set_ascii(is_ascii);
+        }
+    }
+
+    /// The present fidelity of frames of motion.
+    pub fn fidelity(&self) -> Fidelity {
+        self.options.fidelity.unwrap_or_else(|| self.flow.fidelity())
+    }
+
+    /// Whether a network makes frames of motion coarser than necessary; `ssh -C` then helps if it
+    /// is not in use.
+    pub fn is_limited_by_network(&self) -> bool {
+        self.options.is_remote
+            && self.options.fidelity.is_none()
+            && self.flow.fidelity() > Fidelity::EXACT
+    }
+
+    /// The round-trip time of the terminal's latest answer; `None` if the terminal does not answer.
+    pub fn round_trip(&self) -> Option<Duration> {
+        self.flow.round_trip()
+    }
+
+    /// The number of frames sent so far. One that changed nothing does not count.
+    pub fn frames_sent(&self) -> u64 {
+        self.flow.frames_sent()
+    }
+
+    /// The number of frames that the terminal shows, as far as is known: the ones that it has answered,
+    /// or, if it never answers, the ones that the system has accepted.
+    pub fn frames_answered(&self) -> u64 {
+        self.flow.frames_answered()
+    }
+
+    /// The number of bytes of all frames.
+    pub fn bytes_drawn(&self) -> u64 {
+        self.writer.bytes_written()
+    }
+
+    /// The time at which to check again whether a frame may be sent, even if nothing arrives before
+    /// then; `None` for never.
+    pub(crate) fn opens_at(&self) -> Option<Duration> {
+        self.flow.opens_at()
+    }
+
+    /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
+    pub(crate) fn probe(&mut self, now: Duration) {
+        if self.output.is_empty() && self.flow.probe_is_due(now) {
+            self.queue_queries("", now);
+        }
+    }
+
+    /// Adds `queries` with a fence after them to the output.
+    fn queue_queries(&mut self, queries: &str, now: Duration) {
+        self.flow.sent(now, 0, Request::Fence);
+        self.output.extend_from_slice(queries.as_bytes());
+        self.queue_fence(now);
+    }
+
+    /// Moves the bytes of the drawn frame to the output, with a request after them. Nothing is added
+    /// after a frame of no bytes.
+    pub(crate) fn queue_frame(&mut self, now: Duration) {
+        let Some(drawn) = self.drawn.take() else { return };
+        // The writer writes only to memory, so that nothing can fail.
+        _ = Backend::flush(&mut self.writer);
+        let frame = self.writer.output_mut();
+        let bytes = frame.len();
+        if bytes > 0 {
+            if self.output.is_empty() {
+                // The memory of the frame leaves with it.
+                std::mem::swap(&mut self.output, frame);
+            } else {
+                self.output.append(frame);
+            }
+            self.queue_request(bytes, now);
+        }
+        if let Drawn::Motion(fidelity) = drawn {
+            self.flow.sent_motion(bytes, fidelity);
+        }
+    }
+
+    /// Adds the request after a frame of this number of bytes.
+    fn queue_request(&mut self, bytes: usize, now: Duration) {
+        let request = self.flow.request(now);
+        match request {
+            Request::Nothing => {}
+            Request::Status => self.output.extend_from_slice(sequence::QUERY_STATUS.as_bytes()),
+            Request::Fence => self.queue_fence(now),
+        }
+        self.flow.sent(now, bytes, request);
+        self.changes.awaits_statuses = self.flow.awaits_answers();
+    }
+
+    fn queue_fence(&mut self, now: Duration) {
+        self.output.extend_from_slice(sequence::QUERY_FENCE.as_bytes());
+        self.changes.fences.sent(now);
+    }
+
+    /// Adds the probes to `queries`.
+    fn probe_extensions(&mut self, queries: &mut String) {
+        queries.push_str(sequence::PROBE_PALETTE);
+        queries.push_str(sequence::PROBE_REPETITION);
+        self.changes.palette_defined = true;
+    }
+
+    /// Records that the terminal has repeated a half block.
+    fn repeats_blocks(&mut self) {
+        if self.changes.palette_defined {
+            self.writer.set_repeats(true);
+        }
+    }
+
+    /// Records the terminal's report of the colour of the probed palette entry.
+    fn palette_reported(&mut self, color: [u16; 3]) {
+        if self.changes.palette_defined {
+            self.palette = self.palette.after_report(color);
+            self.use_palette();
+        }
+    }
+
+    /// Uses the palette if it can be defined and reset and the terminal shows 24-bit colours.
+    fn use_palette(&mut self) {
+        let is_true = matches!(self.options.color_depth, Detected::Certain(ColorDepth::True))
+            || self.color_depth() == ColorDepth::True
+                && self.options.color_source != ColorSource::Palette;
+        if self.palette == PaletteProbe::Reset && is_true {
+            self.writer.set_palette(true);
+        }
+    }
+
+    /// Shows all colours as entries of the palette if they can be defined and reset and the terminal
+    /// has not answered that it shows 24-bit colours. Called after all its answers.
+    fn use_own_palette(&mut self) {
+        let shows_few = self.options.color_depth == Detected::Guess(ColorDepth::Indexed256);
+        if self.palette == PaletteProbe::Reset && shows_few && !self.is_ending {
+            self.writer.set_own_palette();
+            self.options.color_depth = Detected::Guess(ColorDepth::True);
+            self.options.color_source = ColorSource::Palette;
+            self.events.push_back(Event::ColorDepth(ColorDepth::True));
+        }
+    }
+}
+
+/// The byte that rings the bell.
+const BELL: u8 = 0x07;
+
+/// The event of a key. In raw mode, Ctrl-C and Ctrl-Z arrive as keys.
+fn meaning(event: KeyEvent) -> Event {
+    let pressed = event.phase == Phase::Press && event.modifiers.control && !event.modifiers.alt;
+    match event.base.unwrap_or(event.key) {
+        Key::Char('c') if pressed => Event::Quit(QuitReason::Interrupted),
+        Key::Char('z') if pressed => Event::Suspend,
+        _ => Event::Key(event),
+    }
+}
+
+/// The reported state of the probed palette entry, as colours of 16 bits a channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum PaletteProbe {
+    #[default]
+    Unknown,
+    /// The terminal's own colour.
+    Own([u16; 3]),
+    /// The defined colour, in place of the terminal's own.
+    Defined { own: [u16; 3] },
+    /// The terminal's own colour, after the reset.
+    Reset,
+    /// A wrong colour.
+    Refused,
+}
+
+impl PaletteProbe {
+    /// The state after a report of `color`.
+    fn after_report(self, color: [u16; 3]) -> Self {
+        match self {
+            Self::Unknown => Self::Own(color),
+            Self::Own(own) if color == sequence::DEFINED => Self::Defined { own },
+            Self::Defined { own } if color == own => Self::Reset,
+            Self::Own(_) | Self::Defined { .. } | Self::Reset | Self::Refused => Self::Refused,
+        }
     }
 }
 

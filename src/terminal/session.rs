@@ -2,21 +2,19 @@
 //!
 //! It connects a [`Protocol`] with the terminal of the process, a clock and signals.
 
-mod receive;
-mod show;
-
-use std::io;
-use std::mem;
 use std::sync::Arc;
+use std::task::Poll;
 use std::time::Duration;
+use std::{io, mem};
 
-use self::receive::Received;
-use super::TmuxClient;
+use super::error::Kind;
 use super::guard::Guard;
-use super::platform::{Device, Signals};
-use super::tmux::{Reply, Request};
-use super::{ColorSource, Error, Event, Options, Protocol, Recorder, WindowSize};
-use crate::color::palette::{ColorDepth, ShadeInk};
+use super::signals::{Signal, Signals};
+use super::tmux::Request;
+use super::unix::Device;
+use super::{
+    Error, Event, Options, Protocol, QuitReason, Recorder, Screen, TmuxClient, WindowSize,
+};
 use crate::tui::GlyphSet;
 
 /// A terminal in use by the program: it delivers keys and shows frames.
@@ -62,35 +60,10 @@ impl Session {
     ) -> Result<Self, Error> {
         let device = Device::open()?;
         if let Some(term) = options.teletype {
-            return Err(Error::teletype(term));
+            return Err(Kind::Teletype { term }.into());
         }
         let guard = Guard::install(device, recorder)?;
         Self::take(&guard, options).inspect_err(|_| guard.uninstall())
-    }
-
-    fn take(guard: &Arc<Guard>, mut options: Options) -> Result<Self, Error> {
-        let signals =
-            Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
-        let size = guard.device().size();
-        guard.recording().resized(size.cells());
-        // A recording must play on any terminal.
-        options.probe_extensions &= !guard.recording().is_on();
-        let protocol = Protocol::new(options, size);
-        let mut session = Self {
-            guard: Arc::clone(guard),
-            signals,
-            protocol,
-            awaits_readiness: false,
-            is_in_tmux: options.ask_tmux,
-            tmux: None,
-            tmux_remedy: None,
-            last_key_at: Duration::ZERO,
-        };
-        guard.take().map_err(Error::while_doing("taking the terminal"))?;
-        session.protocol.begin(guard.now());
-        session.send().map_err(Error::while_doing("asking the terminal what it can do"))?;
-        session.ask_tmux();
-        Ok(session)
     }
 
     /// Waits for an event, for `timeout` at most; without a timeout, for ever. Returns `None` if no
@@ -115,7 +88,7 @@ impl Session {
                 }
             }
             if !self.guard.is_taken() {
-                return Err(Error::given_back());
+                return Err(Kind::GivenBack.into());
             }
             let gives_up_at = self.protocol.gives_up_at();
             let opens_at = if self.awaits_readiness { self.opens_at() } else { None };
@@ -123,11 +96,14 @@ impl Session {
             let awaits_tmux = self.tmux.is_some() || self.tmux_remedy.is_some();
             let tmux_at = awaits_tmux.then(|| self.guard.now() + TMUX_POLL);
             let wake_at = wake_at.chain(tmux_at).min();
-            let now = |session: &Self| session.guard.now();
-            match self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
-                Received::Nothing if is_past(gives_up_at, now(self)) => self.protocol.give_up(),
-                Received::Nothing if is_past(deadline, now(self)) => return Ok(None),
-                Received::Nothing | Received::Something => {}
+            if self.receive(wake_at).map_err(Error::while_doing("reading keys"))? {
+                continue;
+            }
+            let now = self.guard.now();
+            if is_past(gives_up_at, now) {
+                self.protocol.give_up();
+            } else if is_past(deadline, now) {
+                return Ok(None);
             }
         }
     }
@@ -154,18 +130,96 @@ impl Session {
         self.take_again().map_err(Error::while_doing("taking the terminal again"))
     }
 
-    /// Asks tmux about the terminal around it, unless a question is open.
-    fn ask_tmux(&mut self) {
-        if self.is_in_tmux && self.tmux.is_none() {
-            self.tmux = Some(Request::client());
-        }
+    /// The protocol of the session: what is known of the terminal and the link, and what was drawn.
+    pub fn protocol(&self) -> &Protocol {
+        &self.protocol
     }
 
     /// Runs [`TmuxClient::remedy`] in the tmux around the program. [`Event::TmuxTold`] follows.
     pub fn tell_tmux(&mut self) {
-        self.tmux_remedy = self.tmux_client().and_then(Request::remedy);
+        self.tmux_remedy = self.protocol.tmux_client().and_then(Request::remedy);
         if self.tmux_remedy.is_none() {
             self.protocol.push_event(Event::TmuxTold(false));
+        }
+    }
+
+    /// The finest block glyphs that the terminal is known to draw.
+    pub fn glyph_support(&self) -> GlyphSet {
+        // A recording must play on any terminal.
+        if self.guard.is_recorded() {
+            return GlyphSet::Half;
+        }
+        self.protocol.glyph_support()
+    }
+
+    /// Draws a frame on a blank screen and sends the changes since the last one. Waits until the
+    /// terminal is [ready](Self::is_ready) for it. If the program must end during the wait, the
+    /// frame is dropped and the next event says so.
+    ///
+    /// # Errors
+    /// If a write to the terminal fails, or a panic in another thread has given the terminal back.
+    pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) -> Result<(), Error> {
+        let drawn = self.try_draw(render);
+        self.unless_shutting_down(drawn)
+    }
+
+    /// Shows the last frame more exactly, unless it is exact. Waits as [`Session::draw`] does.
+    ///
+    /// # Errors
+    /// As [`Session::draw`].
+    pub fn refine(&mut self) -> Result<(), Error> {
+        let refined = self.try_refine();
+        self.unless_shutting_down(refined)
+    }
+
+    /// Rings the terminal's bell with the next frame.
+    pub fn ring_bell(&mut self) {
+        self.protocol.ring_bell();
+    }
+
+    /// Whether a frame would be shown at once, not behind others in flight. If it would not,
+    /// [`Event::Ready`](crate::terminal::Event::Ready) follows.
+    pub fn is_ready(&mut self) -> bool {
+        let is_ready = self.may_send();
+        self.awaits_readiness = !is_ready;
+        is_ready
+    }
+
+    /// Whether an event for which `is_such` holds has arrived and was not returned yet. Does not wait. After
+    /// an error, which [`Session::next_event`] returns, it is `true`.
+    pub fn has_event(&mut self, is_such: impl Fn(&Event) -> bool) -> bool {
+        self.receive(Some(Duration::ZERO)).is_err() || self.protocol.has_event(is_such)
+    }
+
+    fn take(guard: &Arc<Guard>, mut options: Options) -> Result<Self, Error> {
+        let signals =
+            Signals::listen(guard).map_err(Error::while_doing("listening for signals"))?;
+        let size = guard.device().size();
+        guard.record(|recorder| recorder.resized(size.cells()));
+        // A recording must play on any terminal.
+        options.probe_extensions &= !guard.is_recorded();
+        let protocol = Protocol::new(options, size);
+        let mut session = Self {
+            guard: Arc::clone(guard),
+            signals,
+            protocol,
+            awaits_readiness: false,
+            is_in_tmux: options.ask_tmux,
+            tmux: None,
+            tmux_remedy: None,
+            last_key_at: Duration::ZERO,
+        };
+        guard.take().map_err(Error::while_doing("taking the terminal"))?;
+        session.protocol.begin(guard.now());
+        session.send().map_err(Error::while_doing("asking the terminal what it can do"))?;
+        session.ask_tmux();
+        Ok(session)
+    }
+
+    /// Asks tmux about the terminal around it, unless a question is open.
+    fn ask_tmux(&mut self) {
+        if self.is_in_tmux && self.tmux.is_none() {
+            self.tmux = Some(Request::client());
         }
     }
 
@@ -183,21 +237,16 @@ impl Session {
     }
 
     fn take_tmux_replies(&mut self) {
-        match self.tmux.as_ref().map_or(Reply::Pending, Request::reply) {
-            Reply::Pending => {}
-            Reply::Answer(client) => {
-                self.tmux = None;
+        if let Some(Poll::Ready(client)) = self.tmux.as_ref().map(Request::reply) {
+            self.tmux = None;
+            if let Some(client) = client {
                 self.protocol.take_tmux_client(client);
             }
-            Reply::Nothing => self.tmux = None,
         }
-        let has_worked = match self.tmux_remedy.as_ref().map_or(Reply::Pending, Request::reply) {
-            Reply::Pending => return,
-            Reply::Answer(()) => true,
-            Reply::Nothing => false,
-        };
-        self.tmux_remedy = None;
-        self.protocol.push_event(Event::TmuxTold(has_worked));
+        if let Some(Poll::Ready(done)) = self.tmux_remedy.as_ref().map(Request::reply) {
+            self.tmux_remedy = None;
+            self.protocol.push_event(Event::TmuxTold(done.is_some()));
+        }
     }
 
     fn take_again(&mut self) -> io::Result<()> {
@@ -211,48 +260,148 @@ impl Session {
     fn measured(&self) -> WindowSize {
         let size = self.guard.device().size();
         if size.cells() != self.protocol.size().cells() {
-            self.guard.recording().resized(size.cells());
+            self.guard.record(|recorder| recorder.resized(size.cells()));
         }
         size
     }
 
-    /// The size of the window in cells, and in pixels if it is known.
-    pub fn size(&self) -> WindowSize {
-        self.protocol.size()
-    }
-
-    /// The number of colours that the terminal shows, as far as it is known.
-    pub fn color_depth(&self) -> ColorDepth {
-        self.protocol.color_depth()
-    }
-
-    /// The source of [`Session::color_depth`].
-    pub fn color_source(&self) -> ColorSource {
-        self.protocol.color_source()
-    }
-
-    /// The finest block glyphs that the terminal is known to draw.
-    pub fn glyph_support(&self) -> GlyphSet {
-        // A recording must play on any terminal.
-        if self.guard.recording().is_on() {
-            return GlyphSet::Half;
+    fn try_draw(&mut self, render: impl FnOnce(&mut Screen)) -> io::Result<()> {
+        if self.wait_until_ready()? {
+            self.protocol.draw(render);
+            self.send()?;
         }
-        self.protocol.glyph_support()
+        Ok(())
     }
 
-    /// How the terminal draws shades, as far as it is known.
-    pub fn shade_ink(&self) -> ShadeInk {
-        self.protocol.shade_ink()
+    fn try_refine(&mut self) -> io::Result<()> {
+        if self.wait_until_ready()? {
+            self.protocol.refine();
+            self.send()?;
+        }
+        Ok(())
     }
 
-    /// Whether the terminal has answered that it is tmux.
-    pub fn is_tmux(&self) -> bool {
-        self.protocol.is_tmux()
+    fn unless_shutting_down(&self, done: io::Result<()>) -> Result<(), Error> {
+        match done {
+            Ok(()) => Ok(()),
+            // Standard error leads to the same terminal, which may never accept a message.
+            Err(_) if self.guard.is_shutting_down() => Ok(()),
+            Err(error) => Err(Error::while_doing("drawing a frame")(error)),
+        }
     }
 
-    /// The client of the tmux in which the program runs, if that has answered.
-    pub fn tmux_client(&self) -> Option<&TmuxClient> {
-        self.protocol.tmux_client()
+    /// Waits until a frame may be sent; returns `false` if the program must end instead.
+    fn wait_until_ready(&mut self) -> io::Result<bool> {
+        while !self.may_send() {
+            if self.is_ending() {
+                return Ok(false);
+            }
+            self.probe()?;
+            self.receive(self.opens_at())?;
+        }
+        Ok(true)
+    }
+
+    /// Whether the program has been asked to end.
+    fn is_ending(&self) -> bool {
+        self.guard.is_shutting_down() || self.protocol.is_asked_to_quit()
+    }
+
+    fn may_send(&self) -> bool {
+        self.guard.has_written_all() && self.protocol.is_ready(self.guard.now())
+    }
+
+    /// The time at which to check again whether a frame may be sent, even without an event before
+    /// then; `None` for never.
+    fn opens_at(&self) -> Option<Duration> {
+        if self.guard.has_written_all() { self.protocol.opens_at() } else { None }
+    }
+
+    /// Sends a fence alone after a timeout, to learn whether the terminal is still there.
+    fn probe(&mut self) -> io::Result<()> {
+        if self.guard.has_written_all() {
+            self.protocol.probe(self.guard.now());
+            self.send()?;
+        }
+        Ok(())
+    }
+
+    /// Sends the output of the protocol, as far as the terminal accepts it at once.
+    fn send(&mut self) -> io::Result<()> {
+        let now = self.guard.now();
+        self.protocol.queue_frame(now);
+        let changes = self.protocol.changes();
+        let output = self.protocol.output(now);
+        if output.is_empty() {
+            self.guard.set_changes(changes);
+            return Ok(());
+        }
+        let written = self.guard.write(output, changes);
+        output.clear();
+        written?;
+        self.update_written();
+        Ok(())
+    }
+
+    /// Sends the bytes that the terminal has not accepted yet.
+    fn send_queued(&mut self) -> io::Result<()> {
+        self.guard.write_queued()?;
+        self.update_written();
+        Ok(())
+    }
+
+    fn update_written(&mut self) {
+        if self.guard.has_written_all() {
+            self.protocol.written(self.guard.now());
+        }
+    }
+
+    /// Waits until `wake_at` for input, signals, or room for bytes. Returns whether there was any of them.
+    fn receive(&mut self, wake_at: Option<Duration>) -> io::Result<bool> {
+        let timeout = wake_at.map(|time| time.saturating_sub(self.guard.now()));
+        let has_queued = !self.guard.has_written_all();
+        let ready = self.guard.device().wait(&self.signals, has_queued, timeout)?;
+        if ready.signals {
+            self.receive_signals()?;
+        }
+        if ready.input {
+            self.receive_input()?;
+        }
+        if ready.output && !self.is_ending() {
+            self.send_queued()?;
+        }
+        Ok(ready.input || ready.signals || ready.output)
+    }
+
+    fn receive_signals(&mut self) -> io::Result<()> {
+        for signal in self.signals.take() {
+            match signal {
+                Signal::Resized => {
+                    let size = self.measured();
+                    self.protocol.resize(size, self.guard.now());
+                }
+                Signal::Suspend => self.protocol.push_event(Event::Suspend),
+                Signal::Continued => {
+                    // SIGSTOP cannot be caught, so the terminal was not given back.
+                    self.guard.device().make_raw()?;
+                    let size = self.measured();
+                    self.protocol.repaint(size);
+                }
+                Signal::Quit(reason) => self.protocol.push_event(Event::Quit(reason)),
+            }
+        }
+        self.send()
+    }
+
+    fn receive_input(&mut self) -> io::Result<()> {
+        let mut buffer = [0; 1024];
+        let Some(count) = self.guard.read(&mut buffer)? else { return Ok(()) };
+        if count == 0 {
+            self.protocol.push_event(Event::Quit(QuitReason::InputClosed));
+            return Ok(());
+        }
+        self.protocol.receive(&buffer[..count], self.guard.now());
+        self.send()
     }
 }
 

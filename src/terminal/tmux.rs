@@ -1,4 +1,4 @@
-//! What tmux says about the terminal around it.
+//! The terminal around tmux, as tmux knows it.
 //!
 //! A program in tmux sees a terminal of 256 colours, whatever the terminal around it shows. tmux
 //! itself knows which features the attached client has, and which terminal it is.
@@ -8,7 +8,6 @@
 //! - What a client reports is text from a stranger: names with unusual characters are dropped.
 //! - tmux reads a terminal's features only when a client attaches (measured with 3.3a: after
 //!   `set -as terminal-features`, an attached client got RGB by attaching again, not before).
-//!
 //! - Nothing tells a program that a client attaches if the window stays the same and `focus-events` is
 //!   off, as by default. A key after a pause may come from another client.
 //!
@@ -18,6 +17,7 @@
 use std::io::Read;
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::task::Poll;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -56,8 +56,8 @@ impl TmuxClient {
         (is_missing && !self.term.is_empty()).then(|| format!(",{}:RGB", self.term))
     }
 
-    /// What is known of the client's terminal, within what tmux passes on.
-    pub(super) fn known(&self) -> Known {
+    /// The properties of the client's terminal, as far as tmux passes them on.
+    pub(crate) fn known(&self) -> Known {
         // tmux drops characters that its C library does not know, and the rest of the line moves: with
         // glibc 2.36 all octants (measured with 3.3a), with older ones also sextants.
         let blocks = match self.known.blocks {
@@ -87,20 +87,11 @@ impl TmuxClient {
 
 /// A command of tmux that may still run, and the part of its answer that matters.
 #[derive(Debug)]
-pub(super) struct Request<T>(Receiver<Option<T>>);
-
-/// The state of a request.
-#[derive(Debug)]
-pub(super) enum Reply<T> {
-    Pending,
-    Answer(T),
-    /// The command has failed, or its answer is unknown.
-    Nothing,
-}
+pub(crate) struct Request<T>(Receiver<Option<T>>);
 
 impl Request<TmuxClient> {
     /// Asks the tmux that the environment names for its client.
-    pub(super) fn client() -> Self {
+    pub(crate) fn client() -> Self {
         Self::begin(|| {
             let text = output(Command::new("tmux").args(["display", "-p", FORMAT]), TIMEOUT)?;
             TmuxClient::parse(&text)
@@ -110,7 +101,7 @@ impl Request<TmuxClient> {
 
 impl Request<()> {
     /// Runs the remedy for `client`; `None` if there is none.
-    pub(super) fn remedy(client: &TmuxClient) -> Option<Self> {
+    pub(crate) fn remedy(client: &TmuxClient) -> Option<Self> {
         let feature = client.missing_feature()?;
         Some(Self::begin(move || {
             let mut command = Command::new("tmux");
@@ -130,11 +121,11 @@ impl<T: Send + 'static> Request<T> {
         Self(receiver)
     }
 
-    pub(super) fn reply(&self) -> Reply<T> {
+    /// The answer, once there is one; `None` if the command has failed or its answer is unknown.
+    pub(crate) fn reply(&self) -> Poll<Option<T>> {
         match self.0.try_recv() {
-            Ok(Some(answer)) => Reply::Answer(answer),
-            Err(TryRecvError::Empty) => Reply::Pending,
-            Ok(None) | Err(TryRecvError::Disconnected) => Reply::Nothing,
+            Err(TryRecvError::Empty) => Poll::Pending,
+            answer => Poll::Ready(answer.ok().flatten()),
         }
     }
 }

@@ -1,11 +1,7 @@
-//! The Unix part of a terminal: its device, its attributes, waiting for it, and signals.
-
-#[cfg(feature = "cli")]
-mod memory;
-mod signals;
+//! The Unix part of a terminal: its device, its attributes, and waiting for it.
 
 use std::io;
-use std::os::fd::{BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -16,9 +12,7 @@ use rustix::termios::{
     ttyname,
 };
 
-#[cfg(feature = "cli")]
-pub(crate) use self::memory::peak_memory;
-pub(super) use self::signals::{Signal, Signals};
+use super::error::Kind;
 use super::{Error, WindowSize};
 
 /// The terminal of standard input and output.
@@ -28,7 +22,7 @@ use super::{Error, WindowSize};
 /// can still be ended while the link is down. For the same reason, raw mode and sizes do not use
 /// crossterm, which queries whatever terminal it finds.
 #[derive(Debug)]
-pub(super) struct Device {
+pub(crate) struct Device {
     input: OwnedFd,
     output: OwnedFd,
     attributes: Termios,
@@ -36,21 +30,21 @@ pub(super) struct Device {
 
 /// The results of a wait.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ready {
+pub(crate) struct Ready {
     /// There are bytes to read, or the input has ended.
-    pub(super) input: bool,
+    pub(crate) input: bool,
     /// There are signals.
-    pub(super) signals: bool,
+    pub(crate) signals: bool,
     /// There is room for bytes to write, or the output has ended.
-    pub(super) output: bool,
+    pub(crate) output: bool,
 }
 
 impl Device {
-    pub(super) fn open() -> Result<Self, Error> {
+    pub(crate) fn open() -> Result<Self, Error> {
         let (input, output) = (rustix::stdio::stdin(), rustix::stdio::stdout());
         for (stream, name) in [(input, "standard input"), (output, "standard output")] {
             if !isatty(stream) {
-                return Err(Error::not_a_terminal(name));
+                return Err(Kind::NotATerminal { stream: name }.into());
             }
         }
         Self::of_terminals(input, output).map_err(Error::while_doing("opening the terminal"))
@@ -65,18 +59,18 @@ impl Device {
     }
 
     /// Sets raw mode: keys arrive one by one, without echo or interpretation.
-    pub(super) fn make_raw(&self) -> io::Result<()> {
+    pub(crate) fn make_raw(&self) -> io::Result<()> {
         let mut raw = self.attributes.clone();
         raw.make_raw();
         Ok(tcsetattr(&self.input, OptionalActions::Now, &raw)?)
     }
 
     /// Restores the attributes from when the terminal was opened.
-    pub(super) fn restore_attributes(&self) -> io::Result<()> {
+    pub(crate) fn restore_attributes(&self) -> io::Result<()> {
         Ok(tcsetattr(&self.input, OptionalActions::Now, &self.attributes)?)
     }
 
-    pub(super) fn size(&self) -> WindowSize {
+    pub(crate) fn size(&self) -> WindowSize {
         tcgetwinsize(&self.output).map_or(WindowSize::UNKNOWN, |size| {
             WindowSize::new((size.ws_col, size.ws_row), (size.ws_xpixel, size.ws_ypixel))
         })
@@ -84,7 +78,7 @@ impl Device {
 
     /// Writes the part of `bytes` that the terminal accepts at once, and returns its length. Where that is
     /// not all, the terminal is not asked again: it would accept nothing.
-    pub(super) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
+    pub(crate) fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
         if bytes.is_empty() {
             return Ok(0);
         }
@@ -100,7 +94,7 @@ impl Device {
 
     /// Writes `bytes` and returns the length of the accepted part. While the terminal accepts no more,
     /// waits as long as `go_on` returns `true`.
-    pub(super) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<usize> {
+    pub(crate) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<usize> {
         let mut written = self.write_some(bytes)?;
         while written < bytes.len() && go_on() {
             self.wait_for_room()?;
@@ -117,18 +111,18 @@ impl Device {
     }
 
     /// Discards written bytes that the terminal has not received.
-    pub(super) fn discard_output(&self) -> io::Result<()> {
+    pub(crate) fn discard_output(&self) -> io::Result<()> {
         Ok(tcflush(&self.output, QueueSelector::OFlush)?)
     }
 
     /// Discards received bytes that were not read.
-    pub(super) fn discard_input(&self) -> io::Result<()> {
+    pub(crate) fn discard_input(&self) -> io::Result<()> {
         Ok(tcflush(&self.input, QueueSelector::IFlush)?)
     }
 
     /// Reads the available bytes into `buffer` and returns their number: zero at the end of input,
     /// `None` if no bytes are available yet.
-    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
+    pub(crate) fn read(&self, buffer: &mut [u8]) -> io::Result<Option<usize>> {
         match rustix::io::read(&self.input, buffer) {
             Ok(count) => Ok(Some(count)),
             Err(Errno::AGAIN | Errno::INTR) => Ok(None),
@@ -139,14 +133,14 @@ impl Device {
     }
 
     /// Waits for bytes to read, for `timeout` at most or until a signal arrives.
-    pub(super) fn wait_for_input(&self, timeout: Duration) -> io::Result<()> {
+    pub(crate) fn wait_for_input(&self, timeout: Duration) -> io::Result<()> {
         wait(&mut [PollFd::new(&self.input, PollFlags::IN)], Some(timeout))
     }
 
     /// Waits for bytes, signals or, if `wants_room`, room to write; for `timeout` at most.
-    pub(super) fn wait(
+    pub(crate) fn wait(
         &self,
-        signals: &Signals,
+        signals: &impl AsFd,
         wants_room: bool,
         timeout: Option<Duration>,
     ) -> io::Result<Ready> {
@@ -164,7 +158,8 @@ impl Device {
 }
 
 /// Replaces standard input, which was read to its end and is not needed any more, by the terminal
-/// of standard output. "/dev/tty" was refused, since it cannot be polled on every system.
+/// of standard output. Rejected:
+/// "/dev/tty", which cannot be polled on every system.
 #[cfg(feature = "cli")]
 pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     let output = rustix::stdio::stdout();
@@ -189,7 +184,7 @@ fn open_again(stream: BorrowedFd, access: OFlags) -> io::Result<OwnedFd> {
 }
 
 /// Polls `streams`; a signal ends the wait early.
-fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
+pub(crate) fn wait(streams: &mut [PollFd], timeout: Option<Duration>) -> io::Result<()> {
     // A timeout too long for the system's type is infinite.
     let timeout = timeout.and_then(|timeout| Timespec::try_from(timeout).ok());
     match poll(streams, timeout.as_ref()) {

@@ -1,4 +1,4 @@
-//! The interface of `unix` on platforms where no terminal can be opened.
+//! The interfaces of `unix` and `signals` on platforms where no terminal can be opened.
 //!
 //! A device cannot exist here, so that functions with a device are never called.
 
@@ -6,103 +6,98 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::error::Kind;
 use super::guard::Guard;
 use super::{Error, QuitReason, WindowSize};
 
 /// A device; there are none.
 #[derive(Debug)]
-pub(super) enum Device {}
+pub(crate) enum Device {}
 
 /// Signals; there are none.
 #[derive(Debug)]
-pub(super) enum Signals {}
+pub(crate) enum Signals {}
 
 /// The results of a wait.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ready {
-    pub(super) input: bool,
-    pub(super) signals: bool,
-    pub(super) output: bool,
+pub(crate) struct Ready {
+    pub(crate) input: bool,
+    pub(crate) signals: bool,
+    pub(crate) output: bool,
 }
 
 /// The meaning of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(dead_code, reason = "there are no signals here")]
-pub(super) enum Signal {
+pub(crate) enum Signal {
     Resized,
     Suspend,
     Continued,
     Quit(QuitReason),
 }
 
-/// The peak memory is unknown.
-#[cfg(feature = "cli")]
-pub(crate) fn peak_memory() -> Option<u64> {
-    None
-}
-
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
-pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
+pub fn take_keys_from_terminal() -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
 impl Device {
-    pub(super) fn open() -> Result<Self, Error> {
-        Err(Error::unsupported_platform())
+    pub(crate) fn open() -> Result<Self, Error> {
+        Err(Kind::UnsupportedPlatform.into())
     }
 
-    pub(super) fn make_raw(&self) -> io::Result<()> {
+    pub(crate) fn make_raw(&self) -> io::Result<()> {
         match *self {}
     }
 
-    pub(super) fn restore_attributes(&self) -> io::Result<()> {
+    pub(crate) fn restore_attributes(&self) -> io::Result<()> {
         match *self {}
     }
 
-    pub(super) fn size(&self) -> WindowSize {
+    pub(crate) fn size(&self) -> WindowSize {
         match *self {}
     }
 
-    pub(super) fn write_some(&self, _: &[u8]) -> io::Result<usize> {
+    pub(crate) fn write_some(&self, _: &[u8]) -> io::Result<usize> {
         match *self {}
     }
 
-    pub(super) fn write(&self, _: &[u8], _: impl Fn() -> bool) -> io::Result<usize> {
+    pub(crate) fn write(&self, _: &[u8], _: impl Fn() -> bool) -> io::Result<usize> {
         match *self {}
     }
 
-    pub(super) fn discard_input(&self) -> io::Result<()> {
+    pub(crate) fn discard_input(&self) -> io::Result<()> {
         match *self {}
     }
 
-    pub(super) fn discard_output(&self) -> io::Result<()> {
+    pub(crate) fn discard_output(&self) -> io::Result<()> {
         match *self {}
     }
 
-    pub(super) fn read(&self, _: &mut [u8]) -> io::Result<Option<usize>> {
+    pub(crate) fn read(&self, _: &mut [u8]) -> io::Result<Option<usize>> {
         match *self {}
     }
 
-    pub(super) fn wait_for_input(&self, _: Duration) -> io::Result<bool> {
+    pub(crate) fn wait_for_input(&self, _: Duration) -> io::Result<bool> {
         match *self {}
     }
 
-    pub(super) fn wait(&self, _: &Signals, _: bool, _: Option<Duration>) -> io::Result<Ready> {
+    pub(crate) fn wait(&self, _: &Signals, _: bool, _: Option<Duration>) -> io::Result<Ready> {
         match *self {}
     }
 }
 
 impl Signals {
-    pub(super) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
+    pub(crate) fn listen(guard: &Arc<Guard>) -> io::Result<Self> {
         match *guard.device() {}
     }
 
-    pub(super) fn take(&mut self) -> Vec<Signal> {
+    pub(crate) fn take(&mut self) -> Vec<Signal> {
         match *self {}
     }
 
-    pub(super) fn stop_until_continued(&mut self) -> io::Result<()> {
+    pub(crate) fn stop_until_continued(&mut self) -> io::Result<()> {
         match *self {}
     }
 }

@@ -1,62 +1,35 @@
-//! The `ascii` glyph set: a cell shows one pixel. Its character says first which surface it is, and
-//! then how bright.
+//! The glyph sets `ascii` and `ramp`: a cell shows one pixel.
 //!
-//! Each surface has its own characters, so that x sides and y sides of walls, floor, ceiling and
-//! sky differ without colour. Without colour, the cells around a thing are blank, too. Within a
-//! surface, four characters stand for four shades. One ramp of
-//! brightness for all surfaces was refused: a dark wall in front of a bright one looked the same as
-//! a bright floor in front of a dark wall.
+//! In `ascii`, the character says first which surface it is, and then how bright. Each surface has its own characters,
+//! so that x sides and y sides of walls, floor, ceiling and sky differ without colour. Without colour, the cells around
+//! a thing are blank, too. Within a surface, four characters stand for four shades. In `ramp`, sixteen characters show
+//! the brightness of every surface.
+//!
+//! Rejected: `ramp` alone. A dark wall in front of a bright one looks the same as a bright floor in front of a dark
+//! wall.
 
-use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::glyphs::color_at;
-use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::color::palette::ColorDepth;
 use crate::render::Surface;
 
-/// Draws one pixel in each cell of `area`. `pixel(x, y)` counts from its top left corner.
-pub(super) fn draw(
-    area: Rect,
-    canvas: &mut impl Canvas,
-    depth: ColorDepth,
-    pixel: impl Fn(u32, u32) -> (Rgb, char),
-) {
-    for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
-        for (column, x) in (0u32..).zip(area.left()..area.right()) {
-            let (color, character) = pixel(column, row);
-            let colors = [color, Rgb::BLACK].map(|color| color_at(depth, color));
-            canvas.draw_character(x, y, character, colors);
-        }
-    }
-}
-
 /// The black corner of the cube. The nearest colour to an almost black one is a grey.
 const BLACK_OF_256: u8 = 16;
 
-/// Does the same as [`draw`] for a picture whose characters show the brightness. Colours are drawn
-/// at full brightness, because a dark wall would otherwise be darkened twice.
-pub(super) fn draw_picture(
-    area: Rect,
-    canvas: &mut impl Canvas,
-    depth: ColorDepth,
-    pixel: impl Fn(u32, u32) -> (Rgb, char),
-) {
+/// The colours of a character that shows the brightness of `color`. They are at full brightness, because a dark wall
+/// would otherwise be darkened twice.
+pub(crate) fn picture_colors(depth: ColorDepth, color: Rgb) -> [Color; 2] {
     let background = match depth {
         ColorDepth::Indexed256 => Color::Indexed(BLACK_OF_256),
         _ => color_at(depth, Rgb::BLACK),
     };
-    for (row, y) in (0u32..).zip(area.top()..area.bottom()) {
-        for (column, x) in (0u32..).zip(area.left()..area.right()) {
-            let (color, character) = pixel(column, row);
-            let text = match depth {
-                ColorDepth::Indexed16 => Color::Indexed(named_color(brightened(color))),
-                _ => color_at(depth, brightened(color)),
-            };
-            canvas.draw_character(x, y, character, [text, background]);
-        }
-    }
+    let text = match depth {
+        ColorDepth::Indexed16 => Color::Indexed(named_color(brightened(color))),
+        _ => color_at(depth, brightened(color)),
+    };
+    [text, background]
 }
 
 /// `color` with its brightest channel at the maximum. An almost black colour has an unreliable hue,
@@ -70,7 +43,7 @@ fn brightened(color: Rgb) -> Rgb {
     Rgb::new(red, green, blue)
 }
 
-/// The index of the named colour whose hue is nearest to that of a bright `color`, or white. Users
+/// The index of the named colour with the hue nearest to a bright `color`'s, or white. Users
 /// redefine the sixteen colours, but red stays red. Blue is the bright one, because the dark one is
 /// hard to read.
 fn named_color(color: Rgb) -> u8 {
@@ -87,7 +60,7 @@ fn named_color(color: Rgb) -> u8 {
 }
 
 /// The character for a pixel of `surface` with that colour.
-pub(super) fn character(surface: Surface, color: Rgb) -> char {
+pub(crate) fn character(surface: Surface, color: Rgb) -> char {
     let shades = shades(surface);
     let brightness = match surface {
         // A y side is drawn at half brightness. Its characters are chosen by the full brightness.
@@ -107,6 +80,15 @@ fn shades(surface: Surface) -> [char; 4] {
         Surface::Floor => ['.', ':', '-', '='],
         Surface::Thing => ['c', 'o', 'O', '8'],
     }
+}
+
+/// The sixteen characters, by the share of the cell that they light, from most to none.
+const RAMP: &[u8; 16] = b"WM0KXkxocl;:,'. ";
+
+/// The character of the ramp for a pixel with that colour.
+pub(crate) fn ramp_character(color: Rgb) -> char {
+    let darkness = usize::from(u8::MAX - color.luma());
+    char::from(RAMP[darkness * RAMP.len() / 256])
 }
 
 #[cfg(test)]
@@ -154,5 +136,13 @@ mod tests {
         assert_eq!(character(Surface::WallX, Rgb::WHITE), '@');
         assert_eq!(character(Surface::WallY, Rgb::WHITE.halved()), 'H');
         assert_eq!(character(Surface::Floor, Rgb::BLACK), '.');
+    }
+
+    #[test]
+    fn the_ramp_goes_from_black_to_white() {
+        let shades =
+            (0..16).map(|shade| ramp_character(Rgb::new(shade * 17, shade * 17, shade * 17)));
+        let ramp: Vec<u8> = shades.map(|character| character as u8).rev().collect();
+        assert_eq!(ramp, RAMP);
     }
 }

@@ -1,10 +1,12 @@
-//! Corrections of a picture for eyes that see less contrast, or no difference between red and green.
+//! Contrast: corrections of a picture for eyes that see less of it, or no difference between red and green, and
+//! outlines of things in pictures without colours.
 //!
-//! A correction changes pixels, before they become cells of any depth. It depends on the picture
-//! alone, so that a still picture stays still.
+//! A correction changes pixels, before they become cells of any depth. It depends on the picture alone, so that a
+//! still picture stays still. An outline sets a thing apart from any surface: a guard a few pixels wide is lost among
+//! the dots and characters of the wall behind, whatever its brightness.
 
 use crate::color::Rgb;
-use crate::render::Frame;
+use crate::render::{Frame, FrameSize, Surface};
 
 /// How a picture is changed for the eyes that look at it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -20,7 +22,7 @@ pub enum Correction {
 
 impl Correction {
     /// Changes the pixels of `frame`, in cells of `pixels_per_cell`. `luma` is memory that is used again.
-    pub(super) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
+    pub(crate) fn apply(self, frame: &mut Frame, pixels_per_cell: [u32; 2], luma: &mut Vec<u8>) {
         if self == Self::None {
             return;
         }
@@ -43,7 +45,7 @@ impl Correction {
 /// How much brighter the pixel at `[x, y]` is than those around it, in steps of luma. A cell is
 /// `pixels_per_cell` wide and high; the eight pixels that are compared are three columns of cells away,
 /// or one and a half rows.
-pub(super) fn local_contrast(
+pub(crate) fn local_contrast(
     size: [u32; 2],
     luma: impl Fn(u32, u32) -> u8,
     place: [u32; 2],
@@ -61,7 +63,7 @@ pub(super) fn local_contrast(
 }
 
 /// `color` made lighter or darker by `by` steps of luma, to between a third and twice of its own.
-pub(super) fn raised(color: Rgb, by: i32) -> Rgb {
+pub(crate) fn raised(color: Rgb, by: i32) -> Rgb {
     let luma = i32::from(color.luma());
     let wanted = (luma + by).clamp(luma / 3, 2 * luma + 1);
     let scaled = |channel: u8| (i32::from(channel) * wanted / luma.max(1)).min(255) as u8;
@@ -80,6 +82,31 @@ fn apart(color: Rgb) -> Rgb {
     Rgb::new(red, green, (i32::from(blue) + moved).clamp(0, 255) as u8)
 }
 
+/// A side of the edge between a thing and what is behind it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edge {
+    /// The outermost pixels of the thing.
+    Inner,
+    /// The pixels next to the thing.
+    Outer,
+}
+
+/// The side of an edge of a thing on which a pixel is, if it is next to one. The edge of the frame
+/// is not an edge of a thing.
+pub(crate) fn outline(
+    frame: FrameSize,
+    surface: impl Fn(u32, u32) -> Option<Surface>,
+    x: u32,
+    y: u32,
+) -> Option<Edge> {
+    let [last_x, last_y] = [frame.width, frame.height].map(|length| length.get() - 1);
+    let is_thing = |x: u32, y: u32| surface(x.min(last_x), y.min(last_y)) == Some(Surface::Thing);
+    let own = is_thing(x, y);
+    let neighbours = [(x.saturating_sub(1), y), (x + 1, y), (x, y.saturating_sub(1)), (x, y + 1)];
+    let is_at_edge = neighbours.into_iter().any(|(x, y)| is_thing(x, y) != own);
+    is_at_edge.then_some(if own { Edge::Inner } else { Edge::Outer })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,7 +114,7 @@ mod tests {
     use crate::color::srgb::linear;
     use crate::render::{FrameSize, PixelAspect};
 
-    /// What people without green cones see, and without red ones (Machado and others, 2009).
+    /// The colours that people without green cones and without red cones see (Machado and others, 2009).
     const BLIND: [[[f64; 3]; 3]; 2] = [
         [
             [0.367_322, 0.860_646, -0.227_968],
@@ -140,5 +167,21 @@ mod tests {
         Correction::Contrast.apply(&mut frame, [1, 2], &mut Vec::new());
         assert_eq!(frame.pixel(0, 1), Rgb::new(80, 60, 40));
         assert!(frame.pixel(7, 1).luma() < 60 && frame.pixel(8, 1).luma() > 96);
+    }
+
+    #[test]
+    fn the_edge_of_a_thing_has_two_sides() {
+        let frame = FrameSize::new(9, 9).unwrap();
+        let surface = |x: u32, y: u32| {
+            let is_thing = (4..9).contains(&x) && (4..9).contains(&y);
+            Some(if is_thing { Surface::Thing } else { Surface::WallX })
+        };
+        for (at, expected) in
+            [(2, None), (3, Some(Edge::Outer)), (4, Some(Edge::Inner)), (5, None), (8, None)]
+        {
+            assert_eq!(outline(frame, surface, at, 6), expected, "{at}");
+            assert_eq!(outline(frame, surface, 6, at), expected, "{at}");
+        }
+        assert_eq!(outline(frame, |_, _| None, 4, 6), None);
     }
 }

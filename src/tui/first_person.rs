@@ -6,9 +6,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::widgets::StatefulWidget;
 
-use super::outline::{Edge, outline};
-use super::{CellAspect, Correction, GlyphSet, ascii, blocks, ramp};
-use crate::canvas::Canvas;
+use super::canvas::{Canvas, draw_characters};
+use super::correction::{Edge, outline};
+use super::{CellAspect, Correction, GlyphSet, ascii, blocks};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::render::{
     Column, DynCaster, Filter, Frame, FrameSize, Options, PixelAspect, Renderable, Renderer,
@@ -164,20 +164,20 @@ impl<'a, S: Renderable> FirstPerson<'a, S> {
             GlyphSet::Ascii => {
                 let is_beside_thing =
                     |x, y| outline(frame.size(), surface, x, y) == Some(Edge::Outer);
-                ascii::draw_picture(area, canvas, self.depth, |x, y| {
+                draw_characters(area, canvas, |x, y| {
                     let y = above + y;
                     let color = frame.pixel(x, y);
                     let character = match surface(x, y) {
                         Some(_) if self.depth == ColorDepth::Mono && is_beside_thing(x, y) => ' ',
                         Some(surface) => ascii::character(surface, color),
-                        None => ramp::character(color),
+                        None => ascii::ramp_character(color),
                     };
-                    (color, character)
+                    (character, ascii::picture_colors(self.depth, color))
                 });
             }
-            GlyphSet::Ramp => ascii::draw_picture(area, canvas, self.depth, |x, y| {
+            GlyphSet::Ramp => draw_characters(area, canvas, |x, y| {
                 let color = frame.pixel(x, above + y);
-                (color, ramp::character(color))
+                (ascii::ramp_character(color), ascii::picture_colors(self.depth, color))
             }),
         }
     }

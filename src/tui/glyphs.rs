@@ -2,10 +2,10 @@
 
 use ratatui::style::Color;
 
-use crate::canvas::true_color;
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::PixelAspect;
+use crate::tui::canvas::true_color;
 
 /// The characters that pixels are drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -94,7 +94,7 @@ impl Default for CellAspect {
 
 /// `color` as a terminal of that depth shows it best.
 #[inline]
-pub(crate) fn color_at(depth: ColorDepth, color: Rgb) -> Color {
+pub fn color_at(depth: ColorDepth, color: Rgb) -> Color {
     match depth {
         ColorDepth::True => true_color(color),
         ColorDepth::Indexed256 => Color::Indexed(palette::nearest_of_256(color)),

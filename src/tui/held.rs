@@ -1,4 +1,4 @@
-//! The keys that are held, in terminals with and without key releases.
+//! The keys that are held, in terminals with and without key releases, and the intents that they mean.
 //!
 //! Some terminals report when a key is released. Others send a byte when a key is pressed, send it
 //! again while the key is held, and stop for good when another key is pressed. [`HeldKeys`] gives
@@ -17,23 +17,15 @@
 //! - Two keys pressed within [`CHORD`] of each other are both held once one of them repeats. Any other
 //!   key that has not repeated stays a tap.
 //!
-//! Taking a byte at the learned delay for a repetition at once was refused: it gains one interval,
-//! and people who tap at that rate keep walking. Counting a tap as held until the first repetition
-//! could have come was refused, too: one tap then walks 1.75 cells.
-//!
 //! The time is an argument, measured from a fixed moment, so that tests need not wait.
-
-mod key;
-#[cfg(test)]
-pub(crate) mod keyboard;
-mod repeat_timing;
-#[cfg(test)]
-mod tests;
+//!
+//! Rejected: taking a byte at the learned delay for a repetition at once. It gains one interval, and people who tap at
+//! that rate keep walking. Counting a tap as held until the first repetition could have come: one tap then walks 1.75
+//! cells.
 
 use std::time::Duration;
 
-use key::{HeldKey, State};
-use repeat_timing::RepeatTiming;
+use crate::game::{Intent, Intents};
 
 /// How long a key stays held after the newer key that ended its repetition is released.
 pub const LINGER: Duration = Duration::from_millis(300);
@@ -282,3 +274,393 @@ impl<K: Copy + Eq> HeldKeys<K> {
         HeldKey::new(key)
     }
 }
+
+/// The most taps in the queue: a link that stalled delivers many bytes at once.
+const MOST_QUEUED: u32 = 4;
+/// The longest time between two bytes of a repetition.
+const LONGEST_INTERVAL: Duration = Duration::from_millis(150);
+/// The longest time by which a slow link interrupts a repetition.
+const LONGEST_STALL: Duration = Duration::from_secs(1);
+/// People do not tap this often, for this long, as fast as a keyboard repeats.
+const SURE_COUNT: u32 = 4;
+const SURE_SPAN: Duration = Duration::from_millis(200);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Up,
+    /// The key is down; releases are reported.
+    Down,
+    /// The key was pressed, and may be down.
+    Pressed,
+    /// The key repeats.
+    Repeats,
+    /// The key repeated until another key was pressed, and still counts as held.
+    Lingers,
+    /// The key counts as up, and its repetitions are ignored.
+    Suppressed,
+}
+
+/// The state of a key.
+#[derive(Clone, Debug)]
+struct HeldKey<K> {
+    key: K,
+    state: State,
+    timing: RepeatTiming,
+    /// The time of its last byte, if any.
+    last_byte: Option<Duration>,
+    /// The time at which it was last pressed, as far as that is certain.
+    pressed: Duration,
+    tap: Tap,
+    series: Series,
+    /// Whether it repeated when it was last marked as up.
+    repeated: bool,
+}
+
+/// The steps left of a tap, and the taps after it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tap {
+    steps: u32,
+    left: u32,
+    queued: u32,
+    /// Whether the key counts as up for one step, which separates two taps.
+    pauses: bool,
+}
+
+/// A series of bytes as close together as in a repetition.
+#[derive(Clone, Copy, Debug, Default)]
+struct Series {
+    start: Duration,
+    /// The number of bytes after the first.
+    count: u32,
+    /// The time between the first byte and the one before it.
+    after: Option<Duration>,
+    /// Whether the first byte may have been a repetition.
+    is_suspect: bool,
+}
+
+impl<K: Copy + Eq> HeldKey<K> {
+    fn new(key: K) -> Self {
+        Self {
+            key,
+            state: State::Up,
+            timing: RepeatTiming::default(),
+            last_byte: None,
+            pressed: Duration::ZERO,
+            tap: Tap::default(),
+            series: Series::default(),
+            repeated: false,
+        }
+    }
+
+    fn hold(&self) -> Hold {
+        match self.state {
+            _ if self.tap.pauses => Hold::Up,
+            State::Repeats | State::Lingers => Hold::Held,
+            _ if self.tap.left > 0 => Hold::Tap,
+            State::Up | State::Suppressed => Hold::Up,
+            State::Pressed => Hold::Unknown,
+            State::Down => Hold::Held,
+        }
+    }
+
+    fn is_held(&self) -> bool {
+        matches!(self.state, State::Down | State::Repeats | State::Lingers)
+    }
+
+    fn has_taps(&self) -> bool {
+        self.tap.left > 0 || self.tap.pauses
+    }
+
+    fn step(&mut self) {
+        self.tap.step();
+    }
+
+    /// Handles a press where releases are reported.
+    fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
+        let was_held = self.hold() == Hold::Held;
+        self.tap.add(steps, was_held);
+        self.state = State::Down;
+        self.pressed = now;
+        Press::Fresh
+    }
+
+    /// Handles a byte of the key where releases are not reported. `is_newest` says whether the last
+    /// byte was of the same key.
+    fn byte(&mut self, steps: u32, now: Duration, is_newest: bool, prior: RepeatTiming) -> Press {
+        let gap =
+            self.last_byte.filter(|_| is_newest).map(|last_byte| now.saturating_sub(last_byte));
+        self.last_byte = Some(now);
+        let known = self.timing.or(prior);
+        match (self.state, gap) {
+            (State::Repeats, Some(gap)) => {
+                self.timing.learn_interval(gap);
+                return Press::Repeat;
+            }
+            (State::Suppressed, Some(gap)) if gap <= known.timeout().max(LONGEST_INTERVAL) => {
+                return Press::Repeat;
+            }
+            _ => {}
+        }
+        if self.series.continues(now, gap, known) {
+            self.begin_repetition(now, prior);
+            return Press::Repeat;
+        }
+        let may_resume = self.repeated && gap.is_some_and(|gap| gap <= LONGEST_STALL);
+        let is_suspect = may_resume || gap.is_some_and(|gap| known.may_begin_after(gap));
+        if self.series.count == 0 {
+            self.series.is_suspect = is_suspect;
+        }
+        let is_unclear = self.series.count == 0 && is_suspect;
+        if !is_unclear {
+            self.repeated = false;
+            self.pressed = now;
+        }
+        let was_held = self.is_held();
+        self.state = State::Pressed;
+        self.tap.add(steps, was_held);
+        if is_unclear { Press::Unclear } else { Press::Fresh }
+    }
+
+    fn begin_repetition(&mut self, now: Duration, prior: RepeatTiming) {
+        let before = self.timing.or(prior);
+        self.timing = before;
+        if let Some(delay) = self.series.after.filter(|_| !self.repeated) {
+            self.timing.learn_delay(delay);
+        }
+        let span = now.saturating_sub(self.series.start);
+        self.timing.learn_interval(span / self.series.count.max(1));
+        self.state = State::Repeats;
+        self.repeated = true;
+        self.tap = Tap::default();
+    }
+
+    /// Handles the press of another key, which ends the repetition of this one.
+    fn end_repetition(&mut self) {
+        if self.state == State::Repeats {
+            self.state = State::Lingers;
+        }
+    }
+
+    /// Holds this key if it was pressed together with `newer`, which is held.
+    fn join(&mut self, newer: &Self) {
+        if self.was_pressed_within(CHORD, newer) {
+            self.state = State::Lingers;
+            self.tap = Tap::default();
+        }
+    }
+
+    /// Whether this key may have been down without a repetition when `newer` was pressed.
+    fn may_be_down_at(&self, newer: &Self, prior: RepeatTiming) -> bool {
+        self.was_pressed_within(self.timing.or(prior).delay_or_default(), newer)
+    }
+
+    /// Whether this key was pressed at or before `time` and may have been down ever since.
+    fn is_down_since(&self, time: Duration) -> bool {
+        let may_be_down = !matches!(self.state, State::Up | State::Suppressed);
+        may_be_down && self.pressed <= time
+    }
+
+    /// Whether this key was pressed once, at most `most` before `newer`.
+    fn was_pressed_within(&self, most: Duration, newer: &Self) -> bool {
+        let apart = newer.pressed.checked_sub(self.pressed);
+        let is_single = self.last_byte == Some(self.pressed) && !self.is_held();
+        is_single && apart.is_some_and(|apart| apart <= most)
+    }
+
+    /// Marks the key as up. Its tap continues to its end, so that two opposing taps lead back to
+    /// the start.
+    fn mark_as_up(&mut self) {
+        if !matches!(self.state, State::Suppressed | State::Up) {
+            self.repeated = self.state == State::Repeats;
+            self.state = State::Up;
+        }
+    }
+
+    /// Marks the key as up and ignores its repetitions.
+    fn suppress(&mut self) {
+        let may_repeat = matches!(self.state, State::Down | State::Repeats | State::Suppressed);
+        self.state = if may_repeat { State::Suppressed } else { State::Up };
+        self.last_byte = self.last_byte.filter(|_| may_repeat);
+        self.tap = Tap::default();
+    }
+
+    /// The time at which the key expires if no byte of it comes until then; `None` if it does not
+    /// expire by itself.
+    fn expiry(&self, prior: RepeatTiming) -> Option<Duration> {
+        let timing = self.timing.or(prior);
+        match self.state {
+            State::Pressed => Some(self.last_byte? + timing.first_timeout()),
+            State::Repeats => Some(self.last_byte? + timing.timeout()),
+            State::Up | State::Down | State::Lingers | State::Suppressed => None,
+        }
+    }
+}
+
+impl Series {
+    /// Handles a byte that came `gap` after the last one. Returns whether the series is a
+    /// repetition.
+    fn continues(&mut self, now: Duration, gap: Option<Duration>, timing: RepeatTiming) -> bool {
+        if gap.is_none_or(|gap| gap > LONGEST_INTERVAL) {
+            *self = Self { start: now, count: 0, after: gap, is_suspect: false };
+            return false;
+        }
+        self.count += 1;
+        let span = now.saturating_sub(self.start);
+        timing.is_repetition(self.count, span)
+            && (self.is_suspect || self.count >= SURE_COUNT && span >= SURE_SPAN)
+    }
+}
+
+impl Tap {
+    fn add(&mut self, steps: u32, was_held: bool) {
+        if steps == 0 {
+            return;
+        }
+        if self.left > 0 || self.pauses {
+            self.queued = (self.queued + 1).min(MOST_QUEUED);
+        } else {
+            (self.left, self.pauses) = if was_held { (0, true) } else { (steps, false) };
+        }
+        self.steps = steps;
+    }
+
+    fn step(&mut self) {
+        if self.pauses {
+            (self.left, self.pauses) = (self.steps, false);
+        } else if self.left > 0 {
+            self.left -= 1;
+            if self.left == 0 && self.queued > 0 {
+                self.queued -= 1;
+                self.pauses = true;
+            }
+        }
+    }
+}
+
+/// The shortest and the longest delay of any keyboard.
+const SHORTEST_DELAY: Duration = Duration::from_millis(200);
+const LONGEST_DELAY: Duration = Duration::from_secs(1);
+/// The first timeout as long as no delay is known: the longest default delay of a system, X11's 660
+/// ms, plus an interval.
+const DEFAULT_FIRST_TIMEOUT: Duration = Duration::from_millis(750);
+/// The default delay of most systems.
+const DEFAULT_DELAY: Duration = Duration::from_millis(500);
+/// People do not tap a key faster than once in this time. For further taps in a row, the mean time
+/// is longer by a slack for each of them, up to a limit.
+const SHORTEST_TAP: Duration = Duration::from_millis(80);
+const TAP_SLACK: Duration = Duration::from_millis(10);
+const MOST_SLACKS: u32 = 2;
+/// The number of half intervals without a byte after which a key has stopped repeating, and the
+/// bounds of that time: a link that delivers bytes in bursts makes the interval look too short.
+const MISSED_HALVES: u32 = 5;
+const SHORTEST_TIMEOUT: Duration = Duration::from_millis(90);
+const LONGEST_TIMEOUT: Duration = Duration::from_millis(300);
+/// The interval as long as none has been measured.
+const DEFAULT_INTERVAL: Duration = Duration::from_millis(60);
+
+/// The delay and the interval of a keyboard, as far as they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct RepeatTiming {
+    delay: Option<Duration>,
+    /// The longest recent interval; it decays slowly.
+    interval: Option<Duration>,
+}
+
+impl RepeatTiming {
+    /// This timing, completed from `prior`.
+    fn or(self, prior: Self) -> Self {
+        Self { delay: self.delay.or(prior.delay), interval: self.interval.or(prior.interval) }
+    }
+
+    /// Whether the first repetition of a key may come after `gap`.
+    fn may_begin_after(self, gap: Duration) -> bool {
+        let earliest = self.delay.map_or(SHORTEST_DELAY, |delay| delay * 3 / 4);
+        (earliest.max(SHORTEST_DELAY)..=LONGEST_DELAY).contains(&gap)
+    }
+
+    /// Whether `count` bytes in the time `span` are too many for taps.
+    fn is_repetition(self, count: u32, span: Duration) -> bool {
+        let mean = SHORTEST_TAP + TAP_SLACK * (count.saturating_sub(1)).min(MOST_SLACKS);
+        let known = self.interval.map_or(Duration::ZERO, |interval| interval * 5 / 4);
+        span <= mean.max(known.min(SHORTEST_TAP * 3 / 2)) * count
+    }
+
+    /// Learns from a first repetition that came after `delay`.
+    fn learn_delay(&mut self, delay: Duration) {
+        if (SHORTEST_DELAY..=LONGEST_DELAY).contains(&delay) {
+            // A link can delay a byte, but not advance it: shorter delays are taken at once.
+            let known = self.delay.unwrap_or(delay);
+            self.delay = Some(delay.min(known + delay.saturating_sub(known) / 4));
+        }
+    }
+
+    /// Learns from a repetition that came after `interval`.
+    fn learn_interval(&mut self, interval: Duration) {
+        let longest = self.interval.map_or(Duration::ZERO, |longest| longest * 7 / 8);
+        self.interval = Some(interval.max(longest));
+    }
+
+    /// How long a pressed key may be down before its first repetition.
+    fn first_timeout(self) -> Duration {
+        self.delay.map_or(DEFAULT_FIRST_TIMEOUT, |delay| delay * 5 / 4 + SHORTEST_TAP)
+    }
+
+    /// The delay; if it is unknown, the default of most systems.
+    fn delay_or_default(self) -> Duration {
+        self.delay.unwrap_or(DEFAULT_DELAY)
+    }
+
+    /// How long a repeating key may send nothing.
+    fn timeout(self) -> Duration {
+        let interval = self.interval.unwrap_or(DEFAULT_INTERVAL);
+        (interval * MISSED_HALVES / 2).clamp(SHORTEST_TIMEOUT, LONGEST_TIMEOUT)
+    }
+}
+
+/// The number of steps for which a tap of a key wants `intent`, as an argument of
+/// [`HeldKeys::press`].
+pub fn tap_steps(intent: Intent) -> u32 {
+    match intent {
+        once if once.acts_once() => 1,
+        turn if turn.turns() => 10,
+        Intent::Open | Intent::LookAhead => 1,
+        Intent::Run | Intent::Aim => 0,
+        _ => 5,
+    }
+}
+
+/// The intents of a step, given the intents that are bound to keys and how each key is held.
+///
+/// A tap has a small, exact effect, because motion that starts and stops smoothly covers the same distance as motion
+/// that does not: 5 steps of walking are a quarter of a cell, and 10 steps of turning slowly are 5 degrees. Taps turn
+/// slowly and never run. A key to duck that may be down counts as held.
+pub fn wanted(keys: impl Iterator<Item = (Intent, Hold)>) -> Intents {
+    let mut wanted = Intents::new();
+    let mut held = Intents::new();
+    for (intent, hold) in keys {
+        let is_wanted = match intent {
+            Intent::Duck => hold != Hold::Up,
+            once if once.acts_once() => hold == Hold::Tap,
+            _ => matches!(hold, Hold::Tap | Hold::Held),
+        };
+        if is_wanted {
+            wanted.insert(intent);
+        }
+        if hold == Hold::Held {
+            held.insert(intent);
+        }
+    }
+    let taps =
+        |is_meant: fn(Intent) -> bool| wanted.iter().any(is_meant) && !held.iter().any(is_meant);
+    let (turns_by_taps, walks_by_taps) = (taps(Intent::turns), taps(Intent::walks));
+    if turns_by_taps {
+        wanted.insert(Intent::Aim);
+    }
+    if walks_by_taps {
+        wanted.remove(Intent::Run);
+    }
+    wanted
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

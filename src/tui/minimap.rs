@@ -4,31 +4,23 @@
 //! stores the seen ones. Nothing on the map is as bright as the arrow for the player.
 
 mod explored;
-mod map_point;
-mod picture;
 mod top_view;
-mod window;
 
 use glam::DVec2;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-#[cfg(feature = "terminal")]
-use ratatui::layout::Size;
+use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
 
+pub use self::explored::Explored;
+use self::top_view::{MapPoint, Row, TopView};
+use super::canvas::{Canvas, draw_characters};
 use super::glyphs::color_at;
-use super::{GlyphSet, ascii, blocks};
-use crate::canvas::Canvas;
+use super::{GlyphSet, blocks};
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
 use crate::render::Column;
 use crate::world::{Camera, Heading, World};
-pub use explored::Explored;
-use map_point::MapPoint;
-use picture::Picture;
-use top_view::TopView;
-use window::Window;
 
 /// A widget that shows the map from above: walls in their colours, floor by its height, the player
 /// as an arrow, and the visible part of the floor, by the rays of the picture.
@@ -66,7 +58,7 @@ impl<'a> Minimap<'a> {
         }
     }
 
-    /// Sets the hits that bound the visible floor. They must be those of a picture by the same
+    /// Sets the hits that bound the visible floor. They must come from a picture by the same
     /// camera.
     #[must_use]
     pub fn seen(self, columns: &'a [Column]) -> Self {
@@ -79,7 +71,7 @@ impl<'a> Minimap<'a> {
         Self { explored: Some(explored), ..self }
     }
 
-    /// Sets the marks of those who move. A mark shows only where the floor is visible.
+    /// Sets the marks of other characters. A mark shows only where the floor is visible.
     #[must_use]
     pub fn marks(self, marks: &'a [MapMark]) -> Self {
         Self { marks, ..self }
@@ -139,9 +131,10 @@ impl Minimap<'_> {
             GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
                 self.draw_mosaics(&picture, area, canvas);
             }
-            GlyphSet::Ascii | GlyphSet::Ramp => ascii::draw(area, canvas, self.depth, |x, y| {
+            GlyphSet::Ascii | GlyphSet::Ramp => draw_characters(area, canvas, |x, y| {
                 let point = picture.point(x, y);
-                (point.color(), point.character())
+                let colors = [point.color(), Rgb::BLACK];
+                (point.character(), colors.map(|color| color_at(self.depth, color)))
             }),
         }
         if let Some(ghost) = &self.ghost {
@@ -158,7 +151,7 @@ impl Minimap<'_> {
     /// The part of `room` that the map fills; the rest would be blank.
     #[cfg(feature = "terminal")]
     pub(crate) fn size_within(&self, room: Size) -> Size {
-        window::size_within(room, self.glyphs, self.world, self.zoom)
+        size_within(room, self.glyphs, self.world, self.zoom)
     }
 
     /// The number of the map's cells that an area of that size shows.
@@ -189,21 +182,17 @@ impl Minimap<'_> {
     /// Draws the map without colour. Things are letters.
     fn draw_lit_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
         let [columns, rows] = self.glyphs.pixels_per_cell();
-        for (row, y) in (0..).zip(area.top()..area.bottom()) {
-            for (column, x) in (0..).zip(area.left()..area.right()) {
-                let dots = || {
-                    let places = (0..rows).flat_map(|row| (0..columns).map(move |x| (x, row)));
-                    let places = places.map(|(x, y)| (columns * column + x, rows * row + y));
-                    places.map(|(x, y)| (picture.point(x, y), (x, y)))
-                };
-                let thing = dots().find(|(point, _)| point.is_thing());
-                let lit =
-                    || blocks::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
-                let character =
-                    thing.map_or_else(|| lit().character(), |(point, _)| point.character());
-                canvas.draw_character(x, y, character, [Color::Reset; 2]);
-            }
-        }
+        draw_characters(area, canvas, |column, row| {
+            let dots = || {
+                let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
+                let places = places.map(|(x, y)| (columns * column + x, rows * row + y));
+                places.map(|(x, y)| (picture.point(x, y), (x, y)))
+            };
+            let thing = dots().find(|(point, _)| point.is_thing());
+            let lit = || blocks::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
+            let character = thing.map_or_else(|| lit().character(), |(point, _)| point.character());
+            (character, [Color::Reset; 2])
+        });
     }
 
     fn mark_look(&self) -> Look {
@@ -283,3 +272,178 @@ const GHOST_TEXT: Rgb = Rgb::new(0xb8, 0xc0, 0xd0);
 const GHOST: Rgb = Rgb::new(0x38, 0x58, 0x78);
 /// The background of the arrow.
 const PLAYER: Rgb = Rgb::new(0xff, 0xf0, 0x50);
+
+/// The numbers of pixels per cell of the map, for the levels of the zoom; below 1, a pixel shows
+/// several cells.
+const SCALES: [f64; 10] = [0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0];
+
+/// The part of the map that an area shows.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    /// The width and the height of the area in pixels.
+    size: DVec2,
+    /// The number of pixels per cell of the map.
+    scale: DVec2,
+    /// The position of the area's top left corner, in pixels from the map's top left corner.
+    corner: DVec2,
+    /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
+    cells_per_pixel: [u32; 2],
+    pixels_per_cell: [u32; 2],
+}
+
+impl Window {
+    /// The whole map if it fits, or the part around `center`, enlarged or reduced by `zoom` levels.
+    fn new(area: Rect, glyphs: GlyphSet, world: &World, center: DVec2, zoom: i32) -> Self {
+        let pixels_per_cell = glyphs.pixels_per_cell();
+        let size = pixels_within(area.as_size(), glyphs);
+        let map = world.grid().extent();
+        let scale = scale(world, size, glyphs, zoom);
+        let spare = size - map * scale;
+        let corner_along = |spare: f64, center: f64, size: f64| {
+            if spare >= 0.0 {
+                -(spare / 2.0).floor()
+            } else {
+                (center - size / 2.0).floor().clamp(0.0, (-spare).ceil())
+            }
+        };
+        let center = center * scale;
+        let corner = DVec2::new(
+            corner_along(spare.x, center.x, size.x),
+            corner_along(spare.y, center.y, size.y),
+        );
+        // Rounding up is a function call on older processors.
+        let cells_per_pixel = [scale.x, scale.y].map(|scale| (1.0 / scale).ceil() as u32);
+        Self { size, scale, corner, cells_per_pixel, pixels_per_cell }
+    }
+
+    /// The width of a pixel in cells of the map.
+    fn pixel(&self) -> f64 {
+        1.0 / self.scale.x
+    }
+
+    /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
+    fn cells_per_pixel(&self) -> [u32; 2] {
+        self.cells_per_pixel
+    }
+
+    /// The distance of the centres of a column of pixels from the map's western edge.
+    fn x_of(&self, column: u32) -> f64 {
+        (f64::from(column) + 0.5 + self.corner.x) / self.scale.x
+    }
+
+    /// The distance of the centres of a row of pixels from the map's northern edge.
+    fn y_of(&self, row: u32) -> f64 {
+        (f64::from(row) + 0.5 + self.corner.y) / self.scale.y
+    }
+
+    /// The cell of the area that shows `point`.
+    fn cell(&self, point: DVec2) -> Option<(u16, u16)> {
+        let pixel = (point * self.scale - self.corner).floor();
+        let shows = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(self.size).all();
+        let [columns, rows] = self.pixels_per_cell;
+        shows.then(|| ((pixel.x as u32 / columns) as u16, (pixel.y as u32 / rows) as u16))
+    }
+
+    /// The numbers of the map's cells that are shown from left to right and from top to bottom.
+    #[cfg(feature = "terminal")]
+    fn extent(&self) -> DVec2 {
+        self.size / self.scale
+    }
+}
+
+/// The part of `room` that the map fills; the rest would be blank.
+#[cfg(feature = "terminal")]
+fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
+    let pixels = pixels_within(room, glyphs);
+    let needed = world.grid().extent() * scale(world, pixels, glyphs, zoom);
+    let needed = needed.ceil().min(pixels);
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
+}
+
+fn pixels_within(cells: Size, glyphs: GlyphSet) -> DVec2 {
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    DVec2::new(f64::from(cells.width) * columns, f64::from(cells.height) * rows)
+}
+
+/// The number of pixels per cell of the map: the largest whole number with which the whole map fits
+/// into `pixels`, but at least one, enlarged or reduced by `zoom` levels. The map is not reduced
+/// further than to fit.
+fn scale(world: &World, pixels: DVec2, glyphs: GlyphSet, zoom: i32) -> DVec2 {
+    // A cell is about twice as high as wide.
+    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
+    let smallest = DVec2::new(2.0 * columns / rows, 1.0);
+    let exact = (pixels / (world.grid().extent() * smallest)).min_element();
+    let fit = exact.floor().max(1.0);
+    smallest
+        * match zoom {
+            0 => fit,
+            1.. => {
+                let larger = SCALES.iter().filter(|&&scale| scale > fit);
+                larger.take(zoom.unsigned_abs() as usize).last().copied().unwrap_or(fit)
+            }
+            _ => {
+                let is_needed = |scale: f64| exact < 1.0 && 2.0 * scale > exact;
+                let smaller = SCALES.iter().rev().filter(|&&scale| scale < fit && is_needed(scale));
+                smaller.take(zoom.unsigned_abs() as usize).last().copied().unwrap_or(fit)
+            }
+        }
+}
+
+/// The pixels of a map and the part of it that is shown. A row of pixels finds its row of tiles and things once, not
+/// for each pixel.
+struct Picture<'a> {
+    top_view: TopView<'a>,
+    window: Window,
+}
+
+impl<'a> Picture<'a> {
+    /// The pixels in row `y`.
+    fn row(&self, y: u32) -> PixelRow<'_, 'a> {
+        let y = self.window.y_of(y);
+        PixelRow { picture: self, y, middle: self.top_view.row(y) }
+    }
+
+    /// The map point at a pixel.
+    fn point(&self, x: u32, y: u32) -> MapPoint {
+        self.row(y).point(x)
+    }
+}
+
+/// A row of pixels of a map.
+struct PixelRow<'p, 'a> {
+    picture: &'p Picture<'a>,
+    /// The position of the middle of the pixels.
+    y: f64,
+    /// The points in the middle of the pixels.
+    middle: Row<'p>,
+}
+
+impl PixelRow<'_, '_> {
+    /// The map point at a pixel. If a pixel covers several cells, it is the most important one.
+    #[inline]
+    fn point(&self, x: u32) -> MapPoint {
+        let window = &self.picture.window;
+        let x = window.x_of(x);
+        match window.cells_per_pixel() {
+            [1, 1] => self.middle.point(x),
+            cells => self.most_important(x, cells),
+        }
+    }
+
+    /// The most important point of the pixel at `x`, which covers this number of cells.
+    #[inline(never)]
+    fn most_important(&self, x: f64, [columns, rows]: [u32; 2]) -> MapPoint {
+        let top_view = &self.picture.top_view;
+        // The pixel covers this number of cells in each direction; each is sampled at its middle.
+        let along = |middle: f64, count: u32| {
+            let first = middle - f64::from(count - 1) / 2.0;
+            (0..count).map(move |index| first + f64::from(index))
+        };
+        let points = along(self.y, rows).flat_map(|y| {
+            let row = top_view.row(y);
+            along(x, columns).map(move |x| row.point(x))
+        });
+        points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
+    }
+}

@@ -140,9 +140,8 @@ impl Billboard {
     ) -> Option<Self> {
         let place = scene.projection.origin();
         let base = scene.projection.eye() - Camera::STANDING;
-        let is_on_map = place.x >= 0.0 && place.y >= 0.0;
-        let cell = Cell { column: place.x as u32, row: place.y as u32 };
-        let light = if is_on_map { scene.world.light_in(cell) } else { Light::FULL };
+        let cell = Cell::containing(place);
+        let light = cell.map_or(Light::FULL, |cell| scene.world.light_in(cell));
         Self::new(scene, image, figure, Pose::AtTime(0.0), (place, base), light)
     }
 

@@ -2,18 +2,21 @@
 //!
 //! Each kind is stored in the form in which it is found: rows of floor and ceiling by column, from
 //! which spans are made for each band of rows; upright faces as wall columns; see-through columns
-//! and billboards as layers, in the order of painting. A list of finished spans was refused: there
+//! and billboards as layers, in the order of painting. Rejected: a list of finished spans. There
 //! may be as many as pixels, and each band needs its own.
+//!
+//! In a block of columns, all layers behind the next translucent one are painted first, then the
+//! translucent layers of all columns. This draws neighbours of one tint together, row by row.
 
 use std::ops::Range;
 
-use super::flat::{self, PlaneRow};
-use super::portal;
+use super::flat::PlaneRow;
 use super::runs::{ColumnRuns, Shown};
 use super::stats::Pass;
 use super::wall_part::WallPart;
 use super::{
-    Billboard, Column, Scene, SeeThroughColumn, SpanMapping, Surface, WallColumn, WallRun, WallSink,
+    Billboard, Column, Material, Scene, SeeThroughColumn, SpanMapping, Surface, WallColumn,
+    WallRun, WallSink, flat, portal,
 };
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
@@ -25,14 +28,14 @@ pub(crate) struct DrawList {
     /// The hit of the ray of each column of pixels.
     pub(crate) columns: Vec<Column>,
     /// Whether the flat way filled any column.
-    pub(super) is_flat: bool,
+    pub(crate) is_flat: bool,
     /// The columns as the flat way sees them, if the portal way filled some; else empty.
-    pub(super) flat_columns: Vec<Column>,
+    pub(crate) flat_columns: Vec<Column>,
     /// The columns around which planes are drawn, if walls are blended over what is behind them: with the rows
     /// that walls cover as a whole; else empty.
-    pub(super) opaque_columns: Vec<Column>,
+    pub(crate) opaque_columns: Vec<Column>,
     /// The walls of these columns, from left to right.
-    pub(super) parts: Vec<WallPart>,
+    pub(crate) parts: Vec<WallPart>,
     /// The rows of floor, ceiling and sky that the portal way found.
     pub(crate) runs: ColumnRuns,
     /// The wall columns that the portal way found, those of a column of pixels together.
@@ -91,9 +94,9 @@ pub(crate) struct DrawnPlane {
 /// Memory for making spans, one for each thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpanMemory {
-    pub(super) plane_rows: Vec<PlaneRow>,
+    plane_rows: Vec<PlaneRow>,
     /// The first column of the current span of each row.
-    pub(super) starts: Vec<usize>,
+    pub(crate) starts: Vec<usize>,
 }
 
 /// An item, as wide as a pixel, that is painted in front of the items before it.
@@ -132,7 +135,7 @@ impl<'m> SpanPair<'m> {
 
 impl DrawList {
     /// Removes the contents of the last frame.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.columns.clear();
         self.is_flat = false;
         self.flat_columns.clear();
@@ -147,7 +150,7 @@ impl DrawList {
 
     /// Reserves memory for the portal way in all but extreme maps, so that a turn of the camera
     /// towards more faces allocates nothing.
-    pub(super) fn make_room_for_portals(&mut self, width: usize) {
+    pub(crate) fn make_room_for_portals(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.columns.reserve(width);
         self.flat_columns.reserve(width);
@@ -157,13 +160,13 @@ impl DrawList {
     }
 
     /// Reserves memory for this number of layers in total.
-    pub(super) fn make_room_for_layers(&mut self, count: usize) {
+    pub(crate) fn make_room_for_layers(&mut self, count: usize) {
         self.see_through.reserve(count.saturating_sub(self.see_through.len()));
         self.layers.reserve(count.saturating_sub(self.layers.len()));
     }
 
     /// Adds a masked or translucent column as the next layer.
-    pub(super) fn push_see_through(&mut self, column: SeeThroughColumn) {
+    pub(crate) fn push_see_through(&mut self, column: SeeThroughColumn) {
         if !column.rows.is_empty() {
             self.layers.push(Layer::SeeThrough(self.see_through.len()));
             self.see_through.push(column);
@@ -240,7 +243,7 @@ impl DrawList {
     }
 
     /// The columns as the flat way sees them.
-    pub(super) fn flat_columns(&self) -> &[Column] {
+    pub(crate) fn flat_columns(&self) -> &[Column] {
         if self.flat_columns.is_empty() { &self.columns } else { &self.flat_columns }
     }
 
@@ -250,4 +253,54 @@ impl DrawList {
         let shown = self.runs.shown(x, y).and_then(Shown::surface);
         Some(shown.unwrap_or_else(|| column.surface(y, ground)))
     }
+}
+
+/// The number of columns that are ordered together.
+const BLOCK: usize = 32;
+
+/// Adds the layers `by_column`, those of each column together from far to near, to `layers` in the
+/// order of painting.
+pub(crate) fn put_in_order(
+    by_column: &[Layer],
+    see_through: &[SeeThroughColumn],
+    layers: &mut Vec<Layer>,
+) {
+    let column_of = |layer: &Layer| match layer {
+        Layer::SeeThrough(index) => see_through[*index].column as usize,
+        Layer::Billboard(column) => column.column as usize,
+    };
+    let is_glass = |layer: &Layer| match layer {
+        Layer::SeeThrough(index) => {
+            matches!(see_through[*index].material, Material::Translucent(_))
+        }
+        Layer::Billboard(_) => false,
+    };
+    for mut columns in by_columns::<BLOCK, _>(by_column, column_of) {
+        while columns.iter().any(|column| !column.is_empty()) {
+            let mut glass = [const { None }; BLOCK];
+            for (column, glass) in columns.iter_mut().zip(&mut glass) {
+                let before = column.iter().position(is_glass).unwrap_or(column.len());
+                let (behind, rest) = column.split_at(before);
+                layers.extend_from_slice(behind);
+                (*glass, *column) = (rest.first(), &rest[rest.len().min(1)..]);
+            }
+            layers.extend(glass.into_iter().flatten().cloned());
+        }
+    }
+}
+
+/// The `items` of each block of `N` columns of pixels, split by column. The items of a column, and
+/// those of a block, are contiguous.
+fn by_columns<const N: usize, T>(
+    items: &[T],
+    column_of: impl Fn(&T) -> usize + Copy,
+) -> impl Iterator<Item = [&[T]; N]> {
+    let blocks = items.chunk_by(move |one, other| column_of(one) / N == column_of(other) / N);
+    blocks.map(move |block| {
+        let mut columns: [&[T]; N] = [&[]; N];
+        for column in block.chunk_by(|one, other| column_of(one) == column_of(other)) {
+            columns[column_of(&column[0]) % N] = column;
+        }
+        columns
+    })
 }

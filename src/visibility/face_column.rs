@@ -1,10 +1,12 @@
-//! Face columns: upright faces as wide as a pixel, one by one or in runs.
+//! Face columns: upright faces as wide as a pixel, one by one or in runs, and the directions they face.
 
 use std::ops::Range;
 
-use super::{Column, Facing};
-use crate::cast::Side;
-use crate::world::{Glass, Light, Paint, TextureId};
+use glam::DVec2;
+
+use super::Column;
+use crate::cast::{Hit, Side, cell_before};
+use crate::world::{Cell, Glass, Grid, Light, Outline, Paint, TextureId, TileId};
 
 /// The visible part of an upright face that is as wide as a pixel, with a material of this kind.
 #[derive(Clone, Debug)]
@@ -62,4 +64,39 @@ pub(crate) struct WallRun<'l> {
 pub(crate) trait WallSink {
     /// Receives the part of `wall` in `rows`, which are not empty.
     fn take(&mut self, wall: &WallColumn, rows: Range<u32>);
+}
+
+/// The direction of a face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Facing {
+    /// Along an axis, perpendicular to a side.
+    Side(Side),
+    /// Along a vector of length 1, in either direction.
+    Normal(DVec2),
+}
+
+impl Facing {
+    /// The facing of a shape that is hit at `point`.
+    pub(crate) fn of_shape(outline: Outline, point: DVec2, hit: &Hit) -> Self {
+        Self::Normal(match outline {
+            Outline::Line(line) => line.stretch().perp().normalize(),
+            Outline::Pillar(_) => (point - hit.cell.center()).normalize_or_zero(),
+        })
+    }
+
+    /// The approach of a ray along `direction` to the face, in cells per unit of its `t`.
+    #[inline]
+    pub(crate) fn slope(self, direction: DVec2) -> f64 {
+        match self {
+            Self::Side(Side::X) => direction.x,
+            Self::Side(Side::Y) => direction.y,
+            Self::Normal(normal) => normal.dot(direction),
+        }
+    }
+}
+
+/// The cell from which a ray along `direction` sees the side of `hit`, and its tile; `None` off the map.
+pub(crate) fn place_before(grid: &Grid, direction: DVec2, hit: &Hit) -> Option<(Cell, TileId)> {
+    let [column, row] = cell_before(direction, hit.cell, hit.side);
+    grid.cell(column, row)
 }

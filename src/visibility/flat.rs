@@ -14,19 +14,19 @@ mod wall;
 use glam::DVec2;
 
 use super::column::Column;
-use super::ray_counter::RayCounter;
+use super::stats::RayCounter;
 use super::{DrawList, Filter, Projection, Scene, Stats};
 use crate::cast::{Caster, Hit, Ray};
-use crate::world::{Cell, Grid, TileId, TileKind, World};
+use crate::world::{Cell, Grid, TileKind, World};
 use fan::Fan;
-pub(super) use layers::{FlatMemory, PassedHits};
-pub(super) use planes::{PlaneRow, for_each_span};
-pub(super) use portal_starts::PortalStarts;
-pub(super) use wall::{for_each_wall_column, for_each_wall_part, for_each_wall_run};
+pub(crate) use layers::{FlatMemory, PassedHits};
+pub(crate) use planes::{PlaneRow, for_each_span};
+pub(crate) use portal_starts::PortalStarts;
+pub(crate) use wall::{for_each_wall_column, for_each_wall_part, for_each_wall_run};
 
 /// Finds the columns of `list`, with the walls that `caster` finds in `grid`, and the starts of the
 /// columns that are left to the portal way.
-pub(super) fn find_columns<C: Caster>(
+pub(crate) fn find_columns<C: Caster>(
     scene: Scene<'_>,
     (caster, grid): (&C, &Grid),
     memory: &mut FlatMemory,
@@ -53,7 +53,7 @@ pub(super) fn find_columns<C: Caster>(
 
 /// Fills the layers of `list`, whose columns are known, in front of the layers already in it.
 /// Returns the time at which a thing in view next changes its appearance; `None` for never.
-pub(super) fn fill_layers(
+pub(crate) fn fill_layers(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
@@ -101,8 +101,8 @@ fn cast<C: Caster>(
 
 /// Whether `cell` ends rays, is level, and is not a wall.
 fn may_be_passed(world: &World, cell: Cell) -> bool {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into());
-    tile.map(|TileId(index)| &world.tiles()[usize::from(index)])
+    world
+        .tile_in(cell)
         .is_some_and(|tile| !matches!(tile.kind, TileKind::Wall(_)) && tile.is_level())
 }
 

@@ -2,11 +2,11 @@
 //!
 //! The plan is a small value. It is made before the drawing from the camera and from the parts of
 //! each kind of tile in the world. It is matched once a frame, so that features which a scene lacks
-//! are absent from the loops.
+//! are absent from the loops. As text it has a line for each part, with its loop and the reason.
 
-mod display;
+use std::fmt;
 
-use super::{Filter, Projection};
+use super::Projection;
 use crate::color::Rgb;
 use crate::world::{Camera, Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind, World};
 
@@ -201,10 +201,10 @@ impl Visibility {
 /// rounding puts no ray into another cell.
 fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
     /// Far more than the rounding error, in cells.
-    const HAIR: f64 = 1e-6;
+    const EPSILON: f64 = 1e-6;
     let (place, eye) = (camera.position(), camera.eye());
     let inside = place - place.floor();
-    let is_inside = inside.min_element() > HAIR && inside.max_element() < 1.0 - HAIR;
+    let is_inside = inside.min_element() > EPSILON && inside.max_element() < 1.0 - EPSILON;
     let is_between = Projection::is_between_floor_and_ceiling(eye);
     let tile = world.grid().tile(place.x.floor() as i64, place.y.floor() as i64);
     let is_level_floor =
@@ -220,5 +220,173 @@ impl PlaneLoop {
             Pattern::Plain(Paint::Color(color)) => Self::Fill(color),
             _ => Self::Spans,
         }
+    }
+}
+
+impl fmt::Display for FramePlan {
+    /// Writes a line for each pass, with its loop and the reason.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "view     {}", self.visibility)?;
+        writeln!(f, "rays     {}", self.rays)?;
+        writeln!(f, "ceiling  {}", self.ceiling)?;
+        writeln!(f, "floor    {}", self.floor)?;
+        writeln!(f, "sky      {}", self.sky)?;
+        writeln!(f, "walls    {}", self.walls)?;
+        writeln!(f, "things   {}", self.things)?;
+        writeln!(f, "filter   {}", self.filter)
+    }
+}
+
+impl fmt::Display for Visibility {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat => f.write_str("flat: a ray ends at the first wall"),
+            Self::Mixed(why) => write!(f, "flat, and portals in part of it: {why}"),
+            Self::Portals(why) => write!(f, "portals: {why}"),
+        }
+    }
+}
+
+impl fmt::Display for WhyPortals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Heights => "floors, ceilings or walls are not all of one height",
+            Self::Mirrors => "there are mirrors",
+            Self::Eye => "the eye is not between floor and ceiling",
+        })
+    }
+}
+
+impl fmt::Display for RayLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cells => "cell by cell: each is looked at",
+            Self::Lines => "line by line, along one axis: walls are near",
+            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
+        })
+    }
+}
+
+impl fmt::Display for PlaneLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fill(color) => write!(f, "one fill: it is {color} everywhere"),
+            Self::FillRows(color) => write!(f, "a fill for each row: it is {color}, in fog"),
+            Self::Spans => f.write_str("visible spans: its covering is the same everywhere"),
+            Self::Tiles => f.write_str("visible spans, cut by tile: tiles differ"),
+        }
+    }
+}
+
+impl fmt::Display for CeilingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sky => f.write_str("not drawn: there is only sky"),
+            Self::Plane(plane) => plane.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for SkyLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gradient => "a colour for each row, where there is sky: it is a gradient",
+            Self::Panorama => "visible spans, where there is sky: it is a panorama",
+        })
+    }
+}
+
+impl fmt::Display for WallLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.textured { "columns of texels" } else { "columns of one colour" })?;
+        f.write_str(if self.faded {
+            ", faded: there is fog, or a tile that is not fully lit"
+        } else {
+            ", unfaded: there is no fog, and all is fully lit"
+        })
+    }
+}
+
+impl fmt::Display for ThingLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "not drawn: there are none",
+            Self::Billboards => "those in view, from far to near",
+        })
+    }
+}
+
+impl fmt::Display for Filter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mip => "mip: far texels are averaged",
+            Self::Area => "area: texels are averaged over each pixel, and walls have smooth ends",
+            Self::Nearest => "nearest: every texel is one of the texture's own",
+        })
+    }
+}
+
+/// How a pixel is computed from the surfaces that it covers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// From the mip level whose texels are about as large as the pixel: far walls and floors do not
+    /// shimmer.
+    #[default]
+    Mip,
+    /// From the texture itself, at the pixel's centre: far surfaces shimmer.
+    Nearest,
+    /// By area: from the mean of the texture over the pixel's width and height on the surface, with walls
+    /// blended over what is behind them by the share of the pixel that they cover.
+    ///
+    /// Walls of level scenes are blended. The borders of tiles and of pieces of a pattern, things, masks, glass, doors,
+    /// the sides of pillars and diagonals, and columns that show other heights have hard edges as by
+    /// [`Filter::Mip`].
+    Area,
+}
+
+impl Filter {
+    /// All filters, the default first.
+    pub const ALL: [Self; 3] = [Self::Mip, Self::Nearest, Self::Area];
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mip => "mip",
+            Self::Nearest => "nearest",
+            Self::Area => "area",
+        }
+    }
+
+    /// The level of detail for a pixel that covers an area of this many texels.
+    ///
+    /// A texel of each level covers four of the level before. A long and narrow pixel counts by its
+    /// area: by its longer side, walls seen at an angle would blur along their sharp direction; by
+    /// its shorter side, they would shimmer. [`Filter::Area`] samples by it what it has no
+    /// [means](crate::world::texture::AreaLod) for: masks, things and the sky.
+    pub(crate) fn lod(self, area: f64) -> usize {
+        match self {
+            // The nearest power of four. The exponent of a double is exact on every machine.
+            Self::Mip | Self::Area if area >= 0.5 => (exponent(2.0 * area) / 2) as usize,
+            Self::Mip | Self::Nearest | Self::Area => 0,
+        }
+    }
+}
+
+/// The binary exponent of a double that is at least 1. That of infinity is above all others.
+fn exponent(number: f64) -> u64 {
+    const BIAS: u64 = f64::MAX_EXP as u64 - 1;
+    (number.to_bits() >> (f64::MANTISSA_DIGITS - 1)) - BIAS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_is_for_areas_around_a_power_of_four() {
+        let lod = [0.0, f64::NAN, 1.9, 2.0, 4.0, 7.9, 8.0, 16.0].map(|area| Filter::Mip.lod(area));
+        assert_eq!(lod, [0, 0, 0, 1, 1, 1, 2, 2]);
+        assert!(Filter::Mip.lod(f64::INFINITY) > 100);
+        assert_eq!(Filter::Nearest.lod(1e9), 0);
     }
 }

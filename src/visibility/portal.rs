@@ -8,43 +8,38 @@
 //! are those of the Build engine (Ken Silverman, 1995).
 //!
 //! `walk` follows the rays from their `start` through the `tile_gaps`; `line` handles the faces and gaps at a line, and
-//! `standing` the objects inside a cell. `billboards` are found last, and `layers` orders them with
+//! `met` the faces, and the objects inside a cell. `layers` finds billboards last, and orders them with
 //! the see-through faces. For a level world without mirrors, the flat way fills the same list at a
 //! lower cost.
 
-mod billboards;
 mod bundle;
 mod layers;
 mod line;
 mod met;
 mod ray_segments;
 mod spans;
-mod standing;
 mod start;
-mod surroundings;
 mod tile_gaps;
 mod walk;
 
 use std::ops::Range;
 
-use super::runs::IMAGES_AT_ONCE;
-use super::runs::ImageId;
+use super::runs::{IMAGES_AT_ONCE, ImageId};
 use super::{Billboard, Column, DrawList, PortalStats, Scene, Stats, WallColumn, WallSink};
 use crate::world::World;
-use billboards::Finder;
-use layers::LayerMemory;
-pub(super) use spans::for_each_span;
-pub(super) use start::PortalStart;
-use surroundings::Surroundings;
+use bundle::Surroundings;
+use layers::{Finder, LayerMemory};
+pub(crate) use spans::for_each_span;
+pub(crate) use start::PortalStart;
 use tile_gaps::TileGaps;
 use walk::{BundleWalk, WalkMemory};
 
 /// The number of things in view for which memory is reserved in advance.
-const MOST_THINGS: usize = 4096;
+const MAX_THINGS: usize = 4096;
 
 /// The memory of the portal way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PortalMemory {
+pub(crate) struct PortalMemory {
     gaps: TileGaps,
     /// The starts of all columns.
     starts: Vec<Option<PortalStart>>,
@@ -55,7 +50,7 @@ pub(super) struct PortalMemory {
 
 /// Fills all of `list` by exact rays. Returns the time at which a thing in view next changes its
 /// appearance; `None` for never.
-pub(super) fn fill(
+pub(crate) fn fill(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
@@ -69,7 +64,7 @@ pub(super) fn fill(
 
 /// Fills the columns of `list` that have a `start` by exact rays, from there on. Returns the time
 /// at which a thing in view next changes its appearance; `None` for never.
-pub(super) fn fill_columns(
+pub(crate) fn fill_columns(
     scene: Scene<'_>,
     memory: &mut PortalMemory,
     list: &mut DrawList,
@@ -103,7 +98,7 @@ pub(super) fn fill_columns(
 impl PortalMemory {
     /// Reserves memory here and in `list` for all but extreme maps, so that a turn of the camera
     /// towards more faces allocates nothing.
-    pub(super) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
+    pub(crate) fn make_room(&mut self, world: &World, width: usize, list: &mut DrawList) {
         self.gaps.make_room(world);
         self.starts.clear();
         self.starts.reserve(width);
@@ -111,14 +106,14 @@ impl PortalMemory {
         self.finder.make_room(world, width);
         list.clear();
         list.make_room_for_portals(width);
-        let billboards = world.things().len().min(MOST_THINGS) + world.figures().len();
+        let billboards = world.things().len().min(MAX_THINGS) + world.figures().len();
         list.billboards.reserve(2 * billboards + IMAGES_AT_ONCE);
         self.layers.make_room(list);
     }
 }
 
 /// Passes every one of `walls` to `sink`. Those of a bundle are in succession.
-pub(super) fn for_each_wall_column(
+pub(crate) fn for_each_wall_column(
     walls: &[WallColumn],
     rows: &Range<u32>,
     sink: &mut impl WallSink,

@@ -2,24 +2,22 @@
 //!
 //! Proportions are true for any window and any font: the focal length in pixels is `(w/2) /
 //! tan(fov/2)`, and vertically that divided by the pixel aspect. Rows and columns are sampled at
-//! the centres of pixels.
+//! the centres of pixels. The filter by area also needs rays between the centres, and the ends of faces.
 
-mod areas;
-mod texels;
-
+use std::num::NonZeroU32;
 use std::ops::{Range, RangeInclusive};
 
 use glam::DVec2;
 
-use super::texture_stepper::{Horizon, ceil_within};
-use super::{FrameSize, PixelAspect, SpanMapping};
-use crate::cast::Ray;
+use super::SpanMapping;
+use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels};
+use crate::cast::{HitFace, Ray, Side};
+use crate::numeric::rounding::{ceil, ceil_within};
 use crate::world::{Camera, Heights};
-pub(crate) use areas::FaceEnds;
 
 /// The mapping from the world to the pixels of one frame.
 #[derive(Clone, Debug)]
-pub(crate) struct Projection {
+pub struct Projection {
     origin: DVec2,
     direction: DVec2,
     plane: DVec2,
@@ -43,15 +41,16 @@ pub(crate) struct Rise(f64);
 
 /// The position of a point in a picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// The distance from the camera plane, in cells; at most 0 for a point behind it.
-    pub(crate) depth: f64,
+    pub depth: f64,
     /// The number of columns of pixels from the left edge.
-    pub(crate) column: f64,
+    pub column: f64,
 }
 
 impl Projection {
-    pub(crate) fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
+    /// The projection of `camera` onto pictures of this size.
+    pub fn new(camera: &Camera, size: FrameSize, pixel_aspect: PixelAspect) -> Self {
         let width = size.width.get();
         let height = f64::from(size.height.get());
         let across = f64::from(width) / 2.0 / camera.field_of_view.half_width();
@@ -179,7 +178,7 @@ impl Projection {
     }
 
     /// The position in the picture of a point on the map.
-    pub(crate) fn place(&self, point: DVec2) -> Place {
+    pub fn place(&self, point: DVec2) -> Place {
         let from_eye = point - self.origin;
         let depth = from_eye.dot(self.direction);
         let beside = from_eye.dot(self.direction.perp());
@@ -199,7 +198,7 @@ impl Projection {
     }
 
     /// The position of `height` at `depth`, in rows from the top.
-    pub(crate) fn row_at(&self, height: f64, depth: f64) -> f64 {
+    pub fn row_at(&self, height: f64, depth: f64) -> f64 {
         self.horizon + (self.eye - height) * self.focal_length / depth
     }
 
@@ -272,7 +271,7 @@ impl Projection {
 const NEAREST: f64 = 1.0 / 64.0;
 
 /// An eye further up or down has the same view as from here: no height is so far.
-const FARTHEST: f64 = 4.0 * Heights::MOST;
+const FARTHEST: f64 = 4.0 * Heights::MAX;
 
 /// The number of rows from the middle of the picture down to the horizon: an integer, so that a
 /// change of pitch moves the picture by whole rows.
@@ -281,4 +280,150 @@ fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
     const FAR: f64 = 1e9;
     let slope = camera.pitch.slope();
     if slope == 0.0 { 0.0 } else { (slope * focal_length).round().clamp(-FAR, FAR) }
+}
+
+impl Projection {
+    /// The texels of a wall with `count` from top to bottom.
+    pub(crate) fn wall_texels(&self, count: usize) -> WallTexels {
+        WallTexels::new(count, 1.0 - self.eye)
+    }
+
+    /// The texels of a wall at distance `t`.
+    #[inline]
+    pub(crate) fn texels_down_the_wall(&self, t: f64, texels: WallTexels) -> TextureStepper {
+        TextureStepper::of_wall(self.horizon_of_texels, t / self.focal_length, texels)
+    }
+
+    /// The texels of a face from the height `bottom` to `top`: `count` for each cell of height, from one integer
+    /// height to the next.
+    pub(crate) fn face_texels(&self, count: usize, (bottom, top): (f64, f64)) -> FaceTexels {
+        // On old processors `f64::ceil` is a call.
+        let above = ceil(top) as f64;
+        FaceTexels::new(count, (above - top, above - bottom), above - self.eye)
+    }
+
+    /// The texels of a face at distance `t`.
+    #[inline]
+    pub(crate) fn texels_down_the_face(&self, t: f64, texels: FaceTexels) -> TextureStepper {
+        TextureStepper::new(self.horizon_of_texels, t / self.focal_length, texels)
+    }
+}
+
+/// The top and the bottom of a wall of height 1 in a picture, which are straight lines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceEnds {
+    /// The rows that a cell of height covers at the left edge of the picture, and their change from column to
+    /// column.
+    rows: f64,
+    change: f64,
+    horizon: f64,
+    /// The top and the bottom, in cells below the eye.
+    heights: [f64; 2],
+}
+
+impl Projection {
+    /// The direction of a ray `place` columns from the left edge, of which 0.5 is the middle of the first.
+    #[inline]
+    pub(crate) fn direction_at(&self, place: f64) -> DVec2 {
+        let width = f64::from(self.width);
+        self.direction + self.plane * ((place * 2.0 - width) / width)
+    }
+
+    /// The ray there.
+    pub(crate) fn ray_at(&self, place: f64) -> Ray {
+        Ray::of_camera(self.origin, self.direction_at(place))
+    }
+
+    /// The ends of `face`.
+    pub(crate) fn face_ends(&self, face: &HitFace) -> FaceEnds {
+        let (side, to_line) = (face.side(), face.distance_to_line(self.origin));
+        let [middle, across] = [self.direction, self.plane].map(|direction| match side {
+            Side::X => direction.x,
+            Side::Y => direction.y,
+        });
+        // The inverse of the distance to the camera plane changes evenly across the picture.
+        let rows = (self.focal_length / to_line).min(FAR);
+        let rows = if face.is_ahead() { rows } else { -rows };
+        self.ends(rows * (middle - across), rows * across * (2.0 / f64::from(self.width)))
+    }
+
+    /// The ends of a wall of height 1 at distance `t` everywhere.
+    pub(crate) fn level_ends(&self, t: f64) -> FaceEnds {
+        self.ends((self.focal_length / t).min(FAR), 0.0)
+    }
+
+    fn ends(&self, rows: f64, change: f64) -> FaceEnds {
+        let heights = [self.eye - 1.0, self.eye];
+        FaceEnds { rows, change, horizon: self.horizon, heights }
+    }
+
+    /// The width and the height of the part of a wall's side, in cells, that a pixel covers there.
+    #[inline]
+    pub(crate) fn pixel_extent_on_wall(&self, t: f64, slope: f64) -> DVec2 {
+        DVec2::new(t / (self.focal_length_across * slope.abs()), t / self.focal_length)
+    }
+}
+
+impl FaceEnds {
+    /// The rows that a cell of height covers `place` columns from the left edge.
+    #[inline]
+    pub(crate) fn rows_at(&self, place: f64) -> f64 {
+        self.rows + self.change * place
+    }
+
+    /// The top and the bottom there, in rows from the top of the picture.
+    #[inline]
+    pub(crate) fn at(&self, place: f64) -> [f64; 2] {
+        let rows = self.rows_at(place);
+        self.heights.map(|height| self.horizon + height * rows)
+    }
+}
+
+/// More rows than any picture has, for a cell of height.
+const FAR: f64 = 1e9;
+
+/// The size of a frame in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameSize {
+    /// The number of columns.
+    pub width: NonZeroU32,
+    /// The number of rows.
+    pub height: NonZeroU32,
+}
+
+impl FrameSize {
+    /// A size of `width` × `height` pixels; `None` if either is zero.
+    pub fn new(width: u32, height: u32) -> Option<Self> {
+        Some(Self { width: NonZeroU32::new(width)?, height: NonZeroU32::new(height)? })
+    }
+
+    /// The number of pixels.
+    pub(crate) fn area(self) -> usize {
+        self.width.get() as usize * self.height.get() as usize
+    }
+}
+
+/// The height of a pixel over its width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelAspect(f64);
+
+impl PixelAspect {
+    /// The aspect of square pixels.
+    pub const SQUARE: Self = Self(1.0);
+    /// The greatest ratio of the longer side to the shorter one. Far beyond it, the slopes of rays
+    /// would not be finite.
+    pub const MAX: f64 = 1e6;
+
+    /// The aspect with this ratio; `None` unless it is between 1 / [`PixelAspect::MAX`] and
+    /// [`PixelAspect::MAX`].
+    pub fn new(height_over_width: f64) -> Option<Self> {
+        let is_possible = (1.0 / Self::MAX..=Self::MAX).contains(&height_over_width);
+        is_possible.then_some(Self(height_over_width))
+    }
+
+    /// The height of a pixel over its width, from 1 / [`PixelAspect::MAX`] to
+    /// [`PixelAspect::MAX`].
+    pub fn height_over_width(self) -> f64 {
+        self.0
+    }
 }

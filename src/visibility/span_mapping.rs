@@ -33,9 +33,9 @@ impl SpanMapping {
     pub(crate) fn just_before(self, eye: DVec2) -> Self {
         /// As a fraction of the distance: more than the rounding error of a point, and too little
         /// to be visible.
-        const HAIR: f64 = 1e-9;
-        let middle = self.middle + (eye - self.middle) * HAIR;
-        Self { middle, half_step: self.half_step * (1.0 - HAIR), ..self }
+        const EPSILON: f64 = 1e-9;
+        let middle = self.middle + (eye - self.middle) * EPSILON;
+        Self { middle, half_step: self.half_step * (1.0 - EPSILON), ..self }
     }
 
     /// The line on the map, for an image in mirrors.

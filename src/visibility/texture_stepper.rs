@@ -2,16 +2,13 @@
 //!
 //! Texels are counted from eye height, so that, however near a face is, the rows above the horizon
 //! show the part of it above the eye. They are counted in fixed point and by the row's own index,
-//! so that no error accumulates and a step is one addition. Counting in doubles was refused: a
+//! so that no error accumulates and a step is one addition. Rejected: counting in doubles. A
 //! conversion and a floor for each pixel took half the time of a whole frame.
-
-mod rounding;
 
 use std::iter;
 use std::ops::Range;
 
-pub(crate) use rounding::{ceil, ceil_within};
-use rounding::{floor, rounded};
+use crate::numeric::rounding::{ceil, floor, rounded};
 
 /// The texels of an upright face.
 #[derive(Clone, Copy, Debug)]
@@ -73,10 +70,13 @@ impl WallTexels {
 impl Horizon {
     /// The horizon `half_rows` halves of a row below the top of a picture.
     pub(crate) fn new(half_rows: f64) -> Self {
-        // A smaller step would not exceed `HAIR`, and a row above the horizon would be below it.
+        // A smaller step would not exceed `EPSILON`, and a row above the horizon would be below it.
         // From a horizon far outside the picture, it would add up to texels beyond the face.
         let is_far = half_rows.abs() > FARTHEST_HORIZON;
-        Self { half_rows_to_first: 1 - half_rows as i64, least: if is_far { 0 } else { 2 * HAIR } }
+        Self {
+            half_rows_to_first: 1 - half_rows as i64,
+            least: if is_far { 0 } else { 2 * EPSILON },
+        }
     }
 }
 
@@ -92,13 +92,13 @@ impl TextureStepper {
     #[inline]
     pub(crate) fn of_wall(horizon: Horizon, height_of_row: f64, texels: WallTexels) -> Self {
         let WallTexels { count, at_horizon } = texels;
-        let texels_in_row = (height_of_row * count as f64).min(MOST_TEXELS);
+        let texels_in_row = (height_of_row * count as f64).min(MAX_TEXELS);
         let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(horizon.least);
         // Positions far above or below the face wrap around, and return to the same value at the
         // face.
         let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
         Self {
-            first: at_horizon.wrapping_add(HAIR).wrapping_add(from_horizon),
+            first: at_horizon.wrapping_add(EPSILON).wrapping_add(from_horizon),
             step: 2 * half_step,
             range: (0, count - 1),
             count,
@@ -203,10 +203,10 @@ impl TextureStepper {
 const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
 const TEXEL_BITS: u32 = 40;
 /// The most texels from one row to the next; with more, only one row shows the face.
-const MOST_TEXELS: f64 = 65_536.0;
+const MAX_TEXELS: f64 = 65_536.0;
 /// The offset that puts a row's centre on the line between two texels on the lower one, however the
 /// step was rounded: the rounding of 4096 rows, by half a unit each, is half as much.
-const HAIR: i64 = 1 << 12;
+const EPSILON: i64 = 1 << 12;
 /// In halves of a row: as far from the horizon, the least step adds up to 1/32 of a texel.
 const FARTHEST_HORIZON: f64 = (1_u64 << 22) as f64;
 

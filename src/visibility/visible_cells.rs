@@ -4,8 +4,8 @@
 //! and the interval of each row that it crosses is extended to contain it. The time depends on the
 //! size of the area and not on the size of the map.
 //!
-//! The bounding rectangle was refused: for a diagonal corridor it contains everything on both
-//! sides. A list of the cells that rays enter was refused, too: to list each once needs a mark for
+//! Rejected: the bounding rectangle, which contains everything on both sides of a diagonal
+//! corridor; and a list of the cells that rays enter, since listing each once needs a mark for
 //! every cell of the map.
 
 use std::ops::Range;
@@ -16,7 +16,7 @@ use super::{Column, Scene};
 use crate::world::{Thing, World};
 
 /// The margin around the visible area, in cells: more than the rounding error.
-const HAIR: f64 = 1e-6;
+const EPSILON: f64 = 1e-6;
 
 /// The things that may be in view, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +72,7 @@ impl VisibleCells {
 
     /// Removes all intervals, and prepares for lines between `north` and `south`.
     pub(crate) fn begin(&mut self, world: &World, north: f64, south: f64) {
-        self.margin = world.widest_sprite() / 2.0 + HAIR;
+        self.margin = world.widest_sprite() / 2.0 + EPSILON;
         self.row_count = world.grid().height();
         let rows = self.reached(north, south, self.row_count);
         self.first_row = rows.start;

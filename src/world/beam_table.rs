@@ -16,7 +16,7 @@
 //! side; at 4096 they take 1.25 bytes. Only maps of at least that size with few solid cells have
 //! them: among rooms, rays end before they gain by it.
 //!
-//! Storing for each block of cells how far it is clear in many directions was refused: a ray may be
+//! Rejected: storing for each block of cells how far it is clear in many directions. A ray may be
 //! anywhere in a wedge that widens with distance, and the same void is stored once for each block
 //! in it. By estimate, leaps would be half as long for the same memory.
 
@@ -83,14 +83,14 @@ impl BeamTable {
 
     /// Whether rays gain by beams on a map with these columns and rows and this number of cells
     /// that may be solid, the border included.
-    pub(super) fn are_worthwhile([columns, rows]: [i64; 2], solid: i64) -> bool {
+    pub(crate) fn are_worthwhile([columns, rows]: [i64; 2], solid: i64) -> bool {
         let around = 4 * (columns + rows);
         columns.min(rows) >= Self::LEAST_SIDE && solid <= around + columns * rows / Self::SPARSE
     }
 
     /// The beams of a map with these lines and bands. `solid` are the lines and bands of the cells
     /// that may be solid, the border included.
-    pub(super) fn new([lines, bands]: [i64; 2], solid: impl Iterator<Item = [i64; 2]>) -> Self {
+    pub(crate) fn new([lines, bands]: [i64; 2], solid: impl Iterator<Item = [i64; 2]>) -> Self {
         let lines_in_group = GROUP * STRIP;
         let groups = (lines + lines_in_group - 1) / lines_in_group;
         let positions = bands / WIDTH + 1 + 2 * MARGIN;
@@ -106,7 +106,7 @@ impl BeamTable {
     }
 
     /// The size in memory, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(self) + size_of_val(self.solid.as_slice())
     }
 

@@ -1,19 +1,26 @@
 //! The camera: position, height of the eye, heading, pitch and field of view.
+//!
+//! Looking up or down shears the picture: it moves by whole rows of pixels. Rejected: a rotation. Walls
+//! would lean, a column of pixels would no longer be one ray, and every stage would pay for it. The shear
+//! is the picture of a camera that looks straight ahead with its image plane shifted, as in architectural
+//! photography. It looks distorted at large angles, so it is limited to [`Pitch::MAX_DEGREES`].
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::fmt;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::{Cell, Pitch};
+use super::Cell;
 
 /// A direction on the map: 0° is east, 90° south, clockwise.
 ///
 /// It is stored as a number of quarter turns and an angle of at most an eighth of a turn. Therefore
 /// the four axes are exact (to the south, `x` is 0 and not 6e-17), and turning never accumulates an
-/// error in length: sine and cosine are computed from that angle. A unit vector that is rotated in
-/// each step was refused, since its length drifts.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+/// error in length: sine and cosine are computed from that angle. Rejected: a unit vector that is
+/// rotated in each step, since its length drifts.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "(u8, f64)")]
 pub struct Heading {
     quarter_turns: u8,
     /// Radians, within ±π/4 but for rounding.
@@ -54,17 +61,6 @@ impl Heading {
         }
     }
 
-    /// The quarter turns, and the radians beside them.
-    pub(crate) fn parts(self) -> (u8, f64) {
-        (self.quarter_turns, self.beside)
-    }
-
-    /// The heading with these [`parts`](Self::parts); `None` if no heading has them.
-    pub(crate) fn from_parts(quarter_turns: u8, beside: f64) -> Option<Self> {
-        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
-        is_one.then_some(Self { quarter_turns, beside })
-    }
-
     /// The unit vector in this direction.
     pub fn direction(self) -> DVec2 {
         let (sin, cos) = (libm::sin(self.beside), libm::cos(self.beside));
@@ -74,6 +70,16 @@ impl Heading {
             2 => DVec2::new(-cos, -sin),
             _ => DVec2::new(sin, -cos),
         }
+    }
+}
+
+/// A heading from the quarter turns and the radians beside them.
+impl TryFrom<(u8, f64)> for Heading {
+    type Error = &'static str;
+
+    fn try_from((quarter_turns, beside): (u8, f64)) -> Result<Self, &'static str> {
+        let is_one = quarter_turns < 4 && beside.abs() < FRAC_PI_2;
+        is_one.then_some(Self { quarter_turns, beside }).ok_or("a heading")
     }
 }
 
@@ -183,6 +189,59 @@ impl Camera {
     }
 }
 
+/// How far the camera looks up or down: within ±30°.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
+pub struct Pitch {
+    slope: f64,
+}
+
+/// The tangent of [`Pitch::MAX_DEGREES`].
+const STEEPEST: f64 = 0.577_350_269_189_625_7;
+
+impl Pitch {
+    /// Straight ahead.
+    pub const LEVEL: Self = Self { slope: 0.0 };
+    /// The limit, in degrees. Beyond it the horizon is far out of view, and walls look stretched.
+    pub const MAX_DEGREES: f64 = 30.0;
+
+    /// A pitch in degrees, positive for up. `None` beyond ±[`Pitch::MAX_DEGREES`].
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        let is_within = degrees.abs() <= Self::MAX_DEGREES;
+        is_within.then(|| Self::LEVEL.tilted(libm::tan(degrees.to_radians())))
+    }
+
+    /// Degrees, positive for up.
+    pub fn degrees(self) -> f64 {
+        libm::atan(self.slope).to_degrees()
+    }
+
+    /// The slope of the ray through the middle of the picture: cells up for each cell ahead.
+    pub fn slope(self) -> f64 {
+        self.slope
+    }
+
+    /// The pitch with `slope` added, within the limit; unchanged if `slope` is NaN.
+    #[must_use]
+    pub fn tilted(self, slope: f64) -> Self {
+        if slope.is_nan() {
+            return self;
+        }
+        // Adding zero removes the sign of a negative zero.
+        Self { slope: (self.slope + slope).clamp(-STEEPEST, STEEPEST) + 0.0 }
+    }
+}
+
+/// A pitch from its slope.
+impl TryFrom<f64> for Pitch {
+    type Error = &'static str;
+
+    fn try_from(slope: f64) -> Result<Self, &'static str> {
+        let pitch = Self::LEVEL.tilted(slope);
+        if pitch.slope.to_bits() == slope.to_bits() { Ok(pitch) } else { Err("a pitch") }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -249,5 +308,24 @@ mod tests {
         for degrees in [0.0, -1.0, 180.0, f64::NAN, f64::INFINITY] {
             assert_eq!(FieldOfView::from_degrees(degrees), None);
         }
+    }
+
+    #[test]
+    fn degrees_of_a_pitch_come_back() {
+        for degrees in [-30.0, -12.5, 0.0, 1.0, 29.999, 30.0] {
+            let pitch = Pitch::from_degrees(degrees).unwrap();
+            assert!((pitch.degrees() - degrees).abs() < 1e-12, "{degrees}");
+        }
+        for degrees in [30.001, -31.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Pitch::from_degrees(degrees), None);
+        }
+    }
+
+    #[test]
+    fn nobody_looks_further_than_the_limit() {
+        let highest = Pitch::from_degrees(30.0).unwrap();
+        assert_eq!(Pitch::LEVEL.tilted(f64::INFINITY), highest.tilted(1e9));
+        assert_eq!(highest.tilted(1.0).tilted(-2.0 * STEEPEST).degrees(), -highest.degrees());
+        assert_eq!(highest.tilted(f64::NAN), highest);
     }
 }

@@ -15,8 +15,8 @@
 //! ahead is clear.
 //!
 //! The distances are found in two passes over the cells, as in the distance transform of Rosenfeld
-//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Skipping only empty
-//! blocks, and blocks of blocks, was refused: a ray would stop at the edge of each block, and one
+//! and Pfaltz ("Sequential Operations in Digital Picture Processing", 1966). Rejected: skipping
+//! only empty blocks, and blocks of blocks. A ray would stop at the edge of each block, and one
 //! pillar fills all blocks that contain it.
 
 use std::fmt;
@@ -55,10 +55,10 @@ impl Coded {
     const ONE: Self = Self(1);
     const EXACT: u16 = 128;
     const STEP: u16 = 32;
-    const MOST: u16 = Self::EXACT + (u8::MAX as u16 - Self::EXACT) * Self::STEP;
+    const MAX: u16 = Self::EXACT + (u8::MAX as u16 - Self::EXACT) * Self::STEP;
 
     fn new(lines: u16) -> Self {
-        let beyond = lines.min(Self::MOST).saturating_sub(Self::EXACT);
+        let beyond = lines.min(Self::MAX).saturating_sub(Self::EXACT);
         Self((lines.min(Self::EXACT) + beyond / Self::STEP) as u8)
     }
 
@@ -75,7 +75,7 @@ impl DistanceField {
     const WORTHWHILE: f64 = 4.0;
 
     /// A field of zeros and ones. `rows` have equal lengths, and cells that `may_be_solid` are 0.
-    pub(super) fn new<Row: ExactSizeIterator<Item = bool>>(
+    pub(crate) fn new<Row: ExactSizeIterator<Item = bool>>(
         rows: impl ExactSizeIterator<Item = Row>,
     ) -> Self {
         let height = rows.len() + 2;
@@ -96,14 +96,14 @@ impl DistanceField {
     }
 
     /// The size in memory, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let of_beams =
             self.beam_tables().into_iter().flatten().map(BeamTable::bytes).sum::<usize>();
         size_of_val(self.cells.as_slice()) + size_of_val(self.blocks.as_slice()) + of_beams
     }
 
     /// The field with distances, if rays gain by them.
-    pub(super) fn measured_if_worthwhile(self) -> Self {
+    pub(crate) fn measured_if_worthwhile(self) -> Self {
         let measured = self.measured();
         if !measured.is_worthwhile() {
             self
@@ -115,9 +115,9 @@ impl DistanceField {
     }
 
     /// The nearest solid cell comes before the cell in reading order, or after it.
-    pub(super) fn measured(&self) -> Self {
+    pub(crate) fn measured(&self) -> Self {
         let width = self.width;
-        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MOST };
+        let farthest = |&cell: &Coded| if cell == Coded::NONE { 0 } else { Coded::MAX };
         let mut cells: Vec<u16> = self.cells.iter().map(farthest).collect();
         for end in (2 * width..=cells.len()).step_by(width) {
             let (before, row) = cells[..end].split_at_mut(end - width);
@@ -144,7 +144,7 @@ impl DistanceField {
     }
 
     /// The field with beam tables.
-    pub(super) fn with_beams(self) -> Self {
+    pub(crate) fn with_beams(self) -> Self {
         let [columns, rows] = self.size();
         let along_rows = BeamTable::new([columns, rows], self.solid());
         let swapped = self.solid().map(|[column, row]| [row, column]);

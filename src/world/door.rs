@@ -4,8 +4,10 @@
 //! [`Door`](super::TileKind::Door), which is solid, while any part of it is in the way, and
 //! [`Doorway`](super::TileKind::Doorway), which is open floor between two jambs, when it is fully
 //! open. So an open door costs no more than floor, a closed one no more than a wall, and collision
-//! need not know of doors. A door that is solid only where its leaf is was refused: a player beside
-//! the leaf would be inside it when it closes.
+//! need not know of doors. Rejected: a door that is solid only at its leaf. A player beside the
+//! leaf would be inside it when it closes.
+
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, Paint, SwitchId, Tile, TileId, TileKind, World};
 
@@ -23,7 +25,7 @@ pub struct Door {
 }
 
 /// A key: an index into the world's list of their names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct KeyId(pub u8);
 
 /// How far a door is open, from 0 to 1: the part of its leaf that is in the jamb.
@@ -65,29 +67,20 @@ impl World {
         }
     }
 
-    /// The doors that are partly open, by cell.
-    pub(crate) fn openings(&self) -> impl Iterator<Item = (Cell, Opening)> {
-        self.ajar.openings.iter().copied()
-    }
-
     /// Sets the opening of the door in `cell`; does nothing if there is none. The cell becomes open
     /// floor if the door is fully open, and solid otherwise.
     pub fn set_opening(&mut self, cell: Cell, opening: Opening) {
-        let Some(tile) = self.tile_at(cell) else { return };
-        if !matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_)) {
+        let Some(&Tile { character, kind, .. }) = self.tile_in(cell) else { return };
+        if !matches!(kind, TileKind::Door(_) | TileKind::Doorway(_)) {
             return;
         }
         let solid = |kind: &TileKind| matches!(kind, TileKind::Door(_));
         let id = match opening {
-            Opening::OPEN => self.doorway(tile.character),
-            _ => self.tile_id(tile.character, solid),
+            Opening::OPEN => self.doorway(character),
+            _ => self.tile_id(character, solid),
         };
         if let Some(id) = id {
             self.set_tile(cell, id);
-            let is_level = self.tile(id).is_level();
-            if let Some(grid) = self.level_grid.as_mut().filter(|_| is_level) {
-                grid.set(cell, id);
-            }
             self.ajar.set(cell, opening);
         }
     }
@@ -101,11 +94,11 @@ impl World {
     }
 
     fn kind_at(&self, cell: Cell) -> Option<TileKind> {
-        self.tile_at(cell).map(|tile| tile.kind)
+        self.tile_in(cell).map(|tile| tile.kind)
     }
 
     /// The doorway of the door with `character`.
-    pub(super) fn doorway(&self, character: char) -> Option<TileId> {
+    pub(crate) fn doorway(&self, character: char) -> Option<TileId> {
         self.tile_id(character, |kind| matches!(kind, TileKind::Doorway(_)))
     }
 
@@ -117,7 +110,7 @@ impl World {
 
 /// The doors that are partly open.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Ajar {
+pub(crate) struct Ajar {
     /// Sorted by cell. There are few at any time.
     openings: Vec<(Cell, Opening)>,
 }

@@ -5,11 +5,14 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::distance_field::DistanceField;
 
 /// The place of a cell: column from the west, row from the north, both from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct Cell {
     /// The number of cells to the west of this one.
     pub column: u32,
@@ -18,9 +21,42 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The corner in the north-west.
+    #[inline]
+    pub(crate) fn corner(self) -> DVec2 {
+        DVec2::new(f64::from(self.column), f64::from(self.row))
+    }
+
     /// The middle of the cell.
     pub fn center(self) -> DVec2 {
-        DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
+        self.corner() + 0.5
+    }
+
+    /// The cell that contains `point`; `None` in the west or north of the map.
+    #[inline]
+    pub(crate) fn containing(point: DVec2) -> Option<Self> {
+        (point.x >= 0.0 && point.y >= 0.0).then(|| Self::at(point))
+    }
+
+    /// The cell that contains `point`, which is not in the west or north of the map.
+    #[inline]
+    pub(crate) fn at(point: DVec2) -> Self {
+        Self { column: point.x as u32, row: point.y as u32 }
+    }
+
+    /// The cell that is so many columns to the east and rows to the south; `None` at negative coordinates.
+    pub(crate) fn moved(self, columns: i64, rows: i64) -> Option<Self> {
+        let along = |index: u32, by: i64| u32::try_from(i64::from(index) + by).ok();
+        Some(Self { column: along(self.column, columns)?, row: along(self.row, rows)? })
+    }
+
+    /// The neighbours in the west, east, north and south, without those at negative coordinates.
+    pub(crate) fn beside(self) -> impl Iterator<Item = Self> {
+        let west = self.column.checked_sub(1).map(|column| Self { column, ..self });
+        let east = self.column.checked_add(1).map(|column| Self { column, ..self });
+        let north = self.row.checked_sub(1).map(|row| Self { row, ..self });
+        let south = self.row.checked_add(1).map(|row| Self { row, ..self });
+        [west, east, north, south].into_iter().flatten()
     }
 }
 
@@ -31,7 +67,7 @@ pub struct TileId(pub u8);
 impl TileId {
     /// The largest number of tiles in a world.
     #[cfg_attr(not(feature = "tui"), expect(dead_code, reason = "only the minimap has a table"))]
-    pub(crate) const MOST: usize = 1 << u8::BITS;
+    pub(crate) const MAX: usize = 1 << u8::BITS;
 }
 
 /// The tile of each cell, and which tiles are solid.
@@ -96,7 +132,7 @@ impl Grid {
 
     /// Computes the distance field, if the map is empty enough to gain by it. Some open tiles
     /// `may_become_solid`.
-    pub(crate) fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
+    pub fn clear(&mut self, may_become_solid: impl Fn(TileId) -> bool) {
         self.distance_field = Arc::new(self.near(may_become_solid).measured_if_worthwhile());
     }
 
@@ -134,6 +170,12 @@ impl Grid {
         self.height.get()
     }
 
+    /// The number of columns and of rows: the corner of the map in the south-east.
+    #[inline]
+    pub(crate) fn extent(&self) -> DVec2 {
+        DVec2::new(f64::from(self.width()), f64::from(self.height()))
+    }
+
     /// The tile at a column and a row; `None` outside the map.
     #[inline]
     pub fn tile(&self, column: i64, row: i64) -> Option<TileId> {
@@ -143,16 +185,27 @@ impl Grid {
         is_on_map.then(|| self.cells[row as usize * self.width() as usize + column as usize])
     }
 
-    /// The same cells, where those are solid as well whose tile is not among `level`.
-    ///
-    /// The tiles of these cells are not known from it.
-    pub(super) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
+    /// The tile of `cell`; `None` outside the map.
+    #[inline]
+    pub fn tile_in(&self, cell: Cell) -> Option<TileId> {
+        self.tile(cell.column.into(), cell.row.into())
+    }
+
+    /// The cell at a column and a row, and its tile; `None` outside the map.
+    #[inline]
+    pub(crate) fn cell(&self, column: i64, row: i64) -> Option<(Cell, TileId)> {
+        let tile = self.tile(column, row)?;
+        Some((Cell { column: column as u32, row: row as u32 }, tile))
+    }
+
+    /// The same cells, of which those with uneven tiles are solid, too. Their tiles are not stored.
+    pub(crate) fn ending_at_others(&self, is_level: impl Fn(TileId) -> bool) -> Self {
         let tile = |&tile: &TileId| if is_level(tile) { tile } else { TileId(u8::MAX) };
         Self { cells: self.cells.iter().map(tile).collect(), ..self.clone() }
     }
 
     /// Sets the tile of `cell`, which must be on the map.
-    pub(super) fn set(&mut self, cell: Cell, tile: TileId) {
+    pub(crate) fn set(&mut self, cell: Cell, tile: TileId) {
         let width = self.width() as usize;
         self.cells[cell.row as usize * width + cell.column as usize] = tile;
     }

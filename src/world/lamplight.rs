@@ -1,25 +1,37 @@
 //! Lamplight: what lamps add to the light of nearby cells.
 //!
 //! A cell is lit if the straight line from the middle of the lamp's cell to its own middle passes
-//! only through open floor, masks and glass. For things, doors count as closed: lamplight that
-//! passes through opening doors was refused, since all lamps around would have to be computed again,
+//! only through open floor, masks and glass. For the lamps of things, doors count as closed. Rejected:
+//! lamplight that passes through opening doors. All lamps around a door would have to be computed again,
 //! for a small difference. A lamp that moves shines through doors that are fully open, because the
 //! player carries one.
 //!
-//! The sum of all lamps is stored for each cell, without a limit. What one lamp adds is therefore
+//! The sum of all lamps is stored for each cell, without a limit. The share of one lamp is therefore
 //! taken away exactly when it moves, goes out, or has a wall moved before it, and the other lamps
 //! are not computed again. Maps in which lamps change nothing store nothing.
+//!
+//! The lines from a lamp to the cells within its reach are the same at every position, and many of
+//! them share their first cells. They are computed once for each kind of lamp, as a tree, its [`Glow`].
+//! Each lamp follows the branches of the tree until they meet an obstacle, so that a change costs at
+//! most the cells within the reach of the lamps that it concerns. Rejected: following every line by
+//! itself. A generated level has hundreds of lamps, and that took most of the time in which its window
+//! moves.
+//!
+//! Both ends of a line are middles of cells, so the order in which it crosses the lines of the grid
+//! is that of fractions of small integers. It is the order of a [`Ray`](crate::cast::Ray) between
+//! the two middles.
 
-mod glow;
-mod lamps;
+use std::sync::Arc;
 
-use super::{Cell, Grid, Light};
-use lamps::{Change, Glows};
+use glam::DVec2;
+
+use super::{Cell, Grid, Light, Thing, ThingKind, Tile, TileId, TileKind, World};
+use crate::sort;
 
 /// The light of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// What it adds in its own cell.
+    /// The light that it adds in its own cell.
     pub light: Light,
     /// How far its light reaches.
     pub reach: Reach,
@@ -31,11 +43,11 @@ pub struct Reach(f64);
 
 impl Reach {
     /// The longest reach, in cells.
-    const MOST: f64 = 32.0;
+    const MAX: f64 = 32.0;
 
     /// A reach from 1 to 32 cells. `None` outside that range.
     pub fn new(cells: f64) -> Option<Self> {
-        (1.0..=Self::MOST).contains(&cells).then_some(Self(cells))
+        (1.0..=Self::MAX).contains(&cells).then_some(Self(cells))
     }
 
     /// The reach in cells.
@@ -61,7 +73,7 @@ impl Default for Reach {
 }
 
 impl Lamp {
-    /// What it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
+    /// The light that it adds in a cell whose middle is `distance` cells away: `light · (1 − (distance /
     /// reach)²)²`, which ends smoothly at the reach.
     pub(crate) fn light_at(&self, distance: f64) -> Light {
         let part = (distance / self.reach.0).min(1.0);
@@ -70,9 +82,9 @@ impl Lamp {
     }
 }
 
-/// What lamps add in each cell.
+/// The light that lamps add in each cell.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Lamplight {
+pub(crate) struct Lamplight {
     width: usize,
     /// The sums of what lamps add, in 256ths, row by row from the north; empty if no lamp adds
     /// anything.
@@ -86,13 +98,13 @@ pub(super) struct Lamplight {
 
 impl Lamplight {
     /// Whether no lamp adds anything.
-    pub(super) fn is_dark(&self) -> bool {
+    pub(crate) fn is_dark(&self) -> bool {
         self.sums.is_empty()
     }
 
-    /// What lamps add in `cell`.
+    /// The light that lamps add in `cell`.
     #[inline]
-    pub(super) fn at(&self, cell: Cell) -> Light {
+    pub(crate) fn at(&self, cell: Cell) -> Light {
         let is_on_map = (cell.column as usize) < self.width;
         let sum = self.sums.get(self.place(cell)).filter(|_| is_on_map);
         sum.map_or(Light::NONE, |&sum| Light::saturated(sum))
@@ -122,23 +134,362 @@ impl Lamplight {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The cells that a kind of lamp lights where nothing stands around it.
+#[derive(Debug)]
+struct Glow {
+    /// The light that it adds in its own cell.
+    light: Light,
+    /// The cells as a tree: each comes before those behind it.
+    branches: Vec<Branch>,
+}
 
-    #[test]
-    fn a_reach_of_whole_cells_ends_before_the_last() {
-        let counts =
-            [1.0, 1.5, 2.0, 4.0, 32.0].map(|cells| Reach::new(cells).unwrap().cell_count());
-        assert_eq!(counts, [1, 9, 9, 45, 3205]);
+/// A cell that light passes, coming from the cell before it in the tree. A lamp of the longest reach
+/// has 25,000 of them, so they are kept small.
+#[derive(Debug)]
+struct Branch {
+    /// Columns to the east of the lamp, and rows to the south, each at most the longest reach.
+    offset: (i8, i8),
+    /// The light that the lamp adds there; none if its light only passes through.
+    light: Light,
+    /// The index of the first cell whose line does not lead through this one.
+    next_beside: u32,
+}
+
+impl Glow {
+    pub(crate) fn of(lamp: &Lamp) -> Self {
+        let mut lines = lines(lamp);
+        // Lines that share their first cells are neighbours, and shorter ones come first.
+        sort::by(&mut lines, |one, other| one.cells.cmp(&other.cells));
+        let mut branches: Vec<Branch> = Vec::new();
+        let mut open: Vec<usize> = Vec::new();
+        let mut before: &[Offset] = &[];
+        for Line { cells, light } in &lines {
+            let shared = before.iter().zip(cells).take_while(|(one, other)| one == other).count();
+            close(&mut branches, open.drain(shared..));
+            for &(columns, rows) in &cells[shared..] {
+                open.push(branches.len());
+                let offset = (columns as i8, rows as i8);
+                branches.push(Branch { offset, light: Light::NONE, next_beside: 0 });
+            }
+            if let Some(end) = branches.last_mut() {
+                end.light = *light;
+            }
+            before = cells;
+        }
+        close(&mut branches, open.drain(..));
+        Self { light: lamp.light_at(0.0), branches }
     }
 
-    #[test]
-    fn a_lamp_is_brightest_in_its_cell_and_ends_at_its_reach() {
-        let lamp = Lamp { light: Light::new(0.5).unwrap(), reach: Reach::default() };
-        let lights = [0.0, 1.0, 2.0, 3.0, 3.9, 4.0, 9.0].map(|cells| lamp.light_at(cells));
-        assert_eq!(lights[0], lamp.light);
-        assert!(lights.windows(2).all(|pair| pair[0].in_256ths() >= pair[1].in_256ths()));
-        assert_eq!(lights[5..], [Light::NONE; 2]);
+    /// Calls `add` for each cell of `grid` that a lamp at `place` lights, with what it adds there.
+    /// Light passes through tiles for which `is_clear` is true.
+    pub(crate) fn shine(
+        &self,
+        grid: &Grid,
+        place: Cell,
+        is_clear: impl Fn(TileId) -> bool,
+        mut add: impl FnMut(Cell, Light),
+    ) {
+        add(place, self.light);
+        let mut index = 0;
+        while let Some(branch) = self.branches.get(index) {
+            let column = i64::from(place.column) + i64::from(branch.offset.0);
+            let row = i64::from(place.row) + i64::from(branch.offset.1);
+            let next = grid.cell(column, row).filter(|&(_, tile)| is_clear(tile));
+            if let Some((cell, _)) = next {
+                add(cell, branch.light);
+                index += 1;
+            } else {
+                index = branch.next_beside as usize;
+            }
+        }
     }
 }
+
+/// Ends the branches at `indices`: no later cell's line leads through them.
+fn close(branches: &mut [Branch], indices: impl Iterator<Item = usize>) {
+    let end = branches.len() as u32;
+    indices.for_each(|index| branches[index].next_beside = end);
+}
+
+type Offset = (i64, i64);
+
+/// The cells on the line from a lamp to a cell, without the first and with the last one.
+struct Line {
+    cells: Vec<Offset>,
+    light: Light,
+}
+
+/// The lines from a lamp to all other cells within its reach.
+fn lines(lamp: &Lamp) -> Vec<Line> {
+    let reach = lamp.reach.cells() as i64;
+    let around = (-reach..=reach).flat_map(|row| (-reach..=reach).map(move |column| (column, row)));
+    let ends = around.filter(|&end| end != (0, 0)).filter_map(|end| {
+        let distance = DVec2::new(end.0 as f64, end.1 as f64).length();
+        let is_reached = distance < lamp.reach.cells();
+        is_reached.then(|| Line { cells: cells_to(end), light: lamp.light_at(distance) })
+    });
+    ends.collect()
+}
+
+/// The cells that a line from the middle of a cell to that of the cell at `end` enters. Where it
+/// meets a column line and a row line at once, it crosses the row line first.
+fn cells_to(end: Offset) -> Vec<Offset> {
+    let (columns, rows) = (end.0.abs(), end.1.abs());
+    let (mut column, mut row) = (0, 0);
+    let mut cells = Vec::with_capacity((columns + rows) as usize);
+    while (column, row) != (columns, rows) {
+        // The next lines are at (2 column + 1) / (2 columns) and at (2 row + 1) / (2 rows) of the way.
+        if (2 * row + 1) * columns <= (2 * column + 1) * rows {
+            row += 1;
+        } else {
+            column += 1;
+        }
+        cells.push((column * end.0.signum(), row * end.1.signum()));
+    }
+    cells
+}
+
+/// Whether light is added or taken away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    Add,
+    TakeAway,
+}
+
+/// The carrier of a lamp, which decides the tiles that the light passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Carrier {
+    Thing,
+    /// Something that moves.
+    Mover,
+}
+
+/// The glow of each kind of lamp that has been needed. Worlds that differ in it are equal.
+#[derive(Clone, Debug, Default)]
+struct Glows {
+    list: Vec<(Lamp, Arc<Glow>)>,
+}
+
+impl World {
+    /// Replaces all lamps that move, each in a cell. Only light of lamps is computed that differ
+    /// from those set before at the same index. Returns whether any does.
+    pub(crate) fn set_moving_lamps(
+        &mut self,
+        lamps: impl Iterator<Item = (Cell, Lamp)> + Clone,
+    ) -> bool {
+        let Lamplight { is_needed, ref moving, .. } = self.lamplight;
+        if !is_needed || lamps.clone().eq(moving.iter().copied()) {
+            return false;
+        }
+        let before = moving.len();
+        self.make_room_for_light();
+        let mut new_lamps = lamps.clone().fuse();
+        for index in 0..before.max(lamps.clone().count()) {
+            let (old, new) = (self.lamplight.moving.get(index).copied(), new_lamps.next());
+            if old == new {
+                continue;
+            }
+            for (lamp, change) in [(old, Change::TakeAway), (new, Change::Add)] {
+                if let Some(lamp) = lamp {
+                    shine(
+                        &self.grid,
+                        &self.tiles,
+                        &mut self.lamplight,
+                        lamp,
+                        Carrier::Mover,
+                        change,
+                    );
+                }
+            }
+        }
+        self.lamplight.moving.clear();
+        self.lamplight.moving.extend(lamps);
+        true
+    }
+
+    /// Lights the [flames](ThingKind::Flame) in `cell`, or puts them out: then they give no light
+    /// and show the last frame of their sprite.
+    pub(crate) fn set_flame(&mut self, cell: Cell, burns: bool) {
+        let change = if burns { Change::Add } else { Change::TakeAway };
+        let is_it = |thing: &&mut Thing| thing.kind == ThingKind::Flame && thing.burns() != burns;
+        for thing in self.things.in_cell_mut(cell).iter_mut().filter(is_it) {
+            let sprite = &self.sprites[usize::from(thing.sprite.0)];
+            thing.frame = (!burns).then(|| sprite.last_frame());
+            if let Some(lamp) = sprite.lamp {
+                let lamp = (cell, lamp);
+                shine(&self.grid, &self.tiles, &mut self.lamplight, lamp, Carrier::Thing, change);
+            }
+        }
+    }
+
+    /// Takes away the light of the things in `cell` for which `is_taken` is true.
+    pub(crate) fn put_out(&mut self, cell: Cell, is_taken: impl Fn(ThingKind) -> bool) {
+        for thing in self.things.between(cell.row, cell.column, cell.column) {
+            let lamp = self.sprites[usize::from(thing.sprite.0)].lamp;
+            if let Some(lamp) = lamp.filter(|_| is_taken(thing.kind) && thing.burns()) {
+                let (lamp, carrier, change) = ((cell, lamp), Carrier::Thing, Change::TakeAway);
+                shine(&self.grid, &self.tiles, &mut self.lamplight, lamp, carrier, change);
+            }
+        }
+    }
+
+    /// Sets the tile of `cell` to a state of the door or of the moving tile that is there. Lamplight passes
+    /// it from now on, or no longer does.
+    pub(crate) fn set_tile(&mut self, cell: Cell, tile: TileId) {
+        let kind = |id: TileId| self.tiles[usize::from(id.0)].kind;
+        let before = self.grid.tile_in(cell).map(kind);
+        let changes = |carrier: &Carrier| {
+            !self.lamplight.is_dark()
+                && before.map(|kind| carrier.lets_through(kind))
+                    != Some(carrier.lets_through(kind(tile)))
+        };
+        let changed = [Carrier::Thing, Carrier::Mover].map(|it| Some(it).filter(changes));
+        for &carrier in changed.iter().flatten() {
+            self.shine_around(cell, carrier, Change::TakeAway);
+        }
+        self.grid.set(cell, tile);
+        let is_level = self.tile(tile).is_level();
+        if let Some(grid) = &mut self.level_grid {
+            grid.set(cell, if is_level { tile } else { TileId(u8::MAX) });
+        }
+        for &carrier in changed.iter().flatten() {
+            self.shine_around(cell, carrier, Change::Add);
+        }
+    }
+
+    /// Computes all lamplight anew, without lamps that move.
+    pub(crate) fn light_up(&mut self) {
+        let is_dim = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
+        let is_needed = self.tiles.iter().any(is_dim);
+        self.lamplight.is_needed = is_needed;
+        self.lamplight.moving.clear();
+        self.lamplight.sums.clear();
+        let passes = |tile: &Tile| Carrier::Thing.lets_through(tile.kind);
+        let passed: Vec<bool> = self.tiles.iter().map(passes).collect();
+        let lamp = |thing: &&Thing| {
+            let lamp = self.sprites[usize::from(thing.sprite.0)].lamp;
+            lamp.filter(|_| thing.burns()).map(|lamp| (thing.cell, thing.sprite, lamp))
+        };
+        let lamps = self.things.all().iter().filter_map(|thing| lamp(&thing));
+        let lamplight = &mut self.lamplight;
+        // Looked up once for each sprite: a map may have as many lamps as cells.
+        let mut glow_of = vec![None; self.sprites.len()];
+        for (cell, sprite, lamp) in lamps.take_while(|_| is_needed) {
+            if lamplight.is_dark() {
+                lamplight.begin(&self.grid);
+            }
+            let glow: &Arc<Glow> =
+                glow_of[usize::from(sprite.0)].get_or_insert_with(|| lamplight.glows.of(lamp));
+            let is_clear = |tile: TileId| passed[usize::from(tile.0)];
+            glow.shine(&self.grid, cell, is_clear, |cell, light| {
+                lamplight.change(cell, light, Change::Add);
+            });
+        }
+        self.light_varies = !self.lamplight.is_dark() || self.tiles_differ_in_light();
+    }
+
+    /// Adds or takes away the light of all lamps of a carrier that may shine through `cell`.
+    fn shine_around(&mut self, cell: Cell, carrier: Carrier, change: Change) {
+        let Self { grid, tiles, things, sprites, lamplight, .. } = self;
+        let is_near = |&(place, lamp): &(Cell, Lamp)| {
+            place.center().distance(cell.center()) < lamp.reach.cells()
+        };
+        match carrier {
+            Carrier::Thing => {
+                let most = Reach::MAX as u32;
+                let around = |index: u32| index.saturating_sub(most)..=index.saturating_add(most);
+                let (rows, columns) = (around(cell.row), around(cell.column));
+                let things =
+                    rows.flat_map(|row| things.between(row, *columns.start(), *columns.end()));
+                let lamps = things.filter(|thing| thing.burns()).filter_map(|thing| {
+                    Some((thing.cell, sprites[usize::from(thing.sprite.0)].lamp?))
+                });
+                for lamp in lamps.filter(is_near) {
+                    shine(grid, tiles, lamplight, lamp, carrier, change);
+                }
+            }
+            Carrier::Mover => {
+                for index in 0..lamplight.moving.len() {
+                    let lamp = lamplight.moving[index];
+                    if is_near(&lamp) {
+                        shine(grid, tiles, lamplight, lamp, carrier, change);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Reserves memory for lamplight, if there is none yet.
+    pub(crate) fn make_room_for_light(&mut self) {
+        if self.lamplight.is_dark() {
+            self.lamplight.begin(&self.grid);
+            self.light_varies = true;
+        }
+    }
+
+    /// Whether cells may differ in light without lamps.
+    fn tiles_differ_in_light(&self) -> bool {
+        // A wall without a light is as bright as the floor before it.
+        let is_wall = |tile: &Tile| matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
+        let light = |tile: &Tile| tile.light.or((!is_wall(tile)).then_some(Light::FULL));
+        let mut lights = self.tiles.iter().filter_map(light);
+        let first = lights.next();
+        lights.any(|light| Some(light) != first)
+    }
+}
+
+impl Thing {
+    /// Whether it gives light, if its sprite is a lamp.
+    fn burns(&self) -> bool {
+        self.kind != ThingKind::Flame || self.frame.is_none()
+    }
+}
+
+impl Carrier {
+    fn lets_through(self, kind: TileKind) -> bool {
+        match kind {
+            TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_) => true,
+            TileKind::Doorway(_) => self == Self::Mover,
+            TileKind::Wall(_) | TileKind::Door(_) | TileKind::Mirror(_) | TileKind::Shape(_) => {
+                false
+            }
+        }
+    }
+}
+
+impl Glows {
+    fn of(&mut self, lamp: Lamp) -> Arc<Glow> {
+        if let Some((_, glow)) = self.list.iter().find(|(known, _)| *known == lamp) {
+            return Arc::clone(glow);
+        }
+        let glow = Arc::new(Glow::of(&lamp));
+        self.list.push((lamp, Arc::clone(&glow)));
+        glow
+    }
+}
+
+impl PartialEq for Glows {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Adds or takes away the light of one lamp. Off the map, it lights nothing.
+fn shine(
+    grid: &Grid,
+    tiles: &[Tile],
+    lamplight: &mut Lamplight,
+    (cell, lamp): (Cell, Lamp),
+    carrier: Carrier,
+    change: Change,
+) {
+    if lamplight.is_dark() || grid.tile_in(cell).is_none() {
+        return;
+    }
+    let glow = lamplight.glows.of(lamp);
+    let is_clear = |tile: TileId| carrier.lets_through(tiles[usize::from(tile.0)].kind);
+    glow.shine(grid, cell, is_clear, |cell, light| lamplight.change(cell, light, change));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,14 @@
-//! The mission: what a level asks of the player, and who and what is there beside tiles and things.
+//! The mission: the parts of a level that only a game uses, such as guards, switches and tiles that move.
+//!
+//! A moving tile has a list of states, which are tiles themselves. A game replaces the tile of a
+//! cell by the next state, so that drawing, collision and light need not know that it moves. Rejected:
+//! a height for each cell, which every stage would read in its innermost loop.
+//!
+//! A guard post is data of the map. The guard itself, who moves, is part of the game.
 
-use super::{Cell, GuardPost, MovingTile, ThingKind, World};
+use serde::{Deserialize, Serialize};
+
+use super::{Cell, Heading, ThingKind, TileId, World};
 
 /// The parts of a level that only a game uses.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -17,6 +25,148 @@ pub(crate) struct Mission {
     pub(crate) moving_tiles: Vec<MovingTile>,
     /// The guards.
     pub(crate) guards: Vec<GuardPost>,
+}
+
+/// A switch: an index into the world's list of their names. Levers and plates set it.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
+pub struct SwitchId(pub u8);
+
+/// A tile whose cells change their height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingTile {
+    /// The tiles that a cell shows in turn, from rest to the end; there are at least two. The first
+    /// one is drawn in the map, and is among the states of no other moving tile.
+    pub states: Vec<TileId>,
+    /// The cause of its movement.
+    pub driver: Driver,
+}
+
+/// A cause of a tile's movement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// A switch: all its cells move to the end while it is on, and back while it is off.
+    Switch(SwitchId),
+    /// A hand: a cell moves to the end, for good, after the player has opened it. It looks like a
+    /// wall, and counts as a secret.
+    Hand,
+    /// A weight: a cell moves to the end, for good, some time after somebody has stepped on it.
+    Weight,
+}
+
+/// The effect of a tile on anyone who stands on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TileEffect {
+    /// Cold water: it slows, splashes, puts out lamps, and hurts anyone who stays.
+    Water,
+    /// A plate: its switch is on while somebody stands on it.
+    Plate(SwitchId),
+}
+
+/// A guard as the map draws it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GuardPost {
+    /// The kind of guard.
+    pub kind: GuardKind,
+    /// The cell in whose middle the guard begins.
+    pub cell: Cell,
+    /// The direction in which the guard looks at first.
+    pub heading: Heading,
+    /// The behaviour of the guard while nothing disturbs them.
+    pub duty: Duty,
+    /// The easiest difficulty at which the guard is there.
+    pub from: Difficulty,
+}
+
+/// A kind of guard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum GuardKind {
+    /// Slow and armoured; hits hard.
+    Warden,
+    /// Blind; hears well.
+    Listener,
+    /// Carries a lamp, and calls the others.
+    Lantern,
+    /// Fast; follows the player's trail.
+    Hound,
+    /// Shoots.
+    Archer,
+}
+
+impl GuardKind {
+    /// All kinds.
+    pub const ALL: [Self; 5] =
+        [Self::Warden, Self::Listener, Self::Lantern, Self::Hound, Self::Archer];
+
+    /// The name in maps, which is also that of the built-in sprite.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Warden => "warden",
+            Self::Listener => "listener",
+            Self::Lantern => "lantern",
+            Self::Hound => "hound",
+            Self::Archer => "archer",
+        }
+    }
+
+    /// The height of the top of the head, in cells. A guard fits where there is as much room.
+    pub const fn height(self) -> f64 {
+        match self {
+            Self::Warden => 0.9,
+            Self::Listener => 0.85,
+            Self::Lantern => 0.8,
+            Self::Hound => 0.45,
+            Self::Archer => 0.82,
+        }
+    }
+}
+
+/// The behaviour of a guard while nothing disturbs them.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Duty {
+    /// Stands at the post and looks around.
+    #[default]
+    Stand,
+    /// Sleeps at the post, until a noise wakes them.
+    Sleep,
+    /// Walks from cell to cell, and from the last to the first again; there is at least one.
+    Patrol(Vec<Cell>),
+    /// Walks to cells at random, at most this many cells from the post.
+    Wander(u8),
+}
+
+/// How hard a game is. The rules differ, not numbers only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum Difficulty {
+    /// A player without health goes back to the last checkpoint and keeps what they have. Guards
+    /// do not hear walking, and tell nobody what they see.
+    Easy,
+    /// Guards who see the player call the others.
+    #[default]
+    Normal,
+    /// As [`Normal`](Difficulty::Normal), without checkpoints: and guards who were alarmed stay
+    /// wary to the end.
+    Hard,
+}
+
+impl Difficulty {
+    /// All difficulties, from the easiest.
+    pub const ALL: [Self; 3] = [Self::Easy, Self::Normal, Self::Hard];
+
+    /// The name in maps, in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Easy => "easy",
+            Self::Normal => "normal",
+            Self::Hard => "hard",
+        }
+    }
+
+    /// The difficulty of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|difficulty| difficulty.name() == name)
+    }
 }
 
 impl World {
@@ -80,5 +230,28 @@ impl World {
     /// Sets the parts that only a game uses. Its guards are on open floor, in reading order.
     pub(crate) fn set_mission(&mut self, mission: Mission) {
         self.mission = mission;
+    }
+
+    /// The tiles that move.
+    pub fn moving_tiles(&self) -> &[MovingTile] {
+        &self.mission.moving_tiles
+    }
+
+    /// The name of the switch `id`.
+    ///
+    /// # Panics
+    /// If `id` comes from another world that has more switches.
+    pub fn switch_name(&self, id: SwitchId) -> &str {
+        &self.mission.switches[usize::from(id.0)]
+    }
+
+    /// The number of switches. Their ids are the numbers below it.
+    pub fn switch_count(&self) -> usize {
+        self.mission.switches.len()
+    }
+
+    /// The effect of the tile of `cell` on anyone who stands there.
+    pub fn effect_in(&self, cell: Cell) -> Option<TileEffect> {
+        self.tile_in(cell)?.effect
     }
 }

@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{Heading, Heights, Lamp, Texture};
 
@@ -35,7 +36,7 @@ pub struct Sprite {
 }
 
 /// A sprite: an index into the world's list of sprites.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct SpriteId(pub u16);
 
 /// The number of sides with pictures of their own.

@@ -6,24 +6,24 @@
 //! as large as pixels.
 //!
 //! A built-in texture is painted when a texel is first read, and the mip levels are made when one of
-//! them is. So a level begins without what it does not show, and rays without any. Making all of them with
-//! the world was refused: nine tenths of the instructions of a first frame were theirs.
+//! them is. So a level begins without the textures that it does not show, and rays without any.
+//! Rejected: making all of them with the world, which took nine tenths of the instructions of a first
+//! frame.
 
 mod area_levels;
 pub mod builtin;
 mod mip_level;
-mod picture;
 
 use std::fmt;
 use std::num::NonZeroU32;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-use crate::color::Rgb;
 use area_levels::AreaLevels;
 pub(crate) use area_levels::{AreaLod, Repeat};
 pub use mip_level::MipLevel;
 pub(crate) use mip_level::MipLevelByShifts;
-use picture::{Picture, Source};
+
+use crate::color::Rgb;
 
 /// A picture, at least one texel wide and high.
 #[derive(Clone)]
@@ -179,6 +179,86 @@ impl fmt::Debug for Texture {
             .field("height", height)
             .finish_non_exhaustive()
     }
+}
+
+/// The picture itself, and what is computed from all of it.
+#[derive(Clone)]
+struct Picture {
+    level: MipLevel,
+    mean: Rgb,
+}
+
+/// Where a texture has its picture from.
+#[derive(Clone)]
+enum Source {
+    Made(Picture),
+    OnDemand { paint: Arc<Paint>, made: OnceLock<Picture> },
+}
+
+/// The function that makes a picture: the same one, whenever it is called.
+type Paint = dyn Fn() -> Picture + Send + Sync;
+
+impl Picture {
+    /// The picture with the texel `texel(x, y)` at `(x, y)`, and its alpha.
+    fn from_fn(
+        width: NonZeroU32,
+        height: NonZeroU32,
+        mut texel: impl FnMut(u32, u32) -> (Rgb, u8),
+    ) -> Self {
+        let (texels, mut alpha): (Vec<Rgb>, Vec<u8>) = (0..width.get())
+            .flat_map(|x| (0..height.get()).map(move |y| (x, y)))
+            .map(|(x, y)| texel(x, y))
+            .unzip();
+        if alpha.iter().all(|&alpha| alpha == u8::MAX) {
+            alpha = Vec::new();
+        }
+        let mean = mean(&texels);
+        Self { level: MipLevel::new(width, height, texels, alpha), mean }
+    }
+}
+
+impl Source {
+    /// The picture that `paint` makes when it is first read.
+    fn on_demand(paint: impl Fn() -> Picture + Send + Sync + 'static) -> Self {
+        Self::OnDemand { paint: Arc::new(paint), made: OnceLock::new() }
+    }
+
+    #[inline]
+    fn picture(&self) -> &Picture {
+        match self {
+            Self::Made(picture) => picture,
+            Self::OnDemand { paint, made } => made.get_or_init(&**paint),
+        }
+    }
+
+    fn is_made(&self) -> bool {
+        match self {
+            Self::Made(_) => true,
+            Self::OnDemand { made, .. } => made.get().is_some(),
+        }
+    }
+
+    /// Whether both are painted by the same function.
+    fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::OnDemand { paint: one, .. }, Self::OnDemand { paint: other, .. }) => {
+                Arc::ptr_eq(one, other)
+            }
+            _ => false,
+        }
+    }
+}
+
+fn mean(texels: &[Rgb]) -> Rgb {
+    let mut sums = [0u64; 3];
+    for texel in texels {
+        for (sum, channel) in sums.iter_mut().zip(texel.channels()) {
+            *sum += u64::from(channel);
+        }
+    }
+    let count = texels.len() as u64;
+    let [red, green, blue] = sums.map(|sum| ((sum + count / 2) / count) as u8);
+    Rgb::new(red, green, blue)
 }
 
 #[cfg(test)]

@@ -1,17 +1,31 @@
-//! Things: what stands in the cells.
+//! Things, which stand in the cells, and figures, which move.
 //!
 //! Things are sorted by row and column, so that the things in a range of cells are one slice. The
 //! start of each row is known; within it the slice is found by binary search. A frame looks at the
-//! things in the cells that it shows, and others cost nothing. A list for each cell was refused:
-//! most cells are empty, and a map has millions.
+//! things in the cells that it shows, and others cost nothing. Rejected: a list for each cell. Most
+//! cells are empty, and a map has millions.
+//!
+//! A figure is at any place, and its owner sets its height, heading and frame: a guard, a thrown
+//! stone, a cloud of smoke. A game replaces all figures at once after each step, so that none can
+//! be left behind. Rules:
+//!
+//! - A frame considers every figure. There are tens, and each costs one projection. Rejected: sorting
+//!   them by cell, because they change their cells all the time.
+//! - A figure has the light of the cell that it is in. As with a thing, no part of it is drawn behind
+//!   the edge of the map.
+//! - A figure never changes with time, and causes no
+//!   [next change](crate::render::Renderer::next_change).
 
 use std::ops::Range;
 
-use super::{Cell, KeyId, SpriteId, SwitchId, World};
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::{Cell, Heading, KeyId, Light, Sprite, SpriteId, SwitchId, World};
 use crate::sort;
 
 /// Something that stands in a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thing {
     /// The kind of thing.
     pub kind: ThingKind,
@@ -19,12 +33,12 @@ pub struct Thing {
     pub cell: Cell,
     /// Its sprite.
     pub sprite: SpriteId,
-    /// The frame of the sprite that it shows; `None` for that of the time.
+    /// The frame of the sprite that it shows; `None` if time selects it.
     pub frame: Option<u8>,
 }
 
 /// A kind of thing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThingKind {
     /// Reaching it finishes the level.
     Exit,
@@ -51,11 +65,11 @@ pub enum ThingKind {
 }
 
 /// A tool that is used up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Supply {
     /// Thrown, to make a noise elsewhere.
     Pebbles,
-    /// Shot; a guard whom one hits is stunned.
+    /// Shot; a guard who is hit is stunned.
     Darts,
     /// Thrown; makes smoke.
     Flasks,
@@ -76,11 +90,11 @@ impl Supply {
 }
 
 /// A text that is found: an index into the world's list of notes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NoteId(pub u16);
 
 /// The times at which spikes come out: once in each period, in steps of the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Rhythm {
     /// The steps from one time to the next; at least 60.
     pub period: u16,
@@ -99,6 +113,31 @@ impl Rhythm {
         let steps = |seconds: f64| (seconds * Self::STEPS_PER_SECOND).round() as u16;
         let rhythm = Self { period: steps(period), delay: steps(delay) };
         (is_in_range && rhythm.delay < rhythm.period).then_some(rhythm)
+    }
+}
+
+/// A sprite at any place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Its sprite, among those of the world; a figure with any other is not drawn.
+    pub sprite: SpriteId,
+    /// The place of its middle, on the map.
+    pub position: DVec2,
+    /// The height of its lower edge, in cells.
+    pub base: f64,
+    /// The direction of its front.
+    pub heading: Heading,
+    /// The frame of the sprite that it shows; the last one, if there is no such frame.
+    pub frame: u8,
+    /// How much of it shows instead of what is behind: from 0 for none to 255 for all. The opacity of
+    /// each texel is multiplied by it, in 255ths, and rounded to the nearest whole number.
+    pub opacity: u8,
+}
+
+impl Figure {
+    /// The cell that it is in; `None` west or north of the map, where there are no cells.
+    pub fn cell(&self) -> Option<Cell> {
+        Cell::containing(self.position)
     }
 }
 
@@ -147,11 +186,42 @@ impl World {
     pub fn note(&self, id: NoteId) -> &str {
         &self.mission.notes[usize::from(id.0)]
     }
+
+    /// The figures, in the order in which they were set.
+    pub fn figures(&self) -> &[Figure] {
+        &self.figures
+    }
+
+    /// Replaces all figures.
+    pub fn set_figures(&mut self, figures: impl Iterator<Item = Figure>) {
+        self.figures.clear();
+        self.figures.extend(figures);
+    }
+
+    /// Adds a sprite, for figures to refer to.
+    pub(crate) fn add_sprite(&mut self, sprite: Sprite) -> SpriteId {
+        let id = SpriteId(self.sprites.len() as u16);
+        self.sprites = self.sprites.iter().cloned().chain([sprite]).collect();
+        id
+    }
+
+    /// The greatest height that a figure reaches; 0 if there is none.
+    pub(crate) fn top_of_figures(&self) -> f64 {
+        let sprite = |figure: &Figure| self.sprites.get(usize::from(figure.sprite.0));
+        let height = |figure: &Figure| sprite(figure).map_or(0.0, |sprite| sprite.height.cells());
+        self.figures.iter().map(|figure| figure.base + height(figure)).fold(0.0, f64::max)
+    }
+
+    /// The light on `figure`; off the map, that of the map's own floor.
+    pub(crate) fn light_on(&self, figure: &Figure) -> Light {
+        let off_map = self.ground().light.unwrap_or(Light::FULL);
+        figure.cell().map_or(off_map, |cell| self.light_in(cell))
+    }
 }
 
 /// All things of a world, by place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Things {
+pub(crate) struct Things {
     sorted: Vec<Thing>,
     /// The number of things before each row, up to the last row with any.
     before_row: Vec<usize>,
@@ -160,7 +230,7 @@ pub(super) struct Things {
 }
 
 impl Things {
-    pub(super) fn new(mut things: Vec<Thing>) -> Self {
+    pub(crate) fn new(mut things: Vec<Thing>) -> Self {
         sort::by_key(&mut things, place);
         let treasure = things.iter().map(|thing| worth(thing.kind)).sum();
         let mut new = Self { sorted: things, before_row: Vec::new(), treasure };
@@ -168,17 +238,17 @@ impl Things {
         new
     }
 
-    pub(super) fn all(&self) -> &[Thing] {
+    pub(crate) fn all(&self) -> &[Thing] {
         &self.sorted
     }
 
     /// The things in `row` between two columns, both included.
-    pub(super) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
+    pub(crate) fn between(&self, row: u32, first: u32, last: u32) -> &[Thing] {
         &self.sorted[self.range(row, first, last)]
     }
 
     /// The things in `cell`, of which anything but the place may change.
-    pub(super) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
+    pub(crate) fn in_cell_mut(&mut self, cell: Cell) -> &mut [Thing] {
         let range = self.range(cell.row, cell.column, cell.column);
         &mut self.sorted[range]
     }

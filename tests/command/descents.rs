@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::Path;
 
+use cellcaster::app::store::Reached;
 use cellcaster::game::{Game, Header, LevelName, Outcome, Rules};
 use cellcaster::generate::descent;
-use cellcaster::store::Reached;
 use cellcaster::world::{Cell, Difficulty, ThingKind};
 
 use crate::pilot::{Pace, Pilot};

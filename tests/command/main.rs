@@ -1,14 +1,12 @@
 //! The command line, from arguments to standard output.
 
 mod arguments;
-mod bench;
 mod descents;
 mod full_disk;
 mod hostile;
 mod recordings;
 mod replay;
 mod scores;
-mod wire;
 
 #[path = "../support/asciicast.rs"]
 mod asciicast;

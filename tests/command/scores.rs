@@ -7,9 +7,9 @@ use std::thread;
 use std::time::Duration;
 use std::{env, fs};
 
+use cellcaster::app::store::{Run, Store};
 use cellcaster::game::{Rank, Share, Tally};
 use cellcaster::map::builtin;
-use cellcaster::store::{Run, Store};
 use cellcaster::world::Difficulty;
 use serde_json::Value;
 

@@ -1,5 +1,7 @@
 //! The repository: its documents, and the claims in them.
 
+mod modules;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::{fs, io};

@@ -3,7 +3,6 @@
 
 mod areas;
 mod costs;
-mod doors;
 mod exact_pictures;
 mod extremes;
 mod figures;

@@ -6,11 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-use cellcaster::canvas::{Canvas, Mosaic};
 use cellcaster::color::Rgb as Pixel;
 use cellcaster::color::palette::{ColorDepth, of_256};
 use cellcaster::terminal::{CellWriter, Fidelity};
 use cellcaster::tui::GlyphSet;
+use cellcaster::tui::canvas::{Canvas, Mosaic};
 use proptest::prelude::*;
 use ratatui::Terminal;
 use ratatui::backend::Backend;

@@ -14,7 +14,7 @@ mod emulator;
 mod looks;
 #[path = "../support/player.rs"]
 mod player;
-#[cfg(all(target_os = "linux", feature = "ssh-tests"))]
+#[cfg(target_os = "linux")]
 #[path = "../support/strace.rs"]
 mod strace;
 #[path = "../support/mod.rs"]

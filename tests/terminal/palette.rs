@@ -4,11 +4,11 @@
 
 use std::collections::HashMap;
 
-use cellcaster::canvas::Canvas;
 use cellcaster::game::{Game, Script};
 use cellcaster::map::builtin;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::canvas::Canvas;
 use cellcaster::world::{FieldOfView, World};
 use proptest::prelude::*;
 use ratatui::backend::Backend;

@@ -9,8 +9,8 @@ use std::env;
 use std::thread;
 use std::time::Duration;
 
-use cellcaster::canvas::Canvas;
 use cellcaster::terminal::{Event, Key, Options, Phase, Session};
+use cellcaster::tui::canvas::Canvas;
 use ratatui::widgets::{Paragraph, Wrap};
 use rustix::process::Signal;
 

@@ -7,8 +7,8 @@
 use std::hint::black_box;
 
 use cellcaster::cast::{Caster, Ray};
-use cellcaster::lab::accuracy::{RAYS, SEED, all_methods, is_measured, ordinary, plain};
-use cellcaster::lab::casters::Visitor;
+use cellcaster_lab::accuracy::{RAYS, SEED, all_methods, is_measured, ordinary, plain};
+use cellcaster_lab::casters::Visitor;
 use cellcaster::world::Grid;
 
 struct Rays<'a> {

@@ -39,10 +39,10 @@ const MODIFIERS: [Modifier; 5] =
     [Modifier::BOLD, Modifier::DIM, Modifier::ITALIC, Modifier::UNDERLINED, Modifier::REVERSED];
 
 /// A picture of cells; the cells behind a wide one are blank.
-pub(super) struct Picture(Buffer);
+pub(crate) struct Picture(Buffer);
 
 impl Picture {
-    pub(super) fn new(size: Size, choices: &mut Bytes) -> Self {
+    pub(crate) fn new(size: Size, choices: &mut Bytes) -> Self {
         let mut buffer = Buffer::empty(size.into());
         let repeat = choices.below(4);
         let mut left = 0;
@@ -58,12 +58,12 @@ impl Picture {
         Self(buffer).tidy()
     }
 
-    pub(super) fn buffer(&self) -> &Buffer {
+    pub(crate) fn buffer(&self) -> &Buffer {
         &self.0
     }
 
     /// The cells that no wide character covers.
-    pub(super) fn uncovered(&self) -> impl Iterator<Item = (u16, u16, &Cell)> {
+    pub(crate) fn uncovered(&self) -> impl Iterator<Item = (u16, u16, &Cell)> {
         let mut covered = 0;
         self.0.area.positions().zip(&self.0.content).filter_map(move |(at, cell)| {
             if at.x == 0 {
@@ -95,41 +95,41 @@ impl Picture {
 
 /// The cells that a terminal should show.
 #[derive(Clone)]
-pub(super) struct Model {
+pub(crate) struct Model {
     size: Size,
     cells: Vec<Cell>,
 }
 
 impl Model {
-    pub(super) fn blank(size: Size) -> Self {
+    pub(crate) fn blank(size: Size) -> Self {
         Self { size, cells: vec![Cell::EMPTY; usize::from(size.width) * usize::from(size.height)] }
     }
 
-    pub(super) fn size(&self) -> Size {
+    pub(crate) fn size(&self) -> Size {
         self.size
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.cells.fill(Cell::EMPTY);
     }
 
     /// A cell, whose text is fit to be shown.
-    pub(super) fn at(&self, x: u16, y: u16) -> &Cell {
+    pub(crate) fn at(&self, x: u16, y: u16) -> &Cell {
         &self.cells[self.place(x, y)]
     }
 
-    pub(super) fn equals_at(&self, other: &Self, x: u16, y: u16) -> bool {
+    pub(crate) fn equals_at(&self, other: &Self, x: u16, y: u16) -> bool {
         self.at(x, y) == other.at(x, y)
     }
 
-    pub(super) fn show(&mut self, picture: &Picture) {
+    pub(crate) fn show(&mut self, picture: &Picture) {
         self.clear();
         for (x, y, cell) in picture.uncovered() {
             self.set(x, y, cell.clone());
         }
     }
 
-    pub(super) fn draw_halves(&mut self, x: u16, y: u16, halves: &[[Color; 2]]) {
+    pub(crate) fn draw_halves(&mut self, x: u16, y: u16, halves: &[[Color; 2]]) {
         for (x, &[top, bottom]) in (x..self.size.width).zip(halves) {
             let mut cell = Cell::new("▀");
             cell.set_fg(top).set_bg(bottom);
@@ -141,7 +141,7 @@ impl Model {
     }
 
     /// Draws one character; returns `false` where it would be half over another one.
-    pub(super) fn draw_character(
+    pub(crate) fn draw_character(
         &mut self,
         x: u16,
         y: u16,
@@ -163,7 +163,7 @@ impl Model {
         true
     }
 
-    pub(super) fn erase(&mut self, region: ClearType, cursor: Position) {
+    pub(crate) fn erase(&mut self, region: ClearType, cursor: Position) {
         let columns = usize::from(self.size.width);
         let at = self.place(cursor.x, cursor.y);
         let line = at - usize::from(cursor.x);
@@ -179,7 +179,7 @@ impl Model {
     }
 
     /// The picture with a part of a row moved sideways.
-    pub(super) fn rotated(&self, choices: &mut Bytes) -> Picture {
+    pub(crate) fn rotated(&self, choices: &mut Bytes) -> Picture {
         let columns = usize::from(self.size.width);
         let mut cells = self.cells.clone();
         for _ in 0..1 + choices.below(3) {
@@ -209,7 +209,7 @@ impl Model {
 }
 
 /// The columns that the text of a cell takes; 0 if it is not fit to be shown.
-pub(super) fn width(cell: &Cell) -> u16 {
+pub(crate) fn width(cell: &Cell) -> u16 {
     if cell.symbol().contains(char::is_control) { 0 } else { cell.cell_width() }
 }
 
@@ -241,12 +241,12 @@ fn any_character(choices: &mut Bytes) -> char {
         .unwrap_or('?')
 }
 
-pub(super) fn character(choices: &mut Bytes) -> char {
+pub(crate) fn character(choices: &mut Bytes) -> char {
     choices.pick(&CHARACTERS)
 }
 
 /// A colour of half a cell, which is never the terminal's own.
-pub(super) fn pixel(choices: &mut Bytes) -> Color {
+pub(crate) fn pixel(choices: &mut Bytes) -> Color {
     match color(choices) {
         Color::Reset => Color::Rgb(1, 2, 3),
         other => other,
@@ -254,7 +254,7 @@ pub(super) fn pixel(choices: &mut Bytes) -> Color {
 }
 
 /// Colours, often the same.
-pub(super) fn color(choices: &mut Bytes) -> Color {
+pub(crate) fn color(choices: &mut Bytes) -> Color {
     let byte = choices.byte();
     match byte >> 6 {
         0 => NAMED[usize::from(byte & 0x3f) % NAMED.len()],

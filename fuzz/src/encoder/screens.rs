@@ -15,7 +15,7 @@ use ratatui::style::{Color, Modifier};
 use super::model::{Model, width};
 
 /// The emulators that read everything.
-pub(super) struct Screens {
+pub(crate) struct Screens {
     vt100: Option<vt100::Parser>,
     alacritty: Term<VoidListener>,
     parser: Processor,
@@ -40,7 +40,7 @@ enum Look {
 }
 
 impl Screens {
-    pub(super) fn new(size: Size, only_alacritty: bool) -> Self {
+    pub(crate) fn new(size: Size, only_alacritty: bool) -> Self {
         let vt100 = (!only_alacritty)
             .then(|| vt100::Parser::new(length(size.height), length(size.width), 0));
         let config = Config { scrolling_history: 0, ..Config::default() };
@@ -51,14 +51,14 @@ impl Screens {
         screens
     }
 
-    pub(super) fn process(&mut self, bytes: &[u8]) {
+    pub(crate) fn process(&mut self, bytes: &[u8]) {
         if let Some(vt100) = &mut self.vt100 {
             vt100.process(bytes);
         }
         self.parser.advance(&mut self.alacritty, bytes);
     }
 
-    pub(super) fn resize(&mut self, size: Size) {
+    pub(crate) fn resize(&mut self, size: Size) {
         if let Some(vt100) = &mut self.vt100 {
             vt100.screen_mut().set_size(length(size.height), length(size.width));
         }
@@ -66,7 +66,7 @@ impl Screens {
     }
 
     /// Checks that both emulators show what the model says.
-    pub(super) fn check(&self, model: &Model) {
+    pub(crate) fn check(&self, model: &Model) {
         let Size { width: columns, height } = model.size();
         for y in 0..height {
             let mut covered = 0;
@@ -92,7 +92,7 @@ impl Screens {
     }
 
     /// Checks that both cursors are where the writer says.
-    pub(super) fn check_cursor(&self, expected: Position) {
+    pub(crate) fn check_cursor(&self, expected: Position) {
         let point = self.alacritty.grid().cursor.point;
         let at = Position::new(point.column.0 as u16, point.line.0 as u16);
         assert_eq!(at, expected, "the cursor of Alacritty");

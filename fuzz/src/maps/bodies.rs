@@ -16,7 +16,7 @@ fn least_clearance(scale: f64) -> f64 {
 }
 
 /// Flies through `scene`, and draws it before and afterwards.
-pub(super) fn check(scene: Scene, choices: &mut Bytes) {
+pub(crate) fn check(scene: Scene, choices: &mut Bytes) {
     let script = if choices.is_empty() { usual() } else { Vec::new() };
     let format = Format::new(choices);
     let mut flight = Flight::new(scene);

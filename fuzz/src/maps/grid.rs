@@ -16,7 +16,7 @@ const MOST_QUIET_STEPS: u64 = 40;
 const MOST_PICTURES: usize = 4;
 
 /// Plays in `world`, and draws it before, meanwhile and afterwards.
-pub(super) fn check(world: World, choices: &mut Bytes) {
+pub(crate) fn check(world: World, choices: &mut Bytes) {
     // Bounded work, whatever it finds.
     is_exit_out_of_reach(&world);
     let script = if choices.is_empty() { usual() } else { Vec::new() };

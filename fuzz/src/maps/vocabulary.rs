@@ -1,7 +1,7 @@
 //! What the mutator adds to maps.
 
 /// Maps whose lines define something of every kind.
-pub(super) const DONORS: [&str; 20] = [
+pub(crate) const DONORS: [&str; 20] = [
     include_str!("../../../maps/cistern.toml"),
     include_str!("../../../maps/citadel.toml"),
     include_str!("../../../maps/observatory.toml"),
@@ -25,7 +25,7 @@ pub(super) const DONORS: [&str; 20] = [
 ];
 
 /// Pairs for inline tables.
-pub(super) const PAIRS: [&str; 44] = [
+pub(crate) const PAIRS: [&str; 44] = [
     "floor_height = -0.3",
     "floor_height = 0.35",
     "ceiling_height = 0.7",
@@ -73,7 +73,7 @@ pub(super) const PAIRS: [&str; 44] = [
 ];
 
 /// Numbers at and beyond limits.
-pub(super) const NUMBERS: [&str; 32] = [
+pub(crate) const NUMBERS: [&str; 32] = [
     "0",
     "-0.0",
     "1",
@@ -109,4 +109,4 @@ pub(super) const NUMBERS: [&str; 32] = [
 ];
 
 /// The characters that a grid gets most often.
-pub(super) const USUAL: &str = "#.@ Xab+%~o^lkt|-/w=\u{e9}\u{4e00}";
+pub(crate) const USUAL: &str = "#.@ Xab+%~o^lkt|-/w=\u{e9}\u{4e00}";

@@ -103,9 +103,9 @@ proptest! {
             }
         }
         configuration.bindings = configuration.bindings.rebound(&actions, bound);
-        configuration.colors = value::DEPTHS[colors].1;
-        configuration.glyphs = value::GLYPH_SETS[glyphs].1;
-        configuration.minimap = value::DISPLAYS[minimap].1;
+        configuration.colors = colors.checked_sub(1).map(|index| ColorDepth::ALL[index].0);
+        configuration.glyphs = glyphs.checked_sub(1).map(|index| GlyphSet::ALL[index].0);
+        configuration.minimap = MapDisplay::ALL[minimap].0;
         configuration.field_of_view = FieldOfView::from_degrees(fov).unwrap();
         configuration.frames_per_second = NonZeroU32::new(fps).unwrap();
         configuration.mouse = mouse;

@@ -38,7 +38,7 @@ grid = '''
 "##;
 
 /// A player who has just been struck, with everything on the picture that can be switched on.
-pub(super) fn struck() -> Rig {
+pub(crate) fn struck() -> Rig {
     let mut rig = playing_own(AMBUSH, Store::in_memory());
     for key in [Key::Char('.'), Key::Char(',')] {
         rig.tap(key, 30);
@@ -104,7 +104,7 @@ fn looks(cell: &Cell) -> String {
 }
 
 fn drawn(rig: &mut Rig, depth: ColorDepth, (columns, rows): (u16, u16)) -> Vec<u8> {
-    rig.app.depth = depth;
+    rig.app.terminal.depth = depth;
     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
     rig.app.draw(&mut buffer);
     bytes(&buffer).into_bytes()

@@ -8,7 +8,7 @@ use ratatui::layout::{Rect, Size};
 
 use super::*;
 use crate::app::TerminalLook;
-use crate::app::interruption::Rendered;
+use crate::app::draw::Rendered;
 use crate::terminal::{Event, QuitReason};
 
 /// The largest window.

@@ -10,9 +10,9 @@ use super::missions::{DANGER, offering, playing_own, text, won};
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
+use crate::app::store::{Run, map_key};
 use crate::game::{Intents, LevelName, Script};
 use crate::map::builtin;
-use crate::store::{Run, map_key};
 
 /// A folder that is removed at the end of a test.
 struct Folder(PathBuf);
@@ -41,7 +41,7 @@ fn playing_builtin(store: Store) -> Rig {
     let mut rig = titled(Offers::default(), store);
     rig.choose("New game");
     rig.choose("Normal");
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     rig
 }
 
@@ -67,10 +67,10 @@ fn left_and_continued(rig: Rig, folder: &Folder, offers: Offers) -> (Game, Rig) 
     rig.choose("Leave to the title");
     drop(rig);
     let mut rig = titled(offers, folder.store());
-    assert_eq!(rig.app.menu.label().as_deref(), Some("Continue"));
+    assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Continue"));
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     while left.tally().steps < rig.game().tally().steps {
         left.step(Intents::new());
     }
@@ -106,7 +106,7 @@ fn a_game_in_an_own_map_goes_on_unless_the_map_has_changed() {
     let shown = text(&mut title.app, 80, 24);
     assert!(shown.contains("Continue  Danger"), "{shown}");
     title.choose("Continue");
-    assert_eq!(title.app.screen, Screen::Title);
+    assert_eq!(title.app.screen(), Screen::Title);
     let shown = text(&mut title.app, 80, 24);
     assert!(shown.contains("The map of the saved game is not as it was."), "{shown}");
 }
@@ -210,7 +210,7 @@ grid = '''
     let tally = Tally { steps: 3660, ..Tally::default() };
     store.record(&key, Difficulty::Normal, Run { tally, rank: Rank::Thief, script });
     let mut rig = playing_own(MEETING, store);
-    rig.app.depth = ColorDepth::True;
+    rig.app.terminal.depth = ColorDepth::True;
     rig.app.map.is_shown = false;
     rig.wait(3000);
     let picture = |rig: &mut Rig| {

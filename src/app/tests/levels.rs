@@ -13,8 +13,8 @@ use crate::game::{Intent, Script};
 use crate::world::Cell;
 
 /// Two levels without their guards, which a player who stops to look around does not outwit.
-pub(super) const CISTERN: &str = include_str!("../../../tests/maps/cistern.toml");
-pub(super) const OBSERVATORY: &str = include_str!("../../../tests/maps/observatory.toml");
+pub(crate) const CISTERN: &str = include_str!("../../../tests/maps/cistern.toml");
+pub(crate) const OBSERVATORY: &str = include_str!("../../../tests/maps/observatory.toml");
 const CISTERN_SCRIPT: &str = include_str!("../../../maps/cistern.script");
 const OBSERVATORY_SCRIPT: &str = include_str!("../../../maps/observatory.script");
 

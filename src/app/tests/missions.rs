@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 
 use super::titles::titled;
 use super::*;
-use crate::app::run_log::RunLog;
+use crate::app::recording::RunLog;
+use crate::app::store::{Run, map_key};
 use crate::app::{Offers, OwnLevel, OwnMap};
 use crate::map::{NoFiles, builtin, parse_level};
-use crate::store::{Run, map_key};
 use crate::tui::GlyphSet;
 
 /// Spikes that come out at once, a treasure, a note, and the exit behind them.
-pub(super) const DANGER: &str = r##"
+pub(crate) const DANGER: &str = r##"
 title = "Danger"
 par = 30
 grid = '''
@@ -31,7 +31,7 @@ grid = '''
 "##;
 
 /// A map of that name with that text.
-pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
+pub(crate) fn own_map(name: &str, text: &'static str) -> OwnMap {
     let key = map_key(name, text);
     let read = || parse_level(text, "it", &NoFiles).map_err(|faults| faults.summary());
     let load = {
@@ -42,27 +42,27 @@ pub(super) fn own_map(name: &str, text: &'static str) -> OwnMap {
 }
 
 /// What a title with that map offers.
-pub(super) fn offering(name: &'static str, text: &'static str) -> Offers {
+pub(crate) fn offering(name: &'static str, text: &'static str) -> Offers {
     let maps = move || vec![own_map(name, text)];
     Offers { maps: Some(Box::new(maps)), ..Offers::default() }
 }
 
 /// A game in the map `text`, chosen from a title.
-pub(super) fn playing_own(text: &'static str, store: Store) -> Rig {
+pub(crate) fn playing_own(text: &'static str, store: Store) -> Rig {
     let mut rig = titled(offering("danger.toml", text), store);
     rig.choose("My maps");
     rig.choose("danger.toml");
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     rig
 }
 
 /// A game in the map with the spikes.
-pub(super) fn danger() -> Rig {
+pub(crate) fn danger() -> Rig {
     playing_own(DANGER, Store::in_memory())
 }
 
 /// A player who stands on the spikes until they are dead.
-pub(super) fn dead() -> Rig {
+pub(crate) fn dead() -> Rig {
     let mut rig = danger();
     rig.tap(Key::Char('g'), 30);
     while rig.position().x < 4.3 {
@@ -70,7 +70,7 @@ pub(super) fn dead() -> Rig {
     }
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
-        if rig.app.screen == Screen::Dead {
+        if rig.app.screen() == Screen::Dead {
             return rig;
         }
         rig.wait(1);
@@ -78,7 +78,7 @@ pub(super) fn dead() -> Rig {
     panic!("alive at {} with {:?}", rig.position(), rig.game().health());
 }
 
-pub(super) fn text(app: &mut App, columns: u16, rows: u16) -> String {
+pub(crate) fn text(app: &mut App, columns: u16, rows: u16) -> String {
     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
     app.draw(&mut buffer);
     let lines = buffer.content().chunks(columns.into());
@@ -92,11 +92,11 @@ fn the_dead_say_what_happened_and_go_on_at_once() {
     assert!(shown.contains("killed by spikes") && shown.contains("> Try again"), "{shown}");
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Dead, "nothing counts in the first half second");
+    assert_eq!(rig.app.screen(), Screen::Dead, "nothing counts in the first half second");
     rig.wait(700);
     rig.tap(Key::Enter, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Playing);
+    assert_eq!(rig.app.screen(), Screen::Playing);
     assert_eq!((rig.position().x, rig.game().tally().deaths), (1.5, 1));
 }
 
@@ -105,31 +105,31 @@ fn after_a_death_one_can_begin_again_and_leave_to_the_title() {
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Restart the level");
-    assert_eq!((rig.app.screen, rig.game().tally().deaths), (Screen::Playing, 0));
+    assert_eq!((rig.app.screen(), rig.game().tally().deaths), (Screen::Playing, 0));
     assert!(rig.game().elapsed() < 1.0);
     let mut rig = dead();
     rig.wait(1000);
     rig.choose("Leave to the title");
-    assert_eq!(rig.app.screen, Screen::Title);
+    assert_eq!(rig.app.screen(), Screen::Title);
     let left = rig.app.left.as_ref().unwrap();
     assert!(left.starts_with("Danger on normal: 0:") && left.ends_with(", 0 of 50 gold"), "{left}");
 }
 
 /// A player who has run to the exit of that map.
-pub(super) fn won() -> Rig {
+pub(crate) fn won() -> Rig {
     let mut rig = danger();
     // Before the spikes come out, by running.
     rig.tap(Key::Char('r'), 30);
     rig.tap(Key::Char('g'), 30);
     for _ in 0..9000 {
         rig.wait(1);
-        if rig.app.screen == Screen::Dead {
+        if rig.app.screen() == Screen::Dead {
             rig.wait(700);
             rig.tap(Key::Enter, 30);
             rig.wait(300);
             rig.tap(Key::Char('g'), 30);
         }
-        if rig.app.screen == Screen::LevelDone {
+        if rig.app.screen() == Screen::LevelDone {
             return rig;
         }
     }
@@ -224,7 +224,7 @@ fn settings_change_by_enter_and_arrows_and_are_kept() {
     assert!(!rig.app.store.preferences().ghost);
     for (label, depth) in [("Colours", ColorDepth::True), ("Colours", ColorDepth::Indexed256)] {
         rig.choose(label);
-        assert_eq!(rig.app.depth, depth);
+        assert_eq!(rig.app.depth(), depth);
     }
     rig.choose("Frames a second");
     assert_eq!(rig.app.settings.frame_time, Duration::from_secs(1) / 60);

@@ -9,8 +9,8 @@ use super::titles::titled;
 use super::*;
 use crate::app::Offers;
 use crate::app::panels::{framed, leaving, message};
-use crate::canvas::Canvas;
 use crate::tui::GlyphSet;
+use crate::tui::canvas::Canvas;
 
 /// All screens, each with the game behind it.
 fn screens() -> Vec<(&'static str, Rig)> {
@@ -42,7 +42,7 @@ fn screens() -> Vec<(&'static str, Rig)> {
 fn every_screen_is_readable_in_80_and_in_40_columns_without_colours() {
     for (name, mut rig) in screens() {
         rig.app.settings.glyphs = GlyphSet::Ascii;
-        rig.app.depth = ColorDepth::Mono;
+        rig.app.terminal.depth = ColorDepth::Mono;
         for (columns, rows) in [(80, 24), (40, 12)] {
             let name = format!("{name}_{columns}x{rows}");
             insta::assert_snapshot!(name, text(&mut rig.app, columns, rows));
@@ -56,7 +56,7 @@ fn every_screen_can_be_drawn_in_any_window_and_mode() {
         for glyphs in [GlyphSet::Half, GlyphSet::Ascii, GlyphSet::Ramp] {
             for depth in [ColorDepth::True, ColorDepth::Indexed16, ColorDepth::Mono] {
                 rig.app.settings.glyphs = glyphs;
-                rig.app.depth = depth;
+                rig.app.terminal.depth = depth;
                 for (columns, rows) in [(80, 24), (37, 9), (20, 6), (200, 60), (5, 3), (1, 1)] {
                     let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
                     rig.app.draw(&mut buffer);
@@ -104,9 +104,9 @@ fn panels_stay_in_areas_of_every_small_size() {
         framed(canvas, area, "title");
         banner::draw(canvas, area, GlyphSet::Half, ColorDepth::True);
         hud::draw_note(canvas, area, "a note that is long enough to be wrapped into lines");
-        rig.app.menu.draw(canvas, area);
+        rig.app.pages.menu.draw(canvas, area);
         let bindings = &rig.app.settings.bindings;
-        rig.app.help.draw(canvas, area, (&[], bindings), iter::once("a note".to_owned()));
+        rig.app.pages.help.draw(canvas, area, (&[], bindings), iter::once("a note".to_owned()));
         canvas.draw_widget(&rig.app.status, Rect { height: area.height.min(1), ..area });
         for position in screen.positions().filter(|&position| !area.contains(position)) {
             assert_eq!(drawn[position], Cell::EMPTY, "{position} of {area}");

@@ -3,7 +3,7 @@
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
-use crate::app::tmux_offer::TmuxOrder;
+use crate::app::title::TmuxOrder;
 use crate::terminal::{ColorSource, TmuxClient};
 
 const OFFER: &str = "24-bit colours in tmux";
@@ -12,7 +12,7 @@ fn says(rig: &mut Rig, answer: &str, source: ColorSource) {
     let before = rig.app.tmux_remedy();
     let client = TmuxClient::parse(answer);
     let has_all = client.as_ref().is_some_and(TmuxClient::has_true_color);
-    rig.app.depth = if has_all { ColorDepth::True } else { ColorDepth::Indexed256 };
+    rig.app.terminal.depth = if has_all { ColorDepth::True } else { ColorDepth::Indexed256 };
     rig.app.detection.tmux = client;
     rig.app.detection.source = Some(source);
     rig.app.renew_tmux_offer(before.as_deref());
@@ -57,7 +57,7 @@ fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
     assert!(!rig.app.take_tmux_order());
     rig.tap(Key::Escape, 30);
     rig.wait(300);
-    assert_eq!(rig.app.screen, Screen::Title);
+    assert_eq!(rig.app.screen(), Screen::Title);
     assert!(!rig.app.take_tmux_order());
     rig.choose(OFFER);
     rig.choose("Tell tmux");
@@ -67,7 +67,7 @@ fn tmux_is_told_once_and_only_by_the_answer_in_the_panel() {
     assert!(shows(&mut rig, "Done. Detach (prefix d)"));
     assert!(shows(&mut rig, "set -as terminal-features ',xterm-kitty:RGB'"));
     says(&mut rig, "RGB|kitty(0.42.1)|xterm-kitty", ColorSource::Tmux);
-    assert_eq!(rig.app.screen, Screen::Title);
+    assert_eq!(rig.app.screen(), Screen::Title);
     assert!(!shows(&mut rig, OFFER));
     assert_eq!(rig.app.tmux_order, TmuxOrder::None);
 }
@@ -85,11 +85,11 @@ fn a_failure_is_a_sentence() {
 fn an_answer_of_tmux_leaves_the_selected_entry_selected() {
     let mut rig = titled(Offers::default(), Store::in_memory());
     rig.tap(Key::End, 30);
-    assert_eq!(rig.app.menu.label().as_deref(), Some("Leave"));
+    assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Leave"));
     says(&mut rig, "title|kitty(0.42.1)|xterm-kitty", ColorSource::Tmux);
-    assert_eq!(rig.app.menu.label().as_deref(), Some("Leave"));
+    assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Leave"));
     says(&mut rig, "RGB|kitty(0.42.1)|xterm-kitty", ColorSource::Tmux);
-    assert_eq!(rig.app.menu.label().as_deref(), Some("Leave"));
+    assert_eq!(rig.app.pages.menu.label().as_deref(), Some("Leave"));
 }
 
 #[test]

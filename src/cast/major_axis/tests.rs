@@ -149,7 +149,7 @@ proptest! {
             let index = characters.iter().position(|&known| known == character).unwrap();
             let states = &world.moving_tiles()[index].states;
             let state = states[state.index(states.len())];
-            world.set_state(cell, state);
+            world.set_tile(cell, state);
         }
         let ray = Ray::new(DVec2::from(share) * f64::from(HALL), direction.into());
         prop_assume!(ray.is_ok());
@@ -159,6 +159,115 @@ proptest! {
             let walk = Walk::new(grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
             let Some(traversal) = MajorAxisTraversal::new(grid, &ray) else { continue };
             prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+        }
+    }
+}
+
+mod along_beams {
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    use super::MajorAxisTraversal;
+    use crate::cast::{Ray, Walk};
+    use crate::world::{Grid, TileId};
+
+    const DOORWAY: TileId = TileId(1);
+    const WALL: TileId = TileId(2);
+
+    /// Positions on a map of that size, many of them on a line where a strip begins, or an ulp beside it.
+    fn position(size: u32) -> impl Strategy<Value = f64> {
+        let line = prop_oneof![(0..size), (0..=size / 64).prop_map(|index| index * 64)];
+        let beside = |(line, ulps): (u32, i64)| {
+            f64::from_bits((f64::from(line).to_bits() as i64 + ulps).max(0) as u64)
+        };
+        prop_oneof![
+            0.0..f64::from(size),
+            (line.clone(), -2..3_i64).prop_map(beside),
+            line.prop_map(|line| f64::from(line) + 0.5),
+        ]
+    }
+
+    /// Directions to all sides: along the axes and diagonals, at the bounds of slopes, and close to those.
+    fn direction() -> impl Strategy<Value = DVec2> {
+        let slope = prop_oneof![
+            -1.0..1.0_f64,
+            (-16..=16_i32, -1..2_i32)
+                .prop_map(|(part, off)| f64::from(part) / 16.0 + f64::from(off) * 1e-10),
+            Just(f64::MIN_POSITIVE),
+        ];
+        (slope, any::<bool>(), any::<bool>()).prop_map(|(slope, is_steep, is_backward)| {
+            let direction = if is_steep { DVec2::new(slope, 1.0) } else { DVec2::new(1.0, slope) };
+            if is_backward { -direction } else { direction }
+        })
+    }
+
+    /// A solid block on an open map, from a cell to the south and to the east.
+    type Block = (TileId, (u32, u32), (u32, u32));
+
+    fn block() -> impl Strategy<Value = Block> {
+        let extent = prop_oneof![
+            8 => Just((1, 1)),
+            1 => (1..90_u32, Just(1)),
+            1 => (Just(1), 1..90_u32),
+            1 => (1..9_u32, 1..9_u32),
+        ];
+        let tile = prop_oneof![3 => Just(WALL), 1 => Just(DOORWAY)];
+        (tile, any::<(u32, u32)>(), extent)
+    }
+
+    fn grid([width, height]: [u32; 2], blocks: &[Block]) -> Grid {
+        let mut cells = vec![TileId(0); (width * height) as usize];
+        for &(tile, (column, row), (columns, rows)) in blocks {
+            let (column, row) = (column % width, row % height);
+            for row in row..(row + rows).min(height) {
+                let start = (row * width) as usize;
+                let (first, end) = (column as usize, (column + columns).min(width) as usize);
+                cells[start + first..start + end].fill(tile);
+            }
+        }
+        let [width, height] = [width, height].map(|side| side.try_into().unwrap());
+        Grid::new(width, height, WALL, cells).unwrap()
+    }
+
+    /// Maps of several strips, and of several groups of strips, each with a ray.
+    fn scene() -> impl Strategy<Value = ([u32; 2], Vec<Block>, DVec2, DVec2)> {
+        let side = || prop_oneof![4 => 1..600_u32, 1 => Just(128_u32), 1 => Just(256_u32)];
+        let long = prop_oneof![900..2400_u32, Just(1024_u32)];
+        let size = prop_oneof![
+            4 => (side(), side()),
+            1 => (long.clone(), side()),
+            1 => (side(), long),
+        ];
+        size.prop_map(<[u32; 2]>::from).prop_flat_map(|size| {
+            let origin = (position(size[0]), position(size[1])).prop_map(DVec2::from);
+            let blocks = prop::collection::vec(block(), 0..50);
+            (Just(size), blocks, origin, direction())
+        })
+    }
+
+    proptest! {
+        /// Through every solid cell, up to the end of the map.
+        #[test]
+        fn it_hits_the_same_cells_as_the_walk((size, blocks, origin, direction) in scene()) {
+            let mut grid = grid(size, &blocks);
+            grid.measure_with_beams(|tile| tile == DOORWAY);
+            let ray = Ray::new(origin, direction).unwrap();
+            let walk = Walk::new(&grid, &ray).filter(|met| grid.is_solid_tile(met.tile));
+            let Some(traversal) = MajorAxisTraversal::new(&grid, &ray) else { return Ok(()) };
+            prop_assert_eq!(traversal.collect::<Vec<_>>(), walk.collect::<Vec<_>>());
+        }
+    }
+
+    /// One position for each strip, and a few more where the beam has a solid cell.
+    #[test]
+    fn it_computes_few_positions_where_it_passes_a_pillar() {
+        let mut grid = grid([1024, 100], &[(WALL, (700, 50), (1, 1))]);
+        grid.measure_with_beams(|_| false);
+        for (y, met) in [(50.5, Some(700)), (49.5, None), (48.5, None), (40.5, None)] {
+            let ray = Ray::new(DVec2::new(1.5, y), DVec2::X).unwrap();
+            let mut traversal = MajorAxisTraversal::new(&grid, &ray).unwrap();
+            assert_eq!(traversal.next().map(|met| met.cell.column), met);
+            assert!(traversal.lookups() <= 14, "{} lookups along y = {y}", traversal.lookups());
         }
     }
 }

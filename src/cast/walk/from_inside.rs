@@ -4,8 +4,8 @@
 //! is on the map until it leaves for good, and crossing a line changes the state of both axes by sums
 //! without a branch on the side.
 
-use super::{Axis, Crossing};
-use crate::cast::{ExactOrder, Order, Ray, Side};
+use super::{Axis, Crossing, Order};
+use crate::cast::{ExactOrder, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 
 /// The cells that a ray enters after the one it begins in, with its distance from its origin to each.
@@ -41,7 +41,7 @@ impl<'grid> WalkFromInside<'grid> {
         let x = Position::new(&Axis::new(origin.x, direction.x, grid.width()))?;
         let y = Position::new(&Axis::new(origin.y, direction.y, grid.height()))?;
         let cell = Cell { column: x.index, row: y.index };
-        let tile = grid.tile(cell.column.into(), cell.row.into())?;
+        let tile = grid.tile_in(cell)?;
         let order = ExactOrder::of_camera(grid, ray);
         let (width, height) = (grid.width(), grid.height());
         let unit = (direction.x * direction.y).abs();

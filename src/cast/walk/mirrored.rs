@@ -5,20 +5,15 @@
 //! exact order. Only the lookup of its cell on the map is mirrored. A view in a mirror is computed
 //! like a view into a room built behind it, bit for bit.
 //!
-//! A new ray that starts at the mirror was refused: its origin would be rounded, and each bounce
+//! Rejected: a new ray that starts at the mirror. Its origin would be rounded, and each bounce
 //! would add to the error.
-
-mod crossed;
-mod transform;
 
 use glam::DVec2;
 
-pub(crate) use crossed::{Crossed, CrossedFace};
-pub(crate) use transform::MirrorTransform;
-
-use super::Axis;
-use crate::cast::hit::{is_from_left, meeting};
-use crate::cast::{ExactOrder, Order, Passage, Ray, Side, door};
+use super::{Axis, Order};
+use crate::cast::ray::{along_line, from_left, is_from_left, meeting};
+use crate::cast::through::meet_leaf;
+use crate::cast::{ExactOrder, Passage, Ray, Side};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
 /// The place of rays from one origin that have crossed the same lines, reflections included.
@@ -132,9 +127,7 @@ impl Course {
     /// The cell that contains the rays; `None` off the map.
     #[inline]
     pub(crate) fn cell(&self, grid: &Grid) -> Option<(Cell, TileId)> {
-        let (column, row) = (self.column.index, self.row.index);
-        let tile = grid.tile(column, row)?;
-        Some((Cell { column: column as u32, row: row as u32 }, tile))
+        grid.cell(self.column.index, self.row.index)
     }
 
     /// The coordinates of the x line and the y line ahead.
@@ -201,7 +194,7 @@ impl Course {
         let ray = self.on_map(ray);
         match kind {
             TileKind::Door(_) => {
-                let hit = door::meet(world.grid(), &ray, cell, world.opening(cell));
+                let hit = meet_leaf(world.grid(), &ray, cell, world.opening(cell));
                 Passage { hit, end: None }
             }
             TileKind::Shape(it) => Passage::new(&ray, cell, it.outline),
@@ -223,6 +216,129 @@ impl Course {
     /// The number of reflections so far.
     pub(crate) fn bounces(&self) -> u32 {
         self.bounces
+    }
+}
+
+/// The transform of an image in mirrors: from points along the straight ray to points on the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct MirrorTransform {
+    x: AxisTransform,
+    y: AxisTransform,
+}
+
+/// The transform along one axis: a coordinate is offset, or mirrored at 0 and then offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+struct AxisTransform {
+    is_mirrored: bool,
+    offset: i64,
+}
+
+impl MirrorTransform {
+    /// The point on the map for a point along the straight ray.
+    pub(crate) fn to_map(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.to_map(point.x), self.y.to_map(point.y))
+    }
+
+    /// The point along the straight ray for a point on the map.
+    pub(crate) fn in_image(self, point: DVec2) -> DVec2 {
+        DVec2::new(self.x.in_image(point.x), self.y.in_image(point.y))
+    }
+
+    /// Whether lines of kind `side` are mirrored along themselves.
+    fn is_mirrored_along(self, side: Side) -> bool {
+        match side {
+            Side::X => self.y.is_mirrored,
+            Side::Y => self.x.is_mirrored,
+        }
+    }
+
+    /// Adds a mirror at `line`, of kind `side`. Returns the column or row on the map behind it for the one at
+    /// `index` along the straight ray.
+    pub(crate) fn reflect(&mut self, side: Side, line: i64, index: i64) -> i64 {
+        let along = match side {
+            Side::X => &mut self.x,
+            Side::Y => &mut self.y,
+        };
+        *along = along.mirrored_at(line);
+        along.index_on_map(index)
+    }
+
+    /// Whether left and right are exchanged.
+    pub(crate) fn swaps_sides(self) -> bool {
+        self.x.is_mirrored != self.y.is_mirrored
+    }
+
+    /// The direction on the map for a direction along the straight ray.
+    pub(crate) fn direction_to_map(self, direction: DVec2) -> DVec2 {
+        let along =
+            |transform: AxisTransform, part: f64| if transform.is_mirrored { -part } else { part };
+        DVec2::new(along(self.x, direction.x), along(self.y, direction.y))
+    }
+}
+
+impl AxisTransform {
+    fn to_map(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { offset + place }
+    }
+
+    fn in_image(self, place: f64) -> f64 {
+        let offset = self.offset as f64;
+        if self.is_mirrored { offset - place } else { place - offset }
+    }
+
+    /// The column or row of the map for the one at `index` along the straight ray.
+    fn index_on_map(self, index: i64) -> i64 {
+        if self.is_mirrored { self.offset - 1 - index } else { self.offset + index }
+    }
+
+    /// The transform behind a mirror at `line`.
+    fn mirrored_at(self, line: i64) -> Self {
+        let moved = if self.is_mirrored { -2 * line } else { 2 * line };
+        Self { is_mirrored: !self.is_mirrored, offset: self.offset + moved }
+    }
+}
+
+/// A line that a walk has crossed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossed {
+    /// The kind of line.
+    pub(crate) side: Side,
+    /// The cell behind the line; `None` for the edge of the map, where the walk ends.
+    pub(crate) into: Option<(Cell, TileId)>,
+    /// The coordinate of the line along the straight ray.
+    pub(crate) line: f64,
+}
+
+impl Crossed {
+    /// The distance of the line along a ray, from the components of its origin and its direction across
+    /// the line.
+    #[inline]
+    pub(crate) fn distance(&self, origin: f64, direction: f64) -> f64 {
+        ((self.line - origin) / direction).abs()
+    }
+}
+
+/// The face on a line that rays have crossed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CrossedFace {
+    pub(crate) side: Side,
+    /// The north or west end, along the straight rays.
+    pub(crate) corner: DVec2,
+    /// Whether the face is mirrored along its line.
+    pub(crate) is_mirrored: bool,
+    /// Whether the north or west end is on the left.
+    pub(crate) is_from_left: bool,
+}
+
+impl CrossedFace {
+    /// The position along the face at which `ray` has crossed the line at `t`, as in
+    /// [`Hit`](crate::cast::Hit).
+    #[inline]
+    pub(crate) fn u(&self, ray: &Ray, t: f64) -> f64 {
+        let along = along_line(ray, t, self.side, self.corner).clamp(0.0, 1.0);
+        let along = if self.is_mirrored { 1.0 - along } else { along };
+        from_left(along, self.is_from_left)
     }
 }
 

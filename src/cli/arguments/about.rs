@@ -5,7 +5,7 @@ use clap_complete::Shell;
 
 use super::{Command, Error, Positional, Subcommand, description, mistake};
 
-pub(super) const COMPLETIONS: Subcommand = Subcommand {
+pub(crate) const COMPLETIONS: Subcommand = Subcommand {
     name: "completions",
     about: "Write completions for a shell",
     details: "",
@@ -19,7 +19,7 @@ pub(super) const COMPLETIONS: Subcommand = Subcommand {
     read: |matches| Ok(Command::Completions(shell(matches))),
 };
 
-pub(super) const MAN: Subcommand = Subcommand {
+pub(crate) const MAN: Subcommand = Subcommand {
     name: "man",
     about: "Write the manual page",
     details: "",
@@ -32,7 +32,7 @@ pub(super) const MAN: Subcommand = Subcommand {
     read: |_| Ok(Command::Manual),
 };
 
-pub(super) const HELP: Subcommand = Subcommand {
+pub(crate) const HELP: Subcommand = Subcommand {
     name: "help",
     about: "Explain the program, or a command",
     details: "",

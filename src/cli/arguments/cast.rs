@@ -5,16 +5,14 @@ use std::ffi::OsString;
 use clap::ArgMatches;
 
 use super::{Command, Error, Subcommand, map, value};
-use crate::lab::casters::Method;
 
 /// Options of `cast`.
 #[derive(Debug)]
-pub(in crate::cli) struct Cast {
-    pub(in crate::cli) map: Option<OsString>,
-    pub(in crate::cli) method: Method,
+pub(crate) struct Cast {
+    pub(crate) map: Option<OsString>,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "cast",
     about: "Rays from standard input, hits to standard output",
     details: r##"Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
@@ -38,6 +36,5 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
              name a file",
         ));
     }
-    let method = value::CASTER.of(&mut matches).unwrap_or_default();
-    Ok(Command::Cast(Cast { map, method }))
+    Ok(Command::Cast(Cast { map }))
 }

@@ -9,13 +9,13 @@ use super::{Command, Error, Subcommand, map};
 
 /// Options of `check`.
 #[derive(Debug)]
-pub(in crate::cli) struct Check {
-    pub(in crate::cli) maps: Vec<OsString>,
+pub(crate) struct Check {
+    pub(crate) maps: Vec<OsString>,
     /// Whether a remark counts as a fault.
-    pub(in crate::cli) deny_remarks: bool,
+    pub(crate) deny_remarks: bool,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "check",
     about: "Say everything that is wrong with maps",
     details: "Names every fault of every map, each with its place and what to write instead. The exit \
@@ -38,7 +38,6 @@ const DENY: ValueOption<()> = ValueOption {
     default: "",
     choices: &["remarks"],
     read: Parser::Optional(|text| (text == "remarks").then_some(())),
-    repeats: false,
 };
 
 fn read(mut matches: ArgMatches) -> Result<Command, Error> {

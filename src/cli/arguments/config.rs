@@ -7,11 +7,11 @@ use super::{Command, Subcommand};
 
 /// Options of `config`.
 #[derive(Debug, Default)]
-pub(in crate::cli) struct Config {
-    pub(in crate::cli) config: Option<PathBuf>,
+pub(crate) struct Config {
+    pub(crate) config: Option<PathBuf>,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "config",
     about: "Print the settings in force, as a file with comments",
     details: "Says where the file lies and what each setting means. What it prints may be written to that \

@@ -10,16 +10,16 @@ use crate::generate::{Extent, Generator, Site};
 
 /// A generated level instead of a map.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct Generated {
-    pub(in crate::cli) generator: Generator,
-    pub(in crate::cli) seed: u64,
-    pub(in crate::cli) extent: Extent,
+pub(crate) struct Generated {
+    pub(crate) generator: Generator,
+    pub(crate) seed: u64,
+    pub(crate) extent: Extent,
     /// The start; that of the level if it is `None`.
-    pub(in crate::cli) start: Option<Site>,
+    pub(crate) start: Option<Site>,
 }
 
 /// The generated level that the options describe, if any. It excludes a `map`.
-pub(super) fn of(
+pub(crate) fn of(
     matches: &mut ArgMatches,
     map: Option<&OsStr>,
 ) -> Result<Option<Generated>, Error> {
@@ -45,7 +45,7 @@ pub(super) fn of(
     }
 }
 
-pub(super) const GENERATE: ValueOption<Generator> = ValueOption {
+pub(crate) const GENERATE: ValueOption<Generator> = ValueOption {
     name: "generate",
     value: "KIND",
     takes: "maze, cave or office",
@@ -53,10 +53,9 @@ pub(super) const GENERATE: ValueOption<Generator> = ValueOption {
     default: "",
     choices: &["maze", "cave", "office"],
     read: Parser::Optional(Generator::named),
-    repeats: false,
 };
 
-pub(super) const SEED: ValueOption<u64> = ValueOption {
+pub(crate) const SEED: ValueOption<u64> = ValueOption {
     name: "seed",
     value: "N",
     takes: "a whole number from 0 to 18446744073709551615",
@@ -64,10 +63,9 @@ pub(super) const SEED: ValueOption<u64> = ValueOption {
     default: "1",
     choices: &[],
     read: Parser::Optional(|text| text.parse().ok()),
-    repeats: false,
 };
 
-pub(super) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
+pub(crate) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
     name: "level-size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64",
@@ -78,10 +76,9 @@ pub(super) const LEVEL_SIZE: ValueOption<Extent> = ValueOption {
         let (columns, rows) = text.split_once('x')?;
         Extent::new(columns.parse().ok()?, rows.parse().ok()?)
     }),
-    repeats: false,
 };
 
-pub(super) const START: ValueOption<Site> = ValueOption {
+pub(crate) const START: ValueOption<Site> = ValueOption {
     name: "start",
     value: "COLUMN,ROW",
     takes: "COLUMN,ROW, the cell to start at, such as 1000000,-1000000",
@@ -92,5 +89,4 @@ pub(super) const START: ValueOption<Site> = ValueOption {
         let (column, row) = text.split_once(',')?;
         Some(Site { column: column.trim().parse().ok()?, row: row.trim().parse().ok()? })
     }),
-    repeats: false,
 };

@@ -8,10 +8,10 @@ use crate::app::Bindings;
 use crate::map::builtin::LEVELS;
 
 /// The width of help in columns, in windows of any width.
-pub(super) const WIDTH: usize = 80;
+pub(crate) const WIDTH: usize = 80;
 
 /// The text before the options of the game.
-pub(super) fn about() -> String {
+pub(crate) fn about() -> String {
     let names: Vec<&str> = LEVELS.iter().map(|level| level.name).collect();
     format!("{ABOUT}{MAP}{}.", names.join(", "))
 }
@@ -33,16 +33,17 @@ const MAP: &str = "
 MAP is a map file, \"-\" for standard input, or a built-in level; --generate maze, cave or office makes \
 one in its place. An option may also stand before the command. The built-in levels are ";
 
-pub(super) const WHERE_TO_READ_ON: &str = "\
+pub(crate) const WHERE_TO_READ_ON: &str = "\
 \"cellcaster --help\" has all commands with their options, keys and examples; \"cellcaster COMMAND \
 --help\" tells of one command.";
 
 /// The text after the options of the game: options of other commands, keys, and examples.
-pub(super) fn more() -> String {
+pub(crate) fn more() -> String {
     let mut text = String::new();
     for subcommand in SUBCOMMANDS.iter().filter(|it| it.name != play::SUBCOMMAND.name) {
         push_details(&mut text, subcommand);
     }
+    text.push_str(OTHER_PROGRAMS);
     push_keys(&mut text);
     text.push_str("Examples:\n");
     for line in SUBCOMMANDS.iter().flat_map(|subcommand| subcommand.examples.lines()) {
@@ -53,11 +54,20 @@ pub(super) fn more() -> String {
 }
 
 /// The text after the options of a command.
-pub(super) fn examples(subcommand: &Subcommand) -> String {
+pub(crate) fn examples(subcommand: &Subcommand) -> String {
     let lines: Vec<String> =
         subcommand.examples.lines().map(|line| format!("  {line}\n")).collect();
     format!("Examples:\n{}", lines.concat())
 }
+
+const OTHER_PROGRAMS: &str = "\
+Other programs: cellcaster NAME runs cellcaster-NAME, which is beside this
+program or on the PATH.
+  cellcaster server       an SSH server in which people play together;
+                          also as serve, admin and scores
+  cellcaster lab          measurements: accuracy, bench, wire, load
+
+";
 
 const EXIT_STATUS: &str = "
 Exit status: 0; 2 for a mistake in the arguments, a map or a script; 1 where the

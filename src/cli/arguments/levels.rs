@@ -5,19 +5,19 @@ use super::{Command, Subcommand};
 
 /// Options of `levels`.
 #[derive(Debug)]
-pub(in crate::cli) struct Levels {
-    pub(in crate::cli) format: LevelsFormat,
+pub(crate) struct Levels {
+    pub(crate) format: LevelsFormat,
 }
 
 /// The format of the list.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::cli) enum LevelsFormat {
+pub(crate) enum LevelsFormat {
     #[default]
     Table,
     Json,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "levels",
     about: "List the built-in levels with your best results",
     details: "Names each level with its title, its par time, and for each difficulty the time of your \
@@ -45,5 +45,4 @@ const FORMAT: ValueOption<LevelsFormat> = ValueOption {
         "json" => Some(LevelsFormat::Json),
         _ => None,
     }),
-    repeats: false,
 };

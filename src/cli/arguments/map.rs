@@ -7,10 +7,10 @@ use clap::{ArgAction, ArgMatches, ValueHint};
 use super::Positional;
 
 /// The name for a map on standard input.
-pub(in crate::cli) const STANDARD_INPUT: &str = "-";
+pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// A map, or the first built-in level.
-pub(super) const OPTIONAL: Positional = Positional {
+pub(crate) const OPTIONAL: Positional = Positional {
     name: NAME,
     help: "A map file, \"-\" for standard input, or a built-in level, as \"cellcaster levels\" lists them",
     is_required: false,
@@ -20,7 +20,7 @@ pub(super) const OPTIONAL: Positional = Positional {
 };
 
 /// One or more maps.
-pub(super) const SEVERAL: Positional = Positional {
+pub(crate) const SEVERAL: Positional = Positional {
     help: "Map files, or \"-\" for standard input",
     is_required: true,
     action: ArgAction::Append,
@@ -30,11 +30,11 @@ pub(super) const SEVERAL: Positional = Positional {
 const NAME: &str = "MAP";
 
 /// The named map.
-pub(super) fn of(matches: &mut ArgMatches) -> Option<OsString> {
+pub(crate) fn of(matches: &mut ArgMatches) -> Option<OsString> {
     matches.remove_one(NAME)
 }
 
 /// The named maps.
-pub(super) fn all_of(matches: &mut ArgMatches) -> Vec<OsString> {
+pub(crate) fn all_of(matches: &mut ArgMatches) -> Vec<OsString> {
     matches.remove_many(NAME).map(Iterator::collect).unwrap_or_default()
 }

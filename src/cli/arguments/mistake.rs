@@ -9,7 +9,7 @@ use super::{Error, SUBCOMMANDS, Subcommand};
 use crate::fault;
 
 /// A sentence about the mistake in the arguments of `subcommand`.
-pub(super) fn of(error: &clap::Error, subcommand: &Subcommand) -> Error {
+pub(crate) fn of(error: &clap::Error, subcommand: &Subcommand) -> Error {
     if let Some(sentence) = text(error, ContextKind::Custom) {
         return Error::mistake(sentence);
     }
@@ -69,7 +69,7 @@ fn no_choice(error: &clap::Error, subcommand: &Subcommand) -> String {
 }
 
 /// The mistake for an unknown command.
-pub(super) fn no_command(name: &str) -> Error {
+pub(crate) fn no_command(name: &str) -> Error {
     let names: Vec<&str> = SUBCOMMANDS.iter().map(|subcommand| subcommand.name).collect();
     let hint = match fault::nearest(name, &names) {
         Some(meant) => format!("did you mean {meant}?"),

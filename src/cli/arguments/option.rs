@@ -8,7 +8,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
 
 /// The description of an option of any type.
-pub(super) trait OptionSpec {
+pub(crate) trait OptionSpec {
     /// The name after the two dashes.
     fn name(&self) -> &'static str;
 
@@ -30,25 +30,23 @@ pub(super) trait OptionSpec {
 }
 
 /// An option with a value.
-pub(super) struct ValueOption<T> {
-    pub(super) name: &'static str,
+pub(crate) struct ValueOption<T> {
+    pub(crate) name: &'static str,
     /// The placeholder of the value in help, such as `COLSxROWS`.
-    pub(super) value: &'static str,
+    pub(crate) value: &'static str,
     /// The valid values, for the sentence about an invalid one.
-    pub(super) takes: &'static str,
-    pub(super) help: &'static str,
+    pub(crate) takes: &'static str,
+    pub(crate) help: &'static str,
     /// The default in the words of the help; may be empty.
-    pub(super) default: &'static str,
+    pub(crate) default: &'static str,
     /// The possible values, if they are a fixed list.
-    pub(super) choices: &'static [&'static str],
-    pub(super) read: Parser<T>,
-    /// Whether the option may be repeated for several values.
-    pub(super) repeats: bool,
+    pub(crate) choices: &'static [&'static str],
+    pub(crate) read: Parser<T>,
 }
 
 /// A parser of values.
 #[derive(Clone)]
-pub(super) enum Parser<T> {
+pub(crate) enum Parser<T> {
     /// A function that returns `None` for an invalid text.
     Optional(fn(&str) -> Option<T>),
     /// A function that returns the reason why a text is invalid.
@@ -60,13 +58,8 @@ where
     T: Clone + Send + Sync + 'static,
 {
     /// The given value; the last one if there are several.
-    pub(super) fn of(&self, matches: &mut ArgMatches) -> Option<T> {
+    pub(crate) fn of(&self, matches: &mut ArgMatches) -> Option<T> {
         matches.remove_one(self.name)
-    }
-
-    /// All given values, in order.
-    pub(super) fn all_of(&self, matches: &mut ArgMatches) -> Vec<T> {
-        matches.remove_many(self.name).map(Iterator::collect).unwrap_or_default()
     }
 }
 
@@ -97,24 +90,18 @@ where
     fn argument(&self) -> Arg {
         let Self { name, takes, choices, .. } = *self;
         let reader = ValueReader { name, takes, choices, read: self.read.clone() };
-        argument(name, self.value, self.help(), self.repeats, ValueParser::new(reader))
+        argument(name, self.value, self.help(), ValueParser::new(reader))
     }
 }
 
 /// An argument with a value of any type. It is apart from [`ValueOption`], so that there is one copy of it.
 #[inline(never)]
-fn argument(
-    name: &'static str,
-    value: &'static str,
-    help: String,
-    repeats: bool,
-    parser: ValueParser,
-) -> Arg {
+fn argument(name: &'static str, value: &'static str, help: String, parser: ValueParser) -> Arg {
     Arg::new(name)
         .long(name)
         .value_name(value)
         .help(help)
-        .action(if repeats { ArgAction::Append } else { ArgAction::Set })
+        .action(ArgAction::Set)
         // A value may be negative. A text that looks like an option is then refused as a value.
         .allow_hyphen_values(true)
         .value_parser(parser)
@@ -184,14 +171,14 @@ where
 }
 
 /// An option whose value is the name of a file.
-pub(super) struct FileOption {
-    pub(super) name: &'static str,
-    pub(super) help: &'static str,
+pub(crate) struct FileOption {
+    pub(crate) name: &'static str,
+    pub(crate) help: &'static str,
 }
 
 impl FileOption {
     /// The given file.
-    pub(super) fn of(&self, matches: &mut ArgMatches) -> Option<PathBuf> {
+    pub(crate) fn of(&self, matches: &mut ArgMatches) -> Option<PathBuf> {
         matches.remove_one(self.name)
     }
 }
@@ -225,14 +212,14 @@ impl OptionSpec for FileOption {
 }
 
 /// An option without a value.
-pub(super) struct Flag {
-    pub(super) name: &'static str,
-    pub(super) help: &'static str,
+pub(crate) struct Flag {
+    pub(crate) name: &'static str,
+    pub(crate) help: &'static str,
 }
 
 impl Flag {
     /// Whether it was given.
-    pub(super) fn of(&self, matches: &ArgMatches) -> bool {
+    pub(crate) fn of(&self, matches: &ArgMatches) -> bool {
         matches.get_flag(self.name)
     }
 }

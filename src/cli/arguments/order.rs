@@ -9,7 +9,7 @@ use super::{SUBCOMMANDS, Subcommand, named};
 
 /// The same words with the subcommand directly after the program's own name; and the subcommand, if
 /// one is named.
-pub(super) fn subcommand_first(
+pub(crate) fn subcommand_first(
     mut words: Vec<OsString>,
 ) -> (Vec<OsString>, Option<&'static Subcommand>) {
     let Some((index, subcommand)) = find(&words) else { return (words, None) };
@@ -60,7 +60,7 @@ mod tests {
             ("c --fov 9 snapshot m", "snapshot: c snapshot --fov 9 m"),
             ("c --fov=9 --explain snapshot", "snapshot: c snapshot --fov=9 --explain"),
             ("c -h check", "check: c check -h"),
-            ("c --script wire wire", "wire: c wire --script wire"),
+            ("c --record cast cast", "cast: c cast --record cast"),
             ("c --fov snapshot", "none: c --fov snapshot"),
             ("c m snapshot", "none: c m snapshot"),
             ("c - snapshot", "none: c - snapshot"),

@@ -10,7 +10,6 @@ use super::option::{FileOption, Flag, Parser, ValueOption};
 use super::value::{self, FramesPerSecond};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphSet};
@@ -19,36 +18,35 @@ use crate::world::{Difficulty, FieldOfView};
 /// Options of `play`; `None` where the configuration or the terminal decides.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
-pub(in crate::cli) struct Play {
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Play {
+    pub(crate) map: Option<OsString>,
     /// The generated level instead of a map.
-    pub(in crate::cli) generated: Option<Generated>,
-    pub(in crate::cli) config: Option<PathBuf>,
-    pub(in crate::cli) frames_per_second: Option<FramesPerSecond>,
-    pub(in crate::cli) field_of_view: Option<FieldOfView>,
-    pub(in crate::cli) cell_aspect: Option<CellAspect>,
-    pub(in crate::cli) glyphs: Option<GlyphSet>,
-    pub(in crate::cli) depth: Option<ColorDepth>,
-    pub(in crate::cli) method: Option<Method>,
-    pub(in crate::cli) filter: Option<Filter>,
-    pub(in crate::cli) fidelity: Option<FidelityChoice>,
+    pub(crate) generated: Option<Generated>,
+    pub(crate) config: Option<PathBuf>,
+    pub(crate) frames_per_second: Option<FramesPerSecond>,
+    pub(crate) field_of_view: Option<FieldOfView>,
+    pub(crate) cell_aspect: Option<CellAspect>,
+    pub(crate) glyphs: Option<GlyphSet>,
+    pub(crate) depth: Option<ColorDepth>,
+    pub(crate) filter: Option<Filter>,
+    pub(crate) fidelity: Option<FidelityChoice>,
     /// The difficulty; the one chosen before if `None`.
-    pub(in crate::cli) difficulty: Option<Difficulty>,
+    pub(crate) difficulty: Option<Difficulty>,
     /// Whether to play the daily run, or an endless game.
-    pub(in crate::cli) is_daily: bool,
-    pub(in crate::cli) is_endless: bool,
-    pub(in crate::cli) shows_stats: bool,
+    pub(crate) is_daily: bool,
+    pub(crate) is_endless: bool,
+    pub(crate) shows_stats: bool,
     /// The file of the recording.
-    pub(in crate::cli) record: Option<PathBuf>,
+    pub(crate) record: Option<PathBuf>,
     /// Whether the recording may replace a file.
-    pub(in crate::cli) overwrites: bool,
+    pub(crate) overwrites: bool,
     /// Whether to reload the map when it changes.
-    pub(in crate::cli) watches: bool,
+    pub(crate) watches: bool,
 }
 
 /// The choice of fidelity.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) enum FidelityChoice {
+pub(crate) enum FidelityChoice {
     /// As the link allows.
     Auto,
     Fixed(Fidelity),
@@ -56,7 +54,7 @@ pub(in crate::cli) enum FidelityChoice {
 
 impl FidelityChoice {
     /// The fixed fidelity; `None` if the link decides.
-    pub(in crate::cli) fn fixed(self) -> Option<Fidelity> {
+    pub(crate) fn fixed(self) -> Option<Fidelity> {
         match self {
             Self::Auto => None,
             Self::Fixed(fidelity) => Some(fidelity),
@@ -64,7 +62,7 @@ impl FidelityChoice {
     }
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "play",
     about: "Play; without MAP, from the title screen",
     details: "Plays in the terminal. \"?\" shows the keys, and Ctrl-C leaves. What you have reached is kept \
@@ -117,7 +115,6 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
         cell_aspect: CELL_ASPECT.of(&mut matches),
         glyphs: value::GLYPHS.of(&mut matches),
         depth: COLORS.of(&mut matches),
-        method: value::CASTER.of(&mut matches),
         filter: value::FILTER.of(&mut matches),
         fidelity: FIDELITY.of(&mut matches),
         difficulty: DIFFICULTY.of(&mut matches),
@@ -130,7 +127,7 @@ fn read(mut matches: ArgMatches) -> Result<Play, Error> {
     })
 }
 
-pub(super) const CONFIG: FileOption = FileOption {
+pub(crate) const CONFIG: FileOption = FileOption {
     name: "config",
     help: "The settings [default: cellcaster/config.toml in the folder for configuration files]",
 };
@@ -156,7 +153,6 @@ const FIDELITY: ValueOption<FidelityChoice> = ValueOption {
             .map(FidelityChoice::Fixed)
             .map_err(|error: UnknownFidelity| format!("--fidelity: {error}, or auto")),
     }),
-    repeats: false,
 };
 
 const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
@@ -167,7 +163,6 @@ const DIFFICULTY: ValueOption<Difficulty> = ValueOption {
     default: "as chosen in the game, or normal",
     choices: &["easy", "normal", "hard"],
     read: Parser::Optional(Difficulty::named),
-    repeats: false,
 };
 
 const DAILY: Flag = Flag {

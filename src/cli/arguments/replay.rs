@@ -15,23 +15,23 @@ use crate::world::FieldOfView;
 
 /// Options of `replay`.
 #[derive(Debug)]
-pub(in crate::cli) struct Replay {
-    pub(in crate::cli) script: PathBuf,
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Replay {
+    pub(crate) script: PathBuf,
+    pub(crate) map: Option<OsString>,
     /// The generated level instead of a map.
-    pub(in crate::cli) generated: Option<Generated>,
+    pub(crate) generated: Option<Generated>,
     /// Whether to say what the script achieves instead of recording it.
-    pub(in crate::cli) verifies: bool,
+    pub(crate) verifies: bool,
     /// The file of the recording; standard output if `None`.
-    pub(in crate::cli) cast: Option<PathBuf>,
-    pub(in crate::cli) size: Size,
-    pub(in crate::cli) frames_per_second: FramesPerSecond,
-    pub(in crate::cli) field_of_view: FieldOfView,
-    pub(in crate::cli) depth: ColorDepth,
-    pub(in crate::cli) fidelity: Fidelity,
+    pub(crate) cast: Option<PathBuf>,
+    pub(crate) size: Size,
+    pub(crate) frames_per_second: FramesPerSecond,
+    pub(crate) field_of_view: FieldOfView,
+    pub(crate) depth: ColorDepth,
+    pub(crate) fidelity: Fidelity,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "replay",
     about: "Play a script off screen, and write it as asciicast, or check what it achieves",
     details: "A script is lines such as \"2.5 s forward run\" or \"12 steps turn-left open\"; \"stand\" \

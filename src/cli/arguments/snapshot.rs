@@ -10,41 +10,39 @@ use super::option::{Flag, Parser, ValueOption};
 use super::value::{self, Size};
 use super::{Command, Error, Subcommand, map};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::Method;
 use crate::render::Filter;
 use crate::tui::{CellAspect, GlyphSet};
 use crate::world::{FieldOfView, Heading, Pitch};
 
 /// Options of `snapshot`.
 #[derive(Debug)]
-pub(in crate::cli) struct Snapshot {
-    pub(in crate::cli) map: Option<OsString>,
+pub(crate) struct Snapshot {
+    pub(crate) map: Option<OsString>,
     /// The generated level instead of a map.
-    pub(in crate::cli) generated: Option<Generated>,
+    pub(crate) generated: Option<Generated>,
     /// The size of the picture. If `None`, 80x24; with `--watch`, the size of the window.
-    pub(in crate::cli) size: Option<Size>,
+    pub(crate) size: Option<Size>,
     /// The position and heading; the map's start if `None`.
-    pub(in crate::cli) camera: Option<(DVec2, Heading)>,
+    pub(crate) camera: Option<(DVec2, Heading)>,
     /// The height of the eye; that of a player who stands there if `None`.
-    pub(in crate::cli) eye: Option<f64>,
+    pub(crate) eye: Option<f64>,
     /// The pitch. If `None`, level, or in a map of bodies that of the start.
-    pub(in crate::cli) pitch: Option<Pitch>,
-    pub(in crate::cli) field_of_view: FieldOfView,
-    pub(in crate::cli) cell_aspect: CellAspect,
-    pub(in crate::cli) glyphs: GlyphSet,
-    pub(in crate::cli) depth: ColorDepth,
-    pub(in crate::cli) format: Format,
-    pub(in crate::cli) method: Method,
-    pub(in crate::cli) filter: Filter,
+    pub(crate) pitch: Option<Pitch>,
+    pub(crate) field_of_view: FieldOfView,
+    pub(crate) cell_aspect: CellAspect,
+    pub(crate) glyphs: GlyphSet,
+    pub(crate) depth: ColorDepth,
+    pub(crate) format: Format,
+    pub(crate) filter: Filter,
     /// Whether to write the frame's counts instead of the frame.
-    pub(in crate::cli) explain: bool,
+    pub(crate) explain: bool,
     /// Whether to draw again when the map changes.
-    pub(in crate::cli) watches: bool,
+    pub(crate) watches: bool,
 }
 
 /// The format of a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::cli) enum Format {
+pub(crate) enum Format {
     #[default]
     Text,
     Ansi,
@@ -52,7 +50,7 @@ pub(in crate::cli) enum Format {
     Png,
 }
 
-pub(super) const SUBCOMMAND: Subcommand = Subcommand {
+pub(crate) const SUBCOMMAND: Subcommand = Subcommand {
     name: "snapshot",
     about: "One frame to standard output",
     details: "Draws what the game would show, without a terminal, the same bytes on every machine. Of a \
@@ -101,7 +99,6 @@ fn read(mut matches: ArgMatches) -> Result<Command, Error> {
         glyphs: value::GLYPHS.of(&mut matches).unwrap_or_default(),
         depth: value::COLORS.of(&mut matches).unwrap_or_default(),
         format: FORMAT.of(&mut matches).unwrap_or_default(),
-        method: value::CASTER.of(&mut matches).unwrap_or_default(),
         filter: value::FILTER.of(&mut matches).unwrap_or_default(),
         explain: EXPLAIN.of(&matches),
         watches: value::WATCH.of(&matches),
@@ -121,7 +118,6 @@ const CAMERA: ValueOption<(DVec2, Heading)> = ValueOption {
         let heading = Heading::from_degrees(numbers.next()??)?;
         (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
     }),
-    repeats: false,
 };
 
 const EYE: ValueOption<f64> = ValueOption {
@@ -132,7 +128,6 @@ const EYE: ValueOption<f64> = ValueOption {
     default: "0.5",
     choices: &[],
     read: Parser::Optional(|text| text.parse().ok().filter(|eye: &f64| eye.is_finite())),
-    repeats: false,
 };
 
 const PITCH: ValueOption<Pitch> = ValueOption {
@@ -143,7 +138,6 @@ const PITCH: ValueOption<Pitch> = ValueOption {
     default: "0",
     choices: &[],
     read: Parser::Optional(|text| Pitch::from_degrees(text.parse().ok()?)),
-    repeats: false,
 };
 
 const FORMAT: ValueOption<Format> = ValueOption {
@@ -161,7 +155,6 @@ const FORMAT: ValueOption<Format> = ValueOption {
         "png" => Some(Format::Png),
         _ => None,
     }),
-    repeats: false,
 };
 
 const EXPLAIN: Flag =

@@ -4,7 +4,6 @@ use std::num::NonZeroU32;
 
 use super::option::{Flag, Parser, ValueOption};
 use crate::color::palette::ColorDepth;
-use crate::lab::casters::{Method, ParseMethodError};
 use crate::render::Filter;
 use crate::terminal::{Fidelity, UnknownFidelity};
 use crate::tui::{CellAspect, GlyphSet};
@@ -12,10 +11,10 @@ use crate::world::FieldOfView;
 
 /// The largest number of frames per second, from 1 to 240.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct FramesPerSecond(NonZeroU32);
+pub(crate) struct FramesPerSecond(NonZeroU32);
 
 impl FramesPerSecond {
-    pub(in crate::cli) fn get(self) -> NonZeroU32 {
+    pub(crate) fn get(self) -> NonZeroU32 {
         self.0
     }
 }
@@ -28,13 +27,13 @@ impl Default for FramesPerSecond {
 
 /// Columns and rows of a picture, each from 1 to 4096.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::cli) struct Size {
-    pub(in crate::cli) columns: u16,
-    pub(in crate::cli) rows: u16,
+pub(crate) struct Size {
+    pub(crate) columns: u16,
+    pub(crate) rows: u16,
 }
 
 impl Size {
-    pub(in crate::cli) fn cells(self) -> ratatui::layout::Size {
+    pub(crate) fn cells(self) -> ratatui::layout::Size {
         ratatui::layout::Size::new(self.columns, self.rows)
     }
 
@@ -53,7 +52,7 @@ impl Default for Size {
     }
 }
 
-pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
+pub(crate) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
     name: "fps",
     value: "N",
     takes: "a whole number from 1 to 240",
@@ -64,10 +63,9 @@ pub(super) const FRAMES_PER_SECOND: ValueOption<FramesPerSecond> = ValueOption {
         let frames = text.parse::<NonZeroU32>().ok().filter(|frames| frames.get() <= 240);
         frames.map(FramesPerSecond)
     }),
-    repeats: false,
 };
 
-pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
+pub(crate) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     name: "fov",
     value: "DEG",
     takes: "degrees above 0 and below 180",
@@ -75,10 +73,9 @@ pub(super) const FIELD_OF_VIEW: ValueOption<FieldOfView> = ValueOption {
     default: "66",
     choices: &[],
     read: Parser::Optional(|text| FieldOfView::from_degrees(text.parse().ok()?)),
-    repeats: false,
 };
 
-pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
+pub(crate) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     name: "cell-aspect",
     value: "RATIO",
     takes: "the height of a cell over its width, from 0.1 to 10",
@@ -86,10 +83,9 @@ pub(super) const CELL_ASPECT: ValueOption<CellAspect> = ValueOption {
     default: "2",
     choices: &[],
     read: Parser::Optional(|text| CellAspect::new(text.parse().ok()?)),
-    repeats: false,
 };
 
-pub(super) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
+pub(crate) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
     name: "glyphs",
     value: "SET",
     takes: "half, quadrant, sextant, octant, ascii or ramp",
@@ -106,10 +102,9 @@ pub(super) const GLYPHS: ValueOption<GlyphSet> = ValueOption {
         "ramp" => Some(GlyphSet::Ramp),
         _ => None,
     }),
-    repeats: false,
 };
 
-pub(super) const FILTER: ValueOption<Filter> = ValueOption {
+pub(crate) const FILTER: ValueOption<Filter> = ValueOption {
     name: "filter",
     value: "FILTER",
     takes: "mip, nearest or area",
@@ -118,10 +113,9 @@ pub(super) const FILTER: ValueOption<Filter> = ValueOption {
     default: "mip",
     choices: &["mip", "nearest", "area"],
     read: Parser::Optional(|text| Filter::ALL.into_iter().find(|filter| filter.name() == text)),
-    repeats: false,
 };
 
-pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
+pub(crate) const COLORS: ValueOption<ColorDepth> = ValueOption {
     name: "colors",
     value: "DEPTH",
     takes: "true, 256, 16 or mono",
@@ -135,10 +129,9 @@ pub(super) const COLORS: ValueOption<ColorDepth> = ValueOption {
         "mono" => Some(ColorDepth::Mono),
         _ => None,
     }),
-    repeats: false,
 };
 
-pub(super) const SIZE: ValueOption<Size> = ValueOption {
+pub(crate) const SIZE: ValueOption<Size> = ValueOption {
     name: "size",
     value: "COLSxROWS",
     takes: "COLSxROWS from 1x1 to 4096x4096, such as 80x24",
@@ -146,12 +139,11 @@ pub(super) const SIZE: ValueOption<Size> = ValueOption {
     default: "80x24",
     choices: &[],
     read: Parser::Optional(size),
-    repeats: false,
 };
 
 /// As [`SIZE`], but for a window: it is drawn for each frame of a game, and several buffers of it are
 /// in memory. The limit is that of a window of 800×250 cells.
-pub(super) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
+pub(crate) const WINDOW_SIZE: ValueOption<Size> = ValueOption {
     takes: "COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40",
     help: "The size of the window in cells, with sides up to 1000 and up to 200000 cells",
     read: Parser::Optional(|text| size(text).filter(|size| size.is_window())),
@@ -164,20 +156,19 @@ fn size(text: &str) -> Option<Size> {
     Some(Size { columns: side(columns)?, rows: side(rows)? })
 }
 
-pub(super) const CASTER: ValueOption<Method> = ValueOption {
+/// Other methods than the exact one are those of `cellcaster-lab`, which [`super::parse`] runs for them.
+pub(crate) const CASTER: ValueOption<()> = ValueOption {
     name: "caster",
     value: "METHOD",
     takes: "the name of a method",
-    help: "How walls are found: exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP",
+    help: "How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, \
+           table:ANGLES or march:STEP",
     default: "exact",
     choices: &[],
-    read: Parser::Fallible(|text| {
-        text.parse().map_err(|error: ParseMethodError| format!("--caster {text}: {error}"))
-    }),
-    repeats: false,
+    read: Parser::Optional(|text| (text == "exact").then_some(())),
 };
 
-pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
+pub(crate) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     name: "fidelity",
     value: "LEVEL",
     takes: "exact, high, low or a number up to 255",
@@ -188,10 +179,9 @@ pub(super) const FIDELITY: ValueOption<Fidelity> = ValueOption {
     read: Parser::Fallible(|text| {
         text.parse().map_err(|error: UnknownFidelity| format!("--fidelity: {error}"))
     }),
-    repeats: false,
 };
 
-pub(super) const WATCH: Flag = Flag {
+pub(crate) const WATCH: Flag = Flag {
     name: "watch",
     help: "Load the map anew whenever its file, or a PNG that it uses, changes",
 };

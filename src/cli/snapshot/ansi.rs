@@ -8,13 +8,13 @@ use crate::terminal::{Bytes, Style};
 
 /// Writes cells as text with the escape sequences of their colours. Every line ends in the
 /// terminal's default colours, so that pagers and scrolling can cut between lines.
-pub(super) struct Ansi<W> {
+pub(crate) struct Ansi<W> {
     output: W,
     line: Bytes,
 }
 
 impl<W: Write> Ansi<W> {
-    pub(super) fn new(output: W) -> Self {
+    pub(crate) fn new(output: W) -> Self {
         Self { output, line: Bytes::default() }
     }
 }

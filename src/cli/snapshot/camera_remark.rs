@@ -6,7 +6,7 @@
 use crate::world::{Camera, Cell, TileKind, World};
 
 /// A sentence about a `camera` that is off the map or inside a solid cell; `None` elsewhere.
-pub(super) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
+pub(crate) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
     let (grid, position) = (world.grid(), camera.position());
     let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
         && (0.0..f64::from(grid.height())).contains(&position.y);
@@ -14,8 +14,8 @@ pub(super) fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
         let (columns, rows) = (grid.width(), grid.height());
         return Some(format!("the camera is off the map, which has {columns}×{rows} cells"));
     }
-    let cell = Cell { column: position.x as u32, row: position.y as u32 };
-    let tile = world.tile(grid.tile(cell.column.into(), cell.row.into())?);
+    let cell = Cell::at(position);
+    let tile = world.tile_in(cell)?;
     let (eye, floor, ceiling) = (camera.eye(), tile.heights.floor(), tile.heights.ceiling());
     if tile.gaps().any(|gap| gap.holds(eye)) {
         return None;

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::rgb;
 
 /// Writes cells as JSON, one line for each row.
-pub(super) struct Json<W> {
+pub(crate) struct Json<W> {
     output: W,
     is_first: bool,
 }
@@ -22,7 +22,7 @@ struct JsonCell<'a> {
 }
 
 impl<W: Write> Json<W> {
-    pub(super) fn new(mut output: W, size: Size) -> io::Result<Self> {
+    pub(crate) fn new(mut output: W, size: Size) -> io::Result<Self> {
         write!(output, "{{\"cols\":{},\"rows\":{},\"cells\":[", size.width, size.height)?;
         Ok(Self { output, is_first: true })
     }

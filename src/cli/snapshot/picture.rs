@@ -8,14 +8,14 @@ use crate::render::Renderable;
 use crate::tui::{FirstPerson, View};
 
 /// A picture that is drawn once, and converted to cells band by band.
-pub(super) struct Picture<'a, S: Renderable> {
+pub(crate) struct Picture<'a, S: Renderable> {
     widget: FirstPerson<'a, S>,
     view: View<S>,
 }
 
 impl<'a, S: Renderable> Picture<'a, S> {
     /// The view of `camera` into `scene`, to be drawn into `view`.
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'a S,
         camera: &'a S::Camera,
         view: View<S>,
@@ -30,18 +30,18 @@ impl<'a, S: Renderable> Picture<'a, S> {
     }
 
     /// Draws the picture for an area of this size.
-    pub(super) fn draw(&mut self, size: Size) {
+    pub(crate) fn draw(&mut self, size: Size) {
         self.widget.draw(size, &mut self.view);
     }
 
     /// Draws the picture, and returns its counts in lines for people.
-    pub(super) fn explain(&mut self, size: Size) -> String {
+    pub(crate) fn explain(&mut self, size: Size) -> String {
         let explanation = self.widget.explain(size, &mut self.view);
         explanation.map(|explanation| explanation.to_string()).unwrap_or_default()
     }
 
     /// Fills `area` with the cells of the rows from `first_row` on.
-    pub(super) fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
+    pub(crate) fn paint(&self, first_row: u16, area: Rect, buffer: &mut Buffer) {
         self.widget.paint(&self.view, first_row, area, buffer);
     }
 }

@@ -8,9 +8,9 @@ use ratatui::buffer::Cell;
 use ratatui::layout::Size;
 
 use super::rgb;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
 use crate::tui::CellAspect;
+use crate::tui::canvas::Mosaic;
 
 /// The width and height of a glyph in pixels, before it is scaled to the cell.
 const GLYPH_SIDE: u32 = 8;
@@ -21,7 +21,7 @@ const FOREGROUND: Rgb = Rgb::WHITE;
 const BACKGROUND: Rgb = Rgb::BLACK;
 
 /// Writes cells as pixels.
-pub(super) struct Png<W: Write + 'static> {
+pub(crate) struct Png<W: Write + 'static> {
     stream: StreamWriter<'static, W>,
     cell_width: u32,
     cell_height: u32,
@@ -29,7 +29,7 @@ pub(super) struct Png<W: Write + 'static> {
 }
 
 impl<W: Write + 'static> Png<W> {
-    pub(super) fn new(output: W, size: Size, aspect: CellAspect) -> io::Result<Self> {
+    pub(crate) fn new(output: W, size: Size, aspect: CellAspect) -> io::Result<Self> {
         let (cell_width, cell_height) = cell_size(size, aspect);
         let width = u32::from(size.width) * cell_width;
         let height = u32::from(size.height) * cell_height;

@@ -5,12 +5,12 @@ use std::io::{self, Write};
 use ratatui::buffer::Cell;
 
 /// Writes the characters of cells.
-pub(super) struct Text<W> {
+pub(crate) struct Text<W> {
     output: W,
 }
 
 impl<W: Write> Text<W> {
-    pub(super) fn new(output: W) -> Self {
+    pub(crate) fn new(output: W) -> Self {
         Self { output }
     }
 }

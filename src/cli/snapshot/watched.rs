@@ -15,24 +15,27 @@ use crate::cli::arguments::{self, Format, Snapshot};
 use crate::cli::{Error, level};
 use crate::fault::{Faults, printable, printable_lines};
 use crate::map::Level;
+use crate::render::DynCaster;
 
 /// The interval between checks for changes.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Draws the frame, and draws it again after each change, until the program is ended.
-pub(super) fn run(mut options: Snapshot) -> Result<(), Error> {
+pub(crate) fn run(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let (mut level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
     let output = Output::of(&options);
-    output.show(&level, &mut options)?;
+    output.show(&level, &mut options, caster)?;
     loop {
         thread::sleep(INTERVAL);
         match watch.change() {
             Some(Ok(changed)) => {
                 level = changed;
-                output.show(&level, &mut options)?;
+                output.show(&level, &mut options, caster)?;
             }
             Some(Err(faults)) => output.report(faults)?,
-            None if output.has_another_size(&options) => output.show(&level, &mut options)?,
+            None if output.has_another_size(&options) => {
+                output.show(&level, &mut options, caster)?;
+            }
             None => {}
         }
     }
@@ -53,14 +56,14 @@ impl Output {
         Self { is_terminal, fits_window: is_terminal && options.size.is_none() }
     }
 
-    fn show(&self, level: &Level, options: &mut Snapshot) -> Result<(), Error> {
+    fn show(&self, level: &Level, options: &mut Snapshot, caster: &DynCaster) -> Result<(), Error> {
         if self.fits_window {
             options.size = window();
         }
         if self.is_terminal {
             write("\x1b[2J\x1b[H")?;
         }
-        draw(level, options)
+        draw(level, options, caster)
     }
 
     fn has_another_size(&self, options: &Snapshot) -> bool {

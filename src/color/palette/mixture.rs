@@ -18,18 +18,17 @@
 //! cube root of light, and so of lightness. Rejected: the upper six bits of sRGB, whose lowest levels
 //! are as far apart as black and the darkest grey.
 
-use std::array;
-use std::iter;
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::{array, iter};
 
 use super::{CUBE, ColorDepth, ShadeInk, of_256};
 use crate::color::Rgb;
 use crate::color::oklab::Oklab;
 use crate::color::srgb::linear;
 
-/// What a cell shows.
+/// The look of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Look {
     /// Each part in its own palette colour.
@@ -291,7 +290,7 @@ impl Mixtures {
     }
 }
 
-/// What a cell should look like.
+/// The look that a cell should have.
 struct Wanted {
     parts: [Place; 2],
     /// The place of the mean light.

@@ -1,62 +1,107 @@
-//! What a guard's step depends on beside the guard.
+//! What a guard's step reads and writes.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::act::{Act, Cloud, Target};
-use super::mover::Ground;
-use super::terrain::{Gait, Terrain};
+use super::movement::Ground;
 use super::trail::Trail;
-use super::ways::Ways;
+use super::ways::{Gait, Terrain, Ways};
 use crate::game::rules::Rules;
+use crate::game::sight::Cloud;
 use crate::game::sound::{Sound, SoundKind, Source};
 use crate::world::{Cell, World};
 
-pub(super) struct Context<'a> {
-    pub(super) world: &'a World,
-    pub(super) terrain: &'a Terrain,
-    pub(super) ways: &'a mut Ways,
-    pub(super) targets: &'a [Target],
-    pub(super) clouds: &'a [Cloud],
-    pub(super) trails: &'a [Trail],
+pub(crate) struct Context<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) ways: &'a mut Ways,
+    pub(crate) targets: &'a [Target],
+    pub(crate) clouds: &'a [Cloud],
+    pub(crate) trails: &'a [Trail],
     /// All guards, as they were at the end of the last step.
-    pub(super) others: &'a [Other],
-    pub(super) rules: Rules,
+    pub(crate) others: &'a [Other],
+    pub(crate) rules: Rules,
     /// The number of the step.
-    pub(super) now: u64,
+    pub(crate) now: u64,
     /// The index of the guard.
-    pub(super) index: usize,
+    pub(crate) index: usize,
     /// The number of steps that are taken at once.
-    pub(super) stride: u16,
-    pub(super) acts: &'a mut Vec<Act>,
+    pub(crate) stride: u16,
+    pub(crate) acts: &'a mut Vec<Act>,
     /// The indices of guards who are woken.
-    pub(super) woken: &'a mut Vec<usize>,
+    pub(crate) woken: &'a mut Vec<usize>,
 }
 
-/// What guards know of each other.
+/// A guard as other guards know them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Other {
-    pub(super) position: DVec2,
-    pub(super) feet: f64,
-    pub(super) is_down: bool,
+pub(crate) struct Other {
+    pub(crate) position: DVec2,
+    pub(crate) feet: f64,
+    pub(crate) is_down: bool,
+}
+
+/// A player as guards can perceive them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Target {
+    /// The position, in cells.
+    pub(crate) position: DVec2,
+    /// The height of the feet, in cells.
+    pub(crate) feet: f64,
+    /// The height of the top of the head, in cells.
+    pub(crate) head: f64,
+    /// How well the player is lit: from 0 for not at all to 255.
+    pub(crate) visibility: u8,
+    /// Whether the player carries a lit lamp, which is seen from afar.
+    pub(crate) has_light: bool,
+    /// Whether the player is alive. Guards let the dead be.
+    pub(crate) is_alive: bool,
+}
+
+impl Target {
+    /// The cell of the middle.
+    pub(crate) fn cell(&self) -> Cell {
+        Cell::at(self.position)
+    }
+
+    /// The height of the middle of the body.
+    pub(crate) fn middle(&self) -> f64 {
+        f64::midpoint(self.feet, self.head)
+    }
+}
+
+/// An effect of a guard on the rest of the game.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Act {
+    /// Hits the player with index `target`; the blow comes from `from`.
+    Hurt { target: usize, by: usize, from: DVec2, points: u8 },
+    /// Opens the door in a cell. A guard who waits before a door does so in every step.
+    Open(Cell),
+    /// Makes a sound.
+    Sound(Sound),
+    /// Shoots a bolt from a position and a height along `direction`, a unit vector; it rises by
+    /// `slope` for each cell, and hits for `points`.
+    Bolt { by: usize, from: DVec2, height: f64, direction: DVec2, slope: f64, points: u8 },
+    /// Begins to follow a player while nobody did: one more alarm.
+    Raised,
 }
 
 impl Context<'_> {
-    pub(super) fn target(&self, index: usize) -> Option<&Target> {
+    pub(crate) fn target(&self, index: usize) -> Option<&Target> {
         self.targets.get(index).filter(|target| target.is_alive)
     }
 
-    pub(super) fn ground(&self, gait: Gait) -> Ground<'_> {
+    pub(crate) fn ground(&self, gait: Gait) -> Ground<'_> {
         Ground { world: self.world, terrain: self.terrain, gait }
     }
 
     /// Makes a sound.
-    pub(super) fn sound(&mut self, kind: SoundKind, cell: Cell, reach: u8) {
+    pub(crate) fn sound(&mut self, kind: SoundKind, cell: Cell, reach: u8) {
         let by = Source::Guard(self.index);
         self.acts.push(Act::Sound(Sound { kind, cell, reach, by }));
     }
 
     /// The number of guards who are not down.
-    pub(super) fn count_up(&self) -> usize {
+    pub(crate) fn count_up(&self) -> usize {
         self.others.iter().filter(|other| !other.is_down).count()
     }
 }

@@ -1,79 +1,219 @@
-//! A guard: the state, and the order of what happens in a step.
+//! A guard: the state, what others see of it, and how it changes.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::context::{Context, Other};
+use super::context::{Context, Other, Target};
 use super::kind::{Abilities, abilities};
-use super::mover::Mover;
-use super::route::Route;
-use super::state::{Phase, Quarry, State};
-use super::terrain::Gait;
-use super::view::GuardView;
-use crate::game::sound::SoundKind;
-use crate::game::stored::stored;
+use super::movement::Mover;
+use super::ways::Gait;
+use crate::game::sight::{Point, is_in_sight};
+use crate::game::sound::{Sound, SoundKind};
+use crate::game::stored::{OfLevel, Unrestorable, check, check_on_map};
+use crate::generate::Shift;
 use crate::rng::{SplitMix64, hash};
-use crate::world::{Cell, Duty, GuardKind, GuardPost, Heading, World};
+use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading, World};
 
 /// The awareness from which a guard wonders, and from which they are alarmed.
-pub(super) const WONDERS: u16 = 300;
-pub(super) const ALARMED: u16 = 1000;
+pub(crate) const WONDERS: u16 = 300;
+pub(crate) const ALARMED: u16 = 1000;
+
+/// For so many steps, a guard still knows where a player who left their sight has gone.
+pub(crate) const GUESSES: u16 = 45;
+/// The steps for which a guard stands and shouts before they run.
+const FRIGHT: u16 = 24;
+/// The same for a lantern-bearer, who rings a bell.
+const RINGING: u16 = 60;
+/// The steps for which a guard looks towards a noise before they go there.
+const LOOKS: u16 = 45;
+/// The angle of a glance to the side, in radians.
+const GLANCE: f64 = 0.9;
 
 /// The length of a pace: each one is a frame and a sound, in cells.
-const PACE: f64 = 0.55;
+pub(crate) const PACE: f64 = 0.55;
 /// The steps for which a guard staggers who is pushed.
 const STAGGER: u16 = 30;
+/// A guard who has not moved for so many steps is stuck.
+pub(crate) const STUCK: u16 = 40;
 /// The speed of a guard who is pushed, in cells per second.
 const PUSH: f64 = 4.0;
+/// More steps than any guard is baffled.
+const MOST_BAFFLED: u16 = 1000;
+/// The number of paces after which they are counted from 0 again.
+pub(crate) const MOST_PACES: f64 = 1024.0;
 
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Guard {
-    pub(super) kind: GuardKind,
-    pub(super) post: Cell,
-    pub(super) post_heading: Heading,
-    pub(super) duty: Duty,
-    pub(super) mover: Mover,
-    pub(super) state: State,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Guard {
+    pub(crate) kind: GuardKind,
+    #[serde(skip)]
+    pub(crate) post: Cell,
+    #[serde(skip)]
+    pub(crate) post_heading: Heading,
+    #[serde(skip)]
+    pub(crate) duty: Duty,
+    pub(crate) mover: Mover,
+    pub(crate) state: State,
     /// From 0 to [`ALARMED`].
-    pub(super) awareness: u16,
-    pub(super) quarry: Option<Quarry>,
+    pub(crate) awareness: u16,
+    pub(crate) quarry: Option<Quarry>,
     /// Whether they have been alarmed before, in a game where guards remember it.
-    pub(super) is_wary: bool,
+    pub(crate) is_wary: bool,
     /// The place in the round of a patrol.
-    pub(super) stop: usize,
+    pub(crate) stop: usize,
     /// Where a guard who wanders goes.
-    pub(super) errand: Option<Cell>,
+    pub(crate) errand: Option<Cell>,
     /// The steps for which they stand still on duty, or look around.
-    pub(super) pause: u16,
+    pub(crate) pause: u16,
     /// The side to which they look, while they look around.
-    pub(super) glance: f64,
+    pub(crate) glance: f64,
     /// The steps until they may strike again, until they stand firmly, and until they may be
     /// alarmed by sight again.
-    pub(super) rest: u16,
-    pub(super) stagger: u16,
-    pub(super) blind: u16,
-    /// The steps for which they have not reached a player whom they follow.
-    pub(super) baffled: u16,
+    pub(crate) rest: u16,
+    pub(crate) stagger: u16,
+    pub(crate) blind: u16,
+    /// The steps for which they have followed a player in vain.
+    pub(crate) baffled: u16,
     /// Whether a floor under them has moved.
-    pub(super) is_unsettled: bool,
-    pub(super) route: Route,
+    pub(crate) is_unsettled: bool,
+    pub(crate) route: Route,
     /// The velocity and the look that they want in this step.
-    pub(super) wanted: DVec2,
-    pub(super) look: Option<DVec2>,
+    pub(crate) wanted: DVec2,
+    pub(crate) look: Option<DVec2>,
     /// The distance walked, in paces.
-    paces: f64,
-    pub(super) random: SplitMix64,
+    pub(crate) paces: f64,
+    pub(crate) random: SplitMix64,
 }
 
-stored! {
-    part of Guard {
-        mover, state, awareness, quarry, is_wary, stop, errand, pause, glance, rest, stagger, blind,
-        baffled, is_unsettled, route, wanted, look, paces, random,
-    }
-    level { kind, post, post_heading, duty }
+/// What a guard is doing. Times are in steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum State {
+    Asleep,
+    OnDuty,
+    /// Looks towards a place for some time, and then goes there if it `goes`.
+    Wondering {
+        about: DVec2,
+        looks: u16,
+        goes: bool,
+        hurries: bool,
+        wakes: Option<usize>,
+    },
+    /// Visits cells around a place.
+    Searching {
+        around: Cell,
+        next: Option<Cell>,
+        left: u16,
+    },
+    /// Follows the trail of a player, up to now to the mark with that number.
+    Tracking {
+        target: usize,
+        mark: u64,
+        lost: u16,
+    },
+    /// Follows a player, after the time of the fright.
+    Chasing {
+        fright: u16,
+    },
+    Attacking {
+        phase: Phase,
+        left: u16,
+    },
+    Down {
+        left: u16,
+    },
+    Returning,
+}
+
+/// The parts of a blow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Phase {
+    /// The warning.
+    Windup,
+    /// The blow; whether it has hit.
+    Strike { has_hit: bool },
+    /// The rest after it.
+    Recovery,
+}
+
+/// A guard's knowledge of the player they look for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Quarry {
+    /// The index of the player.
+    pub(crate) target: usize,
+    /// Where the player was last perceived.
+    pub(crate) position: DVec2,
+    /// The steps since then.
+    pub(crate) unseen: u16,
+}
+
+/// The way of a guard.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Route {
+    pub(crate) goal: Option<Cell>,
+    /// The point to which they walk at present.
+    pub(crate) point: Option<DVec2>,
+    /// The cell in which the point was found.
+    pub(crate) from: Option<Cell>,
+    /// The steps for which it is still used.
+    pub(crate) fresh: u16,
+    /// The steps for which the guard has not moved, and for which they will walk with care.
+    pub(crate) still: u16,
+    pub(crate) care: u16,
+}
+
+/// What a guard is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Mood {
+    /// Sleeps.
+    Asleep,
+    /// Stands, patrols or wanders.
+    OnDuty,
+    /// Has noticed something, and goes to see.
+    Wondering,
+    /// Looks for the player in the cells around.
+    Searching,
+    /// Follows the player.
+    Chasing,
+    /// Strikes or shoots.
+    Attacking,
+    /// Lies on the floor.
+    Down,
+    /// Goes back to duty.
+    Returning,
+}
+
+/// How much the guards of a level know.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
+pub enum Alarm {
+    /// Nobody has noticed anything.
+    #[default]
+    Calm,
+    /// Somebody wonders or searches.
+    Wary,
+    /// Somebody follows the player.
+    Raised,
+}
+
+/// A guard as a map or a test sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuardView {
+    /// The kind of guard.
+    pub kind: GuardKind,
+    /// The position, in cells.
+    pub position: DVec2,
+    /// The height of the feet, in cells.
+    pub feet: f64,
+    /// The direction in which the guard looks.
+    pub heading: Heading,
+    /// What the guard is doing.
+    pub mood: Mood,
+    /// Whether the guard lies on the floor.
+    pub is_down: bool,
 }
 
 impl Guard {
-    pub(super) fn new(world: &World, post: &GuardPost, index: usize, seed: u64) -> Self {
+    pub(crate) fn new(world: &World, post: &GuardPost, index: usize, seed: u64) -> Self {
         let is_asleep = post.duty == Duty::Sleep;
         Self {
             kind: post.kind,
@@ -102,89 +242,21 @@ impl Guard {
         }
     }
 
-    /// Advances the guard by the steps of `context`.
-    pub(super) fn step(&mut self, context: &mut Context) {
-        let steps = context.stride;
-        self.rest = self.rest.saturating_sub(steps);
-        self.blind = self.blind.saturating_sub(steps);
-        (self.wanted, self.look) = (DVec2::ZERO, None);
-        if self.stagger > 0 {
-            self.stagger = self.stagger.saturating_sub(steps);
-        } else {
-            if !matches!(self.state, State::Asleep | State::Down { .. }) {
-                self.perceive(context);
-            }
-            self.think(context);
-        }
-        self.move_body(context);
-    }
-
-    fn think(&mut self, context: &mut Context) {
-        match self.state {
-            State::Asleep => {}
-            State::OnDuty => self.do_duty(context),
-            State::Returning => self.return_to_duty(context),
-            State::Wondering { .. } => self.wonder(context),
-            State::Searching { around, next, left } => self.search(context, around, next, left),
-            State::Tracking { target, mark, lost } => self.track(context, target, mark, lost),
-            State::Chasing { fright } => self.chase(context, fright),
-            State::Attacking { phase, left } => self.attack(context, phase, left),
-            State::Down { left } => self.lie(left.saturating_sub(context.stride)),
-        }
-    }
-
-    fn lie(&mut self, left: u16) {
-        self.state = State::Down { left };
-        if left == 0 {
-            self.get_up();
-        }
-    }
-
-    /// Turns and walks as they want to.
-    fn move_body(&mut self, context: &mut Context) {
-        let steps = context.stride;
-        let is_alarmed = self.state.is_alarmed();
-        let wanted = if self.stagger > 0 { self.mover.body.velocity } else { self.wanted };
-        let is_walking = wanted.length_squared() > 0.01;
-        let look = self.look.or(is_walking.then_some(wanted)).filter(|_| self.stagger == 0);
-        if let Some(look) = look {
-            let degrees = if is_alarmed { 6.0 } else { 4.0 };
-            self.mover.turn(look, degrees * f64::from(steps));
-        }
-        let before = self.mover.position();
-        let wanted = self.slowed_by_turning(wanted);
-        self.mover.walk(&context.ground(self.gait()), wanted, steps);
-        let paces = self.paces + before.distance(self.mover.position()) / PACE;
-        if paces.floor() > self.paces.floor() && self.stagger == 0 {
-            context.sound(SoundKind::Walking, self.mover.cell(), self.abilities().tread);
-        }
-        self.paces = paces % 1024.0;
-    }
-
-    /// A guard who looks elsewhere than they walk turns first.
-    fn slowed_by_turning(&self, wanted: DVec2) -> DVec2 {
-        if self.look.is_some() || self.stagger > 0 || wanted == DVec2::ZERO {
-            return wanted;
-        }
-        let along = self.mover.facing.dot(wanted) / wanted.length();
-        wanted * ((along + 0.25) / 1.0).clamp(0.0, 1.0)
-    }
-
     /// Lays the guard on the floor.
-    pub(super) fn stun(&mut self, steps: u16) {
+    pub(crate) fn stun(&mut self, steps: u16) {
         self.state = State::Down { left: steps.max(1) };
         self.mover.body.velocity = DVec2::ZERO;
         (self.awareness, self.quarry, self.stagger) = (0, None, 0);
     }
 
     /// Lets a guard who lies stand up and look around.
-    pub(super) fn get_up(&mut self) {
+    pub(crate) fn get_up(&mut self) {
         self.state = State::Searching { around: self.mover.cell(), next: None, left: 600 };
         self.pause = 60;
     }
 
     /// Pushes the guard along `direction`, a unit vector.
-    pub(super) fn push(&mut self, direction: DVec2) {
+    pub(crate) fn push(&mut self, direction: DVec2) {
         if self.state.is_down() {
             return;
         }
@@ -201,20 +273,100 @@ impl Guard {
         }
     }
 
-    pub(super) fn abilities(&self) -> &'static Abilities {
+    /// Says so, and looks towards a place; then goes there, if it is worth it.
+    pub(crate) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
+        let looks = if self.state == State::Asleep { LOOKS * 2 } else { LOOKS };
+        self.state = State::Wondering { about, looks, goes, hurries: false, wakes: None };
+        context.sound(SoundKind::Wonder, self.mover.cell(), 7);
+    }
+
+    pub(crate) fn begin_to_search(&mut self, around: Cell, left: u16) {
+        self.state = State::Searching { around, next: None, left };
+        self.pause_a_while(50, 70);
+    }
+
+    /// Goes back to duty, and says so.
+    pub(crate) fn give_up(&mut self, context: &mut Context) {
+        context.sound(SoundKind::GiveUp, self.mover.cell(), 7);
+        self.state = State::Returning;
+        (self.awareness, self.quarry, self.errand) = (0, None, None);
+    }
+
+    /// Calls the others, and begins to chase.
+    pub(crate) fn raise_alarm(&mut self, context: &mut Context) {
+        let (kind, reach) = match self.kind {
+            GuardKind::Lantern => (SoundKind::Bell, Sound::FARTHEST),
+            GuardKind::Hound => (SoundKind::Bark, 10),
+            _ => (SoundKind::Shout, 12),
+        };
+        context.sound(kind, self.mover.cell(), reach);
+        self.awareness = ALARMED;
+        self.baffled = 0;
+        self.is_wary |= context.rules.difficulty == Difficulty::Hard;
+        let is_ringing = self.kind == GuardKind::Lantern;
+        self.state = State::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
+    }
+
+    /// Stands still for a time between two numbers of steps, and looks to another side.
+    pub(crate) fn pause_a_while(&mut self, least: u16, most: u16) {
+        self.pause = self.random.whole(i32::from(least), i32::from(most)) as u16;
+        self.glance = match self.random.below(3) {
+            0 => -GLANCE,
+            1 => GLANCE,
+            _ => 0.0,
+        };
+    }
+
+    pub(crate) fn abilities(&self) -> &'static Abilities {
         abilities(self.kind)
     }
 
-    pub(super) fn gait(&self) -> Gait {
+    pub(crate) fn gait(&self) -> Gait {
         Gait { opens_doors: self.abilities().opens_doors, height: self.kind.height() }
     }
 
     /// The height of the top of the head.
-    pub(super) fn head(&self) -> f64 {
+    pub(crate) fn head(&self) -> f64 {
         self.mover.feet + self.kind.height()
     }
 
-    pub(super) fn view(&self) -> GuardView {
+    /// The middle of the body.
+    pub(crate) fn middle(&self) -> Point {
+        let height = self.mover.feet + self.kind.height() / 2.0;
+        Point { position: self.mover.position(), height }
+    }
+
+    /// Whether this guard sees the middle of a player, in whatever direction and light.
+    pub(crate) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
+        self.sees(context, target.position, target.middle())
+    }
+
+    /// Whether nothing hides a point from this guard, in whatever direction and light.
+    pub(crate) fn sees(&self, context: &Context, position: DVec2, height: f64) -> bool {
+        is_in_sight(context.world, context.clouds, self.eye(), Point { position, height })
+    }
+
+    /// Whether this guard is awake and could see `point`, however dark it is there, once they look that way.
+    pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
+        let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
+        let is_awake = !self.state.is_down() && self.state != State::Asleep;
+        let eye = self.eye();
+        is_awake
+            && eye.position.distance(point.position) <= range
+            && is_in_sight(world, &[], eye, point)
+    }
+
+    pub(crate) fn eye(&self) -> Point {
+        let height = self.mover.feet + self.abilities().eye;
+        Point { position: self.mover.position(), height }
+    }
+
+    /// Whether the guard does nothing until somebody wakes them.
+    pub(crate) fn is_asleep(&self) -> bool {
+        self.state == State::Asleep && self.stagger == 0
+    }
+
+    pub(crate) fn view(&self) -> GuardView {
         GuardView {
             kind: self.kind,
             position: self.mover.position(),
@@ -225,13 +377,13 @@ impl Guard {
         }
     }
 
-    pub(super) fn as_other(&self) -> Other {
+    pub(crate) fn as_other(&self) -> Other {
         let is_down = self.state.is_down();
         Other { position: self.mover.position(), feet: self.mover.feet, is_down }
     }
 
     /// The frame of the sprite.
-    pub(super) fn frame(&self) -> u8 {
+    pub(crate) fn frame(&self) -> u8 {
         let is_walking = self.mover.body.velocity.length_squared() > 0.04;
         match self.state {
             State::Down { .. } => 6,
@@ -245,20 +397,106 @@ impl Guard {
         }
     }
 
-    /// Whether the distance walked, in paces, is at least 0 and below `most`.
-    pub(super) fn has_paces_below(&self, most: f64) -> bool {
-        (0.0..most).contains(&self.paces)
+    /// Refuses a state in which a step of `count` guards could fail.
+    pub(crate) fn check(&self, world: &World, count: usize) -> Result<(), Unrestorable> {
+        check_on_map(world, self.mover.position())?;
+        if let Some(quarry) = self.quarry {
+            check_on_map(world, quarry.position)?;
+        }
+        let stops = match &self.duty {
+            Duty::Patrol(stops) => stops.len(),
+            Duty::Stand | Duty::Sleep | Duty::Wander(_) => 1,
+        };
+        let wakes_nobody_else = match self.state {
+            State::Wondering { wakes, .. } => wakes.is_none_or(|index| index < count),
+            _ => true,
+        };
+        check(wakes_nobody_else, "whom a guard wakes")?;
+        let counts = self.awareness <= ALARMED
+            && self.stop < stops.max(1)
+            && self.baffled <= MOST_BAFFLED
+            && self.route.still <= STUCK
+            && (0.0..MOST_PACES).contains(&self.paces)
+            && self.state != (State::Down { left: 0 });
+        check(counts, "a count of a guard")
     }
 
-    /// Numbers that together are the state.
-    pub(super) fn words(&self) -> impl Iterator<Item = u64> + use<> {
-        let Mover { body, feet, heading, .. } = self.mover;
-        let reals = [body.position.x, body.position.y, body.velocity.x, body.velocity.y, feet];
-        let reals = reals.into_iter().chain([heading.degrees(), self.paces]);
-        let counts = [self.rest, self.stagger, self.blind, self.baffled, self.pause];
-        let counts = counts.map(u64::from);
-        let mood = self.state.mood() as u64;
-        let own = [mood, u64::from(self.awareness), self.stop as u64];
-        reals.map(f64::to_bits).chain(counts).chain(own).chain([self.random.clone().bits()])
+    /// Moves the guard with the window; `false` if they are outside it now. Places outside it
+    /// become the cell of the guard.
+    pub(crate) fn shift(&mut self, shift: Shift) -> bool {
+        let Some(here) = shift.cell(self.mover.cell()) else { return false };
+        let cell = |cell: Cell| shift.cell(cell).unwrap_or(here);
+        let place = |place: DVec2| shift.position(place);
+        self.mover.body.position = place(self.mover.position());
+        self.post = cell(self.post);
+        if let Duty::Patrol(stops) = &mut self.duty {
+            for stop in stops {
+                *stop = cell(*stop);
+            }
+        }
+        self.errand = self.errand.map(cell);
+        if let Some(quarry) = &mut self.quarry {
+            quarry.position = place(quarry.position);
+        }
+        match &mut self.state {
+            State::Wondering { about, wakes, .. } => (*about, *wakes) = (place(*about), None),
+            State::Searching { around, next, .. } => {
+                (*around, *next) = (cell(*around), next.map(cell));
+            }
+            State::Tracking { .. } => self.begin_to_search(here, 360),
+            State::Asleep
+            | State::OnDuty
+            | State::Chasing { .. }
+            | State::Attacking { .. }
+            | State::Down { .. }
+            | State::Returning => {}
+        }
+        self.route = Route::default();
+        true
+    }
+}
+
+impl OfLevel for Guard {
+    fn of_level(self, start: Self) -> Result<Self, Unrestorable> {
+        let Self { kind, post, post_heading, duty, .. } = start;
+        if self.kind != kind {
+            return Err(Unrestorable::OtherLevel);
+        }
+        Ok(Self { post, post_heading, duty, mover: self.mover.facing_ahead(), ..self })
+    }
+}
+
+impl State {
+    pub(crate) fn mood(self) -> Mood {
+        match self {
+            Self::Asleep => Mood::Asleep,
+            Self::OnDuty => Mood::OnDuty,
+            Self::Wondering { .. } => Mood::Wondering,
+            Self::Searching { .. } | Self::Tracking { .. } => Mood::Searching,
+            Self::Chasing { .. } => Mood::Chasing,
+            Self::Attacking { .. } => Mood::Attacking,
+            Self::Down { .. } => Mood::Down,
+            Self::Returning => Mood::Returning,
+        }
+    }
+
+    pub(crate) fn is_down(self) -> bool {
+        matches!(self, Self::Down { .. })
+    }
+
+    /// Whether the guard follows or strikes a player.
+    pub(crate) fn is_alarmed(self) -> bool {
+        matches!(self, Self::Chasing { .. } | Self::Attacking { .. })
+    }
+}
+
+impl Mood {
+    /// The alarm of a level in which a guard has this mood, and all others are on duty.
+    pub(crate) const fn alarm(self) -> Alarm {
+        match self {
+            Self::Asleep | Self::OnDuty | Self::Down | Self::Returning => Alarm::Calm,
+            Self::Wondering | Self::Searching => Alarm::Wary,
+            Self::Chasing | Self::Attacking => Alarm::Raised,
+        }
     }
 }

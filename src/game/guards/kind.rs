@@ -4,42 +4,42 @@ use crate::world::GuardKind;
 
 /// The abilities of a kind of guard. Speeds are in cells per second, times in steps.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Abilities {
+pub(crate) struct Abilities {
     /// The speed on duty.
-    pub(super) walk: f64,
+    pub(crate) walk: f64,
     /// The speed of following a player.
-    pub(super) chase: f64,
+    pub(crate) chase: f64,
     /// The height of the eye above the feet, in cells.
-    pub(super) eye: f64,
+    pub(crate) eye: f64,
     /// How far they see in full light, in cells; `None` for the blind.
-    pub(super) sight: Option<Sight>,
+    pub(crate) sight: Option<Sight>,
     /// How much farther sounds reach them, in halves.
-    pub(super) hearing: u16,
+    pub(crate) hearing: u16,
     /// Whether they open doors without a key.
-    pub(super) opens_doors: bool,
+    pub(crate) opens_doors: bool,
     /// The duration of the warning before a blow or a shot.
-    pub(super) windup: u16,
+    pub(crate) windup: u16,
     /// The duration of the rest after it.
-    pub(super) recovery: u16,
+    pub(crate) recovery: u16,
     /// The health that it takes.
-    pub(super) points: u8,
+    pub(crate) points: u8,
     /// How far the middle of a player may be to be hit, in cells.
-    pub(super) reach: f64,
+    pub(crate) reach: f64,
     /// The speed during the warning.
-    pub(super) windup_speed: f64,
+    pub(crate) windup_speed: f64,
     /// The speed during the blow.
-    pub(super) lunge: f64,
+    pub(crate) lunge: f64,
     /// How far the steps of the guard are heard, in cells.
-    pub(super) tread: u8,
+    pub(crate) tread: u8,
 }
 
 /// How well a guard sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
+pub(crate) struct Sight {
     /// In full light, in cells.
-    pub(super) range: f64,
+    pub(crate) range: f64,
     /// The cosine of half the angle of the cone.
-    pub(super) least_cosine: f64,
+    pub(crate) least_cosine: f64,
 }
 
 const WARDEN: Abilities = Abilities {
@@ -127,7 +127,7 @@ const ARCHER: Abilities = Abilities {
 };
 
 /// The abilities of `kind`.
-pub(super) const fn abilities(kind: GuardKind) -> &'static Abilities {
+pub(crate) const fn abilities(kind: GuardKind) -> &'static Abilities {
     match kind {
         GuardKind::Warden => &WARDEN,
         GuardKind::Listener => &LISTENER,

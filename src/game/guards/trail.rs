@@ -2,8 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::Target;
-use crate::game::stored::{Unrestorable, check, stored};
+use serde::{Deserialize, Serialize};
+
+use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, TileEffect, World};
 
 /// The steps for which a cell smells: 20 seconds.
@@ -12,28 +13,23 @@ const LASTS: u64 = 1200;
 const MOST: usize = 128;
 
 /// The cells in which a player has been, the oldest first. Water keeps no smell.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Trail {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Trail {
     marks: VecDeque<Mark>,
     /// The number of the oldest mark: marks are counted from the first of the game.
     first: u64,
 }
 
-stored! { struct Trail { marks, first } }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Mark {
     cell: Cell,
     left_at: u64,
 }
 
-stored! { struct Mark { cell, left_at } }
-
 impl Trail {
     /// Records where a player is in the step `now`.
-    pub(super) fn record(&mut self, world: &World, target: &Target, now: u64) {
+    pub(crate) fn record(&mut self, world: &World, cell: Cell, now: u64) {
         self.fade(now);
-        let cell = target.cell();
         match self.marks.back_mut() {
             Some(mark) if mark.cell == cell => mark.left_at = now,
             _ if world.effect_in(cell) == Some(TileEffect::Water) => {}
@@ -42,7 +38,7 @@ impl Trail {
     }
 
     /// Records that a player has stayed in their cell from the step `before` to the step `now`.
-    pub(super) fn wait(&mut self, before: u64, now: u64) {
+    pub(crate) fn wait(&mut self, before: u64, now: u64) {
         if let Some(mark) = self.marks.back_mut().filter(|mark| mark.left_at == before) {
             mark.left_at = now;
         }
@@ -59,30 +55,30 @@ impl Trail {
     }
 
     /// The newest mark whose cell `smells`, with its number.
-    pub(super) fn newest(&self, smells: impl Fn(Cell) -> bool) -> Option<u64> {
+    pub(crate) fn newest(&self, smells: impl Fn(Cell) -> bool) -> Option<u64> {
         let place = self.marks.iter().rposition(|mark| smells(mark.cell))?;
         Some(self.first + place as u64)
     }
 
     /// The cell of the mark with that number.
-    pub(super) fn cell(&self, number: u64) -> Option<Cell> {
+    pub(crate) fn cell(&self, number: u64) -> Option<Cell> {
         let place = usize::try_from(number.checked_sub(self.first)?).ok()?;
         self.marks.get(place).map(|mark| mark.cell)
     }
 
     /// The number of the oldest mark that there still is.
-    pub(super) fn first(&self) -> u64 {
+    pub(crate) fn first(&self) -> u64 {
         self.first
     }
 
     /// Refuses more marks than are remembered, and marks after the step `now`.
-    pub(super) fn check(&self, now: u64) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
         check(are_past && self.marks.len() <= MOST, "a trail")
     }
 
     /// Forgets the cells, as when the whole map has changed.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.first += self.marks.len() as u64;
         self.marks.clear();
     }

@@ -1,21 +1,279 @@
-//! Ways: for each goal, the distance of the cells around it, which all guards share who go there.
+//! Where guards walk, and the shortest ways there.
 //!
-//! A search begins at the goal and ends when it has found those who ask. Guards who follow the same
+//! A guard walks on the lowest floor of a cell, and on top of low walls. They climb steps of
+//! [`STEP_HEIGHT`], step down by [`DROP`] at most, and never jump. They avoid water, spikes and
+//! floors that crumble; a guard who is in one of these, because they were pushed or because the
+//! floor has moved, may leave it.
+//!
+//! For each goal, all guards who go there share the distances of the cells around it.
+//! A search begins at the goal and ends when it has found the guards who ask. Guards who follow the same
 //! player have the same goal, so that twenty of them cost hardly more than one. All searches
 //! together find at most [`MOST_CELLS`] cells in a step and go on in the next; a guard without a
-//! way yet walks on where they went before. A search for each guard (A*) was refused: it finds
-//! fewer cells for one guard, and all of them again for the next.
+//! way yet walks on where they went before. Rejected: a search for each guard
+//! (A*), which finds fewer cells for one guard, and all of them again for the next.
 //!
-//! Doors and moving floors change ways. A step that is not possible any more begins the search
-//! anew, and so does a search that has become old.
+//! Doors and moving floors change ways. A search begins again when a step of it has become
+//! impossible, and when it is old.
 
-use super::terrain::{Backwards, Gait, Terrain, cost_between};
-use crate::game::flood::{Flood, neighbor};
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check};
-use crate::world::{Cell, World};
+use serde::{Deserialize, Serialize};
+
+use crate::game::distances::{Costs, DIAGONAL, Distances, STRAIGHT, neighbor};
+use crate::game::player::STEP_HEIGHT;
+use crate::game::stored::{Unrestorable, at_most, check};
+use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, TileKind, World};
+
+/// The highest step down, in cells.
+pub(crate) const DROP: f64 = 1.0;
+/// Going through a closed door takes as long as walking so much farther, in half cells.
+const DOOR: u16 = 6;
+
+/// The facts about tiles and things that guards need.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(crate) struct Terrain {
+    /// For each tile of the world.
+    footings: Vec<Footing>,
+    /// One bit for each cell, row by row: whether a thing blocks it or is dangerous there. Empty if
+    /// there is no such thing.
+    things: Vec<u64>,
+    size: (u32, u32),
+}
+
+/// The floor of a tile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Footing {
+    pub(crate) floor: f64,
+    ceiling: f64,
+    kind: FootingKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FootingKind {
+    Free,
+    /// A closed door that guards open.
+    Door,
+    /// Dangerous.
+    Hazard,
+    Blocked,
+}
+
+/// The way in which a kind of guard walks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Gait {
+    pub(crate) opens_doors: bool,
+    pub(crate) height: f64,
+}
+
+impl Terrain {
+    pub(crate) fn new(world: &World) -> Self {
+        let crumbles = |id: TileId| {
+            let by_weight = world.moving_tiles().iter().filter(|it| it.driver == Driver::Weight);
+            by_weight.flat_map(|it| &it.states).any(|&state| state == id)
+        };
+        let tiles = world.tiles().iter().zip(0..);
+        let footings = tiles.map(|(tile, id)| Footing::new(tile, crumbles(TileId(id)))).collect();
+        let mut terrain = Self { footings, things: Vec::new(), size: (0, 0) };
+        terrain.look_at_things(world);
+        terrain
+    }
+
+    /// Finds the things that are in the way.
+    pub(crate) fn look_at_things(&mut self, world: &World) {
+        self.size = (world.grid().width(), world.grid().height());
+        self.things.clear();
+        let is_in_the_way =
+            |kind: ThingKind, blocks| blocks || matches!(kind, ThingKind::Spikes(_));
+        for thing in world.things() {
+            if is_in_the_way(thing.kind, world.sprite(thing.sprite).blocks) {
+                let place = self.place(thing.cell);
+                if self.things.is_empty() {
+                    self.things
+                        .resize((self.size.0 as usize * self.size.1 as usize).div_ceil(64), 0);
+                }
+                self.things[place / 64] |= 1 << (place % 64);
+            }
+        }
+    }
+
+    pub(crate) fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// The floor of `cell`; `None` outside the map and where nobody walks.
+    pub(crate) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
+        let footing = self.footing_of(tile(world, cell)?);
+        (footing.kind != FootingKind::Blocked).then_some(footing)
+    }
+
+    /// Whether guards avoid `cell`, where they could stand.
+    pub(crate) fn is_hazard(&self, world: &World, cell: Cell) -> bool {
+        let is_hazard = |footing: Footing| footing.kind == FootingKind::Hazard;
+        self.footing(world, cell).is_some_and(is_hazard) || self.has_thing(cell)
+    }
+
+    /// Whether a guard walks from `from` to its neighbour `to`.
+    pub(crate) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
+        let to = self.destination(world, gait, to);
+        to.is_some_and(|to| self.leads_to(world, gait, &to, from))
+    }
+
+    /// `cell` as a destination; `None` for a cell that guards do not enter.
+    #[inline]
+    fn destination(&self, world: &World, gait: Gait, cell: Cell) -> Option<Destination> {
+        let tile = tile(world, cell)?;
+        let footing = self.footing_of(tile);
+        let is_door = footing.kind == FootingKind::Door;
+        let cost = if is_door { STRAIGHT + DOOR } else { STRAIGHT };
+        let is_entered = self.is_entered(gait, &footing, cell);
+        is_entered.then_some(Destination { cell, tile, footing, cost })
+    }
+
+    /// Whether a guard walks to `to` from its neighbour `from`.
+    #[inline]
+    fn leads_to(&self, world: &World, gait: Gait, to: &Destination, from: Cell) -> bool {
+        // A tile leads to itself wherever it can be entered.
+        tile(world, from).is_some_and(|start| {
+            start == to.tile || to.footing.is_reached_from(&self.footing_of(start), gait)
+        })
+    }
+
+    #[inline]
+    fn footing_of(&self, TileId(tile): TileId) -> Footing {
+        self.footings[usize::from(tile)]
+    }
+
+    /// Whether guards choose to go to `cell`.
+    pub(crate) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
+        self.way_through(world, gait, cell).is_some()
+    }
+
+    /// The floor of `cell`, if guards choose to go there.
+    pub(crate) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
+        let footing = self.footing(world, cell)?;
+        self.is_entered(gait, &footing, cell).then_some(footing)
+    }
+
+    #[inline]
+    fn is_entered(&self, gait: Gait, footing: &Footing, cell: Cell) -> bool {
+        let is_open = match footing.kind {
+            FootingKind::Free => true,
+            FootingKind::Door => gait.opens_doors,
+            FootingKind::Hazard | FootingKind::Blocked => false,
+        };
+        is_open && footing.ceiling - footing.floor >= gait.height && !self.has_thing(cell)
+    }
+
+    fn has_thing(&self, cell: Cell) -> bool {
+        if self.things.is_empty() {
+            return false;
+        }
+        let place = self.place(cell);
+        self.things.get(place / 64).is_some_and(|bits| bits >> (place % 64) & 1 != 0)
+    }
+
+    fn place(&self, cell: Cell) -> usize {
+        cell.row as usize * self.size.0 as usize + cell.column as usize
+    }
+}
+
+impl Footing {
+    fn new(tile: &Tile, crumbles: bool) -> Self {
+        let floor = tile.heights.floor();
+        let gap = tile.gaps().find(|gap| gap.bottom == floor);
+        let is_dangerous = crumbles || tile.effect == Some(TileEffect::Water);
+        let kind = match tile.kind {
+            _ if gap.is_none() => FootingKind::Blocked,
+            TileKind::Door(door) if door.key.is_none() && door.switch.is_none() => {
+                FootingKind::Door
+            }
+            TileKind::Door(_) | TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Shape(_) => {
+                FootingKind::Blocked
+            }
+            _ if is_dangerous => FootingKind::Hazard,
+            _ => FootingKind::Free,
+        };
+        let is_covered = matches!(tile.ceiling, Ceiling::Covered(_));
+        let ceiling = gap.filter(|_| is_covered).map_or(f64::INFINITY, |gap| gap.top);
+        Self { floor, ceiling, kind }
+    }
+
+    /// Whether the step from `start` up or down to this floor can be walked.
+    fn is_reached_from(&self, start: &Self, gait: Gait) -> bool {
+        if start.kind == FootingKind::Blocked {
+            return false;
+        }
+        let climb = self.floor - start.floor;
+        let headroom = self.ceiling.min(start.ceiling) - self.floor.max(start.floor);
+        (-DROP..=STEP_HEIGHT).contains(&climb) && headroom >= gait.height
+    }
+
+    /// Whether nothing at all has to be considered between this floor and another one.
+    pub(crate) fn is_level_with(self, other: Self) -> bool {
+        self.floor == other.floor
+            && self.kind == FootingKind::Free
+            && other.kind == FootingKind::Free
+    }
+}
+
+/// The costs of a search from a goal back to the guards who walk there.
+pub(crate) struct Backwards<'a> {
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) world: &'a World,
+    pub(crate) gait: Gait,
+}
+
+/// A cell that guards walk to from its neighbours.
+pub(crate) struct Destination {
+    cell: Cell,
+    tile: TileId,
+    footing: Footing,
+    /// The cost of a straight step to it.
+    cost: u16,
+}
+
+impl Costs for Backwards<'_> {
+    /// `None` for a cell that guards do not enter.
+    type Origin = Option<Destination>;
+
+    fn origin(&self, cell: Cell) -> Option<Destination> {
+        self.terrain.destination(self.world, self.gait, cell)
+    }
+
+    #[inline]
+    fn straight(&self, from: &Option<Destination>, to: Cell) -> Option<u16> {
+        let from = from.as_ref()?;
+        self.terrain.leads_to(self.world, self.gait, from, to).then_some(from.cost)
+    }
+
+    /// Past two cells at the same height.
+    fn has_diagonal(&self, from: &Option<Destination>, to: Cell, beside: [bool; 2]) -> bool {
+        let Some(from) = from.as_ref().filter(|_| beside == [true, true]) else { return false };
+        let corners = [
+            to,
+            Cell { column: from.cell.column, row: to.row },
+            Cell { column: to.column, row: from.cell.row },
+        ];
+        let Self { terrain, world, gait } = *self;
+        let is_level = |cell| {
+            let tile = tile(world, cell);
+            tile.is_some_and(|tile| from.footing.is_level_with(terrain.footing_of(tile)))
+        };
+        corners.into_iter().all(|cell| is_level(cell) && !terrain.has_thing(cell))
+            && terrain.leads_to(world, gait, from, to)
+    }
+}
+
+#[inline]
+fn tile(world: &World, cell: Cell) -> Option<TileId> {
+    world.grid().tile_in(cell)
+}
+
+/// The cost of the step between two neighbours, in half cells.
+fn cost_between(one: Cell, other: Cell) -> u16 {
+    if one.column == other.column || one.row == other.row { STRAIGHT } else { DIAGONAL }
+}
 
 /// The number of cells that all searches together find in one step.
-pub(super) const MOST_CELLS: usize = 200;
+pub(crate) const MOST_CELLS: usize = 200;
 /// The number of goals at a time.
 const MOST_FIELDS: usize = 12;
 /// The steps after which a search begins anew: that of a goal that could be reached, and that of
@@ -24,60 +282,27 @@ const OLD: u64 = 1200;
 const OLD_IN_VAIN: u64 = 150;
 
 /// The distances from some goals.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(super) struct Ways {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Ways {
+    #[serde(deserialize_with = "at_most::<MOST_FIELDS, _, _>")]
     fields: Vec<Field>,
     /// The number of the present step.
     now: u64,
     cells_left: usize,
 }
 
-impl Stored for Ways {
-    fn write(&self, out: &mut Writer) {
-        let Self { fields, now, cells_left } = self;
-        now.write(out);
-        cells_left.write(out);
-        fields.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let (now, cells_left) = (Stored::read(input)?, Stored::read(input)?);
-        let fields: Vec<Field> = input.list(MOST_FIELDS)?;
-        check(fields.iter().all(|it| it.begun <= now && it.used <= now), "the time of a search")?;
-        Ok(Self { fields, now, cells_left })
-    }
-}
-
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Field {
     goal: Cell,
     gait: Gait,
-    flood: Flood,
+    distances: Distances,
     begun: u64,
     used: u64,
 }
 
-impl Stored for Field {
-    fn write(&self, out: &mut Writer) {
-        let Self { goal, gait, flood, begun, used } = self;
-        goal.write(out);
-        gait.write(out);
-        begun.write(out);
-        used.write(out);
-        flood.write(out);
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let goal = Stored::read(input)?;
-        let (gait, begun, used) =
-            (Stored::read(input)?, Stored::read(input)?, Stored::read(input)?);
-        Ok(Self { goal, gait, begun, used, flood: Flood::read(goal, input)? })
-    }
-}
-
 /// The answer to the question for a way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     /// The neighbouring cell to go to.
     Next(Cell),
     /// This is the goal.
@@ -89,14 +314,22 @@ pub(super) enum Way {
 }
 
 impl Ways {
+    /// Refuses searches from the future, and such that do not fit a map with that many columns and rows.
+    pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), Unrestorable> {
+        let is_possible = |it: &Field| {
+            it.begun <= self.now && it.used <= self.now && it.distances.is_around(it.goal, map)
+        };
+        check(self.fields.iter().all(is_possible), "a search")
+    }
+
     /// Begins a step of the game.
-    pub(super) fn begin_step(&mut self) {
+    pub(crate) fn begin_step(&mut self) {
         self.now += 1;
         self.cells_left = MOST_CELLS;
     }
 
     /// Advances the clock by `steps` in which nobody asks for a way.
-    pub(super) fn wait(&mut self, steps: u64) {
+    pub(crate) fn wait(&mut self, steps: u64) {
         self.now += steps;
         if steps > 0 {
             self.cells_left = MOST_CELLS;
@@ -104,12 +337,12 @@ impl Ways {
     }
 
     /// Forgets all ways, as when the whole map has changed.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.fields.clear();
     }
 
     /// The next cell on the shortest way from `from` to `goal`.
-    pub(super) fn towards(
+    pub(crate) fn towards(
         &mut self,
         world: &World,
         terrain: &Terrain,
@@ -124,15 +357,15 @@ impl Ways {
         let (now, field) = (self.now, &mut self.fields[index]);
         field.used = now;
         let costs = Backwards { terrain, world, gait };
-        while field.flood.distance(from).is_none() && !field.flood.is_over() {
+        while field.distances.distance(from).is_none() && !field.distances.is_over() {
             if self.cells_left == 0 {
                 return Way::Unknown;
             }
             self.cells_left -= 1;
-            field.flood.advance(&costs);
+            field.distances.advance(&costs);
         }
         let age = now - field.begun;
-        let Some(distance) = field.flood.distance(from) else {
+        let Some(distance) = field.distances.distance(from) else {
             if age > OLD_IN_VAIN {
                 field.begin(terrain, now);
             }
@@ -146,7 +379,7 @@ impl Ways {
     }
 
     /// The cell after `from` on a way that has been found already.
-    pub(super) fn after(
+    pub(crate) fn after(
         &self,
         world: &World,
         terrain: &Terrain,
@@ -156,7 +389,7 @@ impl Ways {
     ) -> Option<Cell> {
         let field = self.fields.iter().find(|it| it.goal == goal && it.gait == gait)?;
         let costs = Backwards { terrain, world, gait };
-        field.next(&costs, from, field.flood.distance(from)?)
+        field.next(&costs, from, field.distances.distance(from)?)
     }
 
     /// The index of the field of a goal, which may be a new one; `None` if all are in use.
@@ -167,7 +400,7 @@ impl Ways {
         }
         let (begun, used) = (self.now, self.now);
         if self.fields.len() < MOST_FIELDS {
-            self.fields.push(Field { goal, gait, flood: Flood::default(), begun, used });
+            self.fields.push(Field { goal, gait, distances: Distances::default(), begun, used });
         } else {
             let oldest = self.fields.iter_mut().min_by_key(|field| field.used)?;
             if oldest.used + 1 >= self.now {
@@ -183,7 +416,7 @@ impl Ways {
 
 impl Field {
     fn begin(&mut self, terrain: &Terrain, now: u64) {
-        self.flood.begin(self.goal, terrain.size());
+        self.distances.begin(self.goal, terrain.size());
         (self.begun, self.used) = (now, now);
     }
 
@@ -191,7 +424,7 @@ impl Field {
     fn next(&self, costs: &Backwards, from: Cell, distance: u16) -> Option<Cell> {
         let neighbors = (0..8).filter_map(|side| neighbor(from, side));
         let nearer = neighbors.filter_map(|cell| {
-            let there = self.flood.distance(cell).filter(|&there| there < distance)?;
+            let there = self.distances.distance(cell).filter(|&there| there < distance)?;
             Some((there.saturating_add(cost_between(from, cell)), cell))
         });
         let possible = nearer.filter(|&(_, cell)| costs.leads(from, cell));
@@ -202,7 +435,6 @@ impl Field {
 impl Backwards<'_> {
     /// Whether the step from `from` to its neighbour `to` is possible now.
     fn leads(&self, from: Cell, to: Cell) -> bool {
-        use crate::game::flood::Costs;
         let straight = |from, to| self.straight(&self.origin(to), from).is_some();
         if from.column == to.column || from.row == to.row {
             return straight(from, to);

@@ -2,8 +2,8 @@
 //! author has meant it.
 
 use crate::game::Game;
-use crate::game::guards::Point;
 use crate::game::player::{Motion, RADIUS, STEP_HEIGHT};
+use crate::game::sight::Point;
 use crate::world::{Cell, Heading, ThingKind, World};
 
 /// The cells that are considered, from the nearest on.
@@ -24,7 +24,7 @@ enum Demand {
 impl Game {
     /// A player who stands still in the cell nearest to `start` where there is room. Nobody stands in anybody, and
     /// only if no cell is free, players share the start. `None` if they may not do that, or if nobody fits there.
-    pub(super) fn free_place(&self, start: Cell) -> Option<Motion> {
+    pub(crate) fn free_place(&self, start: Cell) -> Option<Motion> {
         let demands = [Demand::Safe, Demand::Level, Demand::Reachable];
         let free = demands.into_iter().find_map(|demand| self.nearest_place(start, demand));
         let collides = self.multiplayer_rules().is_some_and(|rules| rules.collides);
@@ -100,7 +100,7 @@ impl Game {
     }
 
     /// Lets the player whose turn it is go on from their last checkpoint, if there is room.
-    pub(super) fn respawn(&mut self) {
+    pub(crate) fn respawn(&mut self) {
         let checkpoint = self.last_checkpoint();
         let Some(motion) = self.free_place(checkpoint.unwrap_or(self.world.start().cell)) else {
             return;
@@ -128,11 +128,7 @@ fn neighbors(cell: Cell, heading: Heading) -> impl Iterator<Item = Cell> {
         [0.0, facing.y.signum()]
     };
     let [x, y] = ahead.map(|way| way as i64);
-    [[x, y], [-x, -y], [-y, x], [y, -x]].into_iter().filter_map(move |[x, y]| {
-        let column = u32::try_from(i64::from(cell.column) + x).ok()?;
-        let row = u32::try_from(i64::from(cell.row) + y).ok()?;
-        Some(Cell { column, row })
-    })
+    [[x, y], [-x, -y], [-y, x], [y, -x]].into_iter().filter_map(move |[x, y]| cell.moved(x, y))
 }
 
 /// Whether a cell is on the map and not solid.

@@ -1,12 +1,91 @@
-//! Blows among players.
+//! Blows among players, judged by where everybody was in the step that the player saw.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use super::Strikes;
-use super::seen::Stand;
 use crate::game::Game;
 use crate::game::health::Flash;
-use crate::world::Heading;
+use crate::game::player::{Motion, RADIUS};
+use crate::game::rules::{MOST_LAG, PlayerId, Strikes};
+use crate::game::sight::{Point, is_in_sight};
+use crate::world::{Heading, World};
+
+/// The number of positions that are remembered: those of this step and of the last ones.
+const STEPS: usize = MOST_LAG as usize + 1;
+/// How far beyond their bodies players touch, in cells.
+const TOUCH: f64 = 0.25;
+
+/// Where a player was in the last steps.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Track([Option<Stand>; STEPS]);
+
+/// Where a player was in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stand {
+    pub(crate) position: DVec2,
+    /// The unit vector of the heading.
+    pub(crate) facing: DVec2,
+    feet: f64,
+    head: f64,
+}
+
+impl Track {
+    /// Records where a player stands at the end of the step `now`; `None` if they do not play.
+    /// Returns how far they have moved in that step, in cells.
+    pub(crate) fn record(&mut self, now: u64, motion: Option<&Motion>) -> f64 {
+        let stand = motion.map(Stand::new);
+        let before = now.checked_sub(1).and_then(|before| self.at(before).copied());
+        self.0[now as usize % STEPS] = stand;
+        let way = stand.zip(before).map(|(now, before)| now.position.distance(before.position));
+        way.unwrap_or_default()
+    }
+
+    /// Where the player was in the step `seen`.
+    fn at(&self, seen: u64) -> Option<&Stand> {
+        self.0[seen as usize % STEPS].as_ref()
+    }
+}
+
+impl Stand {
+    fn new(motion: &Motion) -> Self {
+        let facing = motion.heading().direction();
+        let (feet, head) = (motion.feet(), motion.head());
+        Self { position: motion.position(), facing, feet, head }
+    }
+
+    /// Whether an arm reaches from here to `other`: the bodies are at most `reach` apart, at one
+    /// height, with nothing between.
+    pub(crate) fn reaches(&self, world: &World, other: &Self, reach: f64) -> bool {
+        let distance = self.position.distance(other.position);
+        let overlaps = self.feet < other.head && other.feet < self.head;
+        overlaps && distance <= reach && is_in_sight(world, &[], self.middle(), other.middle())
+    }
+
+    fn middle(&self) -> Point {
+        Point { position: self.position, height: f64::midpoint(self.feet, self.head) }
+    }
+}
+
+impl Game {
+    /// Whether two players touched each other in the step `seen`, which counts as at most
+    /// [`MOST_LAG`] steps ago. The dead, and those who have reached the exit, touch nobody.
+    pub fn touches(&self, one: PlayerId, other: PlayerId, seen: u64) -> bool {
+        let stands = [one, other].map(|player| self.stood(player.index(), seen));
+        let [Some(one_stood), Some(other_stood)] = stands else { return false };
+        one != other && one_stood.reaches(&self.world, other_stood, 2.0 * RADIUS.cells() + TOUCH)
+    }
+
+    /// Where a player stood in the step `seen`.
+    pub(crate) fn stood(&self, index: usize, seen: u64) -> Option<&Stand> {
+        let seen = self.clamp_seen(seen);
+        self.members.as_ref()?.member(index)?.track.at(seen)
+    }
+
+    /// The step that a player saw, as far as it counts.
+    pub(crate) fn clamp_seen(&self, seen: u64) -> u64 {
+        seen.clamp(self.steps.saturating_sub(MOST_LAG), self.steps)
+    }
+}
 
 /// The change of velocity of a player who is struck, in cells per second.
 const PUSH: f64 = 6.0;
@@ -19,7 +98,7 @@ const SWING: u16 = 12;
 impl Game {
     /// The nearest player whom a blow of the player in turn reaches: within `reach` and within the
     /// angle of the cosine `least_cosine` off their view, in the step that they saw.
-    pub(in crate::game) fn player_struck(&self, reach: f64, least_cosine: f64) -> Option<usize> {
+    pub(crate) fn player_struck(&self, reach: f64, least_cosine: f64) -> Option<usize> {
         let members = self.members.as_deref()?;
         let turn = members.turn?;
         let seen = members.member(turn)?.seen;
@@ -41,7 +120,7 @@ impl Game {
     }
 
     /// Does to the player `index` what a blow along `direction` does.
-    pub(in crate::game) fn strike_player(&mut self, index: usize, direction: DVec2) {
+    pub(crate) fn strike_player(&mut self, index: usize, direction: DVec2) {
         let degrees = libm::atan2(-direction.y, -direction.x).to_degrees();
         let Some(members) = self.members.as_deref_mut() else { return };
         let (strikes, turn) = (members.rules.strikes, members.turn);
@@ -56,14 +135,14 @@ impl Game {
     }
 
     /// Lets the figure of the player in turn strike.
-    pub(in crate::game) fn swing(&mut self) {
+    pub(crate) fn swing(&mut self) {
         if let Some(member) = self.member_in_turn() {
             member.swing = SWING;
         }
     }
 
     /// Whether players can strike in levels without guards, too: each other.
-    pub(in crate::game) fn has_blows(&self) -> bool {
+    pub(crate) fn has_blows(&self) -> bool {
         self.multiplayer_rules().is_some_and(|rules| rules.strikes != Strikes::Nobody)
     }
 }

@@ -6,8 +6,9 @@ mod properties;
 use glam::DVec2;
 
 use super::*;
+use crate::game::Outcome;
 use crate::game::player::RADIUS;
-use crate::game::{Game, Intent, Outcome, PlayerColor, Rules};
+use crate::game::{Sees, Strikes};
 use crate::map;
 use crate::world::{Cell, Difficulty, World};
 

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::{PlayerId, Sees};
-use crate::game::guards::{Point, is_in_sight};
 use crate::game::player::{Motion, Player};
+use crate::game::rules::{PlayerId, Sees};
+use crate::game::sight::{Point, is_in_sight};
 use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Camera, FieldOfView, Heading, Supply};
@@ -12,7 +12,6 @@ use crate::world::{Camera, FieldOfView, Heading, Supply};
 /// How far below the top of the head the eyes are, in cells.
 const EYE: f64 = 0.2;
 /// How far above the feet the middle of a figure is, in cells.
-#[cfg(feature = "serve")]
 const MIDDLE: f64 = 0.35;
 
 /// One player's view of a game.
@@ -224,8 +223,7 @@ impl<'a> PlayerView<'a> {
     }
 
     /// Whether nothing hides the middle of a figure that stands at `position`.
-    #[cfg(feature = "serve")]
-    pub(crate) fn sees_figure(&self, position: DVec2, feet: f64) -> bool {
+    pub fn sees_figure(&self, position: DVec2, feet: f64) -> bool {
         let Self { game, player, .. } = *self;
         let motion = &player.motion;
         let eye = Point { position: motion.position(), height: motion.head() - EYE };
@@ -233,7 +231,7 @@ impl<'a> PlayerView<'a> {
         is_in_sight(&game.world, game.smoke.clouds(), eye, middle)
     }
 
-    fn member(&self) -> Option<&'a super::members::Member> {
+    fn member(&self) -> Option<&'a super::Member> {
         self.game.members.as_deref()?.member(self.id.index())
     }
 }

@@ -1,44 +1,42 @@
 //! The motion of a player: position, heading, stance and speed, and what a step changes of them.
 
-mod carried;
-
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::game::STEP;
 use crate::game::collision::{Body, Place, Radius, Stature, overlaps, slide};
 use crate::game::fall::{Flight, GRAVITY, Room};
 use crate::game::intent::{Intent, Intents};
-use crate::game::pitch_control::PitchControl;
 use crate::game::stance::Stance;
-use crate::game::stored::stored;
-use crate::game::turning::Turning;
+use crate::game::stored::{Unrestorable, check_on_map};
+use crate::game::turning::{PitchControl, Turning};
 use crate::generate::Shift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
 /// The player's radius, in cells: a door is twice as wide as the player.
-pub(in crate::game) const RADIUS: Radius =
+pub(crate) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
 /// Walking speed in any direction, in cells per second.
-pub(in crate::game) const WALK: f64 = 3.0;
+pub(crate) const WALK: f64 = 3.0;
 /// Running speed in any direction, in cells per second.
-pub(in crate::game) const RUN: f64 = 5.5;
+pub(crate) const RUN: f64 = 5.5;
 
 /// How fast the player reaches that speed, per second.
-pub(crate) const FRICTION: f64 = 12.0;
+pub const FRICTION: f64 = 12.0;
 
 /// The height of a step that the player climbs or descends by walking, in cells.
-pub(in crate::game) const STEP_HEIGHT: f64 = 0.35;
+pub(crate) const STEP_HEIGHT: f64 = 0.35;
 /// The height of a jump, in cells.
-pub(in crate::game) const JUMP_HEIGHT: f64 = 0.66;
+pub(crate) const JUMP_HEIGHT: f64 = 0.66;
 
 /// Below this speed the player stands still, in cells or radians per second. An exponential decay
 /// never ends, but a program should be able to sleep when nothing moves.
-pub(in crate::game) const STILL: f64 = 1e-4;
+pub(crate) const STILL: f64 = 1e-4;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Motion {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Motion {
     body: Body,
     /// The height of the feet, in cells.
     feet: f64,
@@ -52,11 +50,9 @@ pub(in crate::game) struct Motion {
     turning: Turning,
 }
 
-stored! { struct Motion { body, feet, rising, stance, pitch_control, wanted_to_jump, heading, turning } }
-
 impl Motion {
     /// Standing still at the start.
-    pub(in crate::game) fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let start = world.start();
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
         Self {
@@ -73,7 +69,7 @@ impl Motion {
     }
 
     /// The same place in another world, standing still; `None` if there is no room.
-    pub(in crate::game) fn placed_in(self, world: &World) -> Option<Self> {
+    pub(crate) fn placed_in(self, world: &World) -> Option<Self> {
         let Cell { column, row } = self.cell();
         let (column, row) = (i64::from(column), i64::from(row));
         if world.grid().tile(column, row).is_none() || world.grid().is_solid(column, row) {
@@ -93,61 +89,56 @@ impl Motion {
     }
 
     /// The player's view of `world`.
-    pub(in crate::game) fn camera(
-        &self,
-        world: &World,
-        field_of_view: FieldOfView,
-    ) -> Option<Camera> {
+    pub(crate) fn camera(&self, world: &World, field_of_view: FieldOfView) -> Option<Camera> {
         let ceiling = self.room(world).ceiling + self.stance.height();
         let eye = self.feet + self.stance.eye(ceiling - self.feet);
         let camera = Camera::new(self.position(), self.heading, field_of_view)?.with_eye(eye)?;
         Some(camera.with_pitch(self.pitch_control.pitch))
     }
 
-    pub(in crate::game) fn position(&self) -> DVec2 {
+    pub(crate) fn position(&self) -> DVec2 {
         self.body.position
     }
 
-    pub(in crate::game) fn feet(&self) -> f64 {
+    pub(crate) fn feet(&self) -> f64 {
         self.feet
     }
 
     /// The height of the top of the head, in cells.
-    pub(in crate::game) fn head(&self) -> f64 {
+    pub(crate) fn head(&self) -> f64 {
         self.feet + self.stance.height()
     }
 
-    pub(in crate::game) fn heading(&self) -> Heading {
+    pub(crate) fn heading(&self) -> Heading {
         self.heading
     }
 
     /// The same place in a window that has moved.
     #[must_use]
-    pub(in crate::game) fn shifted(self, shift: Shift) -> Self {
+    pub(crate) fn shifted(self, shift: Shift) -> Self {
         let position = shift.position(self.body.position);
         Self { body: Body { position, ..self.body }, ..self }
     }
 
     /// The cell of the player's centre.
-    pub(in crate::game) fn cell(&self) -> Cell {
-        let DVec2 { x, y } = self.body.position;
-        Cell { column: x as u32, row: y as u32 }
+    pub(crate) fn cell(&self) -> Cell {
+        Cell::at(self.body.position)
     }
 
     /// Whether the player would overlap `cell` if it were solid.
-    pub(in crate::game) fn touches(&self, cell: Cell) -> bool {
+    pub(crate) fn touches(&self, cell: Cell) -> bool {
         overlaps(self.body.position, cell, RADIUS)
     }
 
     /// The direction in which the player wants to walk, as a unit vector; `None` for none.
-    pub(in crate::game) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
+    pub(crate) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
     /// The motion after one step: turned, then ducked, then moved at this part of the usual speed,
     /// with `others` in the way.
     #[must_use]
-    pub(in crate::game) fn stepped(
+    pub(crate) fn stepped(
         self,
         world: &World,
         others: &[DVec2],
@@ -202,36 +193,27 @@ impl Motion {
     }
 
     /// Whether the player stands on the floor.
-    pub(in crate::game) fn stands(&self, world: &World) -> bool {
+    pub(crate) fn stands(&self, world: &World) -> bool {
         self.rising == 0.0 && self.feet == self.room(world).floor
     }
 
-    /// The position and the speeds, as bits.
-    pub(in crate::game) fn words(&self) -> [u64; 8] {
-        let Body { position, velocity } = self.body;
-        let direction = self.heading.direction();
-        let numbers = [position.x, position.y, velocity.x, velocity.y, self.feet, self.rising];
-        let [x, y, across, down, feet, rising] = numbers.map(f64::to_bits);
-        [x, y, across, down, feet, rising, direction.x.to_bits(), direction.y.to_bits()]
-    }
-
     /// The height of the floor here.
-    pub(in crate::game) fn floor(&self, world: &World) -> f64 {
+    pub(crate) fn floor(&self, world: &World) -> f64 {
         self.room(world).floor
     }
 
     /// The height of the body, in cells.
-    pub(in crate::game) fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.stance.height()
     }
 
     /// Whether the body is nearer to ducking than to standing upright.
-    pub(in crate::game) fn is_ducking(&self) -> bool {
+    pub(crate) fn is_ducking(&self) -> bool {
         self.stance.is_ducking()
     }
 
     /// Whether neither walking nor falling.
-    pub(in crate::game) fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         self.body.velocity == DVec2::ZERO && self.rising == 0.0
     }
 
@@ -250,13 +232,67 @@ impl Motion {
     }
 
     /// Whether the body overlaps nothing solid.
-    pub(in crate::game) fn has_room(&self, world: &World) -> bool {
+    pub(crate) fn has_room(&self, world: &World) -> bool {
         self.place(world).is_clear(self.body.position, RADIUS)
     }
 
     fn place<'a>(&self, world: &'a World) -> Place<'a> {
         let stature = Stature { feet: self.feet, height: self.stance.height() };
         Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
+    }
+
+    /// Refuses a place outside of `world`, and a stance and turns that are none.
+    pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
+        check_on_map(world, self.body.position)?;
+        self.stance.check()?;
+        self.turning.check()
+    }
+
+    /// Lifted or lowered, with the floor, to that height of the feet.
+    #[must_use]
+    pub(crate) fn carried_to(self, feet: f64) -> Self {
+        Self { feet, rising: 0.0, ..self }
+    }
+
+    /// Standing in the middle of `cell`; `None` if there is no room.
+    pub(crate) fn moved_to(mut self, world: &World, cell: Cell) -> Option<Self> {
+        self.body.position = cell.center();
+        self.feet = world.floor_at(cell);
+        self.has_room(world).then_some(self)
+    }
+
+    /// With that change of the velocity, in cells per second.
+    #[must_use]
+    pub(crate) fn pushed(mut self, change: DVec2) -> Self {
+        self.body.velocity += change;
+        self
+    }
+
+    /// The same motion moved by `displacement`, as far as nothing is in the way; unchanged if the floor
+    /// there is not level with the feet.
+    #[must_use]
+    pub(crate) fn moved_aside(self, world: &World, displacement: DVec2) -> Self {
+        let mut place = self.place(world);
+        let body = slide(&mut place, self.body, displacement, RADIUS);
+        let moved = Self { body: Body { velocity: self.body.velocity, ..body }, ..self };
+        let is_level = self.stands(world) && moved.stands(world) && moved.has_room(world);
+        if is_level { moved } else { self }
+    }
+
+    /// The height of the feet in `world`, if that has lifted or, where they stood, lowered them.
+    pub(crate) fn feet_after(&self, world: &World, stood: bool) -> Option<f64> {
+        if !self.has_room(world) {
+            return self.lifted(world);
+        }
+        let floor = self.floor(world);
+        (stood && floor < self.feet && self.feet - floor <= STEP_HEIGHT).then_some(floor)
+    }
+
+    /// The height to which floors that have risen around the feet lift them; `None` if there are no
+    /// such floors, or no room.
+    pub(crate) fn lifted(&self, world: &World) -> Option<f64> {
+        let place = Place { step: STEP_HEIGHT, ..self.place(world) };
+        place.lifted(self.body.position, RADIUS)
     }
 }
 

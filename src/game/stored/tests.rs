@@ -1,6 +1,7 @@
 //! Stored games are the games that they were stored from, and nothing else is a game that fails.
 
-pub(crate) mod crowd;
+#[path = "../../../tests/support/crowd.rs"]
+mod crowd;
 mod damage;
 
 use proptest::prelude::*;
@@ -152,11 +153,13 @@ fn other_games_are_refused_with_a_sentence() {
     let several = Game::for_players(world(0), Rules::default(), MultiplayerRules::default());
     assert_eq!(refused(several, &bytes), Unrestorable::OtherLevel);
     let line = String::from_utf8_lossy(&bytes).lines().next().unwrap().to_owned();
-    assert_eq!(line, format!("cellcaster-game 1 rules 2 version {}", env!("CARGO_PKG_VERSION")));
+    assert_eq!(line, format!("cellcaster-game 2 rules 2 version {}", env!("CARGO_PKG_VERSION")));
     let newer = [line.replace("rules 2", "rules 3").as_bytes(), &bytes[line.len()..]].concat();
     let error = refused(game.clone(), &newer);
     assert_eq!(error, Unrestorable::OtherVersion);
     assert!(error.to_string().ends_with("with version 2 of the rules"), "{error}");
+    let older = [line.replace("game 2", "game 1").as_bytes(), &bytes[line.len()..]].concat();
+    assert_eq!(refused(game.clone(), &older), Unrestorable::OtherVersion);
     let longer = [&bytes[..], &[0]].concat();
     assert_eq!(refused(game.clone(), &longer), Unrestorable::Longer);
     assert_eq!(refused(game, &vec![0; MOST_BYTES + 1]), Unrestorable::TooLong);

@@ -6,7 +6,7 @@ use crate::map;
 use crate::world::{Difficulty, Supply};
 
 /// A level with something of everything.
-pub(in crate::game) const EVERYTHING: &str = r##"
+pub(crate) const EVERYTHING: &str = r##"
 par = 60
 treasure_needed = 60
 grid = '''

@@ -7,29 +7,24 @@ use crate::map;
 use crate::world::{Cell, Difficulty, FieldOfView};
 
 /// A game for tests.
-pub(in crate::game) struct Stage {
-    pub(in crate::game) game: Game,
+pub(crate) struct Stage {
+    pub(crate) game: Game,
 }
 
 impl Stage {
     /// A game in the level that `rows` draw. `#` is a wall, `@` is where the player starts, who
     /// looks east; `things` and `tiles` are lines of the map's tables.
-    pub(in crate::game) fn new(rows: &[&str], tiles: &str, things: &str) -> Self {
+    pub(crate) fn new(rows: &[&str], tiles: &str, things: &str) -> Self {
         Self::played(rows, tiles, things, Difficulty::Normal)
     }
 
     /// The same with a difficulty.
-    pub(in crate::game) fn played(
-        rows: &[&str],
-        tiles: &str,
-        things: &str,
-        difficulty: Difficulty,
-    ) -> Self {
+    pub(crate) fn played(rows: &[&str], tiles: &str, things: &str, difficulty: Difficulty) -> Self {
         Self::with_header("par = 60", rows, tiles, things, difficulty)
     }
 
     /// The same with lines before the tables.
-    pub(in crate::game) fn with_header(
+    pub(crate) fn with_header(
         header: &str,
         rows: &[&str],
         tiles: &str,
@@ -45,14 +40,14 @@ impl Stage {
     }
 
     /// Plays `steps` steps.
-    pub(in crate::game) fn play(&mut self, steps: usize, list: &[Intent]) -> &mut Self {
+    pub(crate) fn play(&mut self, steps: usize, list: &[Intent]) -> &mut Self {
         let intents: Intents = list.iter().copied().collect();
         (0..steps).for_each(|_| self.game.step(intents));
         self
     }
 
     /// Walks ahead until the player is in `column`.
-    pub(in crate::game) fn walk_to(&mut self, column: u32) -> &mut Self {
+    pub(crate) fn walk_to(&mut self, column: u32) -> &mut Self {
         for _ in 0..1200 {
             if self.cell().column == column {
                 return self;
@@ -63,7 +58,7 @@ impl Stage {
     }
 
     /// Plays until `is_it`, at most `most` steps; returns their number, or `None`.
-    pub(in crate::game) fn steps_until(
+    pub(crate) fn steps_until(
         &mut self,
         most: usize,
         list: &[Intent],
@@ -73,37 +68,37 @@ impl Stage {
     }
 
     /// Presses a key once.
-    pub(in crate::game) fn press(&mut self, intent: Intent) -> &mut Self {
+    pub(crate) fn press(&mut self, intent: Intent) -> &mut Self {
         self.play(1, &[intent]).play(1, &[])
     }
 
-    pub(in crate::game) fn cell(&self) -> Cell {
+    pub(crate) fn cell(&self) -> Cell {
         self.game.player.motion.cell()
     }
 
-    pub(in crate::game) fn position(&self) -> DVec2 {
+    pub(crate) fn position(&self) -> DVec2 {
         self.game.camera(FieldOfView::default()).position()
     }
 
     /// The guard with that index.
-    pub(in crate::game) fn guard(&self, index: usize) -> GuardView {
+    pub(crate) fn guard(&self, index: usize) -> GuardView {
         self.game.guards().nth(index).unwrap()
     }
 
     /// Whether the player hears such a sound now.
-    pub(in crate::game) fn hears(&self, kind: SoundKind) -> bool {
+    pub(crate) fn hears(&self, kind: SoundKind) -> bool {
         self.game.heard().iter().any(|heard| heard.kind == kind)
     }
 
-    pub(in crate::game) fn message(&self) -> &str {
+    pub(crate) fn message(&self) -> &str {
         self.game.message().unwrap_or_default()
     }
 
-    pub(in crate::game) fn points(&self) -> u8 {
+    pub(crate) fn points(&self) -> u8 {
         self.game.health().points
     }
 
-    pub(in crate::game) fn is_dead(&self) -> bool {
+    pub(crate) fn is_dead(&self) -> bool {
         matches!(self.game.outcome(), Outcome::Dead { .. })
     }
 }

@@ -5,13 +5,14 @@
 //! in its way: darts meet guards, and bolts players.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::game::STEP;
 use crate::game::collision::{Place, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
-use crate::game::stored::{Unrestorable, check, stored};
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, World};
 
@@ -26,32 +27,28 @@ const MARGIN: f64 = 0.05;
 const HAND: f64 = 0.45;
 
 /// What flies, in the order in which it was launched.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(in crate::game) struct Missiles {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Missiles {
     flying: Vec<Missile>,
 }
 
-stored! { struct Missiles { flying } }
-
 /// Something that flies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Missile {
-    pub(in crate::game) kind: MissileKind,
-    pub(in crate::game) position: DVec2,
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Missile {
+    pub(crate) kind: MissileKind,
+    pub(crate) position: DVec2,
     /// The height above the map's own floor, in cells.
-    pub(in crate::game) height: f64,
+    pub(crate) height: f64,
     /// Cells per second.
-    pub(in crate::game) velocity: DVec2,
+    pub(crate) velocity: DVec2,
     /// Cells per second, upwards.
     rising: f64,
     steps: u16,
 }
 
-stored! { struct Missile { kind, position, height, velocity, rising, steps } }
-
 /// A kind of missile.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) enum MissileKind {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum MissileKind {
     Pebble,
     /// The player with that index has shot it.
     Dart {
@@ -66,19 +63,17 @@ pub(in crate::game) enum MissileKind {
     },
 }
 
-stored! { enum MissileKind { 0: Pebble, 1: Dart { by }, 2: Flask, 3: Bolt { points, from, by } } }
-
 /// A missile that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Landed {
-    pub(in crate::game) missile: Missile,
-    pub(in crate::game) cell: Cell,
-    pub(in crate::game) struck: Struck,
+pub(crate) struct Landed {
+    pub(crate) missile: Missile,
+    pub(crate) cell: Cell,
+    pub(crate) struck: Struck,
 }
 
 /// What a missile has met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::game) enum Struck {
+pub(crate) enum Struck {
     /// A wall, the floor, or nothing for a long time.
     Nothing,
     Guard(usize),
@@ -88,17 +83,17 @@ pub(in crate::game) enum Struck {
 
 impl Missile {
     /// A pebble, which lands six cells ahead on level floor.
-    pub(in crate::game) fn pebble(from: (DVec2, f64), ahead: DVec2) -> Self {
+    pub(crate) fn pebble(from: (DVec2, f64), ahead: DVec2) -> Self {
         Self::thrown(MissileKind::Pebble, from, ahead * 9.0, 6.0 / 9.0)
     }
 
     /// A flask, which lands three cells ahead on level floor.
-    pub(in crate::game) fn flask(from: (DVec2, f64), ahead: DVec2) -> Self {
+    pub(crate) fn flask(from: (DVec2, f64), ahead: DVec2) -> Self {
         Self::thrown(MissileKind::Flask, from, ahead * 6.0, 3.0 / 6.0)
     }
 
     /// A dart, which flies straight ahead or to `aim`.
-    pub(in crate::game) fn dart(
+    pub(crate) fn dart(
         (position, height): (DVec2, f64),
         ahead: DVec2,
         aim: Option<(DVec2, f64)>,
@@ -121,7 +116,7 @@ impl Missile {
     }
 
     /// A bolt of the guard `by` along `direction`, a unit vector, that rises by `slope` for each cell.
-    pub(in crate::game) fn bolt(
+    pub(crate) fn bolt(
         (position, height): (DVec2, f64),
         direction: DVec2,
         slope: f64,
@@ -172,28 +167,28 @@ impl Missile {
     }
 
     fn cell(&self) -> Cell {
-        Cell { column: self.position.x as u32, row: self.position.y as u32 }
+        Cell::at(self.position)
     }
 }
 
 impl Missiles {
     /// Whether nothing flies.
-    pub(in crate::game) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.flying.is_empty()
     }
 
     /// What flies.
-    pub(in crate::game) fn iter(&self) -> impl Iterator<Item = &Missile> + Clone {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Missile> + Clone {
         self.flying.iter()
     }
 
     /// Adds a missile.
-    pub(in crate::game) fn launch(&mut self, missile: Missile) {
+    pub(crate) fn launch(&mut self, missile: Missile) {
         self.flying.push(missile);
     }
 
     /// Moves all missiles by one step, and removes and returns those that have ended.
-    pub(in crate::game) fn step(
+    pub(crate) fn step(
         &mut self,
         world: &World,
         guards: &Guards,
@@ -224,12 +219,12 @@ impl Missiles {
     }
 
     /// Refuses those that have flown for too long.
-    pub(in crate::game) fn check(&self) -> Result<(), Unrestorable> {
+    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
         check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
     }
 
     /// The same missiles in a window that has moved.
-    pub(in crate::game) fn shift(&mut self, shift: Shift) {
+    pub(crate) fn shift(&mut self, shift: Shift) {
         let flying = self.flying.iter_mut();
         flying.for_each(|missile| missile.position = shift.position(missile.position));
     }

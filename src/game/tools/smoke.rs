@@ -1,9 +1,10 @@
 //! Smoke: clouds that nobody sees through, for some time.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
-use crate::game::guards::Cloud;
-use crate::game::stored::{Reader, Stored, Unrestorable, Writer, check, stored};
+use crate::game::sight::Cloud;
+use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 
 /// The radius of a cloud in cells, and the steps for which it stays.
@@ -25,73 +26,55 @@ const PUFFS: [(f64, f64, f64); 7] = [
 ];
 
 /// All clouds, in the order in which they arose.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(in crate::game) struct Smoke {
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Smoke {
     clouds: Vec<Cloud>,
     /// For each cloud, its height and the steps left.
     lives: Vec<Life>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Life {
     height: f64,
     left: u16,
 }
 
-stored! { struct Life { height, left } }
-
-impl Stored for Smoke {
-    fn write(&self, out: &mut Writer) {
-        let Self { clouds, lives } = self;
-        lives.write(out);
-        // All clouds have one radius.
-        for &Cloud { position, radius: _ } in clouds {
-            position.write(out);
-        }
-    }
-
-    fn read(input: &mut Reader) -> Result<Self, Unrestorable> {
-        let lives: Vec<Life> = Stored::read(input)?;
-        check(lives.iter().all(|life| (1..=STEPS).contains(&life.left)), "a cloud")?;
-        let cloud = |_: &Life| Ok(Cloud { position: Stored::read(input)?, radius: RADIUS });
-        let clouds = lives.iter().map(cloud).collect::<Result<_, _>>()?;
-        Ok(Self { clouds, lives })
-    }
-}
-
 /// A part of a cloud, as it is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::game) struct Puff {
-    pub(in crate::game) position: DVec2,
-    pub(in crate::game) height: f64,
-    pub(in crate::game) frame: u8,
-    pub(in crate::game) opacity: u8,
+pub(crate) struct Puff {
+    pub(crate) position: DVec2,
+    pub(crate) height: f64,
+    pub(crate) frame: u8,
+    pub(crate) opacity: u8,
 }
 
 impl Smoke {
+    /// Refuses clouds that cannot be.
+    pub(crate) fn check(&self) -> Result<(), Unrestorable> {
+        let are_possible = self.clouds.len() == self.lives.len()
+            && self.clouds.iter().all(|cloud| cloud.radius == RADIUS)
+            && self.lives.iter().all(|life| (1..=STEPS).contains(&life.left));
+        check(are_possible, "a cloud")
+    }
+
     /// Adds a cloud around `position`, above a floor of that height.
-    pub(in crate::game) fn add(&mut self, position: DVec2, height: f64) {
+    pub(crate) fn add(&mut self, position: DVec2, height: f64) {
         self.clouds.push(Cloud { position, radius: RADIUS });
         self.lives.push(Life { height, left: STEPS });
     }
 
     /// The clouds, as far as they matter to sight.
-    pub(in crate::game) fn clouds(&self) -> &[Cloud] {
+    pub(crate) fn clouds(&self) -> &[Cloud] {
         &self.clouds
     }
 
     /// Whether there is none.
-    pub(in crate::game) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.clouds.is_empty()
     }
 
-    /// The steps left of each cloud.
-    pub(in crate::game) fn lives(&self) -> impl Iterator<Item = u16> {
-        self.lives.iter().map(|life| life.left)
-    }
-
     /// Advances all clouds by one step.
-    pub(in crate::game) fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         self.lives.iter_mut().for_each(|life| life.left = life.left.saturating_sub(1));
         let mut lives = self.lives.iter();
         self.clouds.retain(|_| lives.next().is_some_and(|life| life.left > 0));
@@ -99,7 +82,7 @@ impl Smoke {
     }
 
     /// What the clouds look like.
-    pub(in crate::game) fn puffs(&self) -> impl Iterator<Item = Puff> + Clone {
+    pub(crate) fn puffs(&self) -> impl Iterator<Item = Puff> + Clone {
         self.clouds.iter().zip(&self.lives).flat_map(|(cloud, life)| {
             let age = STEPS - life.left;
             let spread = f64::from(age.min(SPREADS)) / f64::from(SPREADS);
@@ -114,7 +97,7 @@ impl Smoke {
     }
 
     /// The same clouds in a window that has moved.
-    pub(in crate::game) fn shift(&mut self, shift: Shift) {
+    pub(crate) fn shift(&mut self, shift: Shift) {
         let clouds = self.clouds.iter_mut();
         clouds.for_each(|cloud| cloud.position = shift.position(cloud.position));
     }

@@ -1,17 +1,17 @@
 //! The ground of a floor: its cells, the ways from the start, and what is in sight.
 
-use std::collections::VecDeque;
+use std::iter;
 use std::num::NonZeroU32;
 
 use super::super::tileset::Tileset;
 use crate::rng::SplitMix64;
-use crate::world::Cell;
+use crate::world::{Cell, Flood};
 
 /// The cells of a floor before things and guards are placed.
-pub(super) struct Ground {
+pub(crate) struct Ground {
     /// The characters, row by row.
     cells: Vec<Vec<u8>>,
-    /// What is in each cell, row by row.
+    /// The kind of each cell, row by row.
     kinds: Vec<Kind>,
     start: Cell,
     /// The steps from the start to each cell, row by row; `None` if there is no way.
@@ -20,7 +20,7 @@ pub(super) struct Ground {
     reachable: Vec<Cell>,
 }
 
-/// What is in a cell, as far as ways and sight are concerned.
+/// The properties of a cell that matter for ways and for sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a property of its own")]
 struct Kind {
@@ -34,7 +34,7 @@ struct Kind {
 }
 
 impl Ground {
-    pub(super) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
+    pub(crate) fn new(cells: Vec<Vec<u8>>, start: (u32, u32), tileset: &Tileset) -> Self {
         let kind = |&character: &u8| Kind {
             is_walkable: tileset.is_walkable(character),
             is_door: tileset.is_walkable(character) && !tileset.is_floor(character),
@@ -54,42 +54,42 @@ impl Ground {
         ground
     }
 
-    pub(super) fn start(&self) -> Cell {
+    pub(crate) fn start(&self) -> Cell {
         self.start
     }
 
     /// The cells that can be reached from the start, the nearest first.
-    pub(super) fn reachable(&self) -> &[Cell] {
+    pub(crate) fn reachable(&self) -> &[Cell] {
         &self.reachable
     }
 
     /// The number of cells that can be reached and have nothing opaque around them.
-    pub(super) fn open_count(&self) -> usize {
+    pub(crate) fn open_count(&self) -> usize {
         self.reachable.iter().filter(|&&cell| self.is_open(cell)).count()
     }
 
     /// The steps from the start to a cell that can be reached; 0 for another one.
-    pub(super) fn distance(&self, cell: Cell) -> u32 {
+    pub(crate) fn distance(&self, cell: Cell) -> u32 {
         self.distances[self.index(cell)].unwrap_or(0)
     }
 
     /// Whether a cell is floor on which nothing stands.
-    pub(super) fn is_bare(&self, cell: Cell) -> bool {
+    pub(crate) fn is_bare(&self, cell: Cell) -> bool {
         self.kind(cell).is_bare
     }
 
-    /// The number of cells beside a cell on which one can walk.
-    pub(super) fn exits_of(&self, cell: Cell) -> usize {
-        self.beside(cell).filter(|&cell| self.kind(cell).is_walkable).count()
+    /// The number of cells on which one can walk beside a cell that is not on the edge.
+    pub(crate) fn exits_of(&self, cell: Cell) -> usize {
+        cell.beside().filter(|&cell| self.kind(cell).is_walkable).count()
     }
 
     /// The cells within a number of steps on open floor, and the steps to them, the nearest first.
-    pub(super) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
+    pub(crate) fn around(&self, cell: Cell, most: u32) -> Vec<(Cell, u32)> {
         self.ways_from(cell, most, |kind| kind.is_walkable && !kind.is_door)
     }
 
     /// Draws the exit into one of the cells that are farthest from the start.
-    pub(super) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
+    pub(crate) fn place_exit(&mut self, tileset: &Tileset, random: &mut SplitMix64) -> Cell {
         let bare = self.reachable.iter().filter(|&&cell| cell != self.start && self.is_bare(cell));
         let bare: Vec<Cell> = bare.copied().collect();
         let farthest = &bare[bare.len() - bare.len().div_ceil(8)..];
@@ -103,7 +103,7 @@ impl Ground {
 
     /// Whether something that stands in one cell could be seen from another: whether a line from the
     /// middle of one to the middle or the edge of the other meets nothing opaque.
-    pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
+    pub(crate) fn sees(&self, from: Cell, to: Cell) -> bool {
         /// In hundredths of a cell from the middle.
         const BODY: [(i64, i64); 9] = [
             (0, 0),
@@ -135,33 +135,21 @@ impl Ground {
     }
 
     /// The number of columns.
-    pub(super) fn width(&self) -> NonZeroU32 {
+    pub(crate) fn width(&self) -> NonZeroU32 {
         let width = self.cells.first().map_or(0, Vec::len);
         NonZeroU32::new(width as u32).unwrap_or(NonZeroU32::MIN)
     }
 
     /// The characters, row by row.
-    pub(super) fn rows(&self) -> Vec<Vec<u8>> {
+    pub(crate) fn rows(&self) -> Vec<Vec<u8>> {
         self.cells.clone()
     }
 
     /// The cells within `most` steps of one for which `is_open` is true, the nearest first.
     fn ways_from(&self, from: Cell, most: u32, is_open: impl Fn(Kind) -> bool) -> Vec<(Cell, u32)> {
-        let mut seen = vec![false; self.kinds.len()];
-        let mut queue = VecDeque::from([(from, 0)]);
-        let mut found = Vec::new();
-        seen[self.index(from)] = true;
-        while let Some((cell, distance)) = queue.pop_front() {
-            found.push((cell, distance));
-            for next in self.beside(cell).filter(|_| distance < most) {
-                let index = self.index(next);
-                if !seen[index] && is_open(self.kinds[index]) {
-                    seen[index] = true;
-                    queue.push_back((next, distance + 1));
-                }
-            }
-        }
-        found
+        let mut flood = Flood::new((self.width().get(), self.cells.len() as u32), from);
+        let next = || flood.next(|cell| is_open(self.kind(cell)));
+        iter::from_fn(next).take_while(|&(_, distance)| distance <= most).collect()
     }
 
     /// Whether none of the cell and its eight neighbours is opaque.
@@ -177,19 +165,5 @@ impl Ground {
 
     fn index(&self, cell: Cell) -> usize {
         cell.row as usize * self.width().get() as usize + cell.column as usize
-    }
-
-    /// The neighbours of a cell. The outermost cells are walls, so each cell that is asked about has
-    /// four.
-    fn beside(&self, Cell { column, row }: Cell) -> impl Iterator<Item = Cell> + use<> {
-        let (width, height) = (self.width().get(), self.cells.len() as u32);
-        let places = [
-            (column.wrapping_sub(1), row),
-            (column + 1, row),
-            (column, row.wrapping_sub(1)),
-            (column, row + 1),
-        ];
-        let is_inside = move |&(column, row): &(u32, u32)| column < width && row < height;
-        places.into_iter().filter(is_inside).map(|(column, row)| Cell { column, row })
     }
 }

@@ -111,7 +111,7 @@ proptest! {
         for post in world.guards() {
             prop_assert!(cells.insert((post.cell.column, post.cell.row)), "two in {:?}", post.cell);
             let distance = post.cell.center().distance(start);
-            prop_assert!(distance >= f64::from(GUARD_DISTANCE), "{distance} cells");
+            prop_assert!(distance >= f64::from(population::GUARD_DISTANCE), "{distance} cells");
             for aside in [(0.0, 0.0), (-0.3, -0.3), (0.3, 0.3), (-0.3, 0.3), (0.3, -0.3)] {
                 let to = post.cell.center() + DVec2::from(aside) - start;
                 let hit = Exact.cast(world.grid(), &Ray::new(start, to).unwrap());

@@ -84,7 +84,7 @@ proptest! {
         let heading = Heading::from_degrees(degrees).unwrap();
         let camera = |position: DVec2, world: &World| {
             let camera = Camera::new(position, heading, FieldOfView::default()).unwrap();
-            let floor = world.floor_at(Cell { column: position.x as u32, row: position.y as u32 });
+            let floor = world.floor_at(Cell::at(position));
             camera.with_eye(floor + Camera::STANDING).unwrap()
         };
         let before = picture(&world, &camera(position, &world));

@@ -1,10 +1,11 @@
-//! A buffer of bytes with spare memory at its end.
+//! A buffer of bytes with spare memory at its end, and the control sequences that are written to it.
 //!
 //! The bytes of a cell are written in their final place, in parts of fixed sizes that may exceed
 //! their lengths: a copy of four bytes is faster than a copy of a variable number, and the capacity
 //! is checked once for a whole cell. With a buffer of its own, a cell would be copied right after
 //! it was written, and processors stall on that.
 
+use std::hint::select_unpredictable;
 use std::io;
 
 /// A growing sequence of bytes.
@@ -16,7 +17,7 @@ pub(crate) struct Bytes {
 }
 
 /// A piece in progress at the end of [`Bytes`]. It counts as written only after [`Piece::finish`].
-pub(super) struct Piece<'a> {
+pub(crate) struct Piece<'a> {
     room: &'a mut [u8; ROOM],
     /// The number of bytes in this piece, at most [`LONGEST`].
     end: usize,
@@ -37,7 +38,7 @@ impl Bytes {
         &self.memory[..self.length]
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.length == 0
     }
 
@@ -48,7 +49,7 @@ impl Bytes {
 
     /// Begins a piece.
     #[inline]
-    pub(super) fn piece(&mut self) -> Piece<'_> {
+    pub(crate) fn piece(&mut self) -> Piece<'_> {
         self.make_room(ROOM);
         let room = &mut self.memory[self.length..][..ROOM];
         let room = room.try_into().expect("there is as much behind what is written");
@@ -79,25 +80,25 @@ impl Bytes {
 impl Piece<'_> {
     /// The number of bytes in this piece.
     #[inline]
-    pub(super) fn end(&self) -> usize {
+    pub(crate) fn end(&self) -> usize {
         self.end
     }
 
     /// Sets the number of bytes in this piece.
     #[inline]
-    pub(super) fn end_at(&mut self, end: usize) {
+    fn end_at(&mut self, end: usize) {
         self.end = end;
     }
 
     /// Writes a byte at a place in this piece.
     #[inline]
-    pub(super) fn put(&mut self, place: usize, byte: u8) {
+    pub(crate) fn put(&mut self, place: usize, byte: u8) {
         self.room[place & LONGEST] = byte;
     }
 
     /// Writes all of `text`, of which the first `count` bytes are part of the piece.
     #[inline]
-    pub(super) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
+    pub(crate) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         const { assert!(LENGTH <= EXCESS) };
         debug_assert!(self.end <= LONGEST, "a piece is too long");
         let start = self.end & LONGEST;
@@ -107,7 +108,7 @@ impl Piece<'_> {
 
     /// Adds the piece to the written bytes.
     #[inline]
-    pub(super) fn finish(self) {
+    pub(crate) fn finish(self) {
         *self.length += self.end;
     }
 }
@@ -120,5 +121,190 @@ impl io::Write for Bytes {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+/// A control sequence in progress, with at least one parameter at its end.
+pub(crate) struct ControlSequence<'a, 'b> {
+    piece: &'a mut Piece<'b>,
+    start: usize,
+}
+
+impl<'a, 'b> ControlSequence<'a, 'b> {
+    /// Begins a sequence at the end of `piece`.
+    #[inline]
+    pub(crate) fn begin(piece: &'a mut Piece<'b>) -> Self {
+        let start = piece.end();
+        piece.push([INTRODUCER[0]], 1);
+        Self { piece, start }
+    }
+
+    /// Adds the parameter `number`.
+    #[inline]
+    pub(crate) fn parameter(&mut self, number: u8) {
+        let decimal = DECIMALS[usize::from(number)];
+        self.piece.push(decimal.text(), decimal.length());
+    }
+
+    /// Adds parameters in decimal, each after a separator: the first `count` bytes of `text`.
+    #[inline]
+    pub(crate) fn literal<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
+        self.piece.push(text, count);
+    }
+
+    /// Adds several parameters.
+    #[inline]
+    pub(crate) fn parameters(&mut self, numbers: impl IntoIterator<Item = u8>) {
+        numbers.into_iter().for_each(|number| self.parameter(number));
+    }
+
+    /// Adds a position or a distance on the screen as a parameter.
+    #[inline]
+    pub(crate) fn place(&mut self, number: u16) {
+        match u8::try_from(number) {
+            Ok(small) => self.parameter(small),
+            Err(_) => self.large_place(number),
+        }
+    }
+
+    #[cold]
+    fn large_place(&mut self, number: u16) {
+        self.literal([SEPARATOR], 1);
+        for unit in [10_000, 1_000, 100, 10, 1].into_iter().filter(|&unit| unit <= number) {
+            self.literal([b'0' + (number / unit % 10) as u8], 1);
+        }
+    }
+
+    /// Calls `write` to add parameters, and removes them unless `needed`. Where the branch is badly
+    /// predictable, this takes less time than a test first.
+    #[inline]
+    pub(crate) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
+        let before = self.piece.end();
+        write(self);
+        let end = self.piece.end();
+        self.piece.end_at(select_unpredictable(needed, end, before));
+    }
+
+    /// Ends the sequence with the final byte `last`.
+    #[inline]
+    pub(crate) fn end(self, last: u8) {
+        // Replace the separator before the first parameter.
+        self.piece.put(self.start + 1, INTRODUCER[1]);
+        self.piece.push([last], 1);
+    }
+}
+
+const INTRODUCER: &[u8; 2] = b"\x1b[";
+const SEPARATOR: u8 = b';';
+
+/// The number of digits of `number`.
+#[inline]
+pub(crate) fn digits(number: u8) -> usize {
+    DECIMALS[usize::from(number)].length() - 1
+}
+
+/// A number in decimal, after a separator, in one word: four bytes of text, and the length of the text.
+#[derive(Clone, Copy)]
+struct Decimal(u64);
+
+impl Decimal {
+    const fn new(text: [u8; 4], length: u64) -> Self {
+        Self(length << u32::BITS | u32::from_le_bytes(text) as u64)
+    }
+
+    #[inline]
+    fn text(self) -> [u8; 4] {
+        (self.0 as u32).to_le_bytes()
+    }
+
+    #[inline]
+    fn length(self) -> usize {
+        (self.0 >> u32::BITS) as usize
+    }
+}
+
+/// The decimal text of every byte: a division would take longer than the rest of a cell's encoding.
+static DECIMALS: [Decimal; 256] = {
+    let mut table = [Decimal(0); 256];
+    let mut number = 0;
+    while number < table.len() {
+        let [hundreds, tens, ones] = [
+            b'0' + (number / 100) as u8,
+            b'0' + (number / 10 % 10) as u8,
+            b'0' + (number % 10) as u8,
+        ];
+        table[number] = match number {
+            0..10 => Decimal::new([SEPARATOR, ones, 0, 0], 2),
+            10..100 => Decimal::new([SEPARATOR, tens, ones, 0], 3),
+            _ => Decimal::new([SEPARATOR, hundreds, tens, ones], 4),
+        };
+        number += 1;
+    }
+    table
+};
+
+/// Writes definitions of entries of the terminal's palette (OSC 4), several in each sequence.
+pub(crate) struct Definitions<'a> {
+    bytes: &'a mut Bytes,
+    count: usize,
+}
+
+/// The number of definitions in one sequence: some terminals accept at most sixteen parameters.
+const AT_ONCE: usize = 7;
+
+impl<'a> Definitions<'a> {
+    pub(crate) fn begin(bytes: &'a mut Bytes) -> Self {
+        Self { bytes, count: 0 }
+    }
+
+    pub(crate) fn push(&mut self, entry: u8, channels: [u8; 3]) {
+        if self.count.is_multiple_of(AT_ONCE) {
+            self.end_sequence();
+            self.bytes.push_text(b"\x1b]4");
+        }
+        self.count += 1;
+        push_definition(entry, channels, self.bytes);
+    }
+
+    pub(crate) fn end(mut self) {
+        self.end_sequence();
+    }
+
+    fn end_sequence(&mut self) {
+        if self.count > 0 {
+            self.bytes.push_text(b"\x07");
+        }
+    }
+}
+
+/// `;n;#rrggbb`.
+fn push_definition(entry: u8, channels: [u8; 3], bytes: &mut Bytes) {
+    const DIGITS: &[u8; 16] = b"0123456789abcdef";
+    let decimal = [b'0' + entry / 100, b'0' + entry / 10 % 10, b'0' + entry % 10];
+    let digits = &decimal[usize::from(entry < 100)..];
+    bytes.push_text(b";");
+    bytes.push_text(digits);
+    bytes.push_text(b";#");
+    for channel in channels {
+        bytes.push_text(&[channel >> 4, channel & 15].map(|digit| DIGITS[usize::from(digit)]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_written_in_decimal() {
+        for number in 0..=u16::MAX {
+            let mut bytes = Bytes::default();
+            let mut piece = bytes.piece();
+            let mut sequence = ControlSequence::begin(&mut piece);
+            sequence.place(7);
+            sequence.place(number);
+            sequence.end(b'H');
+            piece.finish();
+            assert_eq!(bytes.as_slice(), format!("\x1b[7;{number}H").as_bytes());
+        }
     }
 }

@@ -1,8 +1,7 @@
 //! Colours that may be shown in place of others, their cost in bytes, and the price of errors.
 
-use super::packed_cell::PackedCell;
-use super::shape::Shape;
-use super::style::{Kind, Shade};
+use super::block::Shape;
+use super::style::{Kind, Notation, Shade};
 use crate::color::Rgb;
 use crate::color::lab::PackedLab;
 use crate::color::palette;
@@ -13,15 +12,15 @@ use crate::terminal::Fidelity;
 /// Users redefine the 16 named colours, and the terminal's default colours are unknown. Both are
 /// far from all other colours, so that no tolerance mistakes one for another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ink {
-    pub(super) lab: [f32; 3],
-    pub(super) shade: Shade,
+pub(crate) struct Ink {
+    pub(crate) lab: [f32; 3],
+    pub(crate) shade: Shade,
 }
 
 impl Ink {
-    /// The ink of `shade`; an indexed colour is that of xterm's standard palette.
+    /// The ink of `shade`; an indexed colour counts as xterm's standard one.
     #[inline(never)]
-    fn new(shade: Shade) -> Self {
+    pub(crate) fn new(shade: Shade) -> Self {
         let lab = match shade.kind() {
             Kind::Rgb(channels) => PackedLab::of(channels).components(),
             Kind::Indexed(index) => {
@@ -35,13 +34,13 @@ impl Ink {
 
     /// The number of bytes of its parameters.
     #[inline]
-    pub(super) fn bytes(self) -> f32 {
+    pub(crate) fn bytes(self) -> f32 {
         self.shade.bytes() as f32
     }
 
     /// CIE76's ΔE.
     #[inline]
-    pub(super) fn distance(self, other: Self) -> f32 {
+    pub(crate) fn distance(self, other: Self) -> f32 {
         distance(self.lab, other.lab)
     }
 }
@@ -55,9 +54,26 @@ const OWN: f32 = 1e6;
 
 /// CIE76's ΔE.
 #[inline]
-pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
+pub(crate) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
     let [l, a, b] = [one[0] - other[0], one[1] - other[1], one[2] - other[2]];
     (l * l + a * a + b * b).sqrt()
+}
+
+/// The nearest of at most 256 points, given component by component, and the square of its distance.
+#[inline]
+pub(crate) fn nearest([ls, as_, bs]: &[Vec<f32>; 3], [l, a, b]: [f32; 3]) -> (u8, f32) {
+    let mut squares = [f32::INFINITY; 256];
+    for (square, ((&one, &two), &three)) in squares.iter_mut().zip(ls.iter().zip(as_).zip(bs)) {
+        let (l, a, b) = (one - l, two - a, three - b);
+        *square = l * l + a * a + b * b;
+    }
+    let mut nearest = 0;
+    for (place, &square) in squares.iter().enumerate() {
+        if square < squares[nearest] {
+            nearest = place;
+        }
+    }
+    (nearest as u8, squares[nearest])
 }
 
 /// The inks of recent colours, in a direct-mapped cache.
@@ -65,7 +81,7 @@ pub(super) fn distance(one: [f32; 3], other: [f32; 3]) -> f32 {
 /// A frame has some hundreds of colours and some ten thousand pixels. Each colour has one place,
 /// which holds the last one requested of all colours with that place.
 #[derive(Debug)]
-pub(super) struct Inks {
+pub(crate) struct Inks {
     places: Box<[Ink; 1 << PLACE_BITS]>,
 }
 
@@ -76,10 +92,8 @@ impl Inks {
     /// The ink of a colour.
     #[expect(clippy::inline_always, reason = "calls would take longer than what they do")]
     #[inline(always)]
-    pub(super) fn of(&mut self, shade: Shade) -> Ink {
-        let place =
-            (shade.in_bits().wrapping_mul(0x9E37_79B1) >> (u32::BITS - PLACE_BITS)) as usize;
-        let known = &mut self.places[place];
+    pub(crate) fn of(&mut self, shade: Shade) -> Ink {
+        let known = &mut self.places[shade.hash(PLACE_BITS)];
         if known.shade != shade {
             *known = Ink::new(shade);
         }
@@ -88,12 +102,12 @@ impl Inks {
 
     /// The inks of two colours.
     #[inline]
-    pub(super) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
+    pub(crate) fn of_both(&mut self, shades: [Shade; 2]) -> [Ink; 2] {
         shades.map(|shade| self.of(shade))
     }
 
     /// The colour halfway between two, or the colour nearest to that in their common palette.
-    pub(super) fn between(&mut self, one: Ink, other: Ink) -> Ink {
+    pub(crate) fn between(&mut self, one: Ink, other: Ink) -> Ink {
         let middle = |one: [u8; 3], other: [u8; 3]| -> [u8; 3] {
             std::array::from_fn(|channel| one[channel].midpoint(other[channel]))
         };
@@ -115,19 +129,6 @@ impl Inks {
     }
 }
 
-/// The notation of a colour in a control sequence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Notation {
-    /// As one of the 16 named colours, in two bytes.
-    Named,
-    /// As one of the 240 fixed colours, in up to eight bytes.
-    Indexed,
-    /// As an entry of the palette if one holds it, in up to eight bytes.
-    Entry,
-    /// As red, green and blue, in up to sixteen bytes.
-    Rgb,
-}
-
 impl Default for Inks {
     fn default() -> Self {
         // No requested colour is equal to this one.
@@ -137,35 +138,38 @@ impl Default for Inks {
     }
 }
 
-impl Notation {
-    /// The notation of the longest colour in a row of cells, on a terminal with or without a
-    /// palette that may be defined.
-    pub(super) fn of(targets: &[PackedCell], has_palette: bool) -> Self {
-        let all = targets.iter().fold([0; 2], |all, target| {
-            let colors = target.colors().map(Shade::in_bits);
-            [all[0] | colors[0], all[1] | colors[1]]
-        });
-        match Shade::longest_of(all[0] | all[1]) {
-            Self::Rgb if has_palette => Self::Entry,
-            notation => notation,
-        }
+/// A colour that may be sent for another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Telling {
+    pub(crate) ink: Ink,
+    /// The bytes of its parameters.
+    pub(crate) bytes: f32,
+    /// The price of its error, in bytes.
+    pub(crate) error: f32,
+}
+
+impl Telling {
+    /// The bytes and the price together.
+    #[inline]
+    pub(crate) fn cost(self) -> f32 {
+        self.bytes + self.error
     }
 }
 
 /// The price of errors.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Price {
+pub(crate) struct Price {
     /// The maximum error, in ΔE.
-    pub(super) farthest: f32,
+    pub(crate) farthest: f32,
     /// The price in bytes of a ΔE of one in half a cell. It was chosen so that the mean errors at
     /// high and low fidelity are the documented ones.
-    pub(super) bytes: f32,
+    pub(crate) bytes: f32,
 }
 
 impl Price {
     /// The price at `fidelity`, which must not be exact. It is higher for lower tolerances, and
     /// lower for shorter notations.
-    pub(super) fn at(fidelity: Fidelity, notation: Notation) -> Self {
+    pub(crate) fn at(fidelity: Fidelity, notation: Notation) -> Self {
         let farthest = f32::from(fidelity.tolerance());
         let worth = match notation {
             Notation::Named => 2.0,
@@ -178,21 +182,21 @@ impl Price {
 
     /// The price in so many parts of a cell, as [`Shape`] counts them.
     #[inline]
-    pub(super) fn of_parts(self, parts: u8) -> Self {
+    pub(crate) fn of_parts(self, parts: u8) -> Self {
         const HALF: f32 = Shape::PARTS as f32 / 2.0;
         Self { bytes: self.bytes * f32::from(parts) / HALF, ..self }
     }
 
     /// The price of an error of `distance`, in bytes; infinite if it exceeds the maximum.
     #[inline]
-    pub(super) fn of_distance(self, distance: f32) -> f32 {
+    pub(crate) fn of_distance(self, distance: f32) -> f32 {
         if distance > self.farthest { f32::INFINITY } else { distance * self.bytes }
     }
 
     /// The price of showing one colour in place of another, in bytes; infinite if the error exceeds
     /// the maximum.
     #[inline]
-    pub(super) fn of(self, shown: Ink, wanted: Ink) -> f32 {
+    pub(crate) fn of(self, shown: Ink, wanted: Ink) -> f32 {
         self.of_distance(shown.distance(wanted))
     }
 }

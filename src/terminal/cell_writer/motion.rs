@@ -6,12 +6,11 @@
 
 use ratatui::layout::{Position, Size};
 
-use super::bytes::Piece;
-use super::control::ControlSequence;
+use super::bytes::{ControlSequence, Piece};
 
 /// Adds the motion from `cursor` to `target`, on a terminal of `size`. In the column after the last
 /// one, a cursor waits to wrap.
-pub(super) fn push(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
+pub(crate) fn push(cursor: Option<Position>, target: Position, size: Size, piece: &mut Piece) {
     if cursor == Some(target) {
         return;
     }
@@ -89,7 +88,7 @@ fn bytes_of_absolute(target: Position) -> usize {
 
 /// The number of digits of `number`.
 #[inline]
-pub(super) fn digits(number: u16) -> usize {
+pub(crate) fn digits(number: u16) -> usize {
     1 + usize::from(number > 9)
         + usize::from(number > 99)
         + usize::from(number > 999)

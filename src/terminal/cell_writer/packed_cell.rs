@@ -1,21 +1,23 @@
-//! A cell in one word.
+//! Cells in one word, and the table of a screen's glyphs.
+//!
+//! A character and its modifiers take 26 bits, and two colours 52. So each glyph has an id of few bits, with which a
+//! packed cell fits in one word. Most screens show some dozens of characters. If the table is full, further characters
+//! are still shown, but not compared.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
-use ratatui::buffer::Cell;
-use ratatui::style::Color;
+use ratatui::buffer::{Cell, CellWidth};
+use ratatui::style::{Color, Modifier};
 
-use super::block_element::BlockElement;
-use super::glyph_table::{Glyph, GlyphId, GlyphTable};
-use super::shape::Shape;
+use super::block::{BlockElement, Shape};
 use super::style::{Shade, Style};
-use super::symbol::Symbol;
-use crate::canvas::Mosaic;
 use crate::color::Rgb;
+use crate::tui::canvas::Mosaic;
 
 /// The form of a cell, without its two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// Two colours with any block element, or with a mosaic or its inverse.
     Block(Shape),
     /// A glyph without modifiers, in a text and a background colour.
@@ -27,44 +29,40 @@ pub(super) enum Form {
 /// The upper twelve bits are the form; the rest are two colours: of the upper and the lower half, of a
 /// shape's dots and the rest, or of the text and the background. A block of one colour is one of halves.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct PackedCell(u64);
+pub(crate) struct PackedCell(u64);
 
 impl PackedCell {
     /// An unknown cell. No target is equal to it.
-    pub(super) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
+    pub(crate) const UNKNOWN: Self = Self(Self::SHAPES << Self::KIND);
     /// A cell of several characters, of a character wider than a cell, or of a glyph without an id.
     /// It is sent whenever its row changes.
     const INTRICATE: Self = Self((Self::SHAPES + 1) << Self::KIND);
     /// A space in the terminal's default colours.
-    pub(super) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
+    pub(crate) const BLANK: Self = Self::of_text(GlyphId::SPACE, [Shade::DEFAULT; 2]);
 
     /// The position of the form: the shape of blocks, zero for halves; after two others, the ids of glyphs.
     const KIND: u32 = 2 * Shade::BITS;
     const SHAPES: u64 = Shape::COUNT as u64;
     const FIRST_GLYPH: u64 = Self::SHAPES + 2;
-    const _KINDS_FIT: () =
-        assert!(Self::FIRST_GLYPH + (GlyphId::COUNT as u64) < 1 << (u64::BITS - Self::KIND));
-
-    const LAST_GLYPH: u64 = Self::FIRST_GLYPH + GlyphId::COUNT as u64 - 1;
 
     /// Packs `cell`.
     #[inline]
-    pub(super) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn of(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         let (symbol, style) = (cell.symbol(), Style::of(cell));
         match BlockElement::of(symbol) {
             Some(element) => Self::of_element(element, style, glyph_table),
-            None => Self::of_symbol(Symbol::of(cell), style, glyph_table),
+            None => Self::of_symbol(Symbol::of(symbol, |_| cell.cell_width()), style, glyph_table),
         }
     }
 
     /// A space in the style of `cell`.
-    pub(super) fn blank(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn blank(cell: &Cell, glyph_table: &mut GlyphTable) -> Self {
         Self::of_element(BlockElement::Space, Style::of(cell), glyph_table)
     }
 
     /// A cell of two colours, the first above the second.
     #[inline]
-    pub(super) fn of_colors(colors: [Color; 2]) -> Self {
+    pub(crate) fn of_colors(colors: [Color; 2]) -> Self {
         let shades = colors.map(Shade::of);
         match halves(BlockElement::Upper, Style::plain(shades[0], shades[1])) {
             Some(halves) => Self::of_halves(halves),
@@ -74,13 +72,13 @@ impl PackedCell {
 
     /// A cell of two pixels, the first above the second.
     #[inline]
-    pub(super) fn of_pixels(pixels: [Rgb; 2]) -> Self {
+    pub(crate) fn of_pixels(pixels: [Rgb; 2]) -> Self {
         Self::of_halves(pixels.map(Shade::of_pixel))
     }
 
     /// A mosaic in the colours of its dots and of the rest.
     #[inline]
-    pub(super) fn of_mosaic(
+    pub(crate) fn of_mosaic(
         mosaic: Mosaic,
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
@@ -114,7 +112,7 @@ impl PackedCell {
     }
 
     /// A character in a text and a background colour.
-    pub(super) fn of_character(
+    pub(crate) fn of_character(
         character: char,
         colors: [Color; 2],
         glyph_table: &mut GlyphTable,
@@ -134,7 +132,7 @@ impl PackedCell {
         if let Some(id) = glyph_table.recent_id(Glyph::new(character, style.modifier)) {
             return Self::of_text(id, colors.map(Shade::of));
         }
-        Self::of_symbol(Symbol::of_text(symbol), style, glyph_table)
+        Self::of_symbol(Symbol::of(symbol, CellWidth::cell_width), style, glyph_table)
     }
 
     #[inline]
@@ -162,7 +160,7 @@ impl PackedCell {
 
     /// A character that cannot be drawn as a block.
     #[inline(never)]
-    pub(super) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
+    pub(crate) fn of_glyph(character: char, style: Style, glyph_table: &mut GlyphTable) -> Self {
         let id = glyph_table.id(Glyph::new(character, style.modifier));
         let colors = [style.foreground, style.background];
         id.map_or(Self::INTRICATE, |id| Self::of_text(id, colors))
@@ -170,7 +168,7 @@ impl PackedCell {
 
     /// A shape as `element` draws it in this style.
     #[inline]
-    pub(super) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
+    pub(crate) fn of_block(shape: Shape, element: BlockElement, style: Style) -> Self {
         Self::of_shape(shape, element.halves(style.foreground, style.background))
     }
 
@@ -185,7 +183,7 @@ impl PackedCell {
     }
 
     /// The character and its style; `None` for blocks and intricate cells.
-    pub(super) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
+    pub(crate) fn text(self, glyph_table: &GlyphTable) -> Option<(char, Style)> {
         let id = (self.0 >> Self::KIND).checked_sub(Self::FIRST_GLYPH)?;
         let glyph = glyph_table.glyph(GlyphId::new(id as u16));
         let [foreground, background] = self.colors();
@@ -194,31 +192,31 @@ impl PackedCell {
     }
 
     /// Whether the cell may be wider than one column.
-    pub(super) fn is_intricate(self) -> bool {
+    pub(crate) fn is_intricate(self) -> bool {
         self == Self::INTRICATE
     }
 
     /// Whether this shown cell need not be sent for the target `wanted`.
-    pub(super) fn is(self, wanted: Self) -> bool {
+    pub(crate) fn is(self, wanted: Self) -> bool {
         self == wanted && self != Self::INTRICATE
     }
 
     /// A hash whose upper bits are the best. It has few bits, so that the compiler computes several
     /// at once.
     #[inline]
-    pub(super) fn hash(self) -> u32 {
+    pub(crate) fn hash(self) -> u32 {
         ((self.0 ^ self.0 >> 29) as u32).wrapping_mul(0x9E37_79B1)
     }
 
     /// Three hashes of sixteen bits.
-    pub(super) fn hashes(self) -> [u16; 3] {
+    pub(crate) fn hashes(self) -> [u16; 3] {
         let hash = self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         [48, 32, 16].map(|from| (hash >> from) as u16)
     }
 
     /// The form and the colours; `None` if the cell may only be shown exactly.
     #[inline]
-    pub(super) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
+    pub(crate) fn recolorable(self, glyph_table: &GlyphTable) -> Option<(Form, [Shade; 2])> {
         let form = match self.0 >> Self::KIND {
             shape @ ..Self::SHAPES => Form::Block(Shape::new(shape as u8)),
             id => {
@@ -231,26 +229,26 @@ impl PackedCell {
     }
 
     /// The same form in other colours.
-    pub(super) fn recolored(self, colors: [Shade; 2]) -> Self {
+    pub(crate) fn recolored(self, colors: [Shade; 2]) -> Self {
         Self(self.0 >> Self::KIND << Self::KIND | Self::of_halves(colors).0)
     }
 
     /// The colours of the upper and the lower half of a block.
     #[inline]
-    pub(super) fn halves(self) -> Option<[Shade; 2]> {
+    pub(crate) fn halves(self) -> Option<[Shade; 2]> {
         (self.0 >> Self::KIND == 0).then(|| self.colors())
     }
 
     /// The shape of a block, and the colours of its dots and of the rest.
     #[inline]
-    pub(super) fn block(self) -> Option<(Shape, [Shade; 2])> {
+    pub(crate) fn block(self) -> Option<(Shape, [Shade; 2])> {
         let kind = self.0 >> Self::KIND;
         (kind < Self::SHAPES).then(|| (Shape::new(kind as u8), self.colors()))
     }
 
     /// The same for a block of pixels.
     #[inline]
-    pub(super) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
+    pub(crate) fn pixels(self) -> Option<(Shape, [Shade; 2])> {
         const PIXEL: u64 = Shade::rgb([0; 3]).in_bits() as u64;
         const PIXELS: u64 = PIXEL << Shade::BITS | PIXEL;
         const BOTH_KINDS: u64 = 3 * (PIXELS / 2);
@@ -261,12 +259,14 @@ impl PackedCell {
 
     /// The two colours of any cell.
     #[inline]
-    pub(super) fn colors(self) -> [Shade; 2] {
+    pub(crate) fn colors(self) -> [Shade; 2] {
         [self.0 >> Shade::BITS, self.0].map(|bits| Shade::from_bits(bits as u32))
     }
 }
 
-const _: () = assert!(PackedCell::LAST_GLYPH <= u64::MAX >> PackedCell::KIND);
+/// All forms fit in the upper bits.
+const _: () =
+    assert!(PackedCell::FIRST_GLYPH + GlyphId::COUNT as u64 <= 1 << (u64::BITS - PackedCell::KIND));
 
 impl fmt::Debug for PackedCell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -284,4 +284,214 @@ fn halves(element: BlockElement, style: Style) -> Option<[Shade; 2]> {
     let halves = element.halves(style.foreground, style.background);
     let has_own = halves.contains(&Shade::DEFAULT);
     (style.has_no_modifiers() && !has_own).then_some(halves)
+}
+
+/// A character one cell wide, and its modifiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Glyph {
+    character: char,
+    /// The modifiers as bits, which have an order.
+    modifiers: u16,
+}
+
+/// The id of a glyph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct GlyphId(u16);
+
+/// The glyphs that have an id.
+#[derive(Debug)]
+pub(crate) struct GlyphTable {
+    glyphs: Vec<Glyph>,
+    ids: BTreeMap<Glyph, GlyphId>,
+    /// The glyphs that were looked up last, with their ids, each in its place: nearly all that a frame has.
+    recent: [(Glyph, GlyphId); RECENT],
+}
+
+/// The number of places for recent glyphs.
+const RECENT: usize = 128;
+
+impl Glyph {
+    pub(crate) const fn new(character: char, modifier: Modifier) -> Self {
+        Self { character, modifiers: modifier.bits() }
+    }
+
+    /// Its place among the recent ones. ASCII characters with the same modifiers have different places.
+    #[inline]
+    fn place(self) -> usize {
+        (self.character as usize ^ usize::from(self.modifiers)) % RECENT
+    }
+
+    pub(crate) fn character(self) -> char {
+        self.character
+    }
+
+    pub(crate) fn modifier(self) -> Modifier {
+        Modifier::from_bits_truncate(self.modifiers)
+    }
+}
+
+impl GlyphId {
+    /// The id of a space without modifiers, in every table.
+    const SPACE: Self = Self(0);
+    /// The id of an upper half block without modifiers, in every table.
+    pub(crate) const UPPER_HALF: Self = Self(1);
+    /// The maximum number of glyphs in a table.
+    pub(crate) const COUNT: u16 = 3900;
+
+    /// The id as a number, which is less than [`GlyphId::COUNT`].
+    pub(crate) const fn get(self) -> u16 {
+        self.0
+    }
+
+    /// The id with this number, which must be from [`GlyphId::get`].
+    pub(crate) fn new(id: u16) -> Self {
+        Self(id)
+    }
+}
+
+impl GlyphTable {
+    /// The id of `glyph`, a new one if necessary; `None` if the table is full.
+    #[inline]
+    pub(crate) fn id(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        self.recent_id(glyph).or_else(|| self.find(glyph))
+    }
+
+    /// The id of `glyph` if it was looked up recently.
+    #[inline]
+    fn recent_id(&self, glyph: Glyph) -> Option<GlyphId> {
+        let (recent, id) = self.recent[glyph.place()];
+        (recent == glyph).then_some(id)
+    }
+
+    fn find(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        let id = self.ids.get(&glyph).copied().or_else(|| self.add(glyph))?;
+        self.recent[glyph.place()] = (glyph, id);
+        Some(id)
+    }
+
+    fn add(&mut self, glyph: Glyph) -> Option<GlyphId> {
+        let next = u16::try_from(self.glyphs.len()).ok()?;
+        let id = (next < GlyphId::COUNT).then_some(GlyphId(next))?;
+        self.glyphs.push(glyph);
+        self.ids.insert(glyph, id);
+        Some(id)
+    }
+
+    /// The glyph with this id.
+    pub(crate) fn glyph(&self, id: GlyphId) -> Glyph {
+        self.glyphs[usize::from(id.0)]
+    }
+}
+
+impl Default for GlyphTable {
+    fn default() -> Self {
+        let [space, half] = [' ', '▀'].map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let recent = [(space, GlyphId::SPACE); RECENT];
+        let mut glyph_table = Self { glyphs: Vec::new(), ids: BTreeMap::new(), recent };
+        let ids = [space, half].map(|glyph| glyph_table.find(glyph));
+        debug_assert_eq!(ids, [Some(GlyphId::SPACE), Some(GlyphId::UPPER_HALF)]);
+        glyph_table
+    }
+}
+
+/// The text of a cell, as far as a terminal may receive it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Symbol {
+    /// Nothing to show: the text is empty, has no width, or contains a control character. A terminal
+    /// would obey a control character, and would add a character without a width to the cell before.
+    Blank,
+    /// A character one cell wide.
+    Character(char),
+    /// Several characters, or one that is wider than a cell; none of them is a control character.
+    Intricate,
+}
+
+impl Symbol {
+    /// Measures the `width` of `text` only if it has no control character, since ratatui cannot measure these.
+    #[inline]
+    fn of(text: &str, width: impl FnOnce(&str) -> u16) -> Self {
+        let mut characters = text.chars();
+        let (first, second) = (characters.next(), characters.next());
+        match (first, second) {
+            (Some(character), None) if character.is_ascii_graphic() => Self::Character(character),
+            _ if text.chars().any(char::is_control) => Self::Blank,
+            _ => match (width(text), first, second) {
+                (0, ..) => Self::Blank,
+                (1, Some(character), None) => Self::Character(character),
+                _ => Self::Intricate,
+            },
+        }
+    }
+}
+
+/// The substitute of `symbol`, the text of a cell: the symbol if it is a single ASCII character,
+/// otherwise a similar character or a question mark. The empty second cell of a wide character
+/// becomes a space.
+pub(crate) fn ascii_substitute(symbol: &str) -> char {
+    let Some(character) = symbol.chars().next() else { return ' ' };
+    match character {
+        ' '..='~' => character,
+        '─' | '━' | '═' | '╌' | '┄' | '–' | '—' | '−' => '-',
+        '│' | '┃' | '║' | '╎' | '┆' => '|',
+        '\u{2500}'..='\u{257f}' => '+',
+        '←' | '◀' | '◂' | '‹' => '<',
+        '→' | '▶' | '▸' | '›' => '>',
+        '↑' | '▲' | '▴' => '^',
+        '↓' | '▼' | '▾' => 'v',
+        '↗' | '↙' => '/',
+        '↖' | '↘' => '\\',
+        '░' | '·' | '…' => '.',
+        '▒' => ':',
+        '\u{2580}'..='\u{259f}' => '#',
+        '×' => 'x',
+        '•' | '●' | '◆' | '■' => '*',
+        '‘' | '’' | '′' => '\'',
+        '“' | '”' | '„' | '«' | '»' | '″' => '"',
+        '\u{a0}' => ' ',
+        _ => '?',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn glyphs_have_ids_until_the_table_is_full() {
+        let mut glyph_table = GlyphTable::default();
+        // A half block has an id from the start.
+        let glyphs =
+            || std::iter::once('▀').chain(' '..).map(|glyph| Glyph::new(glyph, Modifier::empty()));
+        let ids: Vec<_> =
+            glyphs().take(GlyphId::COUNT.into()).map(|glyph| glyph_table.id(glyph)).collect();
+        for (glyph, id) in glyphs().zip(&ids) {
+            assert_eq!(glyph_table.glyph(id.unwrap()), glyph);
+            assert_eq!(glyph_table.id(glyph), *id);
+        }
+        assert_eq!(glyph_table.id(Glyph::new('a', Modifier::BOLD)), None);
+    }
+
+    proptest! {
+        #[test]
+        fn any_cell_becomes_one_ascii_character(symbol in ".{0,3}") {
+            let substitute = ascii_substitute(&symbol);
+            prop_assert!(matches!(substitute, ' '..='~'));
+            if let &[byte @ b' '..=b'~'] = symbol.as_bytes() {
+                prop_assert_eq!(substitute, char::from(byte));
+            }
+        }
+    }
+
+    #[test]
+    fn a_panel_stays_a_panel() {
+        let panel = ["┌──┐", "│→↗│", "└──┘"];
+        let shown = panel.map(|row| {
+            row.chars()
+                .map(|symbol| ascii_substitute(symbol.encode_utf8(&mut [0; 4])))
+                .collect::<String>()
+        });
+        assert_eq!(shown, ["+--+", "|>/|", "+--+"]);
+    }
 }

@@ -1,27 +1,23 @@
 //! The pen: the bytes of a frame, and the state of the terminal after them.
 
-mod pixels;
-
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::buffer::CellWidth;
 use ratatui::layout::{Position, Size};
 
-use super::block_element::BlockElement;
-use super::bytes::Bytes;
-use super::control::ControlSequence;
+use super::block::{BlockElement, Shape};
+use super::bytes::{Bytes, ControlSequence};
 use super::ink::Price;
 use super::motion;
-use super::packed_position::PackedPosition;
+use super::packed_cell::PackedCell;
 use super::palette::Palette;
 use super::screen::Screen;
-use super::shape::Shape;
 use super::shift::{Shift, Way};
-use super::style::Style;
+use super::style::{Shade, Style};
 
 /// Writes a frame, and tracks the terminal's style and cursor position.
 #[derive(Debug)]
-pub(super) struct Pen {
+pub(crate) struct Pen {
     /// Begins with the start of synchronized output.
     frame: Bytes,
     /// The size of the terminal.
@@ -39,6 +35,19 @@ pub(super) struct Pen {
     palette: Palette,
 }
 
+/// The state of the terminal between cells of pixels.
+///
+/// Most cells of most pictures are two pixels, drawn after another such cell. Between them, the colours and the column
+/// of the cursor are in registers, and nothing else of the terminal's state matters: a cell takes half of the
+/// instructions that it takes one by one.
+#[derive(Clone, Copy)]
+struct PixelState {
+    /// The text colour and the background, in true colour; there are no modifiers.
+    colors: [Shade; 2],
+    /// The column of the cursor in the row.
+    column: usize,
+}
+
 /// The final bytes of the sequences that delete characters and that insert blank ones.
 const DELETE: u8 = b'P';
 const INSERT: u8 = b'@';
@@ -47,7 +56,7 @@ const REPEAT: u8 = b'b';
 
 impl Pen {
     /// A pen for a terminal of this size and otherwise unknown state.
-    pub(super) fn new(size: Size) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
         Self {
             frame: Bytes::default(),
             size,
@@ -61,65 +70,69 @@ impl Pen {
     }
 
     /// Sets whether a block that is drawn several times is written once and repeated.
-    pub(super) fn set_repeats(&mut self, repeats: bool) {
+    pub(crate) fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
     }
 
     /// The terminal's palette.
-    pub(super) fn palette(&mut self) -> &mut Palette {
+    pub(crate) fn palette(&mut self) -> &mut Palette {
         &mut self.palette
     }
 
     /// Defines entries of the palette for the targets of `screen`, where that saves bytes.
-    pub(super) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
-        if let Some(definitions) = self.palette.begin_frame(screen, self.style, price) {
-            // The definitions borrow the palette, so they are taken out of it and put back.
-            self.frame().push_text(definitions.as_slice());
-            self.palette.keep(definitions);
+    pub(crate) fn define_colors(&mut self, screen: &Screen, price: Option<Price>) {
+        if self.palette.begin_frame(screen, self.style, price) {
+            self.frame();
+            self.frame.push_text(self.palette.definitions());
         }
     }
 
-    /// Replaces the colours of all targets by those of the palette's entries, if the terminal shows no
-    /// others, and defines these.
-    pub(super) fn quantize(&mut self, screen: &mut Screen) {
+    /// If the terminal shows only the palette's entries, defines these and replaces the colours of all targets by
+    /// them.
+    pub(crate) fn quantize(&mut self, screen: &mut Screen) {
         if let Some(definitions) = self.palette.quantize(screen) {
             self.frame().push_text(definitions.as_slice());
-            // Its colours may be those of entries that have changed.
+            // Its colours may be entries that have changed.
             self.style = None;
         }
     }
 
     /// Whether the terminal repeats characters (REP).
-    pub(super) fn repeats(&self) -> bool {
+    pub(crate) fn repeats(&self) -> bool {
         self.repeats
     }
 
     /// The terminal's style; `None` if it is unknown.
-    pub(super) fn style(&self) -> Option<Style> {
+    pub(crate) fn style(&self) -> Option<Style> {
         self.style
     }
 
     /// The position of the cursor; `None` if it is unknown.
-    pub(super) fn position(&self) -> Option<Position> {
+    pub(crate) fn position(&self) -> Option<Position> {
         self.cursor().filter(|cursor| cursor.x < self.size.width)
     }
 
     /// The position of the cursor, which moves to the first cell if its position is unknown.
-    pub(super) fn settle(&mut self) -> Position {
+    pub(crate) fn settle(&mut self) -> Position {
         self.position().unwrap_or_else(|| {
             self.move_to(Position::ORIGIN);
             Position::ORIGIN
         })
     }
 
+    /// The size of the terminal.
+    pub(crate) fn size(&self) -> Size {
+        self.size
+    }
+
     /// Sets the size of the terminal.
-    pub(super) fn set_size(&mut self, size: Size) {
+    pub(crate) fn set_size(&mut self, size: Size) {
         self.size = size;
         self.cursor = None;
     }
 
     /// Ends the frame and returns it, unless it is empty. The next bytes belong to another frame.
-    pub(super) fn finish_frame(&mut self) -> Option<&[u8]> {
+    pub(crate) fn finish_frame(&mut self) -> Option<&[u8]> {
         if self.frame.is_empty() {
             return None;
         }
@@ -128,26 +141,26 @@ impl Pen {
     }
 
     /// Begins another frame.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.frame.clear();
     }
 
     /// Forgets the terminal's state and the unsent bytes.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.frame.clear();
         self.palette.forget();
         (self.style, self.cursor, self.last, self.repeated) = (None, None, None, 0);
     }
 
     /// Writes a crossterm command that changes neither the cursor's position nor the style.
-    pub(super) fn command(&mut self, command: impl Command) {
+    pub(crate) fn command(&mut self, command: impl Command) {
         // A write to memory cannot fail.
         _ = queue!(self.frame(), command);
     }
 
     /// Moves the cursor to `target`, or to the nearest cell of the screen, as the terminal would.
     #[inline(never)]
-    pub(super) fn move_to(&mut self, target: Position) {
+    pub(crate) fn move_to(&mut self, target: Position) {
         let (cursor, size) = (self.cursor(), self.size);
         let target = Position {
             x: target.x.min(size.width.saturating_sub(1)),
@@ -159,7 +172,7 @@ impl Pen {
         self.cursor = Some(PackedPosition::of(target));
     }
 
-    pub(super) fn set_style(&mut self, target: Style) {
+    pub(crate) fn set_style(&mut self, target: Style) {
         if self.style != Some(target) {
             let current = self.style;
             self.frame();
@@ -171,9 +184,9 @@ impl Pen {
         }
     }
 
-    /// Draws a block at a position on the screen: a shape as `element` draws it, that of the halves if it has one
-    /// colour.
-    pub(super) fn draw_block(
+    /// Draws a block at a position on the screen: a shape as `element` draws it. A block of one colour has the shape
+    /// of halves.
+    pub(crate) fn draw_block(
         &mut self,
         position: Position,
         (shape, element): (Shape, BlockElement),
@@ -238,7 +251,7 @@ impl Pen {
     }
 
     /// Draws text without control characters.
-    pub(super) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
+    pub(crate) fn draw_text(&mut self, position: Position, text: &str, style: Style) {
         self.move_to(position);
         self.set_style(style);
         self.frame().push_text(text.as_bytes());
@@ -263,7 +276,7 @@ impl Pen {
     }
 
     /// Moves a stretch of row `y`. The cells to its right move away and back.
-    pub(super) fn shift_row(&mut self, shift: &Shift, y: u16) {
+    pub(crate) fn shift_row(&mut self, shift: &Shift, y: u16) {
         let (start, end) = (shift.columns.start as u16, shift.columns.end as u16);
         let by = shift.by as u16;
         let is_whole = end == self.size.width;
@@ -293,6 +306,73 @@ impl Pen {
         edit.end(operation);
         piece.finish();
     }
+
+    /// Draws these columns of row `y`. Has `draw_other` draw the ones that cannot be drawn as pixels now.
+    #[inline]
+    pub(crate) fn draw_pixels(
+        &mut self,
+        y: u16,
+        cells: impl Iterator<Item = (usize, PackedCell)>,
+        mut draw_other: impl FnMut(&mut Self, usize, PackedCell),
+    ) {
+        let mut state = self.pixel_state(y);
+        for (column, target) in cells {
+            let Some((now, (shape, pixels))) = state.zip(target.pixels()) else {
+                self.keep_pixel_state(y, state);
+                draw_other(self, column, target);
+                state = self.pixel_state(y);
+                continue;
+            };
+            if column != now.column {
+                self.keep_pixel_state(y, state);
+                self.move_to(Position { x: column as u16, y });
+            }
+            let colors = self.push_pixels(shape, pixels, now.colors);
+            state = Some(PixelState { colors, column: column + 1 });
+        }
+        self.keep_pixel_state(y, state);
+    }
+
+    /// The state in which pixels can be drawn: after a cell of pixels in row `y`, on a terminal that neither
+    /// repeats characters nor has a palette.
+    #[inline]
+    fn pixel_state(&self, y: u16) -> Option<PixelState> {
+        let Position { x, y: row } = self.cursor()?;
+        let colors = self.style?.plain_colors()?;
+        let is_sound = colors.into_iter().all(Shade::is_rgb)
+            && row == y
+            && !self.repeats
+            && self.repeated == 0
+            && !self.palette.is_on()
+            && !self.frame.is_empty();
+        is_sound.then_some(PixelState { colors, column: x.into() })
+    }
+
+    #[inline]
+    fn keep_pixel_state(&mut self, y: u16, state: Option<PixelState>) {
+        if let Some(PixelState { colors: [text, ground], column }) = state {
+            self.style = Some(Style::plain(text, ground));
+            self.cursor = Some(PackedPosition::of(Position { x: column as u16, y }));
+            self.last = None;
+        }
+    }
+
+    /// Adds a cell of pixels where the cursor is, and returns the colours after it.
+    #[inline]
+    fn push_pixels(&mut self, shape: Shape, pixels: [Shade; 2], current: [Shade; 2]) -> [Shade; 2] {
+        let (element, colors) = BlockElement::cheapest_after(current, pixels);
+        let mut piece = self.frame.piece();
+        if colors != current {
+            let mut rendition = ControlSequence::begin(&mut piece);
+            Shade::push_change(colors, current, |shade| shade, &mut rendition);
+            rendition.end(b'm');
+        }
+        let (encoded, count) =
+            if shape == Shape::HALF { element.encoded() } else { shape.encoded(element) };
+        piece.push(encoded, count);
+        piece.finish();
+        colors
+    }
 }
 
 /// Whether all terminals advance the cursor by one cell for `symbol`: a European letter, or a symbol of the
@@ -304,4 +384,24 @@ fn advances_by_one(symbol: &str) -> bool {
     characters.next().is_some_and(is_sure)
         && characters.next().is_none()
         && symbol.cell_width() == 1
+}
+
+/// A position in one word.
+///
+/// The pen stores its position after each cell and loads it before the next. The two fields of a [`Position`] were
+/// stored one by one and loaded as one word. A processor cannot forward two pending stores to one load, and waited a
+/// third of the time that drawing a cell took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct PackedPosition(u32);
+
+impl PackedPosition {
+    #[inline]
+    fn of(position: Position) -> Self {
+        Self(u32::from(position.y) << u16::BITS | u32::from(position.x))
+    }
+
+    #[inline]
+    fn get(self) -> Position {
+        Position { x: self.0 as u16, y: (self.0 >> u16::BITS) as u16 }
+    }
 }

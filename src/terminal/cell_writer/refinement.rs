@@ -1,25 +1,24 @@
 //! Refinement: a picture that does not change becomes exact, in a few frames of similar size.
 //!
 //! Each row that has not changed for some frames is refined even while others change, since a
-//! blinking cell or a clock changes in every picture. The worst cells come first. Reducing the
-//! tolerance step by step was refused: cells were sent twice, and the last frame had most of the
-//! bytes.
+//! blinking cell or a clock changes in every picture. The worst cells come first.
+//!
+//! Rejected: reducing the tolerance step by step. Cells were sent twice, and the last frame had most of the bytes.
 
 use std::cell;
 
-use super::exact;
-use super::glyph_table::GlyphTable;
+use super::block::Shape;
 use super::ink::Inks;
+use super::packed_cell::GlyphTable;
 use super::packed_cell::{Form, PackedCell};
 use super::pen::Pen;
+use super::row::{draw_cell, draw_row};
 use super::screen::{Row, Screen};
-use super::shape::Shape;
 use super::shift::Shifts;
-use crate::terminal::thread_memory;
 
 /// The progress of refinement.
 #[derive(Debug)]
-pub(super) struct Refinement {
+pub(crate) struct Refinement {
     /// The number of frames until the picture is exact.
     frames: usize,
 }
@@ -52,27 +51,27 @@ thread_local! {
 }
 
 impl Refinement {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { frames: FRAMES }
     }
 
     /// Starts again after a motion.
-    pub(super) fn disturb(&mut self) {
+    pub(crate) fn disturb(&mut self) {
         self.frames = FRAMES;
     }
 
     /// Draws the next refinement frame of the whole screen.
-    pub(super) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+    pub(crate) fn draw(&mut self, pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }
-        let mut inexact = thread_memory::take(&INEXACT).unwrap_or_default();
+        let mut inexact = INEXACT.take().unwrap_or_default();
         inexact.cells.clear();
         for row in screen.inexact_rows() {
             if row.is_near() {
                 inexact.add(&row);
             } else {
-                exact::draw_row(pen, shifts, row);
+                draw_row(pen, shifts, row);
             }
         }
         inexact.choose_worst(self.frames);
@@ -80,39 +79,39 @@ impl Refinement {
         let mut chosen = inexact.cells.iter().peekable();
         for mut row in screen.inexact_rows() {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
-                exact::draw_cell(pen, &mut row, usize::from(cell.column));
+                draw_cell(pen, &mut row, usize::from(cell.column));
             }
             *row.exact = row.shown == row.targets;
         }
-        thread_memory::put_back(&INEXACT, Some(inexact));
+        INEXACT.set(Some(inexact));
     }
 
     /// Draws the next refinement frame of the rows that rest while others change.
-    pub(super) fn draw_resting(pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
+    pub(crate) fn draw_resting(pen: &mut Pen, shifts: &mut Shifts, screen: &mut Screen) {
         if screen.is_exact() {
             return;
         }
-        let mut inexact = thread_memory::take(&INEXACT).unwrap_or_default();
+        let mut inexact = INEXACT.take().unwrap_or_default();
         for mut row in screen.inexact_rows() {
             let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
             if !row.is_near() {
-                exact::draw_row(pen, shifts, row);
+                draw_row(pen, shifts, row);
                 continue;
             }
             inexact.cells.clear();
             inexact.add(&row);
             inexact.choose_worst(FRAMES.saturating_sub(drawn).max(1));
             for cell in &inexact.cells {
-                exact::draw_cell(pen, &mut row, usize::from(cell.column));
+                draw_cell(pen, &mut row, usize::from(cell.column));
             }
             *row.exact = row.shown == row.targets;
         }
-        thread_memory::put_back(&INEXACT, Some(inexact));
+        INEXACT.set(Some(inexact));
     }
 }
 
 impl Inexact {
-    /// Adds those of a row.
+    /// Adds the inexact cells of a row.
     fn add(&mut self, row: &Row) {
         self.cells.extend(errors(row, &mut self.inks));
     }

@@ -1,19 +1,18 @@
 //! The model of the screen: the cells that the terminal shows, and their targets.
 
-mod canvas;
-mod whole_frame;
+use std::cell;
 
 use ratatui::backend::ClearType;
-use ratatui::buffer::{Cell, CellWidth};
-use ratatui::layout::{Position, Size};
+use ratatui::buffer::{Buffer, Cell, CellWidth};
+use ratatui::layout::{Position, Rect, Size};
+use ratatui::style::Color;
+use ratatui::widgets::Widget;
 
-use super::ascii;
-use super::glyph_table::GlyphTable;
-use super::packed_cell::{Form, PackedCell};
-use super::shift::{Mark, Shift};
+use super::packed_cell::{Form, GlyphTable, PackedCell, ascii_substitute};
+use super::shift::Mark;
 use super::style::{Shade, Style};
-#[cfg(feature = "lab")]
-use crate::canvas::Mosaic;
+use crate::color::Rgb;
+use crate::tui::canvas::{Canvas, Mosaic, true_color};
 
 /// A model of a terminal's screen: for each cell, its shown appearance and its target.
 ///
@@ -28,8 +27,6 @@ pub struct Screen {
     shown: Vec<PackedCell>,
     /// The appearance that each cell should have.
     targets: Vec<PackedCell>,
-    /// The targets before the present frame; empty between frames.
-    targets_before: Vec<PackedCell>,
     /// The landmarks of the targets at the time when each row was last drawn.
     marks: Vec<Mark>,
     /// The intricate targets, which packed cells do not describe in full; empty before the first.
@@ -45,23 +42,32 @@ pub struct Screen {
 }
 
 /// A row of the screen.
-pub(super) struct Row<'a> {
-    pub(super) y: u16,
-    pub(super) glyph_table: &'a GlyphTable,
-    pub(super) shown: &'a mut [PackedCell],
-    pub(super) targets: &'a [PackedCell],
+pub(crate) struct Row<'a> {
+    pub(crate) y: u16,
+    pub(crate) glyph_table: &'a GlyphTable,
+    pub(crate) shown: &'a mut [PackedCell],
+    pub(crate) targets: &'a [PackedCell],
     /// The landmarks of its targets in the last frame.
-    pub(super) marks: &'a mut [Mark],
-    pub(super) wanted: &'a [Cell],
-    pub(super) intricate: &'a mut bool,
-    pub(super) exact: &'a mut bool,
+    pub(crate) marks: &'a mut [Mark],
+    pub(crate) wanted: &'a [Cell],
+    pub(crate) intricate: &'a mut bool,
+    pub(crate) exact: &'a mut bool,
     /// The number of frames for which it has not changed.
-    pub(super) rested: u8,
+    pub(crate) rested: u8,
+}
+
+// A call leaves nothing in this memory that a later call needs. So each thread has it once, and not each of the some
+// hundred screens of a server.
+thread_local! {
+    /// The buffer into which widgets are drawn first.
+    static SCRATCH: cell::Cell<Buffer> = cell::Cell::default();
+    /// The memory of the targets before a frame.
+    static BEFORE: cell::Cell<Vec<PackedCell>> = const { cell::Cell::new(Vec::new()) };
 }
 
 impl Screen {
     /// A blank screen.
-    pub(super) fn blank(size: Size) -> Self {
+    pub(crate) fn blank(size: Size) -> Self {
         let mut screen = Self::default();
         screen.resize(size);
         screen.clear(ClearType::All, Position::ORIGIN);
@@ -70,7 +76,7 @@ impl Screen {
     }
 
     /// Changes the size and sets all targets blank. The shown cells are then unknown.
-    pub(super) fn resize(&mut self, size: Size) {
+    pub(crate) fn resize(&mut self, size: Size) {
         let (width, height) = (usize::from(size.width), usize::from(size.height));
         self.width = width;
         for targets in [&mut self.shown, &mut self.targets] {
@@ -91,26 +97,26 @@ impl Screen {
     }
 
     /// Sets whether targets are restricted to ASCII, from the next frame on.
-    pub(super) fn set_ascii(&mut self, is_ascii: bool) {
+    pub(crate) fn set_ascii(&mut self, is_ascii: bool) {
         self.is_ascii = is_ascii;
         self.redraw();
     }
 
     /// Forgets the shown cells and has all rows drawn again.
-    pub(super) fn redraw(&mut self) {
+    pub(crate) fn redraw(&mut self) {
         self.forget();
         self.changed.fill(true);
     }
 
     /// Forgets the shown cells.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.shown.fill(PackedCell::UNKNOWN);
         self.exact.fill(false);
     }
 
     /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. Its
     /// targets become blank.
-    pub(super) fn clear(&mut self, region: ClearType, cursor: Position) {
+    pub(crate) fn clear(&mut self, region: ClearType, cursor: Position) {
         let row = usize::from(cursor.y) * self.width;
         let at = row + usize::from(cursor.x);
         let end = self.shown.len();
@@ -141,7 +147,7 @@ impl Screen {
 
     /// Sets the target of a cell; does nothing off the screen.
     #[inline]
-    pub(super) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
+    pub(crate) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
         if x < self.width && y < self.changed.len() {
             self.set(y * self.width + x, cell);
@@ -163,7 +169,7 @@ impl Screen {
 
     /// Sets a target to the ASCII substitute of `cell`.
     fn set_ascii_cell(&mut self, place: usize, mut cell: Cell) {
-        let character = ascii::substitute(cell.symbol());
+        let character = ascii_substitute(cell.symbol());
         cell.set_char(character);
         let style = Style::of(&cell);
         self.targets[place] = PackedCell::of_glyph(character, style, &mut self.glyph_table);
@@ -191,18 +197,41 @@ impl Screen {
         }
     }
 
+    /// Begins a whole frame, with blank targets. Returns the targets before it.
+    pub(crate) fn begin_frame(&mut self) -> Vec<PackedCell> {
+        let mut before = BEFORE.take();
+        let (count, capacity) = (self.targets.len(), self.targets.capacity());
+        if before.capacity() != capacity {
+            before = Vec::with_capacity(capacity);
+        }
+        std::mem::swap(&mut self.targets, &mut before);
+        self.targets.clear();
+        self.targets.resize(count, PackedCell::BLANK);
+        before
+    }
+
+    /// Ends a whole frame: rows whose targets differ from those `before` it have changed.
+    pub(crate) fn end_frame(&mut self, before: Vec<PackedCell>) {
+        let width = self.width.max(1);
+        let rows = self.targets.chunks(width).zip(before.chunks(width));
+        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
+            *changed |= targets != before;
+        }
+        BEFORE.set(before);
+    }
+
     /// Whether any target has changed since the rows were drawn.
-    pub(super) fn is_changed(&self) -> bool {
+    pub(crate) fn is_changed(&self) -> bool {
         self.changed.contains(&true)
     }
 
     /// Whether every row shows exactly its targets, as rows without columns do.
-    pub(super) fn is_exact(&self) -> bool {
+    pub(crate) fn is_exact(&self) -> bool {
         self.width == 0 || !self.exact.contains(&false)
     }
 
     /// The two colours of a shown cell; `None` if they are unknown, and off the screen.
-    pub(super) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
+    pub(crate) fn shown_colors(&self, x: u16, y: u16) -> Option<[Shade; 2]> {
         let (x, y) = (usize::from(x), usize::from(y));
         let place = (x < self.width).then_some(y * self.width + x)?;
         let (_, colors) = self.shown.get(place)?.recolorable(&self.glyph_table)?;
@@ -210,56 +239,55 @@ impl Screen {
     }
 
     /// The mosaic that a shown cell is, if it is one.
-    #[cfg(feature = "lab")]
-    pub(super) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
+    pub(crate) fn shown_mosaic(&self, x: u16, y: u16) -> Option<Mosaic> {
         let place = usize::from(y) * self.width + usize::from(x);
         let (shape, _) = self.shown.get(place)?.block()?;
         Some(shape.mosaic())
     }
 
     /// The shown cells and the targets of each row.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (&[PackedCell], &[PackedCell])> {
         let width = self.width.max(1);
         self.shown.chunks(width).zip(self.targets.chunks(width))
     }
 
     /// The targets of all cells, row by row.
-    pub(super) fn targets(&self) -> impl Iterator<Item = &PackedCell> {
+    pub(crate) fn targets(&self) -> impl Iterator<Item = &PackedCell> {
         self.targets.iter()
     }
 
     /// Replaces the colours of all targets.
-    pub(super) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_targets(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.targets, color);
     }
 
     /// Records that the terminal shows other colours in place of some, so that all rows must be
     /// compared with their targets.
-    pub(super) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
+    pub(crate) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.shown, color);
         self.changed.fill(true);
     }
 
     /// The styles of the intricate targets.
-    pub(super) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
+    pub(crate) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
         let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
         rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
     }
 
     /// Returns the changed rows, from the top, and marks them as unchanged.
-    pub(super) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|_, changed| std::mem::take(changed))
     }
 
     /// Counts a frame for the rows that have not changed.
-    pub(super) fn count_rest(&mut self) {
+    pub(crate) fn count_rest(&mut self) {
         for (rested, &changed) in self.rested.iter_mut().zip(&self.changed) {
             *rested = if changed { 0 } else { rested.saturating_add(1) };
         }
     }
 
     /// The rows that do not show exactly their targets.
-    pub(super) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         self.rows_where(|is_exact, _| !is_exact)
     }
 
@@ -286,7 +314,7 @@ impl Screen {
     }
 }
 
-/// Replaces the colours of `cells`. A cell of which one becomes [`Shade::NONE`] is then unknown.
+/// Replaces the colours of `cells`. A cell is then unknown if one of its colours becomes [`Shade::NONE`].
 fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
     let mut last = [PackedCell::UNKNOWN; 2];
     for cell in cells {
@@ -301,12 +329,12 @@ fn recolor(cells: &mut [PackedCell], mut color: impl FnMut(Shade) -> Shade) {
 
 impl Row<'_> {
     /// The number of its cells.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.targets.len()
     }
 
     /// Whether every cell differs from its target in its colours at most.
-    pub(super) fn is_near(&self) -> bool {
+    pub(crate) fn is_near(&self) -> bool {
         let form = |target: PackedCell| target.recolorable(self.glyph_table).map(|(form, _)| form);
         let mut targets = self.shown.iter().zip(self.targets);
         targets.all(|(&shown, &target)| {
@@ -317,9 +345,97 @@ impl Row<'_> {
                 }
         })
     }
+}
 
-    /// Records that the terminal has moved a part of the row.
-    pub(super) fn shift(&mut self, shift: &Shift) {
-        shift.apply(self.shown, PackedCell::UNKNOWN);
+impl Canvas for Screen {
+    fn bounds(&self) -> Rect {
+        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
+    }
+
+    #[inline]
+    fn draw_halves(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row);
+        }
+        for (target, halves) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_colors(halves);
+        }
+    }
+
+    #[inline]
+    fn draw_pixels(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Rgb; 2]>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row.map(|halves| halves.map(true_color)));
+        }
+        for (target, pixels) in self.targets_from(x, y).iter_mut().zip(row) {
+            *target = PackedCell::of_pixels(pixels);
+        }
+    }
+
+    #[inline]
+    fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
+        if self.is_ascii {
+            return self.draw_grounds(x, y, row.map(|(_, colors)| colors));
+        }
+        let start = usize::from(y) * self.width;
+        let cells = start + usize::from(x).min(self.width)..start + self.width;
+        let Some(targets) = self.targets.get_mut(cells) else { return };
+        for (target, (mosaic, colors)) in targets.iter_mut().zip(row) {
+            *target = PackedCell::of_mosaic(mosaic, colors, &mut self.glyph_table);
+        }
+    }
+
+    fn draw_character(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if self.is_ascii {
+            return self.draw_ascii(x, y, character, colors);
+        }
+        let target = PackedCell::of_character(character, colors, &mut self.glyph_table);
+        let Some(place) = self.targets_from(x, y).first_mut() else { return };
+        *place = target;
+        if target.is_intricate() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.want_intricate(usize::from(y) * self.width + usize::from(x), &cell);
+        }
+    }
+
+    fn draw_widget(&mut self, widget: impl Widget, area: Rect) {
+        let area = area.intersection(self.bounds());
+        let mut scratch = SCRATCH.take();
+        scratch.area = area;
+        scratch.content.clear();
+        scratch.content.resize(area.area() as usize, Cell::EMPTY);
+        widget.render(area, &mut scratch);
+        for (position, cell) in area.positions().zip(scratch.content()) {
+            let place = usize::from(position.y) * self.width + usize::from(position.x);
+            self.set(place, cell);
+        }
+        SCRATCH.set(scratch);
+    }
+}
+
+impl Screen {
+    /// The targets from `(x, y)` to the right; empty off the screen.
+    #[inline]
+    fn targets_from(&mut self, x: u16, y: u16) -> &mut [PackedCell] {
+        let row = usize::from(y) * self.width;
+        let cells = row + usize::from(x).min(self.width)..row + self.width;
+        self.targets.get_mut(cells).unwrap_or_default()
+    }
+
+    /// Draws the ASCII substitute of `character`.
+    fn draw_ascii(&mut self, x: u16, y: u16, character: char, colors: [Color; 2]) {
+        if !self.targets_from(x, y).is_empty() {
+            let mut cell = Cell::EMPTY;
+            cell.set_char(character).set_fg(colors[0]).set_bg(colors[1]);
+            self.set_ascii_cell(usize::from(y) * self.width + usize::from(x), cell);
+        }
+    }
+
+    /// Draws cells of two colours without a block element, in their lower colours.
+    fn draw_grounds(&mut self, x: u16, y: u16, row: impl Iterator<Item = [Color; 2]>) {
+        for (x, colors) in (x..).zip(row) {
+            self.draw_ascii(x, y, ' ', colors);
+        }
     }
 }

@@ -2,27 +2,27 @@
 //!
 //! In a picture that turns, most cells move by a few columns. Deleting and inserting characters
 //! (DCH and ICH) moves a stretch of a row for about twenty bytes, which a single cell may take too.
-//! Scrolling whole regions sideways was refused: few terminals have left and right margins.
-
-mod landmarks;
-mod stretch;
+//!
+//! A move is detected by landmarks: cells that differ from the one before them, identified by a mark of eight bits.
+//! Each mark of a row is compared with all previous marks around it, in a few instructions for sixteen of them, and
+//! votes for the moves that may have brought it there.
+//!
+//! Rejected: comparing the appearance of cells, which took longer than the rest of the encoder. A table of marks, which
+//! missed those that occur several times. Scrolling whole regions sideways: few terminals have left and right margins.
 
 use std::ops::Range;
 
-use self::landmarks::Landmarks;
-pub(super) use self::landmarks::Mark;
-use self::stretch::best_stretch;
-use super::screen::Row;
+use super::packed_cell::PackedCell;
 
 /// A stretch of a row that moves by some columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Shift {
+pub(crate) struct Shift {
     /// The stretch. Cells that move out of it are lost, and cells that become free are unknown.
-    pub(super) columns: Range<usize>,
+    pub(crate) columns: Range<usize>,
     /// The distance, in columns.
-    pub(super) by: usize,
+    pub(crate) by: usize,
     /// The direction.
-    pub(super) way: Way,
+    pub(crate) way: Way,
 }
 
 /// A direction and a distance.
@@ -43,25 +43,25 @@ impl Move {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     Left,
     Right,
 }
 
 /// The approximate cost of sending a cell that shows the wrong content, in units of 1 / [`BYTE`]
 /// bytes.
-pub(super) type Loss = i16;
+pub(crate) type Loss = i16;
 
 /// The loss of one byte.
-pub(super) const BYTE: Loss = 16;
+pub(crate) const BYTE: Loss = 16;
 /// The loss of a completely wrong cell.
-pub(super) const CELL: Loss = 12 * BYTE;
+pub(crate) const CELL: Loss = 12 * BYTE;
 /// The approximate cost of a shift: two motions, a deletion and an insertion.
 const SHIFT: i32 = 20 * BYTE as i32;
 
 /// Finds the shifts of a row, one after another; keeps its memory between rows.
 #[derive(Debug, Default)]
-pub(super) struct Shifts {
+pub(crate) struct Shifts {
     landmarks: Landmarks,
     /// The present losses, the losses after a move, and the losses after the best move.
     losses: Vec<Loss>,
@@ -70,16 +70,21 @@ pub(super) struct Shifts {
 }
 
 impl Shifts {
-    /// Begins a row. `lose` adds the losses of showing the cells that are now at the first column
-    /// and after it, at the second column and after it.
-    pub(super) fn begin(&mut self, row: &Row, mut lose: impl FnMut(usize, usize, &mut Vec<Loss>)) {
-        self.landmarks.find(row.targets, row.marks);
+    /// Begins a row with these targets and the marks of the previous ones. `lose` adds the losses of showing the
+    /// cells that are now at the first column and after it, at the second column and after it.
+    pub(crate) fn begin(
+        &mut self,
+        targets: &[PackedCell],
+        marks: &[Mark],
+        mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
+    ) {
+        self.landmarks.find(targets, marks);
         self.losses.clear();
         lose(0, 0, &mut self.losses);
     }
 
     /// The shift with the smallest loss after it, if it saves more than its cost.
-    pub(super) fn next(
+    pub(crate) fn next(
         &mut self,
         mut lose: impl FnMut(usize, usize, &mut Vec<Loss>),
     ) -> Option<Shift> {
@@ -111,13 +116,13 @@ impl Shifts {
     }
 
     /// The loss of each cell of the row.
-    pub(super) fn losses(&self) -> &[Loss] {
+    pub(crate) fn losses(&self) -> &[Loss] {
         &self.losses
     }
 
-    /// Ends the row: its present targets are the previous ones of the next frame.
-    pub(super) fn end(&self, row: &mut Row) {
-        row.marks.copy_from_slice(self.landmarks.marks());
+    /// Ends the row: the marks of its present targets are the previous ones of the next frame.
+    pub(crate) fn end(&self, marks: &mut [Mark]) {
+        marks.copy_from_slice(&self.landmarks.now);
     }
 }
 
@@ -155,7 +160,7 @@ impl Shift {
     }
 
     /// Moves the values in `row` as the terminal moves its cells; uncovered ones become `unknown`.
-    pub(super) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
+    pub(crate) fn apply<T: Clone>(&self, row: &mut [T], unknown: T) {
         let stretch = &mut row[self.columns.clone()];
         match self.way {
             Way::Left => stretch.rotate_left(self.by),
@@ -170,33 +175,219 @@ fn sum(losses: &[Loss]) -> i32 {
     losses.iter().map(|&loss| i32::from(loss)).sum()
 }
 
+/// The marks of a row's targets, now and before.
+#[derive(Debug, Default)]
+struct Landmarks {
+    hashes: Vec<u32>,
+    now: Vec<Mark>,
+    /// With [`FARTHEST`] empty marks on either side.
+    before: Vec<Mark>,
+}
+
+/// The farthest detected move: content that moves faster has usually changed in other ways too.
+const FARTHEST: usize = 16;
+/// The number of places around a cell, with its own, at which a mark is looked for.
+const PLACES: usize = FARTHEST + 1 + FARTHEST;
+/// The number of moves that are tried for a row. Twice as many save half a byte in a hundred.
+const MOST_TRIED: usize = 2;
+/// This number of landmarks may agree by chance.
+const CHANCE: u16 = 2;
+
+impl Landmarks {
+    /// Finds the landmarks of a row with these targets and these previous marks.
+    fn find(&mut self, targets: &[PackedCell], before: &[Mark]) {
+        self.hashes.clear();
+        self.hashes.extend(targets.iter().map(|target| target.hash()));
+        self.now.clear();
+        self.now.extend(Mark::all(&self.hashes));
+        let nothing = Mark::NONE.before();
+        self.before.clear();
+        self.before.resize(FARTHEST, nothing);
+        self.before.extend(before.iter().map(|mark| mark.before()));
+        self.before.resize(FARTHEST + before.len() + FARTHEST, nothing);
+    }
+
+    /// The moves with the most votes.
+    fn likely_moves(&self) -> impl Iterator<Item = Move> {
+        let votes = self.votes();
+        let mut likely = [None; MOST_TRIED];
+        let mut most = [CHANCE; MOST_TRIED];
+        for by in 1..=FARTHEST {
+            for (way, count) in [(Way::Left, votes.left(by)), (Way::Right, votes.right(by))] {
+                if let Some(rank) = most.iter().position(|&most| count > most) {
+                    likely[rank..].rotate_right(1);
+                    most[rank..].rotate_right(1);
+                    (likely[rank], most[rank]) = (Some(Move { way, by }), count);
+                }
+            }
+        }
+        likely.into_iter().flatten()
+    }
+
+    /// Counts, for each distance, the landmarks that have an equal previous mark there.
+    fn votes(&self) -> Votes {
+        let mut votes = Votes([0; PLACES]);
+        let around = self.before.windows(PLACES);
+        let mut places = self.now.iter().copied().zip(around).filter(|&(now, _)| now != Mark::NONE);
+        for _ in 0..self.now.len().div_ceil(MOST_AT_ONCE) {
+            votes.add(places.by_ref().take(MOST_AT_ONCE));
+        }
+        votes
+    }
+
+    /// Moves the previous marks, after a shift.
+    fn shift(&mut self, shift: &Shift) {
+        let row = &mut self.before[FARTHEST..][..self.now.len()];
+        shift.apply(row, Mark::NONE.before());
+    }
+}
+
+/// The number of landmarks with an equal previous mark at each distance, from left to right. The one in the
+/// middle is their own place.
+struct Votes([u16; PLACES]);
+
+/// The number of votes that can be counted in eight bits.
+const MOST_AT_ONCE: usize = u8::MAX as usize;
+
+impl Votes {
+    /// Adds the votes of at most [`MOST_AT_ONCE`] landmarks, each with the previous marks around
+    /// it.
+    fn add<'a>(&mut self, places: impl Iterator<Item = (Mark, &'a [Mark])>) {
+        // One loop for both sides: the compiler would unroll a shorter one instead of counting sixteen
+        // places at once.
+        let mut votes = [0_u8; PLACES];
+        for (now, around) in places {
+            let around = around.first_chunk::<PLACES>();
+            let around = around.expect("there is as much on either side of every cell");
+            for (votes, &before) in votes.iter_mut().zip(around) {
+                *votes += u8::from(before == now);
+            }
+        }
+        widen(&mut self.0, &votes);
+    }
+
+    /// The number of landmarks that have moved to the left by this number of cells.
+    fn left(&self, by: usize) -> u16 {
+        self.0[FARTHEST + by]
+    }
+
+    /// The number of landmarks that have moved to the right by this number of cells.
+    fn right(&self, by: usize) -> u16 {
+        self.0[FARTHEST - by]
+    }
+}
+
+/// Adds votes to sums. When this was inlined, the compiler counted eight places at once instead of
+/// sixteen.
+#[inline(never)]
+fn widen(sums: &mut [u16; PLACES], votes: &[u8; PLACES]) {
+    for (sum, &votes) in sums.iter_mut().zip(votes) {
+        *sum += u16::from(votes);
+    }
+}
+
+/// The mark of a landmark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(crate) struct Mark(u8);
+
+impl Mark {
+    /// The mark of a cell that is equal to the one before it.
+    pub(crate) const NONE: Self = Self(0);
+
+    /// The same as a previous mark. `NONE` has another value there, so that no mark is equal to it.
+    fn before(self) -> Self {
+        Self(self.0.max(1))
+    }
+
+    /// The marks of a row's cells, from the hashes of their packed cells.
+    fn all(hashes: &[u32]) -> impl Iterator<Item = Self> {
+        let pairs = hashes.iter().zip(hashes.iter().skip(1));
+        let marks = pairs.map(|(&last, &hash)| {
+            let pair = last.rotate_left(5).wrapping_add(hash);
+            if last == hash { Self::NONE } else { Self(((pair >> 24) as u8).max(2)) }
+        });
+        // The cell before the first one is unknown, so that the first one is no landmark.
+        hashes.first().map(|_| Self::NONE).into_iter().chain(marks)
+    }
+}
+
+/// The approximate stretch with the largest saving, from the losses `now` and the losses if all
+/// cells had `moved`.
+///
+/// The search finds blocks first, and then moves the ends by cells. An exact search takes more time
+/// than its better result saves.
+fn best_stretch(now: &[Loss], moved: &[Loss]) -> Range<usize> {
+    let width = now.len().min(moved.len());
+    let (now, moved) = (&now[..width], &moved[..width]);
+    let best = best_blocks(now, moved);
+    let (first, last) = (best.start * BLOCK, best.end * BLOCK);
+    let at_start = first.saturating_sub(BLOCK)..(first + BLOCK).min(width);
+    let at_end = last.saturating_sub(BLOCK)..(last + BLOCK).min(width);
+    let gains = |range: Range<usize>| {
+        now[range.clone()].iter().zip(&moved[range]).map(|(now, moved)| now - moved)
+    };
+    let start = at_start.end - most_of(gains(at_start).rev());
+    let end = at_end.start + most_of(gains(at_end));
+    start..end.max(start)
+}
+
+/// The number of cells of a block.
+const BLOCK: usize = 8;
+
+/// The blocks with the largest saving.
+fn best_blocks(now: &[Loss], moved: &[Loss]) -> Range<usize> {
+    let ((now, rest_of_now), (moved, rest_of_moved)) =
+        (now.as_chunks::<BLOCK>(), moved.as_chunks::<BLOCK>());
+    let whole = now.iter().zip(moved).map(|(now, moved)| spared(now, moved));
+    let last = spared(rest_of_now, rest_of_moved);
+    let (mut start, mut sum) = (0, 0);
+    let (mut best, mut most) = (0..0, 0);
+    for (block, spared) in whole.chain([last]).enumerate() {
+        if sum <= 0 {
+            (start, sum) = (block, 0);
+        }
+        sum += i32::from(spared);
+        if sum > most {
+            (best, most) = (start..block + 1, sum);
+        }
+    }
+    best
+}
+
+/// The saving of a move in a block.
+#[inline]
+fn spared(now: &[Loss], moved: &[Loss]) -> Loss {
+    now.iter().zip(moved).map(|(now, moved)| now - moved).sum()
+}
+
+/// The length of the prefix of `gains` with the largest sum.
+fn most_of(gains: impl Iterator<Item = Loss>) -> usize {
+    let (mut sum, mut most, mut best) = (0, 0, 0);
+    for (count, gain) in (1..).zip(gains) {
+        sum += gain;
+        if sum > most {
+            (most, best) = (sum, count);
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
     use ratatui::style::{Color, Modifier};
 
-    use super::super::glyph_table::{Glyph, GlyphTable};
-    use super::super::packed_cell::PackedCell;
     use super::*;
+    use crate::terminal::cell_writer::packed_cell::{Glyph, GlyphTable, PackedCell};
 
     fn best(shown: &[PackedCell], wanted: &[PackedCell]) -> Option<Shift> {
-        let row = Row {
-            y: 0,
-            glyph_table: &GlyphTable::default(),
-            shown: &mut shown.to_vec(),
-            targets: wanted,
-            marks: &mut marks(shown),
-            wanted: &[],
-            intricate: &mut false,
-            exact: &mut false,
-            rested: 0,
-        };
         let mut shifts = Shifts::default();
         let lose = |from: usize, to: usize, losses: &mut Vec<Loss>| {
             let targets = shown[from..].iter().zip(&wanted[to..]);
             losses.extend(targets.map(|(shown, wanted)| CELL * Loss::from(shown != wanted)));
         };
-        shifts.begin(&row, lose);
+        shifts.begin(wanted, &marks(shown), lose);
         shifts.next(lose)
     }
 

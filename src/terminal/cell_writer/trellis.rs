@@ -13,36 +13,28 @@
 //! less than a motion of the cursor; to search these cells, too, took a fifth more instructions for
 //! the same bytes and error.
 //!
-//! A greedy pass was refused. It keeps each cell within a threshold and draws the others in the
-//! present colours if these are within it; it took 1.7 times the bytes at the same mean error at
+//! Rejected: a greedy pass, which keeps each cell within a threshold and draws the others in the
+//! present colours if these are within it. It took 1.7 times the bytes at the same mean error at
 //! high fidelity, and 2.3 times at low.
 
-mod branches;
-mod lanes;
-mod survivors;
-
-use self::branches::Branches;
-use self::lanes::{Labs, Lanes};
-use self::survivors::{Survivors, Turn, colors_of, key};
-use super::block_element::BlockElement;
-use super::ink::{Ink, Inks, Price};
+use super::block::{BlockElement, Shape};
+use super::ink::{Ink, Inks, Price, Telling};
 use super::palette::Palette;
-use super::shape::Shape;
 use super::style::{Shade, Style};
 
 /// The target of a cell: the colours of its halves, or of its character and its background.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
-    pub(super) inks: [Ink; 2],
-    /// The shape of a block; that of the halves for a character.
-    pub(super) shape: Shape,
+pub(crate) struct Wanted {
+    pub(crate) inks: [Ink; 2],
+    /// The shape of a block; [`Shape::HALF`] for a character.
+    pub(crate) shape: Shape,
     /// The bytes of its only glyph; `None` if any block element will do.
-    pub(super) character: Option<u8>,
+    pub(crate) character: Option<u8>,
 }
 
 /// The action on a cell that is not kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Action {
+pub(crate) enum Action {
     /// Draw it exactly.
     DrawExactly,
     /// Draw it as this block element, or a character by its own glyph, in this style.
@@ -54,24 +46,24 @@ pub(super) enum Action {
 const KEPT: usize = 4;
 
 /// The tables in which colours are looked up.
-pub(super) struct Store<'a> {
-    pub(super) inks: &'a mut Inks,
-    pub(super) palette: &'a mut Palette,
+pub(crate) struct Store<'a> {
+    pub(crate) inks: &'a mut Inks,
+    pub(crate) palette: &'a mut Palette,
 }
 
 /// The parameters that apply to a whole row.
 #[derive(Clone, Copy)]
-pub(super) struct Terms {
-    pub(super) price: Price,
+pub(crate) struct Terms {
+    pub(crate) price: Price,
     /// The terminal's style before the row.
-    pub(super) style: Option<Style>,
+    pub(crate) style: Option<Style>,
     /// Whether the terminal repeats characters.
-    pub(super) repeats: bool,
+    pub(crate) repeats: bool,
 }
 
 /// A search and its memory.
 #[derive(Debug, Default)]
-pub(super) struct Trellis {
+pub(crate) struct Trellis {
     /// The cells that at least one path draws.
     steps: Vec<Step>,
     actions: Vec<(u16, Action)>,
@@ -123,7 +115,7 @@ impl Trellis {
     /// Returns the best actions on the cells of a row, without the cells to keep. `keep` is the
     /// cost of keeping each cell. `wanted` returns the target of a cell, or `None` if it may only
     /// be drawn exactly.
-    pub(super) fn search(
+    pub(crate) fn search(
         &mut self,
         keep: &[[f32; 2]],
         wanted: impl Fn(usize, &mut Inks) -> Option<Wanted>,
@@ -241,3 +233,566 @@ impl Paths {
 /// The number of places for new colours of a cell: of its upper half, of its lower half, and one
 /// for both. It is the number of paths, so that the index of a path or a colour needs no check.
 const FRESH: usize = KEPT;
+
+/// A cell to draw.
+struct Branches<'a> {
+    wanted: &'a Wanted,
+    price: Price,
+    /// The prices of errors in the upper half and in the lower, or in the dots and the rest.
+    prices: [Price; 2],
+    /// The bytes of the glyph that shows both colours.
+    bytes: f32,
+    paths: &'a Paths,
+    x: u16,
+    repeats: bool,
+    /// The cost of each path to this cell, and the least of these.
+    start: Lanes,
+    least: f32,
+}
+
+/// The indices of the fresh colours.
+const UPPER: u8 = 0;
+const LOWER: u8 = 1;
+const BOTH: u8 = 2;
+
+/// The bytes of the sequences that set one colour and both, without the parameters.
+const ONE_COLOR: f32 = 3.0;
+const TWO_COLORS: f32 = 4.0;
+/// The fewest bytes of a colour's parameters.
+const SHORTEST_COLOR: f32 = 2.0;
+/// The fewest bytes of a palette entry's parameters.
+const SHORTEST_ENTRY: f32 = 7.0;
+/// The approximate bytes of one repetition of the last block.
+const REPETITION: f32 = 0.5;
+
+impl<'a> Branches<'a> {
+    #[inline]
+    fn new(wanted: &'a Wanted, terms: Terms, paths: &'a Paths, x: u16) -> Self {
+        let Terms { price, repeats, .. } = terms;
+        let mut start = [0.0; KEPT];
+        add_motions(paths, x, &mut start);
+        let least = least(&start);
+        let (prices, bytes) = match wanted.character {
+            Some(bytes) => ([price; 2], f32::from(bytes)),
+            None if wanted.shape == Shape::HALF => ([price; 2], HALF_BLOCK),
+            None => (wanted.shape.parts().map(|parts| price.of_parts(parts)), wanted.shape.bytes()),
+        };
+        Self { wanted, price, prices, bytes, paths, x, repeats, start, least }
+    }
+
+    /// Draws in the terminal's present colours, in one new colour and in two. A cell that is
+    /// already right is drawn again only if that is a shorter way to the next cell.
+    #[inline]
+    fn draw(&mut self, survivors: &mut Survivors, store: &mut Store) {
+        let is_right = survivors.is_right();
+        if is_right {
+            for (start, &cursor) in self.start.iter_mut().zip(&self.paths.cursor) {
+                *start = if cursor == f32::from(self.x) { *start } else { f32::INFINITY };
+            }
+            self.least = least(&self.start);
+        }
+        let shortest = if self.repeats { REPETITION } else { SPACE };
+        if !survivors.would_keep(self.least + shortest) {
+            return;
+        }
+        let (mut errors, mut blocks) = (Errors::default(), Blocks::default());
+        let Self { wanted, prices, bytes, .. } = self;
+        measure(&self.paths.labs, &wanted.inks, prices, *bytes, &mut errors, &mut blocks);
+        match self.wanted.character {
+            Some(_) => self.draw_character(&errors, survivors),
+            None => self.draw_in_old_colors(&mut blocks, survivors),
+        }
+        if !is_right && survivors.would_keep(self.least + ONE_COLOR + SPACE + SHORTEST_COLOR) {
+            self.draw_in_new_colors(&errors, survivors, store);
+        }
+    }
+
+    /// Draws the character in the old colours.
+    #[inline]
+    fn draw_character(&self, errors: &Errors, survivors: &mut Survivors) {
+        let costs = sum(&sum(&self.start, &errors.text_above), &errors.ground_below);
+        self.offer(survivors, &plus(&costs, self.bytes), BlockElement::Upper, Told::NOTHING);
+    }
+
+    #[inline]
+    fn draw_in_old_colors(&self, blocks: &mut Blocks, survivors: &mut Survivors) {
+        if self.repeats {
+            self.repeat(blocks);
+        }
+        let mut costs = [0.0; KEPT];
+        choose(blocks, &self.start, &mut costs);
+        if !survivors.would_keep(least(&costs)) {
+            return;
+        }
+        for path in 0..KEPT {
+            if survivors.would_keep(costs[path]) {
+                let Blocks { space, full, upper, lower } = &*blocks;
+                let (flat, flat_glyph) = if full[path] < space[path] {
+                    (full[path], BlockElement::Full)
+                } else {
+                    (space[path], BlockElement::Space)
+                };
+                let (split, split_glyph) = if lower[path] < upper[path] {
+                    (lower[path], BlockElement::Lower)
+                } else {
+                    (upper[path], BlockElement::Upper)
+                };
+                let element = if split < flat { split_glyph } else { flat_glyph };
+                self.add(survivors, costs[path], path, element, Told::NOTHING);
+            }
+        }
+    }
+
+    /// Reduces the cost of repeating the last block.
+    #[inline]
+    fn repeat(&self, Blocks { space, full, upper, lower }: &mut Blocks) {
+        let is_same = self.paths.last_shape == self.wanted.shape;
+        for path in 0..KEPT {
+            if self.paths.cursor[path] != f32::from(self.x) {
+                continue;
+            }
+            match self.paths.last[path] {
+                Some(BlockElement::Space) => space[path] += REPETITION - SPACE,
+                Some(BlockElement::Full) => full[path] += REPETITION - HALF_BLOCK,
+                Some(BlockElement::Upper) if is_same => upper[path] += REPETITION - self.bytes,
+                Some(BlockElement::Lower) if is_same => lower[path] += REPETITION - self.bytes,
+                _ => {}
+            }
+        }
+    }
+
+    fn draw_in_new_colors(&self, errors: &Errors, survivors: &mut Survivors, store: &mut Store) {
+        let [upper, lower] = self.wanted.inks;
+        let (bytes_above, bytes_below) = (upper.bytes(), lower.bytes());
+        let shortest = shortest(min(bytes_above, bytes_below), store.palette);
+        if !survivors.would_keep(self.least + ONE_COLOR + SPACE + shortest) {
+            return;
+        }
+        let tellings = [
+            store.palette.telling(upper, bytes_above, self.prices[0]),
+            store.palette.telling(lower, bytes_below, self.prices[1]),
+        ];
+        survivors.fresh[usize::from(UPPER)] = tellings[0].ink.lab;
+        survivors.fresh[usize::from(LOWER)] = tellings[1].ink.lab;
+        if self.wanted.character.is_none() {
+            self.draw_in_one_for_both(survivors, &tellings, store);
+        }
+        self.draw_in_one_color(errors, survivors, &tellings);
+        self.draw_in_two_colors(survivors, &tellings);
+    }
+
+    #[inline]
+    fn draw_in_one_color(
+        &self,
+        errors: &Errors,
+        survivors: &mut Survivors,
+        [upper, lower]: &[Telling; 2],
+    ) {
+        let half = ONE_COLOR + self.bytes;
+        let (above, below) = (half + upper.cost(), half + lower.cost());
+        let (upper, lower) = (upper.ink.shade, lower.ink.shade);
+        let Errors { text_above, text_below, ground_above, ground_below } = errors;
+        let mut offer = |element, cost: f32, errors: &Lanes, told| {
+            if survivors.would_keep(self.least + cost) {
+                self.offer(survivors, &plus(&sum(&self.start, errors), cost), element, told);
+            }
+        };
+        offer(BlockElement::Upper, above, ground_below, Told::NOTHING.text(upper, UPPER));
+        offer(BlockElement::Upper, below, text_above, Told::NOTHING.ground(lower, LOWER));
+        if self.wanted.character.is_none() {
+            offer(BlockElement::Lower, above, text_below, Told::NOTHING.ground(upper, UPPER));
+            offer(BlockElement::Lower, below, ground_above, Told::NOTHING.text(lower, LOWER));
+        }
+    }
+
+    /// Draws both halves in one new colour.
+    #[inline]
+    fn draw_in_one_for_both(
+        &self,
+        survivors: &mut Survivors,
+        [above, below]: &[Telling; 2],
+        store: &mut Store,
+    ) {
+        let [upper, lower] = self.wanted.inks;
+        self.offer_for_both(survivors, above, UPPER);
+        if upper.shade == lower.shade {
+            return;
+        }
+        self.offer_for_both(survivors, below, LOWER);
+        // Halfway between two colours, the errors add up to at least their distance.
+        let apart = upper.distance(lower);
+        let least = ONE_COLOR
+            + SPACE
+            + SHORTEST_COLOR
+            + apart * min(self.prices[0].bytes, self.prices[1].bytes);
+        let is_needed = apart > self.price.farthest && apart <= 2.0 * self.price.farthest;
+        if is_needed && survivors.would_keep(self.least + least) {
+            let both = store.inks.between(upper, lower);
+            let both = store.palette.telling(both, both.bytes(), self.price);
+            survivors.fresh[usize::from(BOTH)] = both.ink.lab;
+            self.offer_for_both(survivors, &both, BOTH);
+        }
+    }
+
+    #[inline]
+    fn offer_for_both(&self, survivors: &mut Survivors, telling: &Telling, source: u8) {
+        let Telling { ink, bytes, .. } = *telling;
+        let [upper, lower] = self.wanted.inks;
+        let error = self.prices[0].of(ink, upper) + self.prices[1].of(ink, lower);
+        let cost = ONE_COLOR + SPACE + bytes + error;
+        if survivors.would_keep(self.least + cost) {
+            let told = Told::NOTHING.ground(ink.shade, source);
+            self.offer(survivors, &plus(&self.start, cost), BlockElement::Space, told);
+        }
+    }
+
+    /// Draws in two new colours. All paths then lead to the same state, so that only the cheapest
+    /// is added.
+    #[inline]
+    fn draw_in_two_colors(&self, survivors: &mut Survivors, [upper, lower]: &[Telling; 2]) {
+        let cost = self.least + TWO_COLORS + upper.cost() + lower.cost() + self.bytes;
+        if !survivors.would_keep(cost) {
+            return;
+        }
+        let (upper, lower) = (upper.ink.shade, lower.ink.shade);
+        let path = (0..KEPT).find(|&path| self.start[path] == self.least).unwrap_or(0);
+        let told = Told::NOTHING.text(upper, UPPER).ground(lower, LOWER);
+        self.add(survivors, cost, path, BlockElement::Upper, told);
+        if self.wanted.character.is_none() && survivors.would_keep(cost) {
+            let told = Told::NOTHING.text(lower, LOWER).ground(upper, UPPER);
+            self.add(survivors, cost, path, BlockElement::Lower, told);
+        }
+    }
+
+    /// Adds the paths that would survive if they draw `element` at these costs.
+    #[inline]
+    fn offer(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+        if survivors.would_keep(least(costs)) {
+            self.add_all(survivors, costs, element, told);
+        }
+    }
+
+    /// Adds them if at least one would survive. Not inlined, so that the check before it is.
+    #[inline(never)]
+    fn add_all(&self, survivors: &mut Survivors, costs: &Lanes, element: BlockElement, told: Told) {
+        for (path, &cost) in costs.iter().enumerate() {
+            if survivors.would_keep(cost) {
+                self.add(survivors, cost, path, element, told);
+            }
+        }
+    }
+
+    /// Adds a path that draws `element`.
+    #[expect(clippy::inline_always, reason = "a call would take a quarter of its time")]
+    #[inline(always)]
+    fn add(
+        &self,
+        survivors: &mut Survivors,
+        cost: f32,
+        path: usize,
+        element: BlockElement,
+        told: Told,
+    ) {
+        let key = told.key(self.paths.keys[path], self.x + 1);
+        let sources = told.sources(path);
+        let turn = Turn { kind: StepKind::Draw(element), before: path as u8, sources };
+        survivors.add(cost, key, turn);
+    }
+}
+
+/// The fewest parameter bytes of a colour that takes `bytes` itself, or of an entry in place of it.
+#[inline]
+fn shortest(bytes: f32, palette: &Palette) -> f32 {
+    if palette.is_on() { min(bytes, SHORTEST_ENTRY) } else { bytes }
+}
+
+// The longer of the following functions are not inlined: on their own they compile to vector instructions, four paths
+// at a time. When they were inlined, the compiler split the paths, and a cell took three times the instructions.
+
+/// A number for each path.
+type Lanes = [f32; KEPT];
+
+/// L*, a* and b* of a colour for each path.
+type Labs = [Lanes; 3];
+
+/// The bytes of a glyph of one colour, and of two.
+const SPACE: f32 = 1.0;
+const HALF_BLOCK: f32 = 3.0;
+
+/// The costs, path by path, of showing the text or the background colour in each half.
+#[derive(Default)]
+struct Errors {
+    text_above: Lanes,
+    text_below: Lanes,
+    ground_above: Lanes,
+    ground_below: Lanes,
+}
+
+/// The costs, path by path, of drawing each block in the old colours.
+#[derive(Default)]
+struct Blocks {
+    space: Lanes,
+    full: Lanes,
+    upper: Lanes,
+    lower: Lanes,
+}
+
+/// The costs of the paths, plus the approximate bytes to move their cursors to column `x`.
+#[inline(never)]
+fn add_motions(paths: &Paths, x: u16, start: &mut Lanes) {
+    let x = f32::from(x);
+    let is_above = |distance: f32, least: f32| if distance > least { 1.0 } else { 0.0 };
+    for (path, start) in start.iter_mut().enumerate() {
+        let distance = x - paths.cursor[path];
+        let digits = is_above(distance, 1.0) + is_above(distance, 9.0) + is_above(distance, 99.0);
+        *start = paths.cost[path] + 3.0 * is_above(distance, 0.0) + digits;
+    }
+}
+
+/// Measures the errors of the paths' colours against the wanted ones, and the costs of the blocks
+/// in them. One function does both, so that no number is stored and loaded again.
+#[inline(never)]
+fn measure(
+    labs: &[Labs; 2],
+    wanted: &[Ink; 2],
+    prices: &[Price; 2],
+    bytes: f32,
+    errors: &mut Errors,
+    blocks: &mut Blocks,
+) {
+    let [text, ground] = labs;
+    let [upper, lower] = wanted;
+    let &[above, below] = prices;
+    for path in 0..KEPT {
+        let of = |[ls, as_, bs]: &Labs, ink: &Ink, price: Price| {
+            let [l, a, b] = [ls[path] - ink.lab[0], as_[path] - ink.lab[1], bs[path] - ink.lab[2]];
+            price.of_distance((l * l + a * a + b * b).sqrt())
+        };
+        let (text_above, text_below) = (of(text, upper, above), of(text, lower, below));
+        let (ground_above, ground_below) = (of(ground, upper, above), of(ground, lower, below));
+        errors.text_above[path] = text_above;
+        errors.text_below[path] = text_below;
+        errors.ground_above[path] = ground_above;
+        errors.ground_below[path] = ground_below;
+        blocks.space[path] = ground_above + ground_below + SPACE;
+        blocks.full[path] = text_above + text_below + HALF_BLOCK;
+        blocks.upper[path] = text_above + ground_below + bytes;
+        blocks.lower[path] = ground_above + text_below + bytes;
+    }
+}
+
+/// The cost of the cheapest block.
+#[inline(never)]
+fn choose(blocks: &Blocks, start: &Lanes, costs: &mut Lanes) {
+    let Blocks { space, full, upper, lower } = blocks;
+    for path in 0..KEPT {
+        let (flat, split) = (min(space[path], full[path]), min(upper[path], lower[path]));
+        costs[path] = start[path] + min(flat, split);
+    }
+}
+
+#[inline]
+fn sum(one: &Lanes, other: &Lanes) -> Lanes {
+    std::array::from_fn(|path| one[path] + other[path])
+}
+
+#[inline]
+fn plus(one: &Lanes, other: f32) -> Lanes {
+    one.map(|one| one + other)
+}
+
+/// The least of all costs.
+#[inline]
+fn least(costs: &Lanes) -> f32 {
+    min(min(costs[0], costs[1]), min(costs[2], costs[3]))
+}
+
+/// The lesser of two numbers, in one instruction; `f32::min` also tests for NaN.
+#[inline]
+fn min(one: f32, other: f32) -> f32 {
+    if one < other { one } else { other }
+}
+
+/// The cheapest paths past a cell so far. No two lead to the same colours and cursor column.
+struct Survivors {
+    cost: Lanes,
+    turns: [Turn; KEPT],
+    /// The states that they lead to.
+    keys: [u64; KEPT],
+    /// L*, a* and b* of the new colours.
+    fresh: [[f32; 3]; FRESH],
+    /// The cost of keeping the cell.
+    keep: f32,
+    /// A path survives only if it costs less than this.
+    highest: f32,
+    /// The index of the most expensive one.
+    worst: usize,
+    is_changed: bool,
+}
+
+/// The action of a path on a cell.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    kind: StepKind,
+    before: u8,
+    /// The sources of the text and background colours: below [`KEPT`] the paths before, from there
+    /// on the fresh colours.
+    sources: [u8; 2],
+}
+
+/// The turns of paths that all keep the cell.
+const KEEP: [Turn; KEPT] = {
+    let mut turns = [Turn { kind: StepKind::Keep, before: 0, sources: [0; 2] }; KEPT];
+    let mut path = 0;
+    while path < KEPT {
+        turns[path].before = path as u8;
+        turns[path].sources = [path as u8; 2];
+        path += 1;
+    }
+    turns
+};
+
+impl Survivors {
+    /// The paths themselves, before any cell.
+    fn of(paths: &Paths) -> Self {
+        Self {
+            cost: paths.cost,
+            turns: KEEP,
+            keys: paths.keys,
+            fresh: [[0.0; 3]; FRESH],
+            highest: 0.0,
+            keep: 0.0,
+            worst: 0,
+            is_changed: false,
+        }
+    }
+
+    /// Begins with all paths, which keep the cell at this cost in bytes.
+    #[inline]
+    fn begin(&mut self, paths: &Paths, keep: f32) {
+        for (cost, before) in self.cost.iter_mut().zip(&paths.cost) {
+            *cost = before + keep;
+        }
+        self.keep = keep;
+        self.keys = paths.keys;
+        self.turns = KEEP;
+        self.is_changed = false;
+        self.find_worst();
+    }
+
+    /// Whether the cell shows its target exactly.
+    #[inline]
+    fn is_right(&self) -> bool {
+        self.keep == 0.0
+    }
+
+    /// Whether a path of this cost would survive.
+    #[inline]
+    fn would_keep(&self, cost: f32) -> bool {
+        cost < self.highest
+    }
+
+    /// Whether any path was added.
+    #[inline]
+    fn is_changed(&self) -> bool {
+        self.is_changed
+    }
+
+    /// Adds a path that is cheaper than the most expensive survivor.
+    #[inline]
+    fn add(&mut self, cost: f32, key: u64, turn: Turn) {
+        let mut place = self.worst;
+        for path in 0..KEPT {
+            place = if self.keys[path] == key { path } else { place };
+        }
+        if cost < self.cost[place] {
+            self.is_changed = true;
+            self.cost[place] = cost;
+            self.keys[place] = key;
+            self.turns[place] = turn;
+            self.find_worst();
+        }
+    }
+
+    #[inline]
+    fn find_worst(&mut self) {
+        let cost = &self.cost;
+        let one = usize::from(cost[1] > cost[0]);
+        let other = 2 + usize::from(cost[3] > cost[2]);
+        self.worst = if cost[other] > cost[one] { other } else { one };
+        self.highest = min(cost[self.worst], least(cost) + BEAM);
+    }
+}
+
+/// A path does not survive if it costs this many bytes more than the cheapest.
+const BEAM: f32 = 24.0;
+
+/// The key of a state: the text and background colours, and the cursor column.
+#[inline]
+fn key([text, ground]: [Shade; 2], cursor: u16) -> u64 {
+    u64::from(text.in_bits()) << TEXT
+        | u64::from(ground.in_bits()) << GROUND
+        | u64::from(cursor) & CURSOR
+}
+
+/// The text and background colours of a key.
+#[inline]
+fn colors_of(key: u64) -> [Shade; 2] {
+    [TEXT, GROUND].map(|place| Shade::from_bits((key >> place) as u32))
+}
+
+/// The places of the colours in a key, and the bits of the cursor.
+const TEXT: u32 = GROUND + Shade::BITS;
+const GROUND: u32 = 12;
+const CURSOR: u64 = (1 << GROUND) - 1;
+
+/// The colours that a branch sets: the bits of a key that they change, and the indices of fresh
+/// colours.
+#[derive(Clone, Copy)]
+struct Told {
+    kept: u64,
+    set: u64,
+    /// For text and background, the bits of a path's index to keep, and the bits to set.
+    kept_sources: [u8; 2],
+    set_sources: [u8; 2],
+}
+
+impl Told {
+    const NOTHING: Self =
+        Self { kept: !CURSOR, set: 0, kept_sources: [u8::MAX; 2], set_sources: [0; 2] };
+
+    /// Adds this colour of the text.
+    #[inline]
+    fn text(self, shade: Shade, source: u8) -> Self {
+        self.with(shade, TEXT, 0, source)
+    }
+
+    /// Adds this colour of the background.
+    #[inline]
+    fn ground(self, shade: Shade, source: u8) -> Self {
+        self.with(shade, GROUND, 1, source)
+    }
+
+    #[inline]
+    fn with(self, shade: Shade, place: u32, which: usize, source: u8) -> Self {
+        const SHADE: u64 = (1 << Shade::BITS) - 1;
+        let Self { mut kept_sources, mut set_sources, .. } = self;
+        (kept_sources[which], set_sources[which]) = (0, KEPT as u8 + source);
+        let kept = self.kept & !(SHADE << place);
+        let set = self.set | u64::from(shade.in_bits()) << place;
+        Self { kept, set, kept_sources, set_sources }
+    }
+
+    /// The key after `key`, with the cursor in this column.
+    #[inline]
+    fn key(self, key: u64, cursor: u16) -> u64 {
+        key & self.kept | self.set | u64::from(cursor) & CURSOR
+    }
+
+    /// The sources of the colours after `path`.
+    #[inline]
+    fn sources(self, path: usize) -> [u8; 2] {
+        let [text, ground] = self.kept_sources.map(|kept| kept & path as u8);
+        [text | self.set_sources[0], ground | self.set_sources[1]]
+    }
+}

@@ -2,12 +2,9 @@
 
 use std::time::Duration;
 
-use super::fit::Fit;
-use super::min_round_trip::MinRoundTrip;
-
 /// The estimates of a link.
 #[derive(Debug, Default)]
-pub(super) struct Link {
+pub(crate) struct Link {
     min_round_trip: Option<MinRoundTrip>,
     last_round_trip: Option<Duration>,
     answered_at: Duration,
@@ -54,7 +51,7 @@ const MAX_SECONDS: f64 = 86_400.0;
 
 impl Link {
     /// Updates the estimates with the answer to a frame.
-    pub(super) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
+    pub(crate) fn answered(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         let round_trip = now.saturating_sub(sent_at);
         let minimum = MinRoundTrip::with(self.min_round_trip, now, round_trip);
         // The link could begin to carry it when the first byte could arrive and the frame before it
@@ -67,7 +64,7 @@ impl Link {
     }
 
     /// Updates the estimates with a frame that the system has accepted.
-    pub(super) fn written(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
+    pub(crate) fn written(&mut self, now: Duration, sent_at: Duration, bytes: usize) {
         self.add_transfer(now, bytes, now.saturating_sub(sent_at));
         self.answered_at = now;
     }
@@ -104,17 +101,17 @@ impl Link {
     }
 
     /// Whether the link has carried a frame.
-    pub(super) fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.fit.mean().is_some()
     }
 
     /// Whether an answer can arrive after this short a time.
-    pub(super) fn is_plausible(&self, round_trip: Duration) -> bool {
+    pub(crate) fn is_plausible(&self, round_trip: Duration) -> bool {
         self.min_round_trip.is_none_or(|minimum| round_trip >= minimum.get() / 2)
     }
 
     /// The round-trip time of the latest answer.
-    pub(super) fn last_round_trip(&self) -> Option<Duration> {
+    pub(crate) fn last_round_trip(&self) -> Option<Duration> {
         self.last_round_trip
     }
 
@@ -127,7 +124,7 @@ impl Link {
     }
 
     /// The maximum of bytes a second that should be sent; `None` for no maximum.
-    pub(super) fn usable_rate(&self) -> Option<f64> {
+    pub(crate) fn usable_rate(&self) -> Option<f64> {
         let seconds = self.seconds_per_byte();
         let rate = (seconds > 0.0).then(|| seconds.recip());
         let is_past = |at| self.answered_at.saturating_sub(at) > AFTER_STALL;
@@ -140,30 +137,30 @@ impl Link {
     }
 
     /// The time for which this number of bytes occupies the link.
-    pub(super) fn time_for(&self, bytes: usize) -> Duration {
+    pub(crate) fn time_for(&self, bytes: usize) -> Duration {
         Duration::from_secs_f64((bytes as f64 * self.seconds_per_byte()).min(MAX_SECONDS))
     }
 
     /// The expected round-trip time of a frame of mean size that no other frame delays.
-    pub(super) fn expected_round_trip(&self) -> Duration {
+    pub(crate) fn expected_round_trip(&self) -> Duration {
         let bytes = self.fit.mean().map_or(0.0, |(bytes, _)| bytes);
         self.min_round_trip() + self.time_for(bytes as usize)
     }
 
     /// The mean excess of a round trip over its expected time.
-    pub(super) fn jitter(&self) -> Duration {
+    pub(crate) fn jitter(&self) -> Duration {
         Duration::from_secs_f64(self.fit.line().map_or(0.0, |line| line.constant))
     }
 
     /// The maximum excess of a round trip over its mean, unless the link has changed.
-    pub(super) fn jitter_range(&self) -> Duration {
+    pub(crate) fn jitter_range(&self) -> Duration {
         let deviation = self.fit.line().map_or(0.0, |line| line.deviation);
         Duration::from_secs_f64(LATE_DEVIATIONS * deviation)
     }
 
     /// The latest time at which the answer to the oldest frame in flight arrives, unless the link
     /// has changed; `None` if the link is unknown.
-    pub(super) fn latest_answer(&self, sent_at: Duration, bytes: usize) -> Option<Duration> {
+    pub(crate) fn latest_answer(&self, sent_at: Duration, bytes: usize) -> Option<Duration> {
         let begun = (sent_at + self.min_round_trip()).max(self.answered_at);
         let time = self.time_for(bytes) + self.jitter() + self.jitter_range();
         self.is_known().then(|| begun + time + CLOCK_GRANULARITY)
@@ -171,5 +168,115 @@ impl Link {
 
     fn min_round_trip(&self) -> Duration {
         self.min_round_trip.map(MinRoundTrip::get).unwrap_or_default()
+    }
+}
+
+/// The time that a link takes for a frame, as a function of its bytes: a line through recent frames, by sums over them
+/// in bytes and seconds.
+///
+/// A frame of b bytes takes c + b / rate. Weighted least squares finds both coefficients, with weights that fall
+/// exponentially with age (Haykin, *Adaptive Filter Theory*, "recursive least squares"). Google's congestion control
+/// estimates the same pair with a Kalman filter over differences (draft-alvestrand-rmcat-congestion, "arrival-time
+/// filter").
+///
+/// Frames of one size do not determine c. A point at 0 bytes and 0 seconds represents the expectation that there is no
+/// jitter. Its weight is small, and frames of different sizes outweigh it.
+///
+/// Rejected: the quotient of bytes and time as the rate. Jitter then lowers the rate, so that frames become smaller and
+/// jitter lowers it more, until frames are as small as possible.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fit {
+    weight: f64,
+    bytes: f64,
+    seconds: f64,
+    bytes_squared: f64,
+    products: f64,
+    seconds_squared: f64,
+}
+
+/// The line, in seconds and seconds a byte.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    /// The time of a frame of 0 bytes.
+    constant: f64,
+    per_byte: f64,
+    /// The slope of the line through the origin, which is the largest possible slope.
+    through_origin: f64,
+    /// The standard deviation of frames from the line.
+    deviation: f64,
+}
+
+/// The weight of the past after one more frame.
+const FORGETTING_FACTOR: f64 = 0.97;
+/// The weight of the point at the origin, relative to the latest frame's.
+const ORIGIN_WEIGHT: f64 = 0.25;
+
+impl Fit {
+    /// Adds a frame.
+    fn add(&mut self, bytes: f64, seconds: f64) {
+        self.weight = self.weight * FORGETTING_FACTOR + 1.0;
+        self.bytes = self.bytes * FORGETTING_FACTOR + bytes;
+        self.seconds = self.seconds * FORGETTING_FACTOR + seconds;
+        self.bytes_squared = self.bytes_squared * FORGETTING_FACTOR + bytes * bytes;
+        self.products = self.products * FORGETTING_FACTOR + bytes * seconds;
+        self.seconds_squared = self.seconds_squared * FORGETTING_FACTOR + seconds * seconds;
+    }
+
+    /// The mean bytes and seconds of a frame; `None` if there was no frame.
+    fn mean(&self) -> Option<(f64, f64)> {
+        (self.weight > 0.0).then(|| (self.bytes / self.weight, self.seconds / self.weight))
+    }
+
+    /// The line, with neither coefficient below zero; `None` if there was no frame.
+    fn line(&self) -> Option<Line> {
+        let (mean_bytes, mean_seconds) = self.mean()?;
+        let weight = self.weight + ORIGIN_WEIGHT;
+        let (center_bytes, center_seconds) = (self.bytes / weight, self.seconds / weight);
+        let variance = self.bytes_squared - center_bytes * self.bytes;
+        let covariance = self.products - center_bytes * self.seconds;
+        if variance <= 0.0 {
+            return None;
+        }
+        let through_origin = mean_seconds / mean_bytes;
+        let per_byte = (covariance / variance).clamp(0.0, through_origin);
+        let constant = center_seconds - per_byte * center_bytes;
+        let total = self.seconds_squared - center_seconds * self.seconds;
+        let residual = (total - 2.0 * per_byte * covariance + per_byte * per_byte * variance)
+            .max(0.0)
+            / weight;
+        let deviation = residual.sqrt();
+        Some(Line { constant: constant.max(0.0), per_byte, through_origin, deviation })
+    }
+}
+
+/// The minimum of recent round-trip times, of this half of a window and of the one before it: the delay of the link
+/// in both directions, without queues.
+///
+/// The minimum of all times would stay wrong after the route has become longer. This is the windowed minimum filter of
+/// BBR (draft-cardwell-iccrg-bbr-congestion-control, "`BBR.min_rtt`").
+#[derive(Clone, Copy, Debug)]
+struct MinRoundTrip {
+    since: Duration,
+    current: Duration,
+    previous: Duration,
+}
+
+/// The length of half of the window.
+const HALF_WINDOW: Duration = Duration::from_secs(30);
+
+impl MinRoundTrip {
+    /// The minimum after a `round_trip` that ended at `now`.
+    fn with(before: Option<Self>, now: Duration, round_trip: Duration) -> Self {
+        match before {
+            None => Self { since: now, current: round_trip, previous: round_trip },
+            Some(old) if now.saturating_sub(old.since) > HALF_WINDOW => {
+                Self { since: now, current: round_trip, previous: old.current }
+            }
+            Some(old) => Self { current: old.current.min(round_trip), ..old },
+        }
+    }
+
+    fn get(self) -> Duration {
+        self.current.min(self.previous)
     }
 }

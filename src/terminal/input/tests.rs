@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::super::key::{Key, Modifiers, Phase};
-use super::super::mouse::{MouseButton, MouseEventKind};
 use super::*;
+use crate::terminal::event::{MouseButton, MouseEventKind};
 use crate::terminal::known::known;
 
 const PLAIN: Modifiers = Modifiers { shift: false, control: false, alt: false };

@@ -6,7 +6,7 @@
 
 /// The kinds of unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     /// A character, possibly after an escape; an escape alone; or a function key in `ESC O`.
     Key,
     /// `ESC [` up to its final byte.
@@ -31,7 +31,7 @@ const BELL: u8 = 0x07;
 
 /// Divides bytes into units.
 #[derive(Debug, Default)]
-pub(super) struct Cutter {
+pub(crate) struct Cutter {
     state: State,
     bytes: Vec<u8>,
     overlong: bool,
@@ -81,7 +81,7 @@ enum Step {
 
 impl Cutter {
     /// Adds one byte, and calls `take` with the unit that it completes, if any.
-    pub(super) fn push(&mut self, byte: u8, take: &mut impl FnMut(Kind, &[u8])) {
+    pub(crate) fn push(&mut self, byte: u8, take: &mut impl FnMut(Kind, &[u8])) {
         match step(self.state, byte) {
             Step::Continue(next) => {
                 self.state = next;
@@ -113,7 +113,7 @@ impl Cutter {
     }
 
     /// The state of the incomplete unit.
-    pub(super) fn rest(&self) -> Rest {
+    pub(crate) fn rest(&self) -> Rest {
         match self.state {
             State::Ground => Rest::Nothing,
             State::Escape | State::SingleShift | State::ControlSequenceStart => Rest::PerhapsKey,
@@ -124,7 +124,7 @@ impl Cutter {
 
     /// Ends the wait for the rest of a unit: a possible key is taken as one, any other unit is
     /// dropped.
-    pub(super) fn give_up(&mut self, take: &mut impl FnMut(Kind, &[u8])) {
+    pub(crate) fn give_up(&mut self, take: &mut impl FnMut(Kind, &[u8])) {
         if self.rest() == Rest::PerhapsKey {
             take(Kind::Key, &self.bytes);
         }
@@ -148,7 +148,7 @@ impl Cutter {
 
 /// The state of an incomplete unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rest {
+pub(crate) enum Rest {
     /// No unit: the last byte completed one.
     Nothing,
     /// An escape, or one and a character: the start of a sequence, or a key by itself.

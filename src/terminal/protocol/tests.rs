@@ -1,6 +1,6 @@
 use super::*;
-use crate::canvas::Canvas;
 use crate::terminal::{Key, KeyEvent};
+use crate::tui::canvas::Canvas;
 use ratatui::style::Color;
 
 const ENTERED: &str = "\x1b[?1049h";
@@ -249,4 +249,28 @@ fn a_terminal_is_known_by_its_name() {
     assert_eq!(protocol.next_event(), Some(Event::Identified));
     assert_eq!(protocol.glyph_support(), GlyphSet::Octant);
     assert_eq!(protocol.shade_ink(), ShadeInk::Dots);
+}
+
+const OWN: [u16; 3] = [0xeeee; 3];
+const DEFINED: [u16; 3] = sequence::DEFINED;
+
+fn after(reports: &[[u16; 3]]) -> PaletteProbe {
+    reports.iter().fold(PaletteProbe::default(), |palette, color| palette.after_report(*color))
+}
+
+#[test]
+fn a_palette_is_usable_that_is_defined_and_reset() {
+    assert_eq!(after(&[OWN, DEFINED, OWN]), PaletteProbe::Reset);
+    for reports in [
+        &[OWN][..],
+        &[OWN, DEFINED],
+        &[OWN, OWN],
+        &[OWN, OWN, OWN],
+        &[OWN, DEFINED, DEFINED],
+        &[OWN, [0; 3], OWN],
+        &[DEFINED, DEFINED, OWN],
+        &[OWN, DEFINED, OWN, OWN],
+    ] {
+        assert_ne!(after(reports), PaletteProbe::Reset, "{reports:x?}");
+    }
 }

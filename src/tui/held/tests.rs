@@ -1,9 +1,5 @@
-mod typist;
-
 use proptest::prelude::*;
-use typist::Typist;
 
-use super::keyboard::Keyboard;
 use super::*;
 
 /// Delays in milliseconds, and repetitions per second.
@@ -324,6 +320,22 @@ fn a_press_is_unclear_if_it_may_be_a_repetition() {
     }
 }
 
+fn names(keys: &[(Intent, Hold)]) -> Vec<&'static str> {
+    wanted(keys.iter().copied()).iter().map(Intent::name).collect()
+}
+
+#[test]
+fn a_tap_turns_slowly_and_does_not_run() {
+    use Hold::{Held, Tap, Unknown};
+    use Intent::{Duck, FineLeft, Forward, Run, TurnLeft};
+    assert_eq!(names(&[(TurnLeft, Tap)]), ["turn-left", "aim"]);
+    assert_eq!(names(&[(TurnLeft, Held)]), ["turn-left"]);
+    assert_eq!(names(&[(TurnLeft, Unknown), (Forward, Unknown)]), [""; 0]);
+    assert_eq!(names(&[(Forward, Tap), (Run, Held)]), ["forward"]);
+    assert_eq!(names(&[(Forward, Held), (Run, Held)]), ["forward", "run"]);
+    assert_eq!(names(&[(Duck, Unknown), (FineLeft, Held)]), ["duck"]);
+}
+
 proptest! {
     /// For any bytes, nothing panics, all keys come up, and memory is bounded.
     #[test]
@@ -340,5 +352,89 @@ proptest! {
         held.advance(at(now + 3000));
         prop_assert_eq!(held.iter().count(), 0);
         prop_assert_eq!((held.next_expiry(), held.has_taps()), (None, false));
+    }
+}
+
+/// A simulated keyboard at a terminal that reports no releases: the bytes that it sends. One key repeats at a time:
+/// the one pressed last, until it is released.
+#[derive(Clone, Debug)]
+pub(crate) struct Keyboard<K> {
+    delay: Duration,
+    interval: Duration,
+    repeats: Option<(K, Duration)>,
+}
+
+impl<K: Copy + Eq> Keyboard<K> {
+    /// A keyboard that repeats after `delay`, `per_second` times a second.
+    pub(crate) fn new(delay: Duration, per_second: u32) -> Self {
+        Self { delay, interval: Duration::from_secs(1) / per_second, repeats: None }
+    }
+
+    /// Presses a key at `now`, and returns its byte.
+    pub(crate) fn press(&mut self, key: K, now: Duration) -> K {
+        self.repeats = Some((key, now + self.delay));
+        key
+    }
+
+    /// Releases a key.
+    pub(crate) fn release(&mut self, key: K) {
+        self.repeats = self.repeats.filter(|&(other, _)| other != key);
+    }
+
+    /// The next byte due at or before `now`, and its time.
+    pub(crate) fn next_byte(&mut self, now: Duration) -> Option<(K, Duration)> {
+        let (key, due) = self.repeats.filter(|&(_, due)| due <= now)?;
+        self.repeats = Some((key, due + self.interval));
+        Some((key, due))
+    }
+}
+
+/// A player at a keyboard that repeats. A step passes every 16 ms.
+struct Typist {
+    held: HeldKeys<char>,
+    keyboard: Keyboard<char>,
+    now: u64,
+    /// The steps in which a key was tapped.
+    tapped: u32,
+}
+
+impl Typist {
+    fn new((delay, per_second): (u64, u32)) -> Self {
+        Self {
+            held: HeldKeys::default(),
+            keyboard: Keyboard::new(at(delay), per_second),
+            now: 0,
+            tapped: 0,
+        }
+    }
+
+    fn press(&mut self, key: char) {
+        let key = self.keyboard.press(key, at(self.now));
+        press(&mut self.held, key, self.now);
+    }
+
+    fn release(&mut self, key: char) {
+        self.keyboard.release(key);
+    }
+
+    /// Lets time pass, and returns for how many milliseconds each of `keys` was `Held`.
+    fn wait<const N: usize>(&mut self, milliseconds: u64, keys: [char; N]) -> [u64; N] {
+        let mut held_for = [0; N];
+        for _ in 0..milliseconds {
+            self.now += 1;
+            while let Some((key, due)) = self.keyboard.next_byte(at(self.now)) {
+                self.held.press(key, STEPS, due, |other| opposes(key, other));
+            }
+            self.held.advance(at(self.now));
+            for (count, key) in held_for.iter_mut().zip(keys) {
+                *count += u64::from(self.held.hold(key) == Hold::Held);
+            }
+            if self.now.is_multiple_of(16) {
+                self.tapped +=
+                    self.held.iter().filter(|&(_, hold)| hold == Hold::Tap).count() as u32;
+                self.held.step();
+            }
+        }
+        held_for
     }
 }

@@ -1,23 +1,28 @@
-//! The cells of a map that the player has seen so far.
+//! The cells of a map that the player has seen.
 //!
-//! For each column of pixels, one ray is followed along its [line of sight](line_of_sight).
+//! For each column of pixels, one ray is followed cell by cell, in the exact order in which it enters them, with the
+//! range of slopes at which it still sees. Floors and things raise the lower end of the range, ceilings lower the upper
+//! end. A cell is seen if its floor, or a face of something in it, is within the range. The vertical field of view does
+//! not count: the player knows the floor at their feet without looking down.
 //!
-//! Taking the cells from the renderer's own rays was refused: on flat maps it casts only few of
-//! them, and it would have to store cells that only the minimap needs.
-
-mod line_of_sight;
+//! Most cells have the observer's own gap: floor and ceiling at the heights of the observer's cell. A ray sees all of
+//! them, so that it only crosses lines until it enters another tile, and knows nothing of mirrors until then.
+//!
+//! A mirror ends a line of sight: a map cannot show which of its cells is the one in the mirror, and reflections would
+//! reveal what is behind corners.
+//!
+//! Rejected: the cells of the renderer's own rays. On flat maps it casts only few of them, and it would have to store
+//! cells that only the minimap needs.
 
 use std::collections::BTreeMap;
 
-use crate::cast::Ray;
+use crate::cast::{Crossed, Crossing, Ray, RayWalk, Side, WalkFromInside, distance_on_entry};
 use crate::generate::Site;
-use crate::world::{Camera, Cell, TileId, TileKind, World};
-use line_of_sight::Observer;
+use crate::world::{Camera, Cell, Gap, Tile, TileId, TileKind, World};
 
 /// The cells of a map that a player has seen so far, for a [`Minimap`](super::Minimap).
 ///
-/// A value belongs to one level. A world of another size is another level, of which nothing has
-/// been seen.
+/// A value belongs to one level. A world of another size counts as another level, where nothing has been seen.
 ///
 /// ```
 /// use cellcaster::tui::{Explored, Minimap};
@@ -38,7 +43,7 @@ pub struct Explored {
     size: (u32, u32),
     /// A bit for each cell, row by row; each row begins with a new word.
     words: Vec<u32>,
-    /// The number of cells that are not walls, and the number of those that have been seen.
+    /// The number of cells that are not walls, and how many of them have been seen.
     open: u32,
     open_seen: u32,
     /// The cell of a generated level at which the world begins.
@@ -50,7 +55,7 @@ pub struct Explored {
 
 /// The cells of a row that have been seen: a bit for each. Beyond the last cell there are none.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SeenRow<'a>(&'a [u32]);
+pub(crate) struct SeenRow<'a>(&'a [u32]);
 
 /// The number of cells in a word.
 const WORD: u32 = u32::BITS;
@@ -111,12 +116,12 @@ impl Explored {
     }
 
     /// The cells of a row that have been seen.
-    pub(super) fn row(&self, row: u32) -> SeenRow<'_> {
+    pub(crate) fn row(&self, row: u32) -> SeenRow<'_> {
         let words = self.words_of_a_row();
         SeenRow(self.words.chunks_exact(words.max(1)).nth(row as usize).unwrap_or_default())
     }
 
-    /// The share of cells seen, from 0 to 1, among those that are not walls.
+    /// The seen share of the cells that are not walls, from 0 to 1.
     pub fn share(&self) -> f64 {
         f64::from(self.open_seen) / f64::from(self.open.max(1))
     }
@@ -174,7 +179,7 @@ impl Explored {
 
 impl SeenRow<'_> {
     #[inline]
-    pub(super) fn contains(self, column: u32) -> bool {
+    pub(crate) fn contains(self, column: u32) -> bool {
         let word = self.0.get((column / WORD) as usize);
         word.is_some_and(|word| word >> (column % WORD) & 1 == 1)
     }
@@ -182,6 +187,353 @@ impl SeenRow<'_> {
 
 fn is_wall(kind: TileKind) -> bool {
     matches!(kind, TileKind::Wall(_) | TileKind::Mirror(_))
+}
+
+/// Cells in which fog leaves less than this share of light are not seen.
+const LEAST_CLEARNESS: f64 = 1.0 / 32.0;
+
+/// An eye in a world, which all rays of one position share.
+struct Observer<'a> {
+    world: &'a World,
+    /// The height of the eye, in cells.
+    eye: f64,
+    /// The greatest height of anything.
+    top: f64,
+    /// A distance up to which fog hides nothing.
+    clear_to: f64,
+    /// The gap around the eye in the observer's cell.
+    own_gap: Gap,
+    /// For each tile, how it continues a ray that has only been in cells with that gap.
+    passages: [Passage; TileId::MAX],
+}
+
+/// The range of slopes at which a ray still sees, in height per distance.
+#[derive(Clone, Copy)]
+struct SlopeRange {
+    low: f64,
+    high: f64,
+}
+
+impl SlopeRange {
+    fn is_empty(self) -> bool {
+        self.low >= self.high
+    }
+
+    /// The intersection of two ranges.
+    fn intersection(self, other: Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+}
+
+impl<'a> Observer<'a> {
+    /// The eye of `camera`.
+    fn new(world: &'a World, camera: &Camera) -> Self {
+        let eye = camera.eye();
+        let heights = world.tiles().iter().map(|tile| {
+            let top_gap = tile.gaps().next_back().map_or(0.0, |gap| gap.bottom);
+            top_gap.max(tile.top_of_what_stands())
+        });
+        let top = heights.fold(0.0, f64::max);
+        let place = camera.position().floor();
+        let tile = world.grid().tile(place.x as i64, place.y as i64);
+        let own_gap = gap_around(eye, tile.map_or(world.ground(), |tile| world.tile(tile)));
+        let clear_to = world.fog().map_or(f64::INFINITY, |fog| fog.clear_to(LEAST_CLEARNESS));
+        let passages = [Passage::Other; TileId::MAX];
+        let mut observer = Self { world, eye, top, clear_to, own_gap, passages };
+        observer.find_passages();
+        observer
+    }
+}
+
+impl Observer<'_> {
+    /// Calls `see` with each cell that `ray` sees, and with `true` if it is not a wall.
+    fn follow(&self, ray: &Ray, mut see: impl FnMut(Cell, bool)) {
+        let grid = self.world.grid();
+        let walk = WalkFromInside::new(grid, ray);
+        let position = walk.as_ref().map(|&(_, cell, tile)| (cell, tile));
+        if let Some((cell, tile)) = position {
+            see(cell, self.is_open(tile));
+        }
+        let mut visible = SlopeRange { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        let (mut gap, mut line) = if let Some((walk, cell, tile)) = walk
+            && self.passage(tile) == Passage::Same
+        {
+            let start = (cell, tile);
+            let Some(line) = self.follow_through_own_gap(walk, ray, start, &mut see) else {
+                return;
+            };
+            visible = self.slopes(self.own_gap, line.from);
+            (self.own_gap, line)
+        } else {
+            let line = Line { walk: RayWalk::new(grid, ray), position, from: 0.0 };
+            (self.gap_around_eye(position), line)
+        };
+        let mut crossed = self.cross(&mut line, &mut visible, &mut see);
+        loop {
+            let Line { walk, position, from } = &mut line;
+            let t = walk.distance(&crossed);
+            let through_gap = self.slopes_through(gap, t);
+            if let Some((cell, tile)) = *position {
+                let floor =
+                    SlopeRange { low: self.slope(gap.bottom, *from), high: through_gap.low };
+                if self.eye > gap.bottom && !floor.intersection(visible).is_empty() {
+                    see(cell, self.is_open(tile));
+                }
+            }
+            visible = visible.intersection(through_gap);
+            let Some((cell, tile)) = crossed.into else { return };
+            if visible.is_empty()
+                || self.slope(self.top, t) <= visible.low
+                || self.is_hidden_by_fog(t)
+            {
+                return;
+            }
+            match self.enter(tile, visible, t) {
+                Entered { gap: None, .. } => return see(cell, self.is_open(tile)),
+                Entered { gap: Some(next), shows_face } => {
+                    if shows_face {
+                        see(cell, self.is_open(tile));
+                    }
+                    gap = next;
+                    visible = visible.intersection(self.slopes(next, t));
+                }
+            }
+            (*position, *from) = (crossed.into, t);
+            crossed = self.cross(&mut line, &mut visible, &mut see);
+        }
+    }
+
+    /// Crosses the next line, after what stands in the cell before it.
+    fn cross(
+        &self,
+        line: &mut Line,
+        visible: &mut SlopeRange,
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Crossed {
+        if let Some((cell, tile)) = line.position
+            && let Some((t, top)) = self.standing(&line.walk, cell, tile)
+        {
+            see(cell, true);
+            visible.low = visible.low.max(self.slope(top, t));
+        }
+        line.walk.cross(self.world.grid())
+    }
+
+    /// Whether cells with `tile` are not walls.
+    fn is_open(&self, TileId(tile): TileId) -> bool {
+        !is_wall(self.world.tiles()[usize::from(tile)].kind)
+    }
+
+    /// The lowest visible gap of `tile`, in which a ray that enters it at `t` continues.
+    fn enter(&self, tile: TileId, visible: SlopeRange, t: f64) -> Entered {
+        let gaps = self.world.tiles()[usize::from(tile.0)].gaps();
+        let gap =
+            gaps.into_iter().find(|&gap| !self.slopes(gap, t).intersection(visible).is_empty());
+        let shows_face = gap.is_some_and(|gap| {
+            let SlopeRange { low, high } = self.slopes(gap, t);
+            low > visible.low || high < visible.high
+        });
+        Entered { gap, shows_face }
+    }
+
+    /// The range of slopes of a gap that begins or ends at `t`.
+    fn slopes(&self, gap: Gap, t: f64) -> SlopeRange {
+        SlopeRange { low: self.slope(gap.bottom, t), high: self.slope(gap.top, t) }
+    }
+
+    /// The range of slopes at which the eye sees through a gap that ends at `t`.
+    fn slopes_through(&self, gap: Gap, t: f64) -> SlopeRange {
+        let SlopeRange { low, high } = self.slopes(gap, t);
+        SlopeRange {
+            low: if self.eye > gap.bottom { low } else { f64::NEG_INFINITY },
+            high: if self.eye < gap.top { high } else { f64::INFINITY },
+        }
+    }
+
+    fn slope(&self, height: f64, t: f64) -> f64 {
+        let rise = height - self.eye;
+        if rise == 0.0 { 0.0 } else { rise / t }
+    }
+
+    /// The distance and the height of an opaque thing that the ray hits in `cell`.
+    fn standing(&self, walk: &RayWalk, cell: Cell, tile: TileId) -> Option<(f64, f64)> {
+        let tile = &self.world.tiles()[usize::from(tile.0)];
+        if !is_opaque_inside(tile) {
+            return None;
+        }
+        let hit = walk.standing(self.world, cell, tile.kind).hit?;
+        Some((hit.t, tile.top_of_what_stands()))
+    }
+
+    fn is_hidden_by_fog(&self, t: f64) -> bool {
+        t > self.clear_to && self.world.fog().is_some_and(|fog| fog.clearness(t) < LEAST_CLEARNESS)
+    }
+
+    /// The gap that contains the eye.
+    fn gap_around_eye(&self, position: Option<(Cell, TileId)>) -> Gap {
+        let tile = position.map_or(self.world.ground(), |(_, tile)| self.world.tile(tile));
+        gap_around(self.eye, tile)
+    }
+}
+
+/// The gap of a tile that contains the eye; inside of solid rock, everything.
+fn gap_around(eye: f64, tile: Tile) -> Gap {
+    let around = tile.gaps().find(|gap| gap.holds(eye));
+    around.unwrap_or(Gap { bottom: f64::NEG_INFINITY, top: f64::INFINITY })
+}
+
+/// Whether something opaque stands in a gap of the tile.
+fn is_opaque_inside(tile: &Tile) -> bool {
+    matches!(tile.kind, TileKind::Door(_) | TileKind::Shape(_))
+}
+
+/// A line of sight as far as it has been followed.
+struct Line {
+    walk: RayWalk,
+    /// The cell that it is in; `None` off the map.
+    position: Option<(Cell, TileId)>,
+    /// The distance at which it has entered that cell.
+    from: f64,
+}
+
+/// The result of entering a cell.
+struct Entered {
+    /// `None` if the ray ends at the cell's edge.
+    gap: Option<Gap>,
+    shows_face: bool,
+}
+
+/// How a tile continues a ray that has only been in cells with the observer's own gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Passage {
+    /// The same gap, in which nothing opaque stands: the ray sees the cell.
+    Same,
+    /// A block that ends the ray, which sees its face.
+    Block,
+    Other,
+}
+
+/// Beyond this distance, in cells, and so much farther, a slope is another one however it is rounded.
+const NEAR: f64 = 1e-9;
+const FARTHER: f64 = 1.0 + 1e-9;
+
+/// Bounds on rounded distances of a walk, in its unit, within which a conclusion is certain.
+struct Certain {
+    /// A distance up to which fog hides nothing, or less.
+    clear_to: f64,
+    /// A distance beyond [`NEAR`], or more.
+    near: f64,
+}
+
+impl Certain {
+    fn new(unit: f64, clear_to: f64) -> Self {
+        // More than enough for the errors of both distances.
+        const MARGIN: f64 = 1.0 + 1e-9;
+        /// Units in this range are products that have neither underflowed nor overflowed.
+        const SOUND: std::ops::Range<f64> = 1e-150..1e150;
+        if SOUND.contains(&unit) {
+            Self { clear_to: clear_to * unit / MARGIN, near: NEAR * unit * MARGIN }
+        } else {
+            Self { clear_to: 0.0, near: f64::INFINITY }
+        }
+    }
+
+    /// Whether [`Observer::rises`] is true for these distances.
+    #[inline]
+    fn rises(&self, from: f64, to: f64) -> bool {
+        from > self.near && to > from * (FARTHER * FARTHER)
+    }
+}
+
+impl Observer<'_> {
+    /// Has rays do the same in all cells.
+    #[cfg(test)]
+    fn forget_passages(&mut self) {
+        self.passages.fill(Passage::Other);
+    }
+
+    fn find_passages(&mut self) {
+        let Self { world, eye, top, own_gap, .. } = *self;
+        let is_inside = own_gap.bottom < eye && eye < own_gap.top && own_gap.bottom < top;
+        if !is_inside {
+            return;
+        }
+        for (passage, tile) in self.passages.iter_mut().zip(world.tiles()) {
+            let is_empty = !is_opaque_inside(tile);
+            let Some(lowest) = tile.gaps().next() else { continue };
+            let hides_all = is_empty && eye < lowest.bottom && top <= lowest.bottom;
+            if own_gap.top <= lowest.bottom || hides_all {
+                *passage = Passage::Block;
+            } else if lowest == own_gap && is_empty && !is_wall(tile.kind) {
+                *passage = Passage::Same;
+            }
+        }
+    }
+
+    /// Follows the walk of `ray` from `position`, where it begins, through cells with the observer's own
+    /// gap. Returns the line in the last of them, or `None` if it ends there.
+    #[inline]
+    fn follow_through_own_gap(
+        &self,
+        walk: WalkFromInside,
+        ray: &Ray,
+        mut position: (Cell, TileId),
+        see: &mut impl FnMut(Cell, bool),
+    ) -> Option<Line> {
+        let certain = Certain::new(walk.unit(), self.clear_to);
+        let (mut from, mut entered) = (0.0, None);
+        let distance = |cell, entered: Option<Side>| {
+            entered.map_or(0.0, |side| distance_on_entry(ray, cell, side))
+        };
+        for (Crossing { cell: next, tile, side }, to) in walk {
+            let passage = self.passage(tile);
+            let is_clear = to < certain.clear_to || distance(next, Some(side)) <= self.clear_to;
+            if passage == Passage::Other || !is_clear {
+                break;
+            }
+            if certain.rises(from, to)
+                || self.rises(distance(position.0, entered), distance(next, Some(side)))
+            {
+                see(position.0, true);
+            }
+            if passage == Passage::Block {
+                see(next, self.is_open(tile));
+                return None;
+            }
+            (position, from, entered) = ((next, tile), to, Some(side));
+        }
+        Some(self.line_in(ray, position, distance(position.0, entered), entered))
+    }
+
+    /// The line of `ray` in a cell that it has entered, or in which it begins.
+    #[inline(never)]
+    fn line_in(
+        &self,
+        ray: &Ray,
+        position: (Cell, TileId),
+        from: f64,
+        entered: Option<Side>,
+    ) -> Line {
+        let grid = self.world.grid();
+        let walk = match entered {
+            Some(side) => RayWalk::entering(grid, ray, (position.0, side)),
+            None => RayWalk::new(grid, ray),
+        };
+        Line { walk, position: Some(position), from }
+    }
+
+    /// Whether the floor of the observer's own gap has a lower slope at `from` than at `t`. They are equal in
+    /// a cell of which the ray meets a corner only.
+    #[inline]
+    fn rises(&self, from: f64, t: f64) -> bool {
+        let bottom = self.own_gap.bottom;
+        from > NEAR && t > from * FARTHER || self.slope(bottom, from) < self.slope(bottom, t)
+    }
+
+    #[inline]
+    fn passage(&self, tile: TileId) -> Passage {
+        self.passages[usize::from(tile.0)]
+    }
 }
 
 #[cfg(test)]

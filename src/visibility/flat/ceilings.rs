@@ -1,9 +1,9 @@
 //! The rows of a billboard that no ceiling hides.
 //!
-//! A thing may be taller than its room, and a figure may be partly above it. What is higher than the
-//! ceilings shows only where the sky is over the cells in front of it. The flat way finds the ceiling of each
-//! such pixel as it does for the ceiling's spans. Clip ranges from cell to cell, as the portal way has them,
-//! were refused: few things are that tall, and all others would pay for the walk.
+//! A thing may be taller than its room, and a figure may be partly above it. What is higher than the ceilings
+//! shows only where the sky is over the cells in front of it. The flat way finds the ceiling of each such
+//! pixel as it does for the ceiling's spans. Rejected: clip ranges from cell to cell, as the portal way has
+//! them. Few things are that tall, and all others would pay for the walk.
 
 use std::ops::Range;
 
@@ -12,20 +12,20 @@ use crate::world::{Ceiling, Heights};
 
 /// The ceilings of a level scene.
 #[derive(Clone, Copy)]
-pub(super) struct Ceilings<'a> {
+pub(crate) struct Ceilings<'a> {
     scene: Scene<'a>,
     /// Whether any cell that a ray may enter is under the sky.
     is_any_open: bool,
 }
 
 impl<'a> Ceilings<'a> {
-    pub(super) fn new(scene: Scene<'a>) -> Self {
+    pub(crate) fn new(scene: Scene<'a>) -> Self {
         Self { scene, is_any_open: scene.world.has_open_sky() }
     }
 
     /// Whether some part of `rows` of a billboard at `depth` is above the ceilings, and may show there under
     /// the sky.
-    pub(super) fn let_past(self, depth: f64, rows: &Range<u32>) -> bool {
+    pub(crate) fn let_past(self, depth: f64, rows: &Range<u32>) -> bool {
         self.is_any_open && rows.start < self.row_of_top(depth)
     }
 
@@ -36,7 +36,7 @@ impl<'a> Ceilings<'a> {
 
     /// Calls `show` for each part of `rows` of a billboard at `depth` that no ceiling hides in `column`, of which
     /// the second part says whether its ray ends at a wall.
-    pub(super) fn for_each_open(
+    pub(crate) fn for_each_open(
         self,
         (column, is_at_wall): (u32, bool),
         depth: f64,

@@ -1,9 +1,9 @@
 //! The fan: the rays of a picture, for which every solid tile is a wall.
 //!
-//! Few of them are cast. Between two rays that hit the same face, all rays hit that face: a solid cell
-//! between them would be at least as wide as the face and nearer, and one of the two would hit it. So rays are cast
-//! where a face ends: at the first column beyond it, then at its last one. Halving the picture, and each
-//! half, was refused: at 80×48 pixels it casts 33 rays where this casts 15.
+//! Few of them are cast. Between two rays that hit the same face, all rays hit that face: a solid cell between them
+//! would be at least as wide as the face and nearer, and one of the two would hit it. So rays are cast where a face
+//! ends: at the first column beyond it, then at its last one. Rejected: halving the picture, and each half. At
+//! 80×48 pixels it casts 33 rays where this casts 15.
 //!
 //! Two rays may also hit neighbouring faces of one wall, each a cell wide. Then the rays between them hit
 //! these two faces, if no cell fits between the two rays: a cell nearer than the wall is at least one cell
@@ -18,7 +18,7 @@ use crate::visibility::{Column, Projection};
 use crate::world::Grid;
 
 /// The rays of a picture.
-pub(super) struct Fan<'a, C> {
+pub(crate) struct Fan<'a, C> {
     caster: &'a C,
     grid: &'a Grid,
     projection: &'a Projection,
@@ -43,15 +43,15 @@ enum Step {
 }
 
 /// A corner whose position is less than this from the centre of a pixel is as good as on it, in columns.
-const HAIR: f64 = 1e-6;
+const EPSILON: f64 = 1e-6;
 
 impl<'a, C: Caster> Fan<'a, C> {
-    pub(super) fn new(caster: &'a C, grid: &'a Grid, projection: &'a Projection) -> Self {
+    pub(crate) fn new(caster: &'a C, grid: &'a Grid, projection: &'a Projection) -> Self {
         Self { caster, grid, projection }
     }
 
     /// Finds all `columns`.
-    pub(super) fn cast(&self, columns: &mut [Column]) {
+    pub(crate) fn cast(&self, columns: &mut [Column]) {
         let last = columns.len() - 1;
         for index in [0, last].into_iter().take(columns.len()) {
             columns[index] = self.cast_one(index);
@@ -126,7 +126,7 @@ impl<'a> Gap<'a> {
         let end_of_left = self.column_of(left.right_end()).unwrap_or(f64::INFINITY);
         let beyond_left = self.first_column_from(end_of_left);
         if (1..=width).contains(&beyond_left) {
-            let is_clear = |column: usize| (end_of_left - column as f64).abs() > HAIR;
+            let is_clear = |column: usize| (end_of_left - column as f64).abs() > EPSILON;
             let are_known = left.is_beside(right)
                 && is_clear(beyond_left - 1)
                 && is_clear(beyond_left)

@@ -7,7 +7,7 @@
 //! as a grate, is painted before the first thing that is nearer. Rejected: a depth for each pixel. One for each
 //! column is equivalent.
 //!
-//! Colours are mixed as sRGB values, as in the frame. Mixing linear light was refused: it needs a
+//! Colours are mixed as sRGB values, as in the frame. Rejected: mixing linear light. It needs a
 //! table in each direction for every pixel, and tints looked no more like glass.
 
 use std::cmp::Ordering;
@@ -17,7 +17,7 @@ use super::ceilings::Ceilings;
 use super::distance_to_edge;
 use super::wall::light_of;
 use crate::cast::{Hit, MirrorTransform};
-use crate::visibility::layer_order::put_in_order;
+use crate::visibility::draw_list::put_in_order;
 use crate::visibility::visible_cells::VisibleCells;
 use crate::visibility::{
     Billboard, BillboardColumn, Column, DrawList, Extent, Facing, Layer, Material, Scene,
@@ -27,7 +27,7 @@ use crate::world::{Cell, Heights, Light, Thing, Tile, TileKind};
 
 /// The number of things in view for which memory is reserved in advance, so that a turn of the
 /// camera towards more of them allocates nothing.
-const MOST_AT_FIRST: usize = 4096;
+const MAX_AT_FIRST: usize = 4096;
 
 /// The height of everything solid in a level scene, in cells.
 const WALL_TOP: f64 = Heights::LEVEL.ceiling();
@@ -38,7 +38,7 @@ const LAYERS_OF_A_COLUMN: usize = 16;
 /// The memory of the flat way, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FlatMemory {
-    pub(super) passed: PassedHits,
+    pub(crate) passed: PassedHits,
     left: PassedLeft,
     visible: VisibleCells,
     /// The layers before they are put in order.
@@ -48,7 +48,7 @@ pub(crate) struct FlatMemory {
 /// The hits that all rays of a frame passed: column by column from the left, and in each from near
 /// to far.
 ///
-/// In reverse they are in the order of painting. A list for each column was refused: each list
+/// In reverse they are in the order of painting. Rejected: a list for each column, each of which
 /// would be an allocation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PassedHits {
@@ -63,7 +63,7 @@ struct PassedLeft {
 
 /// Fills the layers of `list`, whose columns are known. Returns the time at which one of the
 /// billboards next changes its appearance; `None` for never.
-pub(super) fn fill(
+pub(crate) fn fill(
     scene: Scene<'_>,
     memory: &mut FlatMemory,
     list: &mut DrawList,
@@ -132,7 +132,7 @@ fn find_billboards(
     let world = scene.world;
     let first = list.billboards.len();
     if first == 0 {
-        let things = world.things().len().min(MOST_AT_FIRST);
+        let things = world.things().len().min(MAX_AT_FIRST);
         list.billboards.reserve(things + world.figures().len());
     }
     let most_layers = list.columns.len() * LAYERS_OF_A_COLUMN;
@@ -187,19 +187,19 @@ fn from_far_to_near(one: &Billboard, other: &Billboard) -> Ordering {
 
 impl PassedHits {
     /// Removes all hits and keeps the memory.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.list.clear();
     }
 
     /// Reserves memory for the hits that this number of `rays` pass in all but extreme maps, so
     /// that a turn of the camera towards more of them allocates nothing.
-    pub(super) fn make_room_for(&mut self, rays: usize) {
+    pub(crate) fn make_room_for(&mut self, rays: usize) {
         const OF_A_RAY: usize = 8;
         self.list.reserve(rays * OF_A_RAY);
     }
 
     /// Adds a hit that the ray of `column` passed: columns from the left, hits from near to far.
-    pub(super) fn push(&mut self, column: usize, hit: Hit) {
+    pub(crate) fn push(&mut self, column: usize, hit: Hit) {
         self.list.push((column, hit));
     }
 }

@@ -5,9 +5,9 @@
 //! straight lines in the picture. A column that a border divides is drawn from both walls. Where a wall covers
 //! a pixel in part, floor or ceiling is drawn behind it first.
 //!
-//! More samples in each pixel were refused: eight times the samples along both axes take sixty times as long.
-//! Walls so narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders
-//! of pixels, as they are for other filters.
+//! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long. Walls so
+//! narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders of
+//! pixels, as they are for other filters.
 
 use std::ops::Range;
 
@@ -88,7 +88,7 @@ struct Border {
 }
 
 /// A border this near to that of a pixel is on it, in columns.
-const HAIR: f64 = 1.0 / 512.0;
+const EPSILON: f64 = 1.0 / 512.0;
 
 impl Run<'_> {
     /// Finds the parts of all columns, and reduces the rows of those `drawn` to what walls cover as a whole.
@@ -99,8 +99,8 @@ impl Run<'_> {
             let x = self.first + index;
             let (start, end) = (x as f64, x as f64 + 1.0);
             let [before, after] = self.borders;
-            let left = before.filter(|border| index == 0 && border.place > start + HAIR);
-            let right = after.filter(|border| index == last && border.place < end - HAIR);
+            let left = before.filter(|border| index == 0 && border.place > start + EPSILON);
+            let right = after.filter(|border| index == last && border.place < end - EPSILON);
             drawn.rows = match self.face {
                 Some(face) if left.is_some() || right.is_some() => {
                     self.divide(x as u32, face, left, right, parts)
@@ -293,6 +293,6 @@ fn face_of(scene: Scene<'_>, columns: &[Column]) -> Option<Face> {
 
 /// The tile of `cell`, if it is a wall.
 fn wall_tile(world: &World, cell: Cell) -> Option<TileId> {
-    let tile = world.grid().tile(cell.column.into(), cell.row.into())?;
+    let tile = world.grid().tile_in(cell)?;
     matches!(world.tile(tile).kind, TileKind::Wall(_)).then_some(tile)
 }

@@ -2,12 +2,9 @@
 //!
 //! Spans end where the next column shows less of the plane, and begin where it shows more, with one
 //! step for each span and column, as Doom makes the spans of its visplanes (`R_MakeSpans` in
-//! `r_plane.c`, id Software 1993). Searching each row for its spans was refused: the search takes
+//! `r_plane.c`, id Software 1993). Rejected: searching each row for its spans, which takes
 //! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
 //! time than reading the rows of the wall in every column.
-
-mod ground;
-mod stretches;
 
 use std::ops::Range;
 
@@ -15,12 +12,10 @@ use glam::DVec2;
 
 use crate::color::Rgb;
 use crate::visibility::{
-    CeilingLoop, Column, DrawnPlane, Faded, Filter, Lighting, Pass, PlaneLoop, Scene, SkyLoop,
-    Span, SpanPair,
+    CeilingLoop, Column, DrawnPlane, Faded, Filter, Lighting, Pass, PlaneLoop, PlaneSpan, Scene,
+    SkyLoop, Span, SpanMapping, SpanPair,
 };
-use crate::world::{Ceiling, Covering, Light, TileId};
-pub(crate) use stretches::PlaneRow;
-use stretches::for_each_stretch;
+use crate::world::{Ceiling, Cell, Covering, Light, TileId, TileKind};
 
 /// Passes every span of `columns` in `rows` to `emit`. Later spans are drawn over earlier ones.
 pub(crate) fn for_each_span(
@@ -276,4 +271,94 @@ fn stretches<T>(list: &[T], wanted: impl Fn(&T) -> bool) -> impl Iterator<Item =
         next = rest.map_or(list.len(), |length| start + length);
         Some(start..next)
     })
+}
+
+/// A row that shows the plane.
+#[derive(Clone, Debug)]
+pub(crate) struct PlaneRow {
+    pub(crate) row: u32,
+    pub(crate) mapping: SpanMapping,
+    /// The first column of the span that has not ended yet.
+    span_start: usize,
+}
+
+impl PlaneRow {
+    pub(crate) fn new(scene: Scene<'_>, row: u32, span_start: usize) -> Self {
+        Self { row, mapping: scene.projection.mapping(row), span_start }
+    }
+
+    /// The span of `columns` that shows `plane`.
+    pub(crate) fn span(&self, columns: Range<usize>, plane: DrawnPlane) -> PlaneSpan<'_> {
+        let DrawnPlane { pass, covering, light } = plane;
+        PlaneSpan { pass, row: self.row, columns, covering, light, mapping: &self.mapping }
+    }
+}
+
+/// Calls `emit` for every stretch of `columns` that shows a row of a plane. A column shows the first
+/// `visible` rows, counted from the edge of the picture. `row_at` makes a row with its span's start.
+fn for_each_stretch(
+    columns: &[Column],
+    visible: impl Fn(&Column) -> u32,
+    memory: &mut Vec<PlaneRow>,
+    row_at: impl Fn(u32, usize) -> PlaneRow,
+    mut emit: impl FnMut(&PlaneRow, Range<usize>),
+) {
+    memory.clear();
+    let mut before = 0;
+    for (x, column) in columns.iter().enumerate() {
+        let visible = visible(column) as usize;
+        if visible > before {
+            let known = memory.len();
+            for row in &mut memory[before..visible.min(known)] {
+                row.span_start = x;
+            }
+            for depth in known..visible {
+                memory.push(row_at(depth as u32, x));
+            }
+        } else {
+            for row in &memory[visible..before] {
+                emit(row, row.span_start..x);
+            }
+        }
+        before = visible;
+    }
+    for row in &memory[..before] {
+        emit(row, row.span_start..columns.len());
+    }
+}
+
+impl Plane<'_> {
+    /// The tile of the cell with this north-west corner, and the light that lamps add to it; `None`
+    /// off the map.
+    fn ground_in(&self, corner: DVec2) -> Option<(TileId, Light)> {
+        let world = self.scene.world;
+        // Casts saturate, and convert NaN to 0.
+        let is_a_place = corner.is_finite();
+        let (column, row) = (corner.x as i64, corner.y as i64);
+        let tile = is_a_place.then(|| world.grid().tile(column, row)).flatten()?;
+        Some((tile, world.lamplight_in(Cell { column: column as u32, row: row as u32 })))
+    }
+
+    /// The same, where walls are blended over planes: the centre of a pixel at the foot of a wall may be inside
+    /// the wall. The pixel that is nearer to the eye by a row then tells the ground.
+    fn ground_before_walls(
+        &self,
+        corner: DVec2,
+        (row, x): (u32, usize),
+    ) -> Option<(TileId, Light)> {
+        let Scene { world, projection, .. } = self.scene;
+        let ground = self.ground_in(corner);
+        let is_wall = |(tile, _): (TileId, Light)| {
+            matches!(world.tiles()[usize::from(tile.0)].kind, TileKind::Wall(_))
+        };
+        if !ground.is_some_and(is_wall) {
+            return ground;
+        }
+        let nearer = match self.kind {
+            PlaneKind::Floor => row + 1,
+            PlaneKind::Ceiling => row.saturating_sub(1),
+        };
+        let point = projection.mapping(nearer).just_before(projection.origin()).point(x);
+        self.ground_in(point.floor())
+    }
 }

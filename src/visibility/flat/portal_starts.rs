@@ -8,7 +8,7 @@
 use crate::cast::Hit;
 use crate::visibility::portal::PortalStart;
 use crate::visibility::{Column, DrawList, Scene};
-use crate::world::{Ceiling, Cell, Heights, Tile, TileId, TileKind, World};
+use crate::world::{Ceiling, Cell, Heights, Tile, TileKind, World};
 
 /// The starts of the portal way in the columns of a scene.
 pub(crate) struct PortalStarts<'a> {
@@ -60,7 +60,7 @@ impl<'a> PortalStarts<'a> {
         }
         // A ray hits a door or a shape within a cell.
         let is_at_line = |tile: &Tile| !tile.is_level() || matches!(tile.kind, TileKind::Wall(_));
-        if !tile_of(self.world, cell).is_some_and(is_at_line) {
+        if !self.world.tile_in(cell).is_some_and(is_at_line) {
             return Some(PortalStart::Camera);
         }
         Some(match self.overhead {
@@ -73,7 +73,7 @@ impl<'a> PortalStarts<'a> {
 
     /// Whether the flat way leaves what is behind the border of `cell`, in which a ray ends.
     fn leave(&self, cell: Cell) -> bool {
-        !(self.walls_hide_all && tile_of(self.world, cell).is_some_and(Tile::is_level))
+        !(self.walls_hide_all && self.world.tile_in(cell).is_some_and(Tile::is_level))
     }
 
     /// Whether the flat way fills nothing of the columns that it leaves to the portal way.
@@ -83,7 +83,7 @@ impl<'a> PortalStarts<'a> {
 }
 
 /// Removes the parts left to the portal way from the columns of the flat way.
-pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
+pub(crate) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
     let DrawList { columns, flat_columns, is_flat, .. } = list;
     let mut starts = PortalStarts::new(scene.world);
     let is_left = |column: &Column| column.hit.as_ref().is_some_and(|hit| starts.leave(hit.cell));
@@ -101,10 +101,4 @@ pub(super) fn leave_to_portals(scene: Scene<'_>, list: &mut DrawList) {
         let hit = column.hit.map(|hit| Hit { t: -1.0, ..hit });
         Column { hit, distance, rows: start.rows(column, height) }
     }));
-}
-
-/// The tile of `cell`.
-fn tile_of(world: &World, cell: Cell) -> Option<&Tile> {
-    let TileId(index) = world.grid().tile(cell.column.into(), cell.row.into())?;
-    Some(&world.tiles()[usize::from(index)])
 }

@@ -7,10 +7,9 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::cast::{Hit, Side};
-use crate::visibility::facing::cell_before;
+use crate::cast::{Hit, Side, cell_before};
 use crate::visibility::{Column, Extent, Facing, Scene, WallColumn, WallPart, WallRun, WallSink};
-use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileId, TileKind, World};
+use crate::world::{Cell, FaceLight, Light, Paint, Tile, TileKind, World};
 
 /// Passes the wall column in `rows` of each of `columns` to `sink`, from left to right.
 #[inline]
@@ -121,7 +120,7 @@ pub(crate) fn for_each_wall_part<'l>(
 }
 
 /// The light of the face that the ray of column `x` hit.
-pub(super) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
+pub(crate) fn light_of(scene: Scene<'_>, x: u32, hit: &Hit) -> Light {
     Face::new(scene, x, hit, true).light.at(hit.u)
 }
 
@@ -139,10 +138,7 @@ struct Face<'a> {
 impl<'a> Face<'a> {
     /// The face that the ray of column `x` hit.
     fn new(scene: Scene<'a>, x: u32, hit: &Hit, is_lit: bool) -> Self {
-        let Cell { column, row } = hit.cell;
-        let world = scene.world;
-        let id = world.grid().tile(i64::from(column), i64::from(row));
-        let tile = id.map(|TileId(index)| &world.tiles()[usize::from(index)]);
+        let tile = scene.world.tile_in(hit.cell);
         let light = if is_lit { face_light(scene, x, hit, tile) } else { FaceLight::FULL };
         Self { cell: hit.cell, side: hit.side, tile, light }
     }
@@ -211,7 +207,7 @@ fn face_light(scene: Scene<'_>, x: u32, hit: &Hit, tile: Option<&Tile>) -> FaceL
 /// The cell from which the ray of column `x` sees its hit; `None` off the north and west of the
 /// map.
 fn place_before(scene: Scene<'_>, x: u32, hit: &Hit) -> Option<Cell> {
-    let [column, row] = cell_before(scene.projection.direction_of(x), hit);
+    let [column, row] = cell_before(scene.projection.direction_of(x), hit.cell, hit.side);
     let is_known = column >= 0 && row >= 0;
     is_known.then_some(Cell { column: column as u32, row: row as u32 })
 }

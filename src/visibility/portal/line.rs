@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::bundle::{Bundle, Clip};
+use super::bundle::{Bundle, Clip, MAX_BOUNCES};
 use super::met::Met;
-use super::surroundings::{MOST_BOUNCES, Place};
-use super::tile_gaps::{BOTTOMLESS, Holds, VisibleGap};
+use super::tile_gaps::{BOTTOMLESS, Holds, Place, VisibleGap};
 use super::walk::{BundleWalk, WalkMemory};
 use crate::cast::{Crossed, CrossedFace, Hit, Side};
 use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
@@ -13,19 +12,19 @@ use crate::visibility::{Extent, Material};
 use crate::world::{Glass, Paint, Tile, TileKind};
 
 /// A line that the rays of a bundle have crossed, at the distances found.
-pub(super) struct Line {
-    pub(super) side: Side,
+pub(crate) struct Line {
+    pub(crate) side: Side,
     /// The face on it.
-    pub(super) face: CrossedFace,
+    pub(crate) face: CrossedFace,
     /// The cell in front of it, and the one behind it.
-    pub(super) before: Place,
+    pub(crate) before: Place,
     into: Place,
 }
 
 impl BundleWalk<'_> {
     /// Divides the clip ranges of `bundle` among the faces and gaps at a line that it has crossed, and
     /// returns whether all of its rays continue. If not, those that do are stored.
-    pub(super) fn cross_line(&mut self, bundle: &mut Bundle, crossed: &Crossed) -> bool {
+    pub(crate) fn cross_line(&mut self, bundle: &mut Bundle, crossed: &Crossed) -> bool {
         let direction = self.memory.directions[bundle.columns.start as usize];
         let face = bundle.course.face(direction, crossed);
         let &Crossed { side, into, .. } = crossed;
@@ -158,7 +157,7 @@ impl BundleWalk<'_> {
         if lower.is_none()
             && let TileKind::Mirror(tint) = tile.kind
             && !tint.is_opaque()
-            && bundle.course.bounces() < MOST_BOUNCES
+            && bundle.course.bounces() < MAX_BOUNCES
         {
             self.reflect(bundle, line, tint);
             return;
@@ -260,7 +259,7 @@ impl BundleWalk<'_> {
     }
 
     /// The part of `rows` between two heights at distance `t`.
-    pub(super) fn rows_between(
+    pub(crate) fn rows_between(
         &self,
         rows: &Range<u32>,
         heights: Range<f64>,

@@ -3,7 +3,7 @@
 //! The contents of an image lie along the parts of rays that are in it. Each such segment is
 //! followed on the map, and extends the interval of each row of cells that it crosses. A thing that
 //! extends into a ray is at most half its width from it, so that the area between two rays need not
-//! be considered. The rectangle around all segments was refused: for a diagonal view it contains
+//! be considered. Rejected: the rectangle around all segments. For a diagonal view it contains
 //! everything on both sides.
 
 use glam::DVec2;
@@ -16,9 +16,9 @@ use crate::world::{Thing, World};
 
 /// The part of a ray in one image, by its two ends on the map.
 #[derive(Clone, Debug)]
-pub(super) struct RaySegment {
-    pub(super) ends: [DVec2; 2],
-    pub(super) image: ImageId,
+pub(crate) struct RaySegment {
+    pub(crate) ends: [DVec2; 2],
+    pub(crate) image: ImageId,
 }
 
 /// The visible cells of each image, in memory that is reused from frame to frame.
@@ -81,7 +81,7 @@ impl ImagesInView {
     }
 
     /// Reserves memory for at least `count` images of `world`.
-    pub(super) fn make_room(&mut self, world: &World, count: usize) {
+    pub(crate) fn make_room(&mut self, world: &World, count: usize) {
         let at_once = if world.has_mirrors() { count.max(IMAGES_AT_ONCE) } else { count };
         if self.list.len() < at_once {
             self.list.resize_with(at_once, VisibleCells::default);

@@ -119,9 +119,7 @@ fn emit_plane(
 
 /// The light that lamps add at `point`.
 fn lamplight_at(world: &World, point: DVec2) -> Light {
-    let is_on_map = point.x >= 0.0 && point.y >= 0.0;
-    let cell = Cell { column: point.x as u32, row: point.y as u32 };
-    if is_on_map { world.lamplight_in(cell) } else { Light::NONE }
+    Cell::containing(point).map_or(Light::NONE, |cell| world.lamplight_in(cell))
 }
 
 /// The height and the covering of a part of a tile.

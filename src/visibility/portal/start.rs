@@ -5,19 +5,18 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::bundle::{Bundle, Clip};
-use super::surroundings::{Place, Surroundings};
-use super::tile_gaps::GapId;
+use super::bundle::{Bundle, Clip, Surroundings};
+use super::tile_gaps::{GapId, Place};
 use super::walk::BundleWalk;
 use crate::cast::{Course, Hit};
-use crate::visibility::facing::place_before;
+use crate::visibility::face_column::place_before;
 use crate::visibility::runs::{ImageId, Shown};
 use crate::visibility::{Column, PortalStats};
 use crate::world::TileId;
 
 /// The start of the portal way in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::visibility) enum PortalStart {
+pub(crate) enum PortalStart {
     /// At the camera, with all rows.
     Camera,
     /// Where the ray has crossed the first line into a cell that is not level, with the rows of the column.
@@ -28,7 +27,7 @@ pub(in crate::visibility) enum PortalStart {
 
 impl PortalStart {
     /// The rows that the portal way fills in `column` of a picture of this `height`.
-    pub(in crate::visibility) fn rows(self, column: &Column, height: u32) -> Range<u32> {
+    pub(crate) fn rows(self, column: &Column, height: u32) -> Range<u32> {
         match self {
             Self::Camera => 0..height,
             Self::Line => column.rows.clone(),
@@ -39,7 +38,7 @@ impl PortalStart {
 
 impl BundleWalk<'_> {
     /// Follows the ray of each column that has one of `starts`.
-    pub(super) fn follow_all(&mut self, starts: &[Option<PortalStart>]) {
+    pub(crate) fn follow_all(&mut self, starts: &[Option<PortalStart>]) {
         let fans_out = self.surroundings.scene.projection.fans_out();
         let mut first = 0;
         while first < starts.len() {

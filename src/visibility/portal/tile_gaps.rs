@@ -1,16 +1,17 @@
 //! Tile gaps: the values of a tile that a ray needs in every cell.
 //!
-//! They are made once a frame, for the height of the eye. Reading the tile itself in each cell was
-//! refused: it is a large value of many cases, and a ray mostly needs only the positions of its
-//! gaps.
+//! They are made once a frame, for the height of the eye. Rejected: reading the tile itself in each
+//! cell. It is a large value of many cases, and a ray mostly needs only the positions of its gaps.
 
 use std::ops::Range;
 
-use super::surroundings::Place;
 use crate::visibility::projection::Rise;
 use crate::visibility::runs::Part;
 use crate::visibility::{Projection, Scene};
-use crate::world::{Gap, Heights, Tile, TileKind, World};
+use crate::world::{Cell, Gap, Heights, Tile, TileId, TileKind, World};
+
+/// The location of a ray: in a cell, or off the map.
+pub(crate) type Place = Option<(Cell, TileId)>;
 
 /// The gaps of all tiles.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +65,7 @@ impl TileGaps {
     }
 
     /// Reserves memory for the gaps of all tiles of `world`.
-    pub(super) fn make_room(&mut self, world: &World) {
+    pub(crate) fn make_room(&mut self, world: &World) {
         const OF_A_TILE: usize = 2;
         self.gaps.clear();
         self.of_tiles.clear();
@@ -87,7 +88,7 @@ impl TileGaps {
 
     /// The gaps in `place`: the upper one, and the lower one if there are two.
     #[inline]
-    pub(super) fn upper_and_lower(&self, place: Place) -> Option<(GapId, Option<GapId>)> {
+    pub(crate) fn upper_and_lower(&self, place: Place) -> Option<(GapId, Option<GapId>)> {
         let mut gaps = self.of(place);
         let lowest = gaps.next()?;
         Some(gaps.next().map_or((lowest, None), |upper| (upper, Some(lowest))))
@@ -119,7 +120,7 @@ impl VisibleGap {
     }
 
     /// Finds the rows of the bottom and the top of the gap at each of `distances`.
-    pub(super) fn find_rows(
+    pub(crate) fn find_rows(
         &self,
         projection: &Projection,
         distances: &[f64],
@@ -156,4 +157,4 @@ impl Holds {
 const BEYOND: Gap = Gap { bottom: 0.0, top: f64::INFINITY };
 
 /// A gap that contains all heights.
-pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MOST, top: 2.0 * Heights::MOST };
+pub(crate) const BOTTOMLESS: Gap = Gap { bottom: -2.0 * Heights::MAX, top: 2.0 * Heights::MAX };

@@ -6,54 +6,51 @@
 //! different kinds, it is divided: all rays have one origin, so that those which pass a corner on one side
 //! are neighbours.
 //!
-//! A walk for each column was refused: it looks up every cell and every gap once for each column.
+//! Rejected: a walk for each column, which looks up every cell and every gap once for each column.
 
 use std::mem;
 use std::ops::Range;
 
 use glam::DVec2;
 
-use super::billboards::RayPart;
-use super::bundle::{Bundle, Clip};
-use super::layers::Passed;
+use super::bundle::{Bundle, Clip, Surroundings};
+use super::layers::{Passed, RayPart};
 use super::ray_segments::RaySegment;
-use super::surroundings::Surroundings;
 use super::tile_gaps::{Holds, VisibleGap};
 use crate::cast::{Crossed, Ray, Side};
-use crate::visibility::chains::Chains;
-use crate::visibility::runs::{FlatSurface, ImageId, Part, Shown};
+use crate::visibility::runs::{Chains, FlatSurface, ImageId, Part, Shown};
 use crate::visibility::{DrawList, PortalStats, Scene};
 use crate::world::{Cell, TileId};
 
 /// The results of walks besides the draw list, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct WalkMemory {
+pub(crate) struct WalkMemory {
     /// The bundles that remain to be followed.
     bundles: Vec<Bundle>,
     /// The clips of these bundles.
-    pub(super) clips: Vec<Clip>,
+    pub(crate) clips: Vec<Clip>,
     /// The see-through faces, and the parts in which billboards may show: in each column, further
     /// ones come later.
-    pub(super) passed: Chains<Passed>,
+    pub(crate) passed: Chains<Passed>,
     /// The segments of the rays on the map.
-    pub(super) segments: Vec<RaySegment>,
-    pub(super) stats: PortalStats,
+    pub(crate) segments: Vec<RaySegment>,
+    pub(crate) stats: PortalStats,
     /// The directions of the rays of all columns.
-    pub(super) directions: Vec<DVec2>,
+    pub(crate) directions: Vec<DVec2>,
     /// The distances at which the rays of a bundle cross a line, by column.
-    pub(super) distances: Vec<f64>,
+    pub(crate) distances: Vec<f64>,
     /// The rows of the bottom and the top of a gap at these distances, by column.
-    pub(super) bottoms: Vec<u32>,
-    pub(super) tops: Vec<u32>,
+    pub(crate) bottoms: Vec<u32>,
+    pub(crate) tops: Vec<u32>,
     /// The ends of the rows that may show the next solid part behind a line, by column.
-    pub(super) ends: Vec<u32>,
+    pub(crate) ends: Vec<u32>,
 }
 
 /// The walk of the rays of a frame.
-pub(super) struct BundleWalk<'a> {
-    pub(super) surroundings: &'a Surroundings<'a>,
-    pub(super) memory: &'a mut WalkMemory,
-    pub(super) list: &'a mut DrawList,
+pub(crate) struct BundleWalk<'a> {
+    pub(crate) surroundings: &'a Surroundings<'a>,
+    pub(crate) memory: &'a mut WalkMemory,
+    pub(crate) list: &'a mut DrawList,
 }
 
 impl WalkMemory {
@@ -69,7 +66,7 @@ impl WalkMemory {
     }
 
     /// Reserves memory for all but extreme maps, in pictures of `width` columns.
-    pub(super) fn make_room(&mut self, width: usize) {
+    pub(crate) fn make_room(&mut self, width: usize) {
         const OF_A_COLUMN: usize = 16;
         self.bundles.reserve(2 * width);
         self.clips.clear();
@@ -88,7 +85,7 @@ impl WalkMemory {
 
 impl<'a> BundleWalk<'a> {
     /// The walk of the rays of a frame, before it begins.
-    pub(super) fn new(
+    pub(crate) fn new(
         surroundings: &'a Surroundings<'a>,
         memory: &'a mut WalkMemory,
         list: &'a mut DrawList,
@@ -99,24 +96,24 @@ impl<'a> BundleWalk<'a> {
 
     /// The ray of `column`.
     #[inline]
-    pub(super) fn ray(&self, column: u32) -> Ray {
+    pub(crate) fn ray(&self, column: u32) -> Ray {
         let origin = self.surroundings.scene.projection.origin();
         Ray::of_camera(origin, self.memory.directions[column as usize])
     }
 
     /// Stores `bundle` for later.
-    pub(super) fn store(&mut self, bundle: Bundle) {
+    pub(crate) fn store(&mut self, bundle: Bundle) {
         let clips_in_use = self.memory.clips.len();
         self.memory.bundles.push(Bundle { clips_in_use, ..bundle });
     }
 
     /// Whether no ray of `bundle` has ended.
-    pub(super) fn is_open(&self, bundle: &Bundle) -> bool {
+    pub(crate) fn is_open(&self, bundle: &Bundle) -> bool {
         self.memory.clips[bundle.clips()].iter().all(|clip| !clip.rows.is_empty())
     }
 
     /// Stores the parts of `bundle` whose rays have not ended.
-    pub(super) fn store_open(&mut self, bundle: &Bundle) {
+    pub(crate) fn store_open(&mut self, bundle: &Bundle) {
         let mut columns = bundle.columns.clone();
         while let Some(part) = self.next_open(bundle, &mut columns) {
             self.store(part);
@@ -125,7 +122,7 @@ impl<'a> BundleWalk<'a> {
 
     /// The part of `bundle` in the first of `columns` whose rays have not ended, which are removed from
     /// there.
-    pub(super) fn next_open(&self, bundle: &Bundle, columns: &mut Range<u32>) -> Option<Bundle> {
+    pub(crate) fn next_open(&self, bundle: &Bundle, columns: &mut Range<u32>) -> Option<Bundle> {
         let is_open = |column: &u32| !self.memory.clips[bundle.clip(*column)].rows.is_empty();
         let start = columns.clone().find(is_open)?;
         let end = (start..columns.end).find(|column| !is_open(column)).unwrap_or(columns.end);
@@ -134,7 +131,7 @@ impl<'a> BundleWalk<'a> {
     }
 
     /// Follows all bundles that are stored.
-    pub(super) fn follow_stored(&mut self) {
+    pub(crate) fn follow_stored(&mut self) {
         while let Some(bundle) = self.memory.bundles.pop() {
             self.memory.clips.truncate(bundle.clips_in_use);
             self.follow(bundle);
@@ -206,7 +203,7 @@ impl<'a> BundleWalk<'a> {
     }
 
     /// Finds the rows of the bottom and the top of `gap` at the distances of the rays of `bundle`.
-    pub(super) fn find_rows(&mut self, bundle: &Bundle, gap: &VisibleGap) {
+    pub(crate) fn find_rows(&mut self, bundle: &Bundle, gap: &VisibleGap) {
         let projection = self.surroundings.scene.projection;
         let WalkMemory { distances, bottoms, tops, .. } = &mut *self.memory;
         let indices = bundle.indices();
@@ -216,7 +213,7 @@ impl<'a> BundleWalk<'a> {
 
     /// Shows floor and ceiling of the cell of `bundle`, which its rays leave at the distances found, and
     /// removes their rows from the clip ranges.
-    pub(super) fn close(&mut self, bundle: &Bundle) {
+    pub(crate) fn close(&mut self, bundle: &Bundle) {
         let Surroundings { scene, gaps, has_things, .. } = *self.surroundings;
         let (eye, gap) = (scene.projection.eye(), gaps.gap(bundle.gap));
         self.find_rows(bundle, gap);
@@ -264,7 +261,7 @@ impl<'a> BundleWalk<'a> {
     }
 
     /// Ends the ray of `column`, unless it has ended, and stores its segment.
-    pub(super) fn end(&mut self, bundle: &Bundle, column: u32) {
+    pub(crate) fn end(&mut self, bundle: &Bundle, column: u32) {
         let clip = &mut self.memory.clips[bundle.clip(column)];
         clip.rows = 0..0;
         let ends = [mem::replace(&mut clip.start, f64::INFINITY), clip.from];

@@ -5,8 +5,8 @@
 //! centred at points a fraction of a box apart. So a pixel that reads one texel of a level has the mean over
 //! nearly its own box, at the cost of any other lookup. A level is made when it is first read.
 //!
-//! A summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984) gives the mean over any box, and was
-//! refused: it takes four lookups in 64 bits, three divisions and three roots for each pixel.
+//! Rejected: a summed-area table (Crow, "Summed-Area Tables for Texture Mapping", 1984), which gives the mean over
+//! any box. It takes four lookups in 64 bits, three divisions and three roots for each pixel.
 
 use std::f64::consts::SQRT_2;
 use std::num::NonZeroU32;
@@ -22,7 +22,7 @@ pub(crate) struct AreaLod {
     down: u8,
 }
 
-/// What is beyond the edges of a texture.
+/// The continuation of a texture beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Repeat {
     /// The texture again on the left and the right; above and below it a wall ends.
@@ -33,7 +33,7 @@ pub(crate) enum Repeat {
 
 /// The area levels of a texture that were made so far.
 #[derive(Clone)]
-pub(super) struct AreaLevels {
+pub(crate) struct AreaLevels {
     /// The number of steps along both axes.
     steps: [u8; 2],
     across: Vec<OnceLock<Box<MipLevel>>>,
@@ -61,7 +61,7 @@ impl AreaLod {
 }
 
 impl AreaLevels {
-    pub(super) fn new(picture: &MipLevel) -> Self {
+    pub(crate) fn new(picture: &MipLevel) -> Self {
         let steps = [picture.width(), picture.height()].map(steps_for);
         let count = steps.map(usize::from).into_iter().product();
         let none = || (0..count).map(|_| OnceLock::new()).collect();
@@ -70,7 +70,7 @@ impl AreaLevels {
 
     /// The level of `picture` with this extent.
     #[inline]
-    pub(super) fn level(&self, picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> &MipLevel {
+    pub(crate) fn level(&self, picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> &MipLevel {
         let [across, down] = self.steps;
         let lod = AreaLod { across: lod.across.min(across - 1), down: lod.down.min(down - 1) };
         let levels = match repeat {
@@ -87,7 +87,7 @@ impl Boxes {
     fn new(step: u8, texels: u32) -> Self {
         let all = f64::from(texels);
         let Some(half_octaves) = step.checked_sub(1) else {
-            let count = texels.next_power_of_two().min(MOST);
+            let count = texels.next_power_of_two().min(MAX);
             return Self { extent: all / f64::from(count), count };
         };
         let octaves = f64::from(1_u32 << (half_octaves / 2).min(31));
@@ -97,7 +97,7 @@ impl Boxes {
             return Self { extent, count: 1 };
         }
         let count = (BOXES_IN_AN_EXTENT * all / extent) as u32;
-        Self { extent, count: count.next_power_of_two().min(MOST) }
+        Self { extent, count: count.next_power_of_two().min(MAX) }
     }
 }
 
@@ -107,9 +107,9 @@ const LEAST_HALF_OCTAVES: i64 = -4;
 /// The number of boxes that begin within one of them.
 const BOXES_IN_AN_EXTENT: f64 = 4.0;
 /// The most boxes along an axis.
-const MOST: u32 = 256;
+const MAX: u32 = 256;
 /// The most boxes of a level for planes, as a power of two. It is even, as the loops for planes require.
-const MOST_BITS_OF_PLANES: u32 = 14;
+const MAX_BITS_OF_PLANES: u32 = 14;
 
 /// The step for an extent with this square, in square texels.
 #[inline]
@@ -156,7 +156,7 @@ fn means(picture: &MipLevel, lod: AreaLod, repeat: Repeat) -> MipLevel {
 /// Makes the product of two powers of two a power of four that is not too large.
 fn suit_planes(across: &mut u32, down: &mut u32) {
     let bits = |across: u32, down: u32| across.trailing_zeros() + down.trailing_zeros();
-    while bits(*across, *down) > MOST_BITS_OF_PLANES {
+    while bits(*across, *down) > MAX_BITS_OF_PLANES {
         *(if across > down { &mut *across } else { &mut *down }) /= 2;
     }
     if !bits(*across, *down).is_multiple_of(2) {

@@ -10,15 +10,12 @@
 //! would be larger than this code, and changes to them could not be reviewed.
 
 mod block;
-mod coffer;
 mod facing;
 mod hedge;
-mod ironwork;
 mod masonry;
 mod metal;
 mod noise;
 mod panorama;
-mod patch;
 mod shade;
 mod timber;
 
@@ -90,10 +87,10 @@ const PAINTERS: [(&str, Painter); 16] = [
     ("sandstone", Painter::Solid(masonry::sandstone)),
     ("hedge", Painter::Solid(hedge::hedge)),
     ("marble", Painter::Solid(facing::marble)),
-    ("jamb", Painter::Solid(ironwork::jamb)),
-    ("grate", Painter::WithHoles(ironwork::grate)),
+    ("jamb", Painter::Solid(metal::jamb)),
+    ("grate", Painter::WithHoles(metal::grate)),
     ("fence", Painter::WithHoles(timber::fence)),
-    ("coffer", Painter::Solid(coffer::coffer)),
+    ("coffer", Painter::Solid(facing::coffer)),
 ];
 
 /// The difference of two positions, the shorter way around the texture.

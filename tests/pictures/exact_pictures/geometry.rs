@@ -10,7 +10,7 @@ use num_traits::{Signed, Zero};
 use super::{CEILING, DOUBTFUL, FLOOR};
 
 /// A camera and a world in exact numbers.
-pub(super) struct Geometry<'a> {
+pub(crate) struct Geometry<'a> {
     world: &'a World,
     origin: Point,
     direction: Point,
@@ -38,7 +38,7 @@ enum Face {
 }
 
 impl<'a> Geometry<'a> {
-    pub(super) fn new(world: &'a World, camera: &Camera, frame: &Frame) -> Self {
+    pub(crate) fn new(world: &'a World, camera: &Camera, frame: &Frame) -> Self {
         let width = exact(f64::from(frame.width()));
         let half_width = exact(camera.field_of_view.half_width());
         let pixel_aspect = exact(frame.pixel_aspect().height_over_width());
@@ -54,7 +54,7 @@ impl<'a> Geometry<'a> {
     }
 
     /// The colour of a pixel; `None` if its centre is too close to an edge.
-    pub(super) fn color(&self, x: u32, y: u32) -> Option<Rgb> {
+    pub(crate) fn color(&self, x: u32, y: u32) -> Option<Rgb> {
         let (across, doubt) = (exact(f64::from(x) + 0.5), exact(DOUBTFUL));
         let met = self.cast(&across);
         for beside in [&across - &doubt, &across + &doubt] {
@@ -84,7 +84,7 @@ impl<'a> Geometry<'a> {
     }
 
     /// As [`Geometry::color`], for a wall with light; `None` for anything else.
-    pub(super) fn lit_color(&self, x: u32, y: u32) -> Option<Rgb> {
+    pub(crate) fn lit_color(&self, x: u32, y: u32) -> Option<Rgb> {
         let color = self.color(x, y)?;
         let across = f64::from(x) + 0.5;
         let met = self.cast(&exact(across));

@@ -30,7 +30,7 @@ fn rings(bytes: &[u8]) -> bool {
 }
 
 /// An empty folder for a test with that name.
-pub(super) fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();

@@ -12,34 +12,34 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier};
 
 use super::super::CellWriter;
-use crate::canvas::Mosaic;
+use crate::tui::canvas::Mosaic;
 
 /// A terminal's screen that counts the writes to it.
 #[derive(Clone)]
-pub(super) struct Screen(pub(super) Rc<RefCell<Received>>);
+pub(crate) struct Screen(pub(crate) Rc<RefCell<Received>>);
 
-pub(super) struct Received {
-    pub(super) parser: vt100::Parser,
+pub(crate) struct Received {
+    pub(crate) parser: vt100::Parser,
     writes: usize,
     bytes: Vec<u8>,
 }
 
 impl Screen {
-    pub(super) fn new(size: Size) -> Self {
+    pub(crate) fn new(size: Size) -> Self {
         let parser = vt100::Parser::new(length(size.height), length(size.width), 0);
         Self(Rc::new(RefCell::new(Received { parser, writes: 0, bytes: Vec::new() })))
     }
 
-    pub(super) fn resize(&self, size: Size) {
+    pub(crate) fn resize(&self, size: Size) {
         self.0.borrow_mut().parser.set_size(length(size.height), length(size.width));
     }
 
-    pub(super) fn writes(&self) -> usize {
+    pub(crate) fn writes(&self) -> usize {
         self.0.borrow().writes
     }
 
     /// The text received since the last call.
-    pub(super) fn take_text(&self) -> String {
+    pub(crate) fn take_text(&self) -> String {
         String::from_utf8(std::mem::take(&mut self.0.borrow_mut().bytes)).unwrap()
     }
 }
@@ -58,21 +58,21 @@ impl Write for Screen {
     }
 }
 
-pub(super) fn length(cells: u16) -> NonZeroU16 {
+pub(crate) fn length(cells: u16) -> NonZeroU16 {
     NonZeroU16::new(cells).unwrap()
 }
 
-pub(super) fn terminal(size: Size) -> (Terminal<CellWriter<Screen>>, Screen) {
+pub(crate) fn terminal(size: Size) -> (Terminal<CellWriter<Screen>>, Screen) {
     let screen = Screen::new(size);
     (Terminal::new(CellWriter::new(screen.clone(), size)).unwrap(), screen)
 }
 
-pub(super) fn draw(terminal: &mut Terminal<CellWriter<Screen>>, content: &Buffer) {
+pub(crate) fn draw(terminal: &mut Terminal<CellWriter<Screen>>, content: &Buffer) {
     terminal.draw(|frame| frame.buffer_mut().merge(content)).unwrap();
 }
 
 /// The bytes that draw `cells` in a row.
-pub(super) fn bytes_of(cells: &[Cell]) -> String {
+pub(crate) fn bytes_of(cells: &[Cell]) -> String {
     let (mut terminal, screen) = terminal(Size::new(10, 1));
     let mut buffer = Buffer::empty(Rect::new(0, 0, cells.len() as u16, 1));
     buffer.content.clone_from_slice(cells);
@@ -81,17 +81,17 @@ pub(super) fn bytes_of(cells: &[Cell]) -> String {
 }
 
 /// The bytes that draw `cells`, one sequence a line.
-pub(super) fn readable(cells: &[Cell]) -> String {
+pub(crate) fn readable(cells: &[Cell]) -> String {
     bytes_of(cells).replace('\x1b', "\nESC").trim_start().to_owned()
 }
 
-pub(super) fn colored(symbol: &'static str, fg: Color, bg: Color) -> Cell {
+pub(crate) fn colored(symbol: &'static str, fg: Color, bg: Color) -> Cell {
     let mut cell = Cell::new(symbol);
     cell.set_fg(fg).set_bg(bg);
     cell
 }
 
-pub(super) fn assert_shown(screen: &Screen, content: &Buffer) {
+pub(crate) fn assert_shown(screen: &Screen, content: &Buffer) {
     let received = screen.0.borrow();
     for position in content.area.positions() {
         let expected = &content[position];
@@ -151,7 +151,7 @@ impl Looks {
     }
 }
 
-pub(super) fn color(color: Color) -> vt100::Color {
+pub(crate) fn color(color: Color) -> vt100::Color {
     match color {
         Color::Reset => vt100::Color::Default,
         Color::Rgb(red, green, blue) => vt100::Color::Rgb(red, green, blue),
@@ -162,7 +162,7 @@ pub(super) fn color(color: Color) -> vt100::Color {
     }
 }
 
-pub(super) fn any_color() -> impl Strategy<Value = Color> {
+pub(crate) fn any_color() -> impl Strategy<Value = Color> {
     prop_oneof![
         Just(Color::Reset),
         Just(Color::Red),
@@ -176,14 +176,14 @@ pub(super) fn any_color() -> impl Strategy<Value = Color> {
     ]
 }
 
-pub(super) fn any_modifier() -> impl Strategy<Value = Modifier> {
+pub(crate) fn any_modifier() -> impl Strategy<Value = Modifier> {
     let intensity = prop::sample::select(vec![Modifier::empty(), Modifier::BOLD, Modifier::DIM]);
     let others = Modifier::ITALIC | Modifier::UNDERLINED | Modifier::REVERSED;
     (intensity, any::<u16>())
         .prop_map(move |(intensity, bits)| intensity | others & Modifier::from_bits_truncate(bits))
 }
 
-pub(super) fn any_cell() -> impl Strategy<Value = Cell> {
+pub(crate) fn any_cell() -> impl Strategy<Value = Cell> {
     let symbol = prop::sample::select(vec![
         " ",
         "▀",
@@ -205,7 +205,7 @@ pub(super) fn any_cell() -> impl Strategy<Value = Cell> {
     })
 }
 
-pub(super) fn any_buffer(size: Size) -> impl Strategy<Value = Buffer> {
+pub(crate) fn any_buffer(size: Size) -> impl Strategy<Value = Buffer> {
     let area = Rect::from(size);
     prop::collection::vec(any_cell(), usize::from(size.width) * usize::from(size.height)).prop_map(
         move |content| {
@@ -218,7 +218,7 @@ pub(super) fn any_buffer(size: Size) -> impl Strategy<Value = Buffer> {
 
 /// Blanks the cell after each wide symbol, as ratatui's widgets do, and replaces wide symbols in
 /// the last column.
-pub(super) fn tidy_wide_symbols(buffer: &mut Buffer) {
+pub(crate) fn tidy_wide_symbols(buffer: &mut Buffer) {
     for y in 0..buffer.area.height {
         for x in 0..buffer.area.width {
             if buffer[(x, y)].cell_width() > 1 {
@@ -232,12 +232,12 @@ pub(super) fn tidy_wide_symbols(buffer: &mut Buffer) {
     }
 }
 
-pub(super) fn any_size() -> impl Strategy<Value = Size> {
+pub(crate) fn any_size() -> impl Strategy<Value = Size> {
     (1..12_u16, 1..6_u16).prop_map(Size::from)
 }
 
 /// Pixels of few colours, so that glyphs often have a choice.
-pub(super) fn any_pixels(count: usize) -> impl Strategy<Value = Vec<Cell>> {
+pub(crate) fn any_pixels(count: usize) -> impl Strategy<Value = Vec<Cell>> {
     let shade = || (0..3_u8).prop_map(|red| Color::Rgb(red, 7, 200));
     let symbol = prop::sample::select(vec![" ", "▀", "▄", "█", "▞", "▚", "🬂", "\u{1CD09}"]);
     let cell = (symbol, shade(), shade()).prop_map(|(symbol, fg, bg)| colored(symbol, fg, bg));

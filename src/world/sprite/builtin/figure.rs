@@ -5,7 +5,7 @@ use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// A statue of a knight with a shield and a spear.
-pub(super) fn statue() -> Design {
+pub(crate) fn statue() -> Design {
     // From the front, then from the side of the shield, and so on around it.
     let pictures = vec![
         drawn(&FRONT, COLORS),

@@ -4,7 +4,7 @@ use super::{Design, INK, Palette, drawn};
 use crate::color::Rgb;
 
 /// A few coins.
-pub(super) fn coins() -> Design {
+pub(crate) fn coins() -> Design {
     const LINES: [&str; 8] = [
         "......kkkk......",
         ".....kYwYYk.....",
@@ -19,7 +19,7 @@ pub(super) fn coins() -> Design {
 }
 
 /// A cup with two handles.
-pub(super) fn cup() -> Design {
+pub(crate) fn cup() -> Design {
     const LINES: [&str; 16] = [
         "..kkkkkkkkkk..",
         ".kYYwwYYYYyyk.",
@@ -42,7 +42,7 @@ pub(super) fn cup() -> Design {
 }
 
 /// A crown with jewels.
-pub(super) fn crown() -> Design {
+pub(crate) fn crown() -> Design {
     const LINES: [&str; 15] = [
         ".........kk.........",
         "........krrk........",
@@ -73,7 +73,7 @@ const GOLD: &Palette = &[
 ];
 
 /// A heart.
-pub(super) fn heart() -> Design {
+pub(crate) fn heart() -> Design {
     const LINES: [&str; 13] = [
         "..kkk....kkk..",
         ".kRRRk..kRRrk.",
@@ -99,7 +99,7 @@ pub(super) fn heart() -> Design {
 }
 
 /// A sheet of paper with lines of writing.
-pub(super) fn note() -> Design {
+pub(crate) fn note() -> Design {
     const LINES: [&str; 16] = [
         ".kkkkkkkkkkk..",
         "kPPPPPPPPPPpk.",
@@ -128,7 +128,7 @@ pub(super) fn note() -> Design {
 }
 
 /// Three pebbles.
-pub(super) fn pebbles() -> Design {
+pub(crate) fn pebbles() -> Design {
     const LINES: [&str; 8] = [
         ".....kkkkk......",
         "....kSSSssk.....",
@@ -143,7 +143,7 @@ pub(super) fn pebbles() -> Design {
 }
 
 /// A pebble that flies.
-pub(super) fn pebble() -> Design {
+pub(crate) fn pebble() -> Design {
     const LINES: [&str; 6] = [
         "..kkk..", //
         ".kSSsk.", "kSSSssk", "kSSsssk", ".kssssk", "..kkkk.",

@@ -5,7 +5,7 @@ use crate::color::Rgb;
 use crate::world::Texture;
 
 /// A banner on a pole. It is grey before the player has reached it, and blue and gold after that.
-pub(super) fn checkpoint() -> Design {
+pub(crate) fn checkpoint() -> Design {
     const LINES: [&str; 26] = [
         ".......kk.......",
         "......kYYk......",
@@ -55,7 +55,7 @@ pub(super) fn checkpoint() -> Design {
 }
 
 /// A lever in a block of stone, to the left while its switch is off, to the right while it is on.
-pub(super) fn lever() -> Design {
+pub(crate) fn lever() -> Design {
     const LINES: [&str; 18] = [
         ".kkk..............",
         "kRRRk.............",
@@ -102,7 +102,7 @@ const STONE: Rgb = Rgb::new(0x98, 0x94, 0x8c);
 const SHADE: Rgb = Rgb::new(0x6c, 0x68, 0x64);
 
 /// Spikes: their holes, their tips, and all of them.
-pub(super) fn spikes() -> Design {
+pub(crate) fn spikes() -> Design {
     let pictures = [0, 7, 18].map(spikes_out_by).to_vec();
     Design { animated: Some(1), ..Design::standing(0.5, pictures) }
 }

@@ -4,7 +4,7 @@ use super::{Anchor, Design, INK, Palette, drawn, painted};
 use crate::color::Rgb;
 
 /// A lantern on a chain, whose flame flickers. The last frame is without the flame.
-pub(super) fn lamp() -> Design {
+pub(crate) fn lamp() -> Design {
     const FRAMES: [[&str; 14]; 3] = [
         [
             ".....k......",
@@ -61,7 +61,7 @@ pub(super) fn lamp() -> Design {
 }
 
 /// A torch on a stand. The last frame is without the flame.
-pub(super) fn torch() -> Design {
+pub(crate) fn torch() -> Design {
     const FRAMES: [[&str; 22]; 4] = [
         [
             "....r.....",
@@ -164,7 +164,7 @@ pub(super) fn torch() -> Design {
     Design { seconds: 0.15, animated: Some(3), shines: 0.6, ..Design::standing(0.72, pictures) }
 }
 
-pub(super) const FIRE: &Palette = &[
+pub(crate) const FIRE: &Palette = &[
     ('k', INK),
     ('m', Rgb::new(0x6c, 0x62, 0x58)),
     ('r', Rgb::new(0xd8, 0x50, 0x20)),
@@ -176,7 +176,7 @@ pub(super) const FIRE: &Palette = &[
 ];
 
 /// A plant with broad leaves in a pot.
-pub(super) fn plant() -> Design {
+pub(crate) fn plant() -> Design {
     const LINES: [&str; 20] = [
         ".......k........",
         "..kk..kGk..kk...",
@@ -210,7 +210,7 @@ pub(super) fn plant() -> Design {
 }
 
 /// A barrel with three hoops.
-pub(super) fn barrel() -> Design {
+pub(crate) fn barrel() -> Design {
     const WIDTH: i32 = 22;
     const HEIGHT: i32 = 26;
     const LID: i32 = 4;
@@ -238,7 +238,7 @@ pub(super) fn barrel() -> Design {
 }
 
 /// A fluted column from the floor to the ceiling.
-pub(super) fn column() -> Design {
+pub(crate) fn column() -> Design {
     const WIDTH: i32 = 24;
     const HEIGHT: i32 = 64;
     const STONE: Rgb = Rgb::new(0xb8, 0xb4, 0xac);
@@ -263,7 +263,7 @@ pub(super) fn column() -> Design {
 }
 
 /// A table, seen from the front.
-pub(super) fn table() -> Design {
+pub(crate) fn table() -> Design {
     const LINES: [&str; 12] = [
         "..kkkkkkkkkkkkkkkkkkkk..",
         ".kWWWWWWWWWWWWWWWWWWWWk.",

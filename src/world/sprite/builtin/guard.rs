@@ -14,7 +14,7 @@ use super::{Design, Facings, GuardFrame};
 use crate::world::GuardKind;
 
 /// The sprite of a kind of guard.
-pub(super) fn guard(kind: GuardKind) -> Design {
+pub(crate) fn guard(kind: GuardKind) -> Design {
     let Figure { height, size, model } = figure(kind);
     let pictures = model::pictures(GuardFrame::ALL, model, size);
     let shines = if kind == GuardKind::Lantern { 0.7 } else { 0.0 };
@@ -42,7 +42,7 @@ fn figure(kind: GuardKind) -> Figure {
 }
 
 /// Adds both legs and boots.
-pub(super) fn legs(
+pub(crate) fn legs(
     model: &mut Model,
     joints: &Joints,
     radii: [f64; 2],
@@ -61,7 +61,7 @@ pub(super) fn legs(
 }
 
 /// Adds both arms and hands.
-pub(super) fn arms(
+pub(crate) fn arms(
     model: &mut Model,
     joints: &Joints,
     radii: [f64; 2],

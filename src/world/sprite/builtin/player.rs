@@ -5,7 +5,7 @@ use crate::color::Rgb;
 use crate::world::sprite::Facings;
 
 /// The player's figure. Its eyes are at the height of the camera.
-pub(super) fn player() -> Design {
+pub(crate) fn player() -> Design {
     const FRONT: [&str; 24] = [
         "................",
         ".....kkkkkk.....",

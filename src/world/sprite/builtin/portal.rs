@@ -4,7 +4,7 @@ use super::{Design, painted};
 use crate::color::Rgb;
 
 /// An arch of stone with green light rising in it.
-pub(super) fn portal() -> Design {
+pub(crate) fn portal() -> Design {
     const FRAMES: i32 = 4;
     let pictures = (0..FRAMES).map(|frame| {
         painted(WIDTH as u32, HEIGHT as u32, move |x, y| texel(x, y, frame * BAND * 2 / FRAMES))

@@ -5,7 +5,7 @@ use super::{Anchor, Design, INK, Palette, drawn};
 use crate::color::Rgb;
 
 /// A crate of boards with a diagonal brace.
-pub(super) fn crate_of_boards() -> Design {
+pub(crate) fn crate_of_boards() -> Design {
     const LINES: [&str; 20] = [
         ".kkkkkkkkkkkkkkkkkk.",
         "kWWWWWWWWWWWWWWWWWwk",
@@ -32,7 +32,7 @@ pub(super) fn crate_of_boards() -> Design {
 }
 
 /// A chest with iron bands and a lock.
-pub(super) fn chest() -> Design {
+pub(crate) fn chest() -> Design {
     const LINES: [&str; 15] = [
         "...kkkkkkkkkkkkkk...",
         "..kWIIWWWWWWWWIIwk..",
@@ -63,7 +63,7 @@ const WOOD: &Palette = &[
 ];
 
 /// A red banner with a golden emblem, which hangs from the ceiling.
-pub(super) fn banner() -> Design {
+pub(crate) fn banner() -> Design {
     const LINES: [&str; 24] = [
         "kkkkkkkkkkkkkkkk",
         "kYYYYYYYYYYYYYyk",
@@ -102,7 +102,7 @@ pub(super) fn banner() -> Design {
 }
 
 /// A pile of books.
-pub(super) fn books() -> Design {
+pub(crate) fn books() -> Design {
     const LINES: [&str; 12] = [
         "....kkkkkkkkk...",
         "...kGGGGGGGGgk..",
@@ -132,7 +132,7 @@ pub(super) fn books() -> Design {
 }
 
 /// A bowl of embers on three legs, whose flames flicker. The last frame is without them.
-pub(super) fn brazier() -> Design {
+pub(crate) fn brazier() -> Design {
     const FLAMES: [[&str; 8]; 4] = [
         [
             "......r.........",

@@ -6,6 +6,7 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::guard::{arms, legs};
 use super::model::skeleton::{Build, Joints, Pose};
@@ -15,7 +16,7 @@ use crate::color::Rgb;
 use crate::world::{Sprite, Texture};
 
 /// The colour of a player's hat, cape and tunic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum PlayerColor {
     /// Red.
     Red,

@@ -4,7 +4,7 @@ use super::{Design, INK, Palette, drawn};
 use crate::color::Rgb;
 
 /// A key that glints.
-pub(super) fn key() -> Design {
+pub(crate) fn key() -> Design {
     const FRAMES: [[&str; 10]; 4] = [
         [
             "................",
@@ -66,7 +66,7 @@ pub(super) fn key() -> Design {
 }
 
 /// A skull on some bones.
-pub(super) fn bones() -> Design {
+pub(crate) fn bones() -> Design {
     const LINES: [&str; 12] = [
         "......kkkkkk......",
         ".....kBBBBBbk.....",

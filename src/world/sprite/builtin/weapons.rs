@@ -5,7 +5,7 @@ use crate::color::Rgb;
 use crate::world::Texture;
 
 /// Two crossed darts with red feathers.
-pub(super) fn darts() -> Design {
+pub(crate) fn darts() -> Design {
     const LINES: [&str; 14] = [
         "kkk........kkk",
         "kSSk......kSSk",
@@ -26,7 +26,7 @@ pub(super) fn darts() -> Design {
 }
 
 /// A dart that flies.
-pub(super) fn dart() -> Design {
+pub(crate) fn dart() -> Design {
     const SIDE: [&str; 5] = [
         "kkk.............",
         "kRRkkkkkkkkkkkk.",
@@ -38,7 +38,7 @@ pub(super) fn dart() -> Design {
 }
 
 /// The archer's bolt, which flies. Its point gleams, so that players see it come.
-pub(super) fn bolt() -> Design {
+pub(crate) fn bolt() -> Design {
     const SIDE: [&str; 7] = [
         "kkkk................",
         "kwwwk..........kkkk.",
@@ -78,7 +78,7 @@ const DART: &Palette = &[
 ];
 
 /// Two flasks of smoke.
-pub(super) fn flasks() -> Design {
+pub(crate) fn flasks() -> Design {
     const LINES: [&str; 14] = [
         "...kk...........",
         "..kCCk....kk....",
@@ -99,7 +99,7 @@ pub(super) fn flasks() -> Design {
 }
 
 /// A flask that flies.
-pub(super) fn flask() -> Design {
+pub(crate) fn flask() -> Design {
     const LINES: [&str; 9] = [
         "......kkk",
         ".....kCCk",
@@ -125,7 +125,7 @@ const FLASK: &Palette = &[
 ];
 
 /// A cloud of smoke, with holes, that billows.
-pub(super) fn smoke() -> Design {
+pub(crate) fn smoke() -> Design {
     let pictures = (0..FRAMES).map(smoke_picture).collect();
     Design { seconds: 0.25, ..Design::standing(0.9, pictures) }
 }
@@ -171,7 +171,7 @@ fn smoke_picture(frame: i32) -> Texture {
 }
 
 /// Three stars above somebody who is stunned.
-pub(super) fn star() -> Design {
+pub(crate) fn star() -> Design {
     const FRAMES: [[&str; 9]; 2] = [
         [
             "....k.............",

@@ -4,26 +4,26 @@ use super::SIDE;
 
 /// The position of a texel in a rectangle.
 #[derive(Clone, Copy)]
-pub(super) struct Block {
+pub(crate) struct Block {
     /// Texels from the left edge.
-    pub(super) x: i32,
+    pub(crate) x: i32,
     /// Texels from the top edge.
-    pub(super) y: i32,
-    pub(super) width: i32,
-    pub(super) height: i32,
+    pub(crate) y: i32,
+    pub(crate) width: i32,
+    pub(crate) height: i32,
     /// The number of the rectangle in the texture.
-    pub(super) id: i32,
+    pub(crate) id: i32,
 }
 
 impl Block {
     /// The square with sides of `side` texels that contains `(x, y)`.
-    pub(super) fn in_squares(side: i32, x: i32, y: i32) -> Self {
+    pub(crate) fn in_squares(side: i32, x: i32, y: i32) -> Self {
         let id = y / side * (SIDE / side) + x / side;
         Self { x: x % side, y: y % side, width: side, height: side, id }
     }
 
     /// The one of `areas` that contains `(x, y)`.
-    pub(super) fn among(areas: &[Area], x: i32, y: i32) -> Option<Self> {
+    pub(crate) fn among(areas: &[Area], x: i32, y: i32) -> Option<Self> {
         (0..).zip(areas).find_map(|(id, &Area { left, top, width, height })| {
             let (x, y) = (x - left, y - top);
             let holds = (0..width).contains(&x) && (0..height).contains(&y);
@@ -32,14 +32,14 @@ impl Block {
     }
 
     /// Texels to the nearest edge: 0 along it.
-    pub(super) fn rim(self) -> i32 {
+    pub(crate) fn rim(self) -> i32 {
         let [left, right, top, bottom] = self.to_edges();
         left.min(right).min(top).min(bottom)
     }
 
     /// The light on a slope down to the nearest edge: from 3, the brightest, at the top to −3, the
     /// darkest, at the bottom.
-    pub(super) fn slope(self) -> i32 {
+    pub(crate) fn slope(self) -> i32 {
         let rim = self.rim();
         let [_, right, top, bottom] = self.to_edges();
         if bottom == rim {
@@ -55,7 +55,7 @@ impl Block {
 
     /// The light on a bevel inside the joint around the rectangle: `strength` times
     /// [`Block::slope`]; 0 elsewhere.
-    pub(super) fn bevel(self, strength: i32) -> i32 {
+    pub(crate) fn bevel(self, strength: i32) -> i32 {
         if self.rim() == 1 { self.slope() * strength } else { 0 }
     }
 
@@ -67,22 +67,22 @@ impl Block {
 }
 
 /// A rectangle of the texture.
-pub(super) struct Area {
-    pub(super) left: i32,
-    pub(super) top: i32,
-    pub(super) width: i32,
-    pub(super) height: i32,
+pub(crate) struct Area {
+    pub(crate) left: i32,
+    pub(crate) top: i32,
+    pub(crate) width: i32,
+    pub(crate) height: i32,
 }
 
 /// A bond: courses of blocks, from top to bottom, that cover the whole texture.
-pub(super) struct Bond(&'static [Course]);
+pub(crate) struct Bond(&'static [Course]);
 
 /// A course of blocks.
-pub(super) struct Course {
-    pub(super) height: i32,
+pub(crate) struct Course {
+    pub(crate) height: i32,
     /// The left edge of the first block; the last block wraps around to it.
-    pub(super) start: i32,
-    pub(super) widths: &'static [i32],
+    pub(crate) start: i32,
+    pub(crate) widths: &'static [i32],
 }
 
 /// More than the number of blocks in any course.
@@ -91,7 +91,7 @@ const IDS_A_COURSE: usize = 16;
 impl Bond {
     /// The bond of these courses. Their heights, and the widths in each, must add up to the side of
     /// the texture: a constant that does not fails to compile.
-    pub(super) const fn new(courses: &'static [Course]) -> Self {
+    pub(crate) const fn new(courses: &'static [Course]) -> Self {
         let (mut index, mut height) = (0, 0);
         while index < courses.len() {
             let course = &courses[index];
@@ -105,7 +105,7 @@ impl Bond {
     }
 
     /// The block that contains `(x, y)`.
-    pub(super) fn block(&self, x: i32, y: i32) -> Block {
+    pub(crate) fn block(&self, x: i32, y: i32) -> Block {
         let (row, y, height) = stretch(self.0.iter().map(|course| course.height), y);
         let Course { start, widths, .. } = self.0[row];
         let (column, x, width) = stretch(widths.iter().copied(), (x - start).rem_euclid(SIDE));

@@ -8,7 +8,7 @@ use super::{SIDE, wrapped};
 use crate::color::Rgb;
 
 /// Layers of leaves on boughs of varying depth.
-pub(super) fn hedge(x: i32, y: i32) -> Rgb {
+pub(crate) fn hedge(x: i32, y: i32) -> Rgb {
     const DEPTH: Rgb = Rgb::new(0x1c, 0x38, 0x1e);
     const GREEN: [Rgb; 3] =
         [Rgb::new(0x40, 0x7a, 0x30), Rgb::new(0x34, 0x68, 0x2c), Rgb::new(0x50, 0x8a, 0x36)];

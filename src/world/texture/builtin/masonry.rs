@@ -1,13 +1,13 @@
 //! Masonry: brick, stone, mossy stone, sandstone, flagstones.
 
 use super::block::{Bond, Course};
+use super::noise::Patch;
 use super::noise::{Noise, hash};
-use super::patch::Patch;
 use super::shade::{mix, pick, shade};
 use crate::color::Rgb;
 
 /// Stretchers in running bond, three to a course, in pale mortar.
-pub(super) fn brick(x: i32, y: i32) -> Rgb {
+pub(crate) fn brick(x: i32, y: i32) -> Rgb {
     const BOND: Bond = Bond::new(&[
         Course { height: 11, start: 0, widths: &[21, 22, 21] },
         Course { height: 11, start: 11, widths: &[21, 21, 22] },
@@ -35,7 +35,7 @@ pub(super) fn brick(x: i32, y: i32) -> Rgb {
 }
 
 /// Dressed blocks of several sizes with dark joints.
-pub(super) fn stone(x: i32, y: i32) -> Rgb {
+pub(crate) fn stone(x: i32, y: i32) -> Rgb {
     const BOND: Bond = Bond::new(&[
         Course { height: 22, start: 0, widths: &[36, 28] },
         Course { height: 19, start: 18, widths: &[24, 40] },
@@ -63,7 +63,7 @@ pub(super) fn stone(x: i32, y: i32) -> Rgb {
 }
 
 /// The wall of [`stone`], with moss.
-pub(super) fn moss(x: i32, y: i32) -> Rgb {
+pub(crate) fn moss(x: i32, y: i32) -> Rgb {
     const GREEN: Rgb = Rgb::new(0x52, 0x7a, 0x30);
     const CUSHIONS: Noise = Noise::new(4, 16, 16);
     const FRINGE: Noise = Noise::new(5, 4, 8);
@@ -79,7 +79,7 @@ pub(super) fn moss(x: i32, y: i32) -> Rgb {
 }
 
 /// High and low courses in turn, with visible layers.
-pub(super) fn sandstone(x: i32, y: i32) -> Rgb {
+pub(crate) fn sandstone(x: i32, y: i32) -> Rgb {
     const BOND: Bond = Bond::new(&[
         Course { height: 20, start: 0, widths: &[40, 24] },
         Course { height: 12, start: 20, widths: &[32, 32] },
@@ -99,7 +99,7 @@ pub(super) fn sandstone(x: i32, y: i32) -> Rgb {
 }
 
 /// Flat irregular stones, fitted together.
-pub(super) fn flagstone(x: i32, y: i32) -> Rgb {
+pub(crate) fn flagstone(x: i32, y: i32) -> Rgb {
     const POINTS: [(i32, i32); 9] =
         [(14, 6), (39, 3), (57, 14), (26, 26), (48, 31), (5, 30), (15, 47), (37, 51), (60, 49)];
     const SLATE: [Rgb; 4] = [

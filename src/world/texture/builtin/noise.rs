@@ -1,9 +1,10 @@
-//! Reproducible random numbers: hashes of a position, and smooth noise made from them.
+//! Reproducible randomness: hashes of a position, smooth noise made from them, and irregular patches (a
+//! Voronoi diagram that wraps around), in which every texel belongs to the nearest point.
 
-use super::SIDE;
+use super::{SIDE, wrapped};
 
 /// A random-looking number that depends only on `x`, `y` and `seed`.
-pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+pub(crate) fn hash(x: i32, y: i32, seed: u32) -> u32 {
     let mut bits = (x as u32)
         .wrapping_mul(0x9e37_79b1)
         .wrapping_add((y as u32).wrapping_mul(0x85eb_ca77))
@@ -20,7 +21,7 @@ pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
 ///
 /// The lattice wraps around at the texture's edges, and the noise with it.
 #[derive(Clone, Copy)]
-pub(super) struct Noise {
+pub(crate) struct Noise {
     seed: u32,
     across: Spacing,
     down: Spacing,
@@ -36,12 +37,12 @@ struct Spacing {
 impl Noise {
     /// Noise with lattice points `across` texels apart in a row and `down` texels in a column. Both
     /// divide the texture's side, which is a power of two.
-    pub(super) const fn new(seed: u32, across: i32, down: i32) -> Self {
+    pub(crate) const fn new(seed: u32, across: i32, down: i32) -> Self {
         Self { seed, across: Spacing::new(across), down: Spacing::new(down) }
     }
 
     /// The noise at a texel: from `-swing` to `swing`.
-    pub(super) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
+    pub(crate) fn at(self, x: i32, y: i32, swing: i32) -> i32 {
         let (left, from_left) = self.across.split(x);
         let (top, from_top) = self.down.split(y);
         let upper = blend(self.point(left, top), self.point(left + 1, top), from_left);
@@ -87,6 +88,59 @@ fn blend(from: i32, to: i32, weight: i32) -> i32 {
 /// A smooth step from 0 to [`WHOLE`], with slope 0 at both ends.
 fn ease(t: i32) -> i32 {
     t * t * (3 * WHOLE - 2 * t) / (WHOLE * WHOLE)
+}
+
+/// The position of a texel in a patch.
+#[derive(Clone, Copy)]
+pub(crate) struct Patch {
+    /// Texels right of the patch's point.
+    pub(crate) x: i32,
+    /// Texels below the patch's point.
+    pub(crate) y: i32,
+    /// Sixteenths of a texel to the border of the next patch.
+    pub(crate) rim: i32,
+    /// The index of the patch's point.
+    pub(crate) id: i32,
+}
+
+impl Patch {
+    /// The patch around one of `points` that contains `(x, y)`.
+    pub(crate) fn around(points: impl Iterator<Item = (i32, i32)>, x: i32, y: i32) -> Self {
+        let mut nearest = FAR;
+        let mut next = FAR;
+        for (id, (point_x, point_y)) in (0..).zip(points) {
+            let site = Site { x: wrapped(x - point_x), y: wrapped(y - point_y), id };
+            if site.square() < nearest.square() {
+                (nearest, next) = (site, nearest);
+            } else if site.square() < next.square() {
+                next = site;
+            }
+        }
+        Self { x: nearest.x, y: nearest.y, rim: to_border(nearest, next), id: nearest.id }
+    }
+}
+
+/// The vector from a texel to a point.
+#[derive(Clone, Copy)]
+struct Site {
+    x: i32,
+    y: i32,
+    id: i32,
+}
+
+/// Farther than any point of the texture.
+const FAR: Site = Site { x: SIDE, y: SIDE, id: 0 };
+
+impl Site {
+    fn square(self) -> i32 {
+        self.x * self.x + self.y * self.y
+    }
+}
+
+/// Sixteenths of a texel to the line that is equally near to both points.
+fn to_border(nearest: Site, next: Site) -> i32 {
+    let (x, y) = (next.x - nearest.x, next.y - nearest.y);
+    (next.square() - nearest.square()) * 8 / (x * x + y * y).isqrt().max(1)
 }
 
 #[cfg(test)]

@@ -5,11 +5,11 @@ use super::shade::mix;
 use crate::color::Rgb;
 
 /// The width, all around, and the height from the horizon up, in texels.
-pub(super) const WIDTH: i32 = 512;
-pub(super) const HEIGHT: i32 = 64;
+pub(crate) const WIDTH: i32 = 512;
+pub(crate) const HEIGHT: i32 = 64;
 
 /// Three ranges of hills under a morning sky, the farther the paler.
-pub(super) fn hills() -> impl Fn(i32, i32) -> Rgb {
+pub(crate) fn hills() -> impl Fn(i32, i32) -> Rgb {
     let skylines = RANGES.map(|range| (range.color, skyline(&range)));
     move |x, y| {
         let up = HEIGHT - 1 - y;

@@ -9,7 +9,7 @@ use super::shade::shade;
 use crate::color::Rgb;
 
 /// Upright planks, each nailed where it meets the next one.
-pub(super) fn wood(x: i32, y: i32) -> Rgb {
+pub(crate) fn wood(x: i32, y: i32) -> Rgb {
     const PLANK: i32 = 16;
     const SAWN: [Rgb; 4] = [
         Rgb::new(0x9a, 0x6a, 0x3c),
@@ -47,7 +47,7 @@ fn grain(x: i32, y: i32) -> i32 {
 }
 
 /// A door of four panels with a brass knob.
-pub(super) fn oak(x: i32, y: i32) -> Rgb {
+pub(crate) fn oak(x: i32, y: i32) -> Rgb {
     const OAK: Rgb = Rgb::new(0xa4, 0x6c, 0x32);
     const GAP: Rgb = Rgb::new(0x2c, 0x1a, 0x12);
 
@@ -105,7 +105,7 @@ fn knob(x: i32, y: i32) -> Option<Rgb> {
 }
 
 /// A fence of pointed pickets on two rails.
-pub(super) fn fence(x: i32, y: i32) -> Option<Rgb> {
+pub(crate) fn fence(x: i32, y: i32) -> Option<Rgb> {
     const PICKET: i32 = 16;
     const WIDTH: i32 = 10;
     const POINT: i32 = 12;

@@ -26,7 +26,7 @@ const BUILD: Build =
     Build { legs: 9.0, trunk: 8.5, neck: 3.6, shoulder: 3.6, hip: 1.7, arms: 10.0 };
 
 /// The model of a frame.
-pub(super) fn model(frame: GuardFrame) -> Model {
+pub(crate) fn model(frame: GuardFrame) -> Model {
     let joints = Joints::new(&BUILD, &pose(frame));
     let mut model = Model::default();
     legs(&mut model, &joints, [1.9, 1.4], TROUSERS, LEATHER);

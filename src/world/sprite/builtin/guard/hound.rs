@@ -41,7 +41,7 @@ struct Pose {
 }
 
 /// The model of a frame.
-pub(super) fn model(frame: GuardFrame) -> Model {
+pub(crate) fn model(frame: GuardFrame) -> Model {
     let pose = pose(frame);
     let mut model = Model::default();
     body(&mut model, &pose);

@@ -27,7 +27,7 @@ const BELL: Paint = matt(0xe4, 0xf0, 0xf4);
 const BUILD: Build = Build { legs: 7.0, trunk: 8.0, neck: 3.6, shoulder: 4.0, hip: 2.0, arms: 9.5 };
 
 /// The model of a frame.
-pub(super) fn model(frame: GuardFrame) -> Model {
+pub(crate) fn model(frame: GuardFrame) -> Model {
     let joints = Joints::new(&BUILD, &pose(frame));
     let mut model = Model::default();
     legs(&mut model, &joints, [2.0, 1.6], BELT, BOOTS);

@@ -22,7 +22,7 @@ const BUILD: Build =
     Build { legs: 11.0, trunk: 9.5, neck: 4.4, shoulder: 3.4, hip: 1.6, arms: 12.0 };
 
 /// The model of a frame.
-pub(super) fn model(frame: GuardFrame) -> Model {
+pub(crate) fn model(frame: GuardFrame) -> Model {
     let joints = Joints::new(&BUILD, &pose(frame));
     let mut model = Model::default();
     robe(&mut model, &joints);

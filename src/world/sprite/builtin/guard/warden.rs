@@ -24,7 +24,7 @@ const BUILD: Build =
     Build { legs: 7.5, trunk: 9.0, neck: 3.8, shoulder: 6.4, hip: 3.2, arms: 11.0 };
 
 /// The model of a frame.
-pub(super) fn model(frame: GuardFrame) -> Model {
+pub(crate) fn model(frame: GuardFrame) -> Model {
     let joints = Joints::new(&BUILD, &pose(frame));
     let mut model = Model::default();
     legs(&mut model, &joints, [2.9, 2.3], DARK_STEEL, BOOTS);

@@ -4,47 +4,47 @@ use glam::{DAffine3, DQuat, DVec3};
 
 /// The proportions of a body, in texels.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Build {
+pub(crate) struct Build {
     /// From the hips to the floor.
-    pub(in super::super) legs: f64,
+    pub(crate) legs: f64,
     /// From the hips to the shoulders.
-    pub(in super::super) trunk: f64,
+    pub(crate) trunk: f64,
     /// From the shoulders to the middle of the head.
-    pub(in super::super) neck: f64,
+    pub(crate) neck: f64,
     /// From the middle to a shoulder.
-    pub(in super::super) shoulder: f64,
+    pub(crate) shoulder: f64,
     /// From the middle to a hip.
-    pub(in super::super) hip: f64,
+    pub(crate) hip: f64,
     /// From a shoulder to its hand.
-    pub(in super::super) arms: f64,
+    pub(crate) arms: f64,
 }
 
 /// How a body is posed. Pairs are of the left side and of the right one.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Pose {
+pub(crate) struct Pose {
     /// Where the middle of the hips is, from where it is when the body stands.
-    pub(in super::super) hips: [f64; 3],
+    pub(crate) hips: [f64; 3],
     /// The turn of the whole body about the axis from left to right, backwards, in degrees.
-    pub(in super::super) tilt: f64,
+    pub(crate) tilt: f64,
     /// How far the trunk leans forwards, in degrees.
-    pub(in super::super) lean: f64,
+    pub(crate) lean: f64,
     /// How far the trunk turns to the right, in degrees.
-    pub(in super::super) twist: f64,
+    pub(crate) twist: f64,
     /// How far the head nods, in degrees.
-    pub(in super::super) nod: f64,
+    pub(crate) nod: f64,
     /// How far the head turns to the right, in degrees.
-    pub(in super::super) look: f64,
+    pub(crate) look: f64,
     /// Where the hands are, from the middle of the shoulders: forwards, to the right, upwards.
-    pub(in super::super) hands: [[f64; 3]; 2],
+    pub(crate) hands: [[f64; 3]; 2],
     /// Where the feet are on the floor, from below the hips of a body that stands.
-    pub(in super::super) feet: [[f64; 3]; 2],
+    pub(crate) feet: [[f64; 3]; 2],
     /// The direction from the hand to the end of what it holds, in the coordinates of the trunk.
-    pub(in super::super) holds: [f64; 3],
+    pub(crate) holds: [f64; 3],
 }
 
 impl Pose {
     /// Upright, with the hands at the sides.
-    pub(in super::super) const UPRIGHT: Self = Self {
+    pub(crate) const UPRIGHT: Self = Self {
         hips: [0.0; 3],
         tilt: 0.0,
         lean: 0.0,
@@ -58,7 +58,7 @@ impl Pose {
 
     /// The pose with one foot `length` texels in front and the other one behind: the left one in
     /// front if `length` is positive, else the right one.
-    pub(in super::super) fn in_stride(self, length: f64) -> Self {
+    pub(crate) fn in_stride(self, length: f64) -> Self {
         let [left, right] = self.feet;
         let moved = |[x, y, z]: [f64; 3], by: f64| [x + by, y, z + (-by).max(0.0) * 0.25];
         Self {
@@ -70,24 +70,24 @@ impl Pose {
 }
 
 /// The joints of a posed body. Pairs are of the left side and of the right one.
-pub(in super::super) struct Joints {
+pub(crate) struct Joints {
     /// The hips: their middle, and the axes of the body.
-    pub(in super::super) hips: DAffine3,
+    pub(crate) hips: DAffine3,
     /// The middle of the shoulders, and the axes of the trunk.
-    pub(in super::super) chest: DAffine3,
+    pub(crate) chest: DAffine3,
     /// The middle of the head, and its axes.
-    pub(in super::super) head: DAffine3,
+    pub(crate) head: DAffine3,
     /// Shoulder, elbow and hand.
-    pub(in super::super) arms: [[DVec3; 3]; 2],
+    pub(crate) arms: [[DVec3; 3]; 2],
     /// Hip, knee and foot.
-    pub(in super::super) legs: [[DVec3; 3]; 2],
+    pub(crate) legs: [[DVec3; 3]; 2],
     /// The direction of what a hand holds, of length 1.
-    pub(in super::super) holds: DVec3,
+    pub(crate) holds: DVec3,
 }
 
 impl Joints {
     /// The joints of a body of that build in that pose.
-    pub(in super::super) fn new(build: &Build, pose: &Pose) -> Self {
+    pub(crate) fn new(build: &Build, pose: &Pose) -> Self {
         let stands = DVec3::new(0.0, 0.0, build.legs);
         let hips = turned(DVec3::from(pose.hips) + stands, pose.tilt, 0.0);
         let chest = hips
@@ -117,7 +117,7 @@ impl Joints {
 }
 
 /// The axes at `origin` after a turn backwards and one to the right, in degrees.
-pub(in super::super) fn turned(origin: DVec3, backwards: f64, right: f64) -> DAffine3 {
+pub(crate) fn turned(origin: DVec3, backwards: f64, right: f64) -> DAffine3 {
     let turn = DQuat::from_rotation_z(right.to_radians())
         * DQuat::from_rotation_y(-backwards.to_radians());
     DAffine3::from_rotation_translation(turn, origin)
@@ -125,7 +125,7 @@ pub(in super::super) fn turned(origin: DVec3, backwards: f64, right: f64) -> DAf
 
 /// The joint between two bones of that length, from `start` to `end`. It is on the side of
 /// `towards`. Bones that are too short are stretched.
-pub(in super::super) fn bend(start: DVec3, end: DVec3, bone: f64, towards: DVec3) -> DVec3 {
+pub(crate) fn bend(start: DVec3, end: DVec3, bone: f64, towards: DVec3) -> DVec3 {
     let along = end - start;
     let squared = bone * bone - along.length_squared() / 4.0;
     let across = (towards - along * (towards.dot(along) / along.length_squared().max(1e-9)))

@@ -7,14 +7,14 @@ use crate::color::Rgb;
 
 /// A coloured solid.
 #[derive(Clone, Copy)]
-pub(super) struct Solid {
-    pub(super) shape: Shape,
-    pub(super) paint: Paint,
+pub(crate) struct Solid {
+    pub(crate) shape: Shape,
+    pub(crate) paint: Paint,
 }
 
 /// The shape of a solid.
 #[derive(Clone, Copy)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// The hull of two balls.
     Limb { ends: [DVec3; 2], radii: [f64; 2] },
     /// The image of the unit ball.
@@ -25,30 +25,30 @@ pub(super) enum Shape {
 
 /// The colour of a solid.
 #[derive(Clone, Copy)]
-pub(in super::super) struct Paint {
-    pub(super) color: Rgb,
+pub(crate) struct Paint {
+    pub(crate) color: Rgb,
     /// Whether it is as bright in the shade as in the light.
-    pub(super) glows: bool,
+    pub(crate) glows: bool,
 }
 
 /// Paint that is lit.
-pub(in super::super) const fn matt(red: u8, green: u8, blue: u8) -> Paint {
+pub(crate) const fn matt(red: u8, green: u8, blue: u8) -> Paint {
     Paint { color: Rgb::new(red, green, blue), glows: false }
 }
 
 /// Paint that shines: flames and eyes.
-pub(in super::super) const fn glowing(red: u8, green: u8, blue: u8) -> Paint {
+pub(crate) const fn glowing(red: u8, green: u8, blue: u8) -> Paint {
     Paint { color: Rgb::new(red, green, blue), glows: true }
 }
 
 /// A solid in the coordinates of a picture.
-pub(super) struct Seen {
+pub(crate) struct Seen {
     shape: SeenShape,
     /// The corners of the rectangle that it covers.
-    pub(super) low: DVec2,
-    pub(super) high: DVec2,
+    pub(crate) low: DVec2,
+    pub(crate) high: DVec2,
     /// The greatest coordinate towards the viewer.
-    pub(super) nearest: f64,
+    pub(crate) nearest: f64,
 }
 
 enum SeenShape {
@@ -64,16 +64,16 @@ struct Inside {
 }
 
 /// The point of a solid that is nearest to the viewer.
-pub(super) struct Hit {
+pub(crate) struct Hit {
     /// Its coordinate towards the viewer.
-    pub(super) depth: f64,
+    pub(crate) depth: f64,
     /// The unit vector that points away from the solid.
-    pub(super) normal: DVec3,
+    pub(crate) normal: DVec3,
 }
 
 impl Solid {
     /// The solid as seen in a view.
-    pub(super) fn seen(&self, view: View) -> Seen {
+    pub(crate) fn seen(&self, view: View) -> Seen {
         match self.shape {
             Shape::Limb { ends, radii } => seen_limb(ends.map(|end| view.matrix * end), radii),
             Shape::Ellipsoid(axes) => {
@@ -115,7 +115,7 @@ fn inside(axes: DAffine3, view: View) -> (Inside, DMat3) {
 
 impl Seen {
     /// Where the line of sight through `point` meets it first.
-    pub(super) fn hit(&self, point: DVec2) -> Option<Hit> {
+    pub(crate) fn hit(&self, point: DVec2) -> Option<Hit> {
         match &self.shape {
             &SeenShape::Limb { from, along, length_squared, radii } => {
                 limb_hit(point, from, along, length_squared, radii)

@@ -1,0 +1,103 @@
+//! Ray marching: constant steps, with a test of the cell after each.
+//!
+//! The wall is found at the first step that ends inside it, up to one step behind its face. A wall
+//! that the ray crosses for less than a step can be missed. The face is determined by the lines
+//! between the last two steps.
+//!
+//! Source: the method that Lode Vandevenne, "Raycasting", warns of before it presents its own, and
+//! that most first raycasters use.
+
+use std::ops::RangeInclusive;
+
+use glam::DVec2;
+
+use super::clipped_ray::ClippedRay;
+use cellcaster::cast::first_line;
+use cellcaster::cast::{Caster, Hit, Ray, Side};
+use cellcaster::world::{Cell, Grid};
+
+/// Casts by steps of constant length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct March {
+    step: f64,
+}
+
+impl March {
+    /// The allowed lengths of a step, in cells.
+    pub const STEP: RangeInclusive<f64> = 0.0001..=1.0;
+
+    /// A caster with this step length, in cells; `None` if it is out of range.
+    pub fn new(step: f64) -> Option<Self> {
+        Self::STEP.contains(&step).then_some(Self { step })
+    }
+
+    /// The length of a step, in cells.
+    pub fn step(self) -> f64 {
+        self.step
+    }
+}
+
+impl Default for March {
+    /// A hundredth of a cell.
+    fn default() -> Self {
+        Self { step: 0.01 }
+    }
+}
+
+impl Caster for March {
+    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
+        let clipped = ClippedRay::new(grid, ray)?;
+        let (origin, direction) = (clipped.ray.origin(), clipped.ray.direction());
+        let size = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let length = direction.length();
+        let stride = direction / length * self.step;
+        let mut place = origin;
+        let mut cell = DVec2::new(
+            cell_before(origin.x, direction.x, grid.width()),
+            cell_before(origin.y, direction.y, grid.height()),
+        );
+        let mut steps = 0_u64;
+        loop {
+            let entered = place.floor();
+            if entered != cell {
+                let (column, row) = (entered.x as i64, entered.y as i64);
+                if grid.is_solid(column, row) {
+                    let side = side_crossed(cell, entered, place, stride);
+                    let cell = Cell { column: column as u32, row: row as u32 };
+                    let distance = steps as f64 * self.step / length;
+                    return Some(clipped.hit_at(cell, side, distance));
+                }
+                if has_left(entered.x, stride.x, size.x) || has_left(entered.y, stride.y, size.y) {
+                    return None;
+                }
+                cell = entered;
+            }
+            place += stride;
+            steps += 1;
+        }
+    }
+}
+
+/// The column or row from which a ray starts; on a line, the one before the line.
+fn cell_before(origin: f64, direction: f64, count: u32) -> f64 {
+    if direction > 0.0 { first_line(origin, direction, count) - 1.0 } else { origin.floor() }
+}
+
+/// Whether a column or row is off the map, and stays off it.
+fn has_left(index: f64, stride: f64, count: f64) -> bool {
+    if stride > 0.0 { index >= count } else { index < 0.0 }
+}
+
+/// The kind of the last line between two positions that are a step apart.
+fn side_crossed(from: DVec2, to: DVec2, place: DVec2, stride: DVec2) -> Side {
+    let since = |from: f64, to: f64, place: f64, stride: f64| {
+        if from == to {
+            return f64::INFINITY;
+        }
+        let line = if stride > 0.0 { to } else { to + 1.0 };
+        ((place - line) / stride).abs()
+    };
+    let since_x = since(from.x, to.x, place.x, stride.x);
+    let since_y = since(from.y, to.y, place.y, stride.y);
+    if since_x <= since_y { Side::X } else { Side::Y }
+}

@@ -1,0 +1,105 @@
+//! The costs of the program itself: start-up time, size on disk, and memory.
+
+use std::env;
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use ratatui::backend::Backend;
+use ratatui::layout::Size;
+
+use super::begin;
+use crate::speed::median;
+use cellcaster::cli::Error;
+use cellcaster::cli::script::SHOWCASE;
+use cellcaster::game::{Intents, STEPS_PER_SECOND};
+use cellcaster::terminal::CellWriter;
+
+/// The costs; `None` if this system does not report them.
+pub(crate) struct Footprint {
+    /// The time from the start of the process to the first byte of a picture.
+    pub(crate) start_up: Option<Duration>,
+    /// The size of the program, in bytes.
+    pub(crate) program: Option<u64>,
+    /// The peak memory of a game, in bytes.
+    pub(crate) memory: Option<u64>,
+}
+
+/// The window of the first picture.
+pub(crate) const FIRST_WINDOW: Size = Size::new(80, 24);
+/// The window in which memory is measured.
+pub(crate) const GAME_WINDOW: Size = Size::new(120, 40);
+/// The number of times the program is started.
+pub(crate) const STARTS: usize = 9;
+
+impl Footprint {
+    /// Measures. The process must not have done anything else yet.
+    pub(crate) fn measure() -> Result<Self, Error> {
+        play()?;
+        let memory = peak_memory();
+        let path = env::current_exe().ok();
+        let program = path.as_deref().and_then(|path| Some(fs::metadata(path).ok()?.len()));
+        let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
+        let start_up = starts.filter(|starts: &Vec<f64>| !starts.is_empty()).map(median);
+        let start_up = start_up.map(Duration::from_secs_f64);
+        Ok(Self { start_up, program, memory })
+    }
+}
+
+/// Plays the showcase as a player's process does.
+fn play() -> Result<(), Error> {
+    const STEPS_A_FRAME: usize = STEPS_PER_SECOND as usize / 30;
+    let script = SHOWCASE.script()?;
+    let steps: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
+    let mut replay = begin(GAME_WINDOW)?;
+    let mut writer = CellWriter::new(io::sink(), GAME_WINDOW);
+    for steps in steps.chunks(STEPS_A_FRAME) {
+        for &intents in steps {
+            replay.step(intents);
+        }
+        writer.draw_frame(|screen| replay.draw(screen));
+        // Writing to a sink cannot fail.
+        _ = Backend::flush(&mut writer);
+    }
+    Ok(())
+}
+
+/// The time until the program at `path` writes the first byte of a picture, in seconds.
+fn start_up(path: &Path) -> io::Result<f64> {
+    let size = format!("{}x{}", FIRST_WINDOW.width, FIRST_WINDOW.height);
+    let start = Instant::now();
+    let mut child = Command::new(path)
+        .args(["snapshot", SHOWCASE.level, "--format", "ansi", "--size", &size])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let mut output = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
+    output.read_exact(&mut [0])?;
+    let elapsed = start.elapsed();
+    io::copy(&mut output, &mut io::sink())?;
+    child.wait()?;
+    Ok(elapsed.as_secs_f64())
+}
+
+/// The peak memory of this process in bytes, on Linux; `None` on other systems.
+fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = peak.trim().strip_suffix("kB")?.trim_end().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn linux_tells_how_much_it_is() {
+        let mebibytes = peak_memory().unwrap() >> 20;
+        assert!((1..1 << 20).contains(&mebibytes), "{mebibytes}");
+    }
+}

@@ -1,0 +1,157 @@
+//! `cellcaster-lab load`: real SSH sessions that play on one server or on several, and what they cost.
+//!
+//! ```text
+//! cargo build --release --workspace
+//! target/release/cellcaster-lab load --sessions 100 --seconds 20
+//! ```
+//!
+//! The server is a process of its own on processor 0, and all clients are in this process on
+//! processor 1. Each client walks about a room, answers the terminal's queries, counts frames and
+//! bytes, and measures the time from a key to the frame that answers it. `--silent N` adds connections that never
+//! read. `--server PATH` is the program, `cellcaster-server` beside this one otherwise. `--sshd` measures OpenSSH's
+//! server with one process of the game for each session in place of `cellcaster-server`.
+//!
+//! `--hosts N --cluster NATS --store POSTGRES` starts several hosts of a cluster, which take turns on the
+//! processors, while the clients are on all of them. Clients are spread over the hosts in turn, so that each
+//! room has members on all of them: no room costs more. `--beside PID` measures another process, such as that of
+//! the NATS server, and may be there several times.
+//!
+//! `--bus ROOMS --cluster NATS` writes the logs of rooms without hosts and players, and measures how long the bus takes
+//! for a message.
+//!
+//! `--soak` lets clients come, walk, talk, resize their windows and leave in several ways, by `--seed`,
+//! and prints ten times what the server holds.
+
+mod bus;
+mod client;
+#[path = "../../server/tests/support/lamp.rs"]
+mod lamp;
+mod plan;
+mod process;
+mod report;
+mod server;
+mod soak;
+mod sshd;
+#[path = "../../server/tests/support/wanderer.rs"]
+mod wanderer;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use tokio::runtime::Builder;
+use tokio::task::JoinSet;
+use tokio::time::sleep;
+
+use cellcaster::cli::Error;
+pub(crate) use plan::Load;
+use process::Usage;
+use report::{Report, Tally};
+use server::{ServerProcess, Setup};
+
+/// The time between two connections.
+const PAUSE: Duration = Duration::from_millis(25);
+/// The time that the sessions have for entering their rooms.
+const WARM_UP: Duration = Duration::from_secs(8);
+
+/// Measures what `plan` says.
+///
+/// # Errors
+/// If a server cannot be started, or a client cannot connect.
+pub(crate) fn run(plan: &Load) -> Result<(), Error> {
+    measure(plan).map_err(|error| Error::machine(error.to_string()))
+}
+
+fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
+    if plan.soak {
+        return soak::run(plan);
+    }
+    if let Some(rooms) = plan.rooms {
+        return bus::run(rooms, plan);
+    }
+    if plan.hosts > 1 && (plan.cluster.is_none() || plan.store.is_none()) {
+        return Err("several hosts need --cluster and --store".into());
+    }
+    let servers = start(plan)?;
+    if servers.len() == 1 {
+        process::pin(std::process::id(), 1);
+    }
+    let runtime = Builder::new_current_thread().enable_all().build()?;
+    runtime.block_on(play(plan, &servers))
+}
+
+fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> {
+    if plan.uses_sshd {
+        return Ok(vec![sshd::start(&plan.program())?]);
+    }
+    let (program, options) = (plan.program(), plan.server_options());
+    let setup = |number| Setup {
+        program: &program,
+        connections: plan.sessions + plan.silent,
+        number,
+        options: &options,
+    };
+    (0..plan.hosts).map(|number| ServerProcess::start(&setup(number))).collect()
+}
+
+async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std::error::Error>> {
+    let counts = Arc::new(AtomicBool::new(false));
+    let mut clients = JoinSet::new();
+    let empty = usage(servers);
+    for (number, server) in (0..plan.sessions).zip(servers.iter().cycle()) {
+        let counts = counts.clone();
+        let (address, access, delay) = (server.address, server.access.clone(), plan.answer_delay());
+        clients.spawn(async move {
+            let played = client::play(address, &access, number as u64, delay, &counts);
+            played.await.map_err(|it| it.to_string())
+        });
+        sleep(PAUSE).await;
+    }
+    if plan.sessions > 0 {
+        sleep(WARM_UP).await;
+    }
+    let walking = usage(servers);
+    let mut silent = Vec::new();
+    for _ in 0..plan.silent {
+        silent.push(client::never_read(servers[0].address, &servers[0].access).await?);
+    }
+    sleep(Duration::from_secs(2)).await;
+    let (before, others_before) = (usage(servers), plan.others());
+    counts.store(true, Ordering::Release);
+    sleep(Duration::from_secs(plan.seconds)).await;
+    counts.store(false, Ordering::Release);
+    let (after, others_after) = (usage(servers), plan.others());
+    let tallies = ended(clients).await;
+    println!(
+        "memory        {:.1} MB empty, {:.1} MB with {} sessions, {:.1} MB at the end",
+        megabytes(&empty),
+        megabytes(&walking),
+        plan.sessions,
+        megabytes(&after)
+    );
+    Report::new(&tallies, plan.seconds, &process::between(&before, &after)).print();
+    plan.print_others(&process::between(&others_before, &others_after));
+    Ok(())
+}
+
+/// What each of the servers has used so far.
+fn usage(servers: &[ServerProcess]) -> Vec<Usage> {
+    servers.iter().map(ServerProcess::usage).collect()
+}
+
+fn megabytes(usage: &[Usage]) -> f64 {
+    usage.iter().map(|it| it.megabytes).sum()
+}
+
+/// What the clients have counted.
+async fn ended(mut clients: JoinSet<Result<Tally, String>>) -> Vec<Tally> {
+    let mut tallies = Vec::new();
+    while let Some(client) = clients.join_next().await {
+        match client {
+            Ok(Ok(tally)) => tallies.push(tally),
+            Ok(Err(error)) => eprintln!("a client failed: {error}"),
+            Err(error) => eprintln!("a client failed: {error}"),
+        }
+    }
+    tallies
+}

@@ -1,0 +1,130 @@
+//! Rooms without hosts: what the bus of a cluster carries.
+//!
+//! Each room appends a message of the log thirty times a second, as its sequencer does: it names the number of the
+//! message before it, waits for the answer, and tells one other host. Every five seconds it keeps a checkpoint, and
+//! drops the messages before it.
+
+use std::error::Error;
+use std::time::Duration;
+
+use async_nats::jetstream::context::Context;
+use async_nats::jetstream::message::PublishMessage;
+use async_nats::jetstream::{self, stream};
+use async_nats::{Client, connect};
+use futures_util::StreamExt;
+use tokio::runtime::Builder;
+use tokio::task::JoinSet;
+use tokio::time::{Instant, MissedTickBehavior, interval};
+
+use super::plan::Load;
+use super::process::between;
+use super::report::percentile;
+
+const STREAM: &str = "CELLCASTER_LOAD";
+const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";
+/// The time from one message of a room to the next.
+const PERIOD: Duration = Duration::from_micros(33_333);
+/// In bytes: a message without entries.
+const MESSAGE: usize = 25;
+/// In bytes: a checkpoint of a room with eight members.
+const CHECKPOINT: usize = 15_000;
+/// The messages from one checkpoint to the next.
+const KEPT: usize = 150;
+const WARM_UP: Duration = Duration::from_secs(2);
+
+/// Runs so many rooms.
+pub(crate) fn run(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
+    Builder::new_current_thread().enable_all().build()?.block_on(load(rooms, plan))
+}
+
+async fn load(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
+    let address = plan.cluster.as_deref().ok_or("--bus needs --cluster")?;
+    let (client, listener) = (connect(address).await?, connect(address).await?);
+    let context = jetstream::new(client.clone());
+    let config = stream::Config {
+        name: STREAM.to_owned(),
+        subjects: vec!["cellcaster.load.log.*".to_owned()],
+        ..stream::Config::default()
+    };
+    context.create_stream(config).await?;
+    let config = stream::Config {
+        name: CHECKPOINTS.to_owned(),
+        subjects: vec!["cellcaster.load.checkpoint.*".to_owned()],
+        max_messages_per_subject: 1,
+        ..stream::Config::default()
+    };
+    context.create_stream(config).await?;
+    let mut heard = listener.subscribe("cellcaster.load.peers.*").await?;
+    tokio::spawn(async move { while heard.next().await.is_some() {} });
+    let (begin, seconds) = (Instant::now() + WARM_UP, Duration::from_secs(plan.seconds));
+    let mut writers = JoinSet::new();
+    for room in 0..rooms {
+        let (client, context) = (client.clone(), context.clone());
+        writers.spawn(async move {
+            let written = write(&client, &context, room, begin, begin + seconds);
+            written.await.map_err(|error| error.to_string())
+        });
+    }
+    tokio::time::sleep_until(begin).await;
+    let before = plan.others();
+    tokio::time::sleep_until(begin + seconds).await;
+    let after = plan.others();
+    let mut times = Vec::new();
+    while let Some(written) = writers.join_next().await {
+        times.extend(written??);
+    }
+    context.delete_stream(STREAM).await?;
+    context.delete_stream(CHECKPOINTS).await?;
+    report(rooms, plan.seconds, times);
+    plan.print_others(&between(&before, &after));
+    Ok(())
+}
+
+/// Appends the messages of a room, and returns how long each one took in the time that counts.
+async fn write(
+    client: &Client,
+    context: &Context,
+    room: usize,
+    begin: Instant,
+    end: Instant,
+) -> Result<Vec<Duration>, Box<dyn Error + Send + Sync>> {
+    let (log, peers) =
+        (format!("cellcaster.load.log.{room}"), format!("cellcaster.load.peers.{room}"));
+    let checkpoint = format!("cellcaster.load.checkpoint.{room}");
+    let stream = context.get_stream_no_info(STREAM).await?;
+    let (mut last, mut times) = (0, Vec::new());
+    // Rooms keep their checkpoints at different times.
+    let mut count = room;
+    let mut ticks = interval(PERIOD);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        let due = ticks.tick().await;
+        if due >= end {
+            return Ok(times);
+        }
+        let message = PublishMessage::build()
+            .payload(vec![0; MESSAGE].into())
+            .expected_last_subject_sequence(last);
+        last = context.send_publish(log.clone(), message).await?.await?.sequence;
+        if due >= begin {
+            times.push(due.elapsed());
+        }
+        client.publish(peers.clone(), vec![0; MESSAGE].into()).await?;
+        count += 1;
+        if count.is_multiple_of(KEPT) {
+            context.publish(checkpoint.clone(), vec![0; CHECKPOINT].into()).await?.await?;
+            stream.purge().sequence(last).filter(log.clone()).await?;
+        }
+    }
+}
+
+fn report(rooms: usize, seconds: u64, mut times: Vec<Duration>) {
+    times.sort();
+    let rate = times.len() as f64 / seconds as f64;
+    println!("rooms         {rooms}, {:.1} messages a second and room", rate / rooms.max(1) as f64);
+    println!(
+        "append        p50 {:.1} ms, p99 {:.1} ms",
+        percentile(&times, 50),
+        percentile(&times, 99)
+    );
+}

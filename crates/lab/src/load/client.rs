@@ -1,0 +1,214 @@
+//! One client: a terminal that answers, and somebody who walks.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use cellcaster::rng::SplitMix64;
+use russh::client::{self, Handle, Handler, Msg};
+use russh::keys::{PrivateKeyWithHashAlg, PublicKeyOrCertificate, load_secret_key};
+use russh::{Channel, ChannelMsg, Error};
+use tokio::time::{Instant, sleep_until};
+
+use super::lamp::Lamp;
+use super::report::Tally;
+use super::server::Access;
+
+/// Believes every server.
+pub(crate) struct Anyone;
+
+impl Handler for Anyone {
+    type Error = Error;
+
+    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
+
+/// Queries, and what a terminal with true colours answers.
+const ANSWERS: [(&[u8], &[u8]); 4] = [
+    (STATUS, b"\x1b[0n"),
+    (b"\x1b[c", b"\x1b[?62;22c"),
+    (b"\x1b[6n", b"\x1b[1;1R"),
+    (b"\x1b[?u", b""),
+];
+/// It follows each frame.
+const STATUS: &[u8] = b"\x1b[5n";
+/// The keyboard repeats a held key at this interval.
+const REPEAT: Duration = Duration::from_millis(33);
+/// The key that lights the lamp, or puts it out.
+const LAMP: &[u8] = b"l";
+/// The pause between two keys that are timed, in seconds.
+const TIMED_PAUSE: (f64, f64) = (0.5, 1.5);
+/// The time between two presses of Enter on the way to a room.
+const ENTER: Duration = Duration::from_millis(900);
+/// A frame with so many half blocks is a picture of a room.
+const PICTURE: usize = 200;
+
+/// Plays until the counting has ended.
+pub(crate) async fn play(
+    address: SocketAddr,
+    access: &Access,
+    number: u64,
+    delay: Duration,
+    counts: &AtomicBool,
+) -> Result<Tally, Error> {
+    let (_handle, channel) = connect(address, access, number).await?;
+    let mut client = Client {
+        channel,
+        chance: SplitMix64::new(number),
+        tally: Tally::default(),
+        unread: Vec::new(),
+        lamp: Lamp::default(),
+        next_timed: Instant::now(),
+        key: b"w",
+        key_until: Instant::now(),
+        next_key: Instant::now() + ENTER,
+        delay,
+        answers: Vec::new(),
+        answer_at: Instant::now(),
+    };
+    client.play(counts).await?;
+    Ok(client.tally)
+}
+
+/// A session that never reads.
+pub(crate) async fn never_read(
+    address: SocketAddr,
+    access: &Access,
+) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
+    connect(address, access, 0).await
+}
+
+async fn connect(
+    address: SocketAddr,
+    access: &Access,
+    number: u64,
+) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
+    let config = client::Config { nodelay: true, ..client::Config::default() };
+    let mut handle = client::connect(Arc::new(config), address, Anyone).await?;
+    match access {
+        Access::Guest => {
+            let user = format!("load{number}");
+            while !handle.authenticate_none(&user).await?.success() {}
+        }
+        Access::Key { user, file } => {
+            let key = Arc::new(load_secret_key(file, None)?);
+            let key = PrivateKeyWithHashAlg::new(key, None);
+            if !handle.authenticate_publickey(user, key).await?.success() {
+                return Err(Error::NotAuthenticated);
+            }
+        }
+    }
+    let channel = handle.channel_open_session().await?;
+    channel.set_env(false, "COLORTERM", "truecolor").await?;
+    channel.request_pty(false, "xterm-256color", 80, 24, 0, 0, &[]).await?;
+    channel.request_shell(false).await?;
+    Ok((handle, channel))
+}
+
+struct Client {
+    channel: Channel<Msg>,
+    chance: SplitMix64,
+    tally: Tally,
+    /// Bytes in which a query may begin.
+    unread: Vec<u8>,
+    lamp: Lamp,
+    next_timed: Instant,
+    key: &'static [u8],
+    key_until: Instant,
+    next_key: Instant,
+    delay: Duration,
+    answers: Vec<u8>,
+    answer_at: Instant,
+}
+
+impl Client {
+    async fn play(&mut self, counts: &AtomicBool) -> Result<(), Error> {
+        let mut has_counted = false;
+        loop {
+            let is_counting = counts.load(Ordering::Acquire);
+            if has_counted && !is_counting {
+                return Ok(());
+            }
+            has_counted |= is_counting;
+            tokio::select! {
+                message = self.channel.wait() => match message {
+                    Some(ChannelMsg::Data { data }) => self.read(&data, is_counting),
+                    Some(_) => {}
+                    None => return Err(Error::Disconnect),
+                },
+                () = sleep_until(self.next_key) => self.press().await?,
+                () = sleep_until(self.answer_at), if !self.answers.is_empty() => {
+                    let answers = std::mem::take(&mut self.answers);
+                    self.channel.data(&answers[..]).await?;
+                }
+            }
+        }
+    }
+
+    /// Answers the queries in what has come, and counts it.
+    fn read(&mut self, data: &[u8], is_counting: bool) {
+        let now = Instant::now();
+        let answered = self.lamp.read(data, now.into_std());
+        if is_counting {
+            self.tally.delays.extend(answered);
+            self.tally.bytes += data.len() as u64;
+        }
+        let blocks = data.windows(3).filter(|it| *it == "▀".as_bytes() || *it == "▄".as_bytes());
+        self.tally.is_walking |= blocks.count() > PICTURE;
+        self.unread.extend_from_slice(data);
+        let mut read = 0;
+        while let Some(start) = find(&self.unread[read..], b"\x1b") {
+            read += start;
+            let rest = &self.unread[read..];
+            let Some((query, answer)) = ANSWERS.iter().find(|it| rest.starts_with(it.0)) else {
+                if rest.len() < 4 {
+                    break;
+                }
+                read += 1;
+                continue;
+            };
+            if self.answers.is_empty() {
+                self.answer_at = now + self.delay;
+            }
+            self.answers.extend_from_slice(answer);
+            self.tally.frames += u64::from(is_counting && *query == STATUS);
+            read += query.len();
+        }
+        let kept =
+            if find(&self.unread[read..], b"\x1b").is_some() { read } else { self.unread.len() };
+        self.unread.drain(..kept);
+    }
+
+    async fn press(&mut self) -> Result<(), Error> {
+        let now = Instant::now();
+        if !self.tally.is_walking {
+            self.next_key = now + ENTER;
+            return self.channel.data(&b"\r"[..]).await;
+        }
+        if now >= self.key_until {
+            let keys: [&[u8]; 4] = [b"w", b"w", b"\x1b[C", b"\x1b[D"];
+            self.key = keys[(self.chance.bits() % 4) as usize];
+            let time = self.chance.between(0.3, 2.0);
+            self.key_until = now + Duration::from_secs_f64(time);
+        }
+        self.next_key = now + REPEAT;
+        if self.lamp.gives_up(now.into_std()) {
+            self.tally.unanswered += 1;
+        }
+        let is_time = now >= self.next_timed && !self.lamp.is_awaited();
+        if is_time || self.lamp.is_lit() {
+            let (least, most) = TIMED_PAUSE;
+            self.next_timed = now + Duration::from_secs_f64(self.chance.between(least, most));
+            self.lamp.press(now.into_std());
+            self.channel.data(LAMP).await?;
+        }
+        self.channel.data(self.key).await
+    }
+}
+
+fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
+    bytes.windows(part.len()).position(|window| window == part)
+}

@@ -1,0 +1,86 @@
+//! The options of a load.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::process::Usage;
+
+/// Play by real SSH sessions on one server or several, and print what they cost
+#[derive(Args, Debug)]
+pub(crate) struct Load {
+    /// How many sessions play
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub(crate) sessions: usize,
+    /// How many more sessions never read
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) silent: usize,
+    /// Measure OpenSSH's server with a game for each session, in place of cellcaster-server
+    #[arg(long = "sshd")]
+    pub(crate) uses_sshd: bool,
+    /// How long to measure, in seconds
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub(crate) seconds: u64,
+    /// The server's program, or the game's with --sshd [default: the one beside this program]
+    #[arg(long, value_name = "FILE")]
+    server: Option<PathBuf>,
+    /// How long each client waits before it answers a query of the server, in milliseconds
+    #[arg(long, value_name = "MS", default_value_t = 0)]
+    answer_delay: u64,
+    /// How many hosts of a cluster there are; more than one needs --cluster and --store
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) hosts: usize,
+    /// Measure the bus of a cluster alone, with this number of rooms
+    #[arg(long = "bus", value_name = "ROOMS")]
+    pub(crate) rooms: Option<usize>,
+    /// The NATS servers of the cluster
+    #[arg(long, value_name = "URL")]
+    pub(crate) cluster: Option<String>,
+    /// The database of the cluster
+    #[arg(long, value_name = "URL")]
+    pub(crate) store: Option<String>,
+    /// Measure another process, too, such as that of the NATS server; may be repeated
+    #[arg(long, value_name = "PID")]
+    beside: Vec<u32>,
+    /// Let clients come, walk, talk, resize their windows and leave for a long time
+    #[arg(long)]
+    pub(crate) soak: bool,
+    /// The seed of a soak
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+impl Load {
+    /// The program that is measured.
+    pub(crate) fn program(&self) -> String {
+        let name = if self.uses_sshd { "cellcaster" } else { "cellcaster-server" };
+        let beside = || std::env::current_exe().unwrap_or_default().with_file_name(name);
+        self.server.clone().unwrap_or_else(beside).display().to_string()
+    }
+
+    /// The time before a client answers a query.
+    pub(crate) fn answer_delay(&self) -> Duration {
+        Duration::from_millis(self.answer_delay)
+    }
+
+    /// The options for each server.
+    pub(crate) fn server_options(&self) -> Vec<String> {
+        let named = [("--cluster", &self.cluster), ("--store", &self.store)];
+        let given = named.iter().filter_map(|(name, value)| Some([*name, value.as_deref()?]));
+        given.flatten().map(str::to_owned).collect()
+    }
+
+    /// The processor time of each of the other processes.
+    pub(crate) fn others(&self) -> Vec<Usage> {
+        self.beside.iter().map(|&process| Usage::of(process)).collect()
+    }
+
+    /// Prints the time that the other processes have used.
+    pub(crate) fn print_others(&self, times: &[Duration]) {
+        for (process, time) in self.beside.iter().zip(times) {
+            let share = time.as_secs_f64() / self.seconds as f64;
+            println!("process {process:<6}{:.1} % of a processor", share * 100.0);
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Mistakes in the arguments of the laboratory: one sentence each, with what to write instead.
+
+use crate::support::complaint_about;
+
+#[test]
+fn mistakes_are_one_sentence_each() {
+    let complaints: String = [
+        &["bench", "cellar"][..],
+        &["bench", "--seconds", "0"],
+        &["accuracy", "--rays", "1000001"],
+        &["accuracy", "--set", "nonsense"],
+        &["accuracy", "--caster", "marsh"],
+        &["accuracy", "--format", "xml"],
+        &["wire", "--format", "svg"],
+        &["wire", "--palette", "256", "cellar"],
+        &["wire", "--glyphs", "all", "--palette", "16"],
+        &["wire", "--scirpt", "x"],
+        &["wire", "--size", "1000x1000"],
+        &["wire", "--script"],
+        &["snapshot", "--caster", "marsh"],
+        &["--caster", "marsh", "cast"],
+        &["load", "--sessions", "many"],
+        &["nonsense"],
+        &[],
+    ]
+    .iter()
+    .map(|arguments| format!("{}\n  {}", arguments.join(" "), complaint_about(arguments)))
+    .collect();
+    insta::assert_snapshot!(complaints);
+}

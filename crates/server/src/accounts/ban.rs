@@ -1,0 +1,200 @@
+//! Bans: of a key, a name, or a range of addresses.
+
+use std::fmt;
+use std::net::{IpAddr, Ipv6Addr};
+
+use super::{AccountKey, Name, UnixTime};
+
+/// A ban.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ban {
+    /// To whom it applies.
+    pub target: BanTarget,
+    /// When it ends; `None` for never.
+    pub until: Option<UnixTime>,
+    /// Why.
+    pub reason: String,
+    /// Who made it.
+    pub by: String,
+    /// When it was made.
+    pub made_at: UnixTime,
+}
+
+/// To whom a ban applies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BanTarget {
+    /// The account of a key.
+    Key(AccountKey),
+    /// Everybody with this name, or one that looks like it.
+    Name(Name),
+    /// Everybody with an address of this range.
+    Addresses(AddressPrefix),
+}
+
+/// What is known of a visitor.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Identity<'a> {
+    /// The address of the client.
+    pub address: Option<IpAddr>,
+    /// The key, once it is verified.
+    pub key: Option<&'a AccountKey>,
+    /// The name.
+    pub name: Option<&'a Name>,
+}
+
+/// The addresses that begin with the same bits, such as `203.0.113.0/24` or `2001:db8::/64`.
+///
+/// ```
+/// use cellcaster_server::accounts::AddressPrefix;
+///
+/// let prefix = AddressPrefix::parse("203.0.113.7/24").unwrap();
+/// assert_eq!(prefix.to_string(), "203.0.113.0/24");
+/// assert!(prefix.contains("::ffff:203.0.113.99".parse().unwrap()));
+/// assert!(!prefix.contains("203.0.114.7".parse().unwrap()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct AddressPrefix {
+    /// In the canonical form, with all bits after the prefix 0.
+    first: IpAddr,
+    length: u8,
+}
+
+impl Ban {
+    /// Whether it is in force.
+    pub fn is_in_force(&self, now: UnixTime) -> bool {
+        self.until.is_none_or(|until| now < until)
+    }
+}
+
+impl BanTarget {
+    /// Whether a ban of it takes the place of one of `other`.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Name(name), Self::Name(other)) => name.looks_like(other),
+            _ => self == other,
+        }
+    }
+
+    /// Whether it applies to somebody.
+    pub fn applies_to(&self, identity: &Identity<'_>) -> bool {
+        match self {
+            Self::Key(key) => identity.key == Some(key),
+            Self::Name(name) => identity.name.is_some_and(|other| other.looks_like(name)),
+            Self::Addresses(prefix) => {
+                identity.address.is_some_and(|address| prefix.contains(address))
+            }
+        }
+    }
+}
+
+impl AddressPrefix {
+    /// The addresses that share their first `length` bits with `address`; `None` if it has fewer. An
+    /// IPv4 address that is written as IPv6 is an IPv4 address.
+    pub fn new(address: IpAddr, length: u8) -> Option<Self> {
+        let first = match address.to_canonical() {
+            IpAddr::V4(address) if length <= 32 => {
+                let mask = u32::MAX.checked_shl(32 - u32::from(length)).unwrap_or_default();
+                IpAddr::V4((u32::from(address) & mask).into())
+            }
+            IpAddr::V6(address) if length <= 128 => IpAddr::V6(masked(address, length)),
+            _ => return None,
+        };
+        Some(Self { first, length })
+    }
+
+    /// The network of an address, as far as one owner has it: a /24 of IPv4, a /64 of IPv6.
+    pub fn network_of(address: IpAddr) -> Self {
+        Self::around(address, [24, 64])
+    }
+
+    /// The addresses that share their first bits with `address`: so many if it is one of IPv4, and so many
+    /// of IPv6.
+    pub(crate) fn around(address: IpAddr, [v4, v6]: [u8; 2]) -> Self {
+        let address = address.to_canonical();
+        let length = if address.is_ipv4() { v4 } else { v6 };
+        // No address has more bits.
+        Self::new(address, length).unwrap_or(Self { first: address, length })
+    }
+
+    /// The range of a text such as 203.0.113.0/24. An address without a length is a range of one.
+    pub fn parse(text: &str) -> Option<Self> {
+        let Some((address, length)) = text.split_once('/') else {
+            let address = text.parse::<IpAddr>().ok()?.to_canonical();
+            return Self::new(address, if address.is_ipv4() { 32 } else { 128 });
+        };
+        let is_number = length.bytes().all(|byte| byte.is_ascii_digit());
+        Self::new(address.parse().ok()?, length.parse().ok().filter(|_| is_number)?)
+    }
+
+    /// Whether an address belongs to it.
+    pub fn contains(&self, address: IpAddr) -> bool {
+        let address = address.to_canonical();
+        address.is_ipv4() == self.first.is_ipv4() && Self::new(address, self.length) == Some(*self)
+    }
+}
+
+impl fmt::Display for AddressPrefix {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.first, self.length)
+    }
+}
+
+/// The ban of `bans` that applies to somebody; of several, the one that ends last.
+pub(crate) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
+    let applying = bans.into_iter().filter(|ban| ban.target.applies_to(identity));
+    applying.max_by_key(|ban| (ban.until.is_none(), ban.until))
+}
+
+fn masked(address: Ipv6Addr, length: u8) -> Ipv6Addr {
+    let mask = u128::MAX.checked_shl(128 - u32::from(length)).unwrap_or_default();
+    (u128::from(address) & mask).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_range_is_an_address_and_a_length() {
+        for (text, shown) in [
+            ("192.0.2.1", "192.0.2.1/32"),
+            ("::ffff:192.0.2.1", "192.0.2.1/32"),
+            ("192.0.2.1/0", "0.0.0.0/0"),
+            ("2001:db8:1:2:3::4/64", "2001:db8:1:2::/64"),
+            ("::/0", "::/0"),
+        ] {
+            assert_eq!(AddressPrefix::parse(text).unwrap().to_string(), shown);
+        }
+        for text in ["", "/", "192.0.2.1/33", "::/129", "192.0.2.1/+8", "192.0.2.1/", "a/8"] {
+            assert_eq!(AddressPrefix::parse(text), None, "{text}");
+        }
+        let everything_of_v4 = AddressPrefix::parse("0.0.0.0/0").unwrap();
+        assert!(!everything_of_v4.contains("2001:db8::1".parse().unwrap()));
+    }
+
+    #[test]
+    fn the_network_of_an_address_is_that_of_its_owner() {
+        for (address, network) in [
+            ("192.0.2.77", "192.0.2.0/24"),
+            ("::ffff:192.0.2.77", "192.0.2.0/24"),
+            ("2001:db8:1:2:3::4", "2001:db8:1:2::/64"),
+        ] {
+            let prefix = AddressPrefix::network_of(address.parse().unwrap());
+            assert_eq!(prefix.to_string(), network);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_range_contains_what_begins_alike(address: IpAddr, other: IpAddr, length in 0..=128_u8) {
+            if let Some(prefix) = AddressPrefix::new(address, length) {
+                prop_assert!(prefix.contains(address));
+                prop_assert_eq!(AddressPrefix::parse(&prefix.to_string()), Some(prefix));
+                let same = AddressPrefix::new(other, length) == Some(prefix);
+                prop_assert_eq!(prefix.contains(other), same);
+            }
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! Names of accounts: readable, printable, and each distinct to the eye.
+//!
+//! A text becomes a name in these steps:
+//!
+//! 1. It is brought to the Unicode form NFKC, so that wide or decomposed letters are the plain ones.
+//! 2. Each character is a letter of one of the [scripts](NameFault::Character) below, a digit from 0 to 9,
+//!    `-` or `_`. The first one is a letter, and the last one is no `-` or `_`.
+//! 3. It is 2 to 16 columns wide.
+//! 4. Its letters are of one script, or of Latin with those of Japanese, Korean or Chinese: "highly
+//!    restrictive" of Unicode Technical Standard #39, section 5.2.
+//! 5. It does not look like a [reserved](Name::is_reserved) name.
+//!
+//! The scripts are those whose letters stand one in a cell or two, from left to right: Latin, Greek,
+//! Cyrillic, Armenian, Georgian, Han, Hiragana, Katakana, Hangul, Bopomofo. Letters that are written with
+//! combining marks or from right to left were refused: terminals disagree about their width and order,
+//! and a name stands in the middle of another player's picture.
+
+mod key;
+mod printable;
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use unicode_normalization::UnicodeNormalization;
+use unicode_script::{Script, UnicodeScript};
+use unicode_security::{GeneralSecurityProfile, RestrictionLevel, RestrictionLevelDetection};
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+pub use printable::printable;
+
+/// A name.
+///
+/// ```
+/// use cellcaster_server::accounts::{Name, NameFault};
+///
+/// let name = Name::new("Ada")?;
+/// assert!(name.looks_like(&Name::new("ADA")?));
+/// assert_eq!(Name::new("\u{1b}[2J").unwrap_err(), NameFault::Character('\u{1b}'));
+/// assert_eq!(Name::new("server"), Err(NameFault::Reserved));
+/// # Ok::<(), NameFault>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Name(String);
+
+/// Why a text is no name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameFault {
+    /// It is too short.
+    Short,
+    /// It is too long.
+    Long,
+    /// It has a character that no name has.
+    Character(char),
+    /// It does not begin with a letter.
+    Begin,
+    /// It ends with `-` or `_`.
+    End,
+    /// Its letters are of different scripts.
+    Mixed,
+    /// It is reserved, or looks like a reserved name.
+    Reserved,
+}
+
+/// The scripts of letters.
+const SCRIPTS: [Script; 10] = [
+    Script::Latin,
+    Script::Greek,
+    Script::Cyrillic,
+    Script::Armenian,
+    Script::Georgian,
+    Script::Han,
+    Script::Hiragana,
+    Script::Katakana,
+    Script::Hangul,
+    Script::Bopomofo,
+];
+/// Names that nobody may have.
+const RESERVED: [&str; 28] = [
+    "admin",
+    "administrator",
+    "all",
+    "anonymous",
+    "anybody",
+    "cellcaster",
+    "console",
+    "everybody",
+    "everyone",
+    "game",
+    "guard",
+    "host",
+    "lobby",
+    "mod",
+    "moderator",
+    "nobody",
+    "none",
+    "operator",
+    "owner",
+    "player",
+    "room",
+    "root",
+    "server",
+    "spectator",
+    "staff",
+    "support",
+    "system",
+    "you",
+];
+/// The beginning of the names of guests.
+const GUEST: &str = "guest";
+/// In bytes. A longer text is not looked at.
+const MOST_BYTES: usize = 256;
+
+impl Name {
+    /// The least width in columns.
+    pub const LEAST_COLUMNS: usize = 2;
+    /// The largest width in columns.
+    pub const MOST_COLUMNS: usize = 16;
+
+    /// The name that a text is.
+    ///
+    /// # Errors
+    /// A [`NameFault`], which is one sentence for the player.
+    pub fn new(text: &str) -> Result<Self, NameFault> {
+        let name = Self::unreserved(text)?;
+        if name.is_reserved() { Err(NameFault::Reserved) } else { Ok(name) }
+    }
+
+    /// The name of a guest, such as `guest-12`. No account has it.
+    pub fn of_guest(number: u32) -> Self {
+        Self(format!("{GUEST}-{number}"))
+    }
+
+    /// The text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Whether it is the same as `other` in upper or lower case, or looks the same.
+    pub fn looks_like(&self, other: &Self) -> bool {
+        let keys = self.keys();
+        other.keys().iter().any(|key| keys.contains(key))
+    }
+
+    /// Whether only the host can have it: it looks like `guest`, begins like that, or is a word for the
+    /// host or for nobody.
+    fn is_reserved(&self) -> bool {
+        // Made once: that takes some thirty times as long as the keys of one name.
+        static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| key::of(GUEST));
+        static WORDS: LazyLock<Vec<String>> =
+            LazyLock::new(|| RESERVED.iter().flat_map(|word| key::of(word)).collect());
+        let is_guest = |key: &String| GUESTS.iter().any(|guest| key.starts_with(guest.as_str()));
+        self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
+    }
+
+    /// The keys of the name: two names that share one are not told from each other.
+    pub(crate) fn keys(&self) -> Vec<String> {
+        key::of(&self.0)
+    }
+
+    /// The name that the store has kept. What would be no name now is taken as it is, as far as it can be
+    /// printed.
+    pub(crate) fn kept(text: &str) -> Self {
+        Self(printable(text, Self::MOST_COLUMNS))
+    }
+
+    fn unreserved(text: &str) -> Result<Self, NameFault> {
+        if text.len() > MOST_BYTES {
+            return Err(NameFault::Long);
+        }
+        let text: String = text.nfkc().collect();
+        if let Some(character) = text.chars().find(|&character| !is_allowed(character)) {
+            return Err(NameFault::Character(character));
+        }
+        match text.width() {
+            ..Self::LEAST_COLUMNS => return Err(NameFault::Short),
+            Self::LEAST_COLUMNS..=Self::MOST_COLUMNS => {}
+            _ => return Err(NameFault::Long),
+        }
+        if !text.starts_with(is_letter) {
+            return Err(NameFault::Begin);
+        }
+        if text.ends_with(['-', '_']) {
+            return Err(NameFault::End);
+        }
+        if !text.check_restriction_level(RestrictionLevel::HighlyRestrictive) {
+            return Err(NameFault::Mixed);
+        }
+        Ok(Self(text))
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.0)
+    }
+}
+
+impl fmt::Display for NameFault {
+    /// Writes a sentence for the player.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Short => write!(f, "A name has at least {} letters.", Name::LEAST_COLUMNS),
+            Self::Long => write!(f, "A name is at most {} columns wide.", Name::MOST_COLUMNS),
+            Self::Character(character) if is_shown(*character) => {
+                write!(f, "A name has letters, digits, - and _, not {character}.")
+            }
+            Self::Character(character) => {
+                let code = u32::from(*character);
+                write!(f, "A name has letters, digits, - and _, not U+{code:04X}.")
+            }
+            Self::Begin => f.write_str("A name begins with a letter."),
+            Self::End => f.write_str("A name ends with a letter or a digit."),
+            Self::Mixed => f.write_str("The letters of a name are of one script."),
+            Self::Reserved => f.write_str("This name is reserved."),
+        }
+    }
+}
+
+impl std::error::Error for NameFault {}
+
+fn is_allowed(character: char) -> bool {
+    matches!(character, '0'..='9' | '-' | '_') || is_letter(character)
+}
+
+fn is_letter(character: char) -> bool {
+    let has_width = matches!(character.width(), Some(1 | 2));
+    let is_of_script = SCRIPTS.contains(&character.script());
+    is_of_script && has_width && character.is_alphabetic() && character.identifier_allowed()
+}
+
+/// Whether a sentence can show it.
+fn is_shown(character: char) -> bool {
+    character != ' ' && printable(character.encode_utf8(&mut [0; 4]), 2).starts_with(character)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+//! How many accounts a network may make: the generic cell rate algorithm (ITU-T I.371).
+//!
+//! Of each network one time is kept: when it would have its whole allowance again. Each account puts that time off,
+//! and one that would put it off too far is refused. A time that is over is as good as none.
+//!
+//! A list of the accounts of the last hour was refused: it grows with the rate, and its limit has an edge.
+
+use std::net::IpAddr;
+
+use super::{AddressPrefix, Refusal, UnixTime};
+
+/// How many accounts a network may make.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AccountRate {
+    /// How many in an hour, in the long run.
+    pub per_hour: u32,
+    /// How many at once.
+    pub at_once: u32,
+}
+
+/// Where a new account comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The network: a /24 of IPv4, a /64 of IPv6.
+    pub network: AddressPrefix,
+    /// How many accounts it may make.
+    pub rate: AccountRate,
+}
+
+/// In milliseconds.
+const HOUR: i64 = 60 * 60 * 1000;
+
+impl Default for AccountRate {
+    fn default() -> Self {
+        Self { per_hour: 20, at_once: 20 }
+    }
+}
+
+impl Origin {
+    /// Somebody with an address, in a network with a rate.
+    pub fn new(address: IpAddr, rate: AccountRate) -> Self {
+        Self { network: AddressPrefix::network_of(address), rate }
+    }
+
+    /// Counts an account: the time, in milliseconds since 1970, from which on the network has its whole allowance
+    /// again, after `known`.
+    pub(crate) fn count(&self, known: Option<i64>, now: UnixTime) -> Result<i64, Refusal> {
+        let now = milliseconds(now);
+        let pause = HOUR / i64::from(self.rate.per_hour.max(1));
+        let most = pause * (i64::from(self.rate.at_once.max(1)) - 1);
+        // One that is later was kept by a clock that went wrong, or under another rate.
+        let whole_at = known.unwrap_or(now).clamp(now, now + most + pause);
+        let early = whole_at - now - most;
+        if early > 0 {
+            let seconds = (early as u64).div_ceil(1000);
+            return Err(Refusal::TooManyAccounts { seconds });
+        }
+        Ok(whole_at + pause)
+    }
+}
+
+/// A time in milliseconds since 1970.
+pub(crate) fn milliseconds(time: UnixTime) -> i64 {
+    // Some thousands of years.
+    const LAST: u64 = 1 << 37;
+    (time.seconds().min(LAST) * 1000) as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn no_hour_has_more_than_the_rate_and_what_is_allowed_at_once(
+            per_hour in 1..40_u32, at_once in 1..9_u32,
+            pauses in prop::collection::vec(0..900_u64, 1..200),
+        ) {
+            let origin = Origin::new([192, 0, 2, 7].into(), AccountRate { per_hour, at_once });
+            let (mut known, mut now, mut made) = (None, UnixTime::new(1_795_300_000), Vec::new());
+            for pause in pauses {
+                now = now.after(pause);
+                match origin.count(known, now) {
+                    Ok(time) => {
+                        known = Some(time);
+                        made.push(now.seconds());
+                    }
+                    Err(Refusal::TooManyAccounts { seconds }) => {
+                        // Whoever waits as long as they are told gets in, and not a second earlier.
+                        prop_assert!(origin.count(known, now.after(seconds)).is_ok());
+                        prop_assert!(origin.count(known, now.after(seconds - 1)).is_err());
+                    }
+                    Err(refusal) => prop_assert!(false, "{refusal:?}"),
+                }
+            }
+            for (index, first) in made.iter().enumerate() {
+                let in_an_hour = made[index..].iter().take_while(|it| *it - first < 3600).count();
+                prop_assert!(in_an_hour as u32 <= per_hour + at_once);
+            }
+        }
+
+        #[test]
+        fn no_time_that_was_kept_shuts_a_network_out_for_long(known: i64, now: u64) {
+            let origin = Origin::new([192, 0, 2, 7].into(), AccountRate::default());
+            if let Err(Refusal::TooManyAccounts { seconds }) =
+                origin.count(Some(known), UnixTime::new(now))
+            {
+                prop_assert!(seconds <= 180);
+            }
+        }
+    }
+}

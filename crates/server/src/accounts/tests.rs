@@ -1,0 +1,291 @@
+//! What every store does, and that all do the same.
+
+mod alike;
+mod file;
+mod lease;
+#[cfg(all(unix, feature = "system-tests"))]
+mod postgres;
+#[cfg(all(unix, feature = "system-tests"))]
+#[path = "../../tests/support/postgres_server.rs"]
+mod postgres_server;
+mod presence;
+mod rate;
+mod waiting;
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+use std::{env, fs};
+
+use super::*;
+use cellcaster::app::store::{Preferences, Reached};
+use cellcaster::game::{Rank, Rules, Share, Tally};
+use cellcaster::world::Difficulty;
+
+/// A folder that is removed at the end of a test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("cellcaster-host-{}-{number}", std::process::id());
+        Self(env::temp_dir().join(name))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Runs a test with a store of each kind.
+fn with_each(test: impl Fn(&mut dyn HostStore)) {
+    test(&mut MemoryStore::default());
+    let folder = Folder::new();
+    let mut store = SqliteStore::open(&folder.0).unwrap();
+    test(&mut store);
+    #[cfg(all(unix, feature = "system-tests"))]
+    test(&mut postgres_store());
+}
+
+/// A store in the database that all tests share.
+#[cfg(all(unix, feature = "system-tests"))]
+fn postgres_store() -> PostgresStore {
+    PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap()
+}
+
+/// What has a clock, which is set or that of a database.
+trait Timed {
+    /// Lets `time` pass.
+    fn wait(&mut self, time: Duration);
+}
+
+#[cfg(all(unix, feature = "system-tests"))]
+impl Timed for PostgresStore {
+    fn wait(&mut self, time: Duration) {
+        std::thread::sleep(time);
+    }
+}
+
+const DAY: u64 = 24 * 60 * 60;
+
+fn at(day: u64) -> UnixTime {
+    UnixTime::new(1_795_300_000 + day * DAY)
+}
+
+fn key(number: u8) -> AccountKey {
+    AccountKey::new([number; 32])
+}
+
+fn name(text: &str) -> Name {
+    Name::new(text).unwrap()
+}
+
+fn board(level: &str) -> LevelBoard {
+    LevelBoard::new(level, Difficulty::Hard).unwrap()
+}
+
+fn run(level: &str, steps: u64, rank: Rank) -> VerifiedLevel {
+    let tally = Tally {
+        steps,
+        treasure: Share { found: 2, total: 3 },
+        secrets: Share { found: 0, total: 1 },
+        alarms: 4,
+        deaths: 5,
+        stunned: 6,
+    };
+    VerifiedLevel::made_up(board(level), tally, rank, &format!("{steps} steps; '\"\u{1F600}\0"))
+}
+
+fn descent(seed: u64, floors: u32, treasure: u32) -> VerifiedDescent {
+    let rules = Rules { difficulty: Difficulty::Normal, seed };
+    let reached = Reached { floors, treasure, steps: 100 * u64::from(floors) };
+    VerifiedDescent::made_up(rules, reached, "4 s forward\n")
+}
+
+#[test]
+fn a_key_is_an_account() {
+    with_each(|store| {
+        assert_eq!(store.account(&key(1)).unwrap(), None);
+        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+        let bob = store.create_account(&key(2), &name("Bob"), at(1)).unwrap();
+        assert_ne!(ada.id, bob.id);
+        assert_eq!(store.account(&key(1)).unwrap(), Some(ada.clone()));
+        assert_eq!(store.create_account(&key(1), &name("Eve"), at(1)), Err(Refusal::KeyKnown));
+        store.note_visit(ada.id, at(3)).unwrap();
+        let seen = Account { seen_at: at(3), ..ada };
+        assert_eq!(store.account(&key(1)).unwrap(), Some(seen.clone()));
+        assert_eq!(store.account_named(&name("aDA")).unwrap(), Some(seen));
+        assert_eq!(store.account_named(&name("Eve")).unwrap(), None);
+    });
+}
+
+#[test]
+fn a_name_is_of_one_account() {
+    with_each(|store| {
+        store.create_account(&key(1), &name("Bill"), at(0)).unwrap();
+        for other in ["Bill", "bILL", "BiIl", "bi11"] {
+            let refused = store.create_account(&key(2), &name(other), at(0));
+            assert_eq!(refused, Err(Refusal::NameTaken), "{other}");
+        }
+        store.create_account(&key(2), &name("Will"), at(0)).unwrap();
+    });
+}
+
+#[test]
+fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
+    with_each(|store| {
+        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+        let next = at(7);
+        let early = store.rename(ada.id, &name("Eve"), UnixTime::new(next.seconds() - 1));
+        assert_eq!(early, Err(Refusal::TooEarly { next }));
+        let eve = store.rename(ada.id, &name("Eve"), next).unwrap();
+        assert_eq!(eve, Account { name: name("Eve"), named_at: next, ..ada.clone() });
+        assert_eq!(store.account(&key(1)).unwrap(), Some(eve));
+        assert_eq!(store.account_named(&name("Ada")).unwrap(), None);
+        // Nobody else has the old name for a while; the account itself may go back to it.
+        let taken = store.create_account(&key(2), &name("ADA"), at(36));
+        assert_eq!(taken, Err(Refusal::NameTaken));
+        store.rename(ada.id, &name("ada"), at(14)).unwrap();
+        store.rename(ada.id, &name("Eve"), at(21)).unwrap();
+        assert_eq!(store.create_account(&key(2), &name("Ada"), at(50)), Err(Refusal::NameTaken));
+        store.create_account(&key(2), &name("Ada"), at(51)).unwrap();
+        let back = store.rename(ada.id, &name("Ada"), at(60));
+        assert_eq!(back, Err(Refusal::NameTaken));
+    });
+}
+
+#[test]
+fn settings_are_kept_by_account() {
+    with_each(|store| {
+        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
+        assert_eq!(store.settings(ada).unwrap(), AccountSettings::default());
+        let preferences = Preferences {
+            bell: true,
+            ghost: false,
+            difficulty: Difficulty::Hard,
+            ..Preferences::default()
+        };
+        let configuration = "glyphs = \"ascii\" # '; DROP TABLE settings; --\n".to_owned();
+        let settings = AccountSettings { preferences, configuration };
+        store.set_settings(ada, &settings).unwrap();
+        assert_eq!(store.settings(ada).unwrap(), settings);
+        let configuration = "#".repeat(AccountSettings::MOST_BYTES + 1);
+        let long = AccountSettings { configuration, ..AccountSettings::default() };
+        assert!(store.set_settings(ada, &long).is_err());
+        assert_eq!(store.settings(ada).unwrap(), settings);
+    });
+}
+
+#[test]
+fn a_ban_applies_until_it_ends() {
+    let ban = |target, until| Ban {
+        target,
+        until,
+        reason: "it's \"no\"; -- \u{1F600}".to_owned(),
+        by: "O'Hara".to_owned(),
+        made_at: at(0),
+    };
+    with_each(|store| {
+        let range = || BanTarget::Addresses(AddressPrefix::parse("192.0.2.0/24").unwrap());
+        let bans = [
+            ban(BanTarget::Key(key(1)), None),
+            ban(BanTarget::Name(name("Rude")), Some(at(2))),
+            ban(range(), Some(at(1))),
+        ];
+        for ban in &bans {
+            store.ban(ban).unwrap();
+        }
+        assert_eq!(store.bans(at(0)).unwrap(), bans);
+        assert_eq!(store.bans(at(1)).unwrap(), bans[..2]);
+        let rude = name("rude");
+        let address = Some("::ffff:192.0.2.9".parse().unwrap());
+        let visitor = Identity { address, name: Some(&rude), ..Identity::default() };
+        assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[1]));
+        let visitor = Identity { address, key: Some(&key(1)), name: Some(&rude) };
+        assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[0]));
+        assert_eq!(store.ban_of(&Identity::default(), at(0)).unwrap(), None);
+        // A name that is banned is nobody's.
+        assert_eq!(store.create_account(&key(3), &rude, at(1)), Err(Refusal::NameBanned));
+        store.create_account(&key(3), &rude, at(2)).unwrap();
+        // A later ban is in place of the earlier one.
+        let longer = ban(range(), None);
+        store.ban(&longer).unwrap();
+        assert_eq!(store.bans(at(0)).unwrap(), [&bans[..2], &[longer]].concat());
+        assert!(store.unban(&BanTarget::Name(name("RUDE"))).unwrap());
+        assert!(store.unban(&range()).unwrap() && !store.unban(&range()).unwrap());
+        assert_eq!(store.bans(at(0)).unwrap(), bans[..1]);
+    });
+}
+
+#[test]
+fn boards_have_the_best_run_of_each_account() {
+    with_each(|store| {
+        let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
+            store.create_account(&key(number), &name(text), at(0)).unwrap().id
+        });
+        let mut record = |account, level, steps, rank, day| {
+            let improved = store.record(account, &run(level, steps, rank), at(day)).unwrap();
+            (improved.time, improved.rank)
+        };
+        assert_eq!(record(ada, "cellar", 300, Rank::Thief, 1), (true, true));
+        assert_eq!(record(ada, "cellar", 300, Rank::Thief, 2), (false, false));
+        assert_eq!(record(ada, "cellar", 400, Rank::Ghost, 3), (false, true));
+        assert_eq!(record(bob, "cellar", 250, Rank::Burglar, 4), (true, true));
+        assert_eq!(record(ada, "cellar", 250, Rank::Burglar, 5), (true, false));
+        assert_eq!(record(eve, "cellar", 999, Rank::Shadow, 6), (true, true));
+        assert_eq!(record(eve, "museum", 10, Rank::Shadow, 6), (true, true));
+        let scores = store.level_scores(&board("cellar"), 9).unwrap();
+        let shown = scores
+            .iter()
+            .map(|score| (score.name.as_str(), score.tally.steps, score.rank, score.verified_at));
+        assert_eq!(
+            shown.collect::<Vec<_>>(),
+            [
+                ("Bob", 250, Rank::Burglar, at(4)),
+                ("Ada", 250, Rank::Ghost, at(5)),
+                ("Eve", 999, Rank::Shadow, at(6)),
+            ]
+        );
+        assert_eq!(scores[0].tally, run("cellar", 250, Rank::Burglar).tally());
+        assert_eq!(store.level_scores(&board("cellar"), 1).unwrap(), scores[..1]);
+        assert_eq!(store.level_scores(&board("prison"), 9).unwrap(), []);
+        assert_eq!(store.level_boards().unwrap(), [board("cellar"), board("museum")]);
+        let bests = store.bests(eve).unwrap();
+        let bests: Vec<_> =
+            bests.iter().map(|(board, best)| (board.clone(), best.tally.steps)).collect();
+        assert_eq!(bests, [(board("cellar"), 999), (board("museum"), 10)]);
+        let script = store.script(ada, &board("cellar")).unwrap();
+        assert_eq!(script.as_deref(), Some(run("cellar", 250, Rank::Thief).script()));
+        assert_eq!(store.script(bob, &board("museum")).unwrap(), None);
+    });
+}
+
+#[test]
+fn the_first_try_of_a_day_counts() {
+    let day = Day::parse("2026-11-22").unwrap();
+    with_each(|store| {
+        let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
+            store.create_account(&key(number), &name(text), at(0)).unwrap().id
+        });
+        let of_ada = store.begin_daily(ada, day, at(0)).unwrap().unwrap();
+        let of_bob = store.begin_daily(bob, day, at(0)).unwrap().unwrap();
+        store.begin_daily(eve, day, at(0)).unwrap().unwrap();
+        assert_eq!(store.begin_daily(ada, day, at(0)).unwrap(), None);
+        let seed = u64::from(day.number());
+        assert!(store.record_daily(&of_ada, &descent(seed, 1, 40), at(1)).unwrap());
+        assert!(store.record_daily(&of_ada, &descent(seed, 2, 10), at(2)).unwrap());
+        assert!(!store.record_daily(&of_ada, &descent(seed, 1, 99), at(3)).unwrap());
+        assert!(!store.record_daily(&of_ada, &descent(seed + 1, 9, 99), at(3)).unwrap());
+        assert!(store.record_daily(&of_bob, &descent(seed, 2, 11), at(4)).unwrap());
+        let scores = store.daily_scores(day, 9).unwrap();
+        let shown = scores.iter().map(|it| (it.name.as_str(), it.reached.treasure, it.verified_at));
+        assert_eq!(shown.collect::<Vec<_>>(), [("Bob", 11, at(4)), ("Ada", 10, at(2))]);
+        assert_eq!(store.daily_scores(day, 1).unwrap().len(), 1);
+        let next = Day::parse("2026-11-23").unwrap();
+        assert_eq!(store.daily_scores(next, 9).unwrap(), []);
+        assert!(store.begin_daily(ada, next, at(5)).unwrap().is_some());
+    });
+}

@@ -1,0 +1,171 @@
+//! All stores answer alike, whatever is asked of them.
+
+use std::fmt::Write;
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Something that is asked of a store.
+#[derive(Clone, Debug)]
+enum Call {
+    Create(u8, usize),
+    /// From one of two networks, each of which makes one account at once, and one in an hour.
+    CreateFrom(u8, u8, usize),
+    Rename(i64, usize),
+    Visit(i64),
+    Set(i64, bool, String),
+    Ban(usize, Option<u64>, String),
+    Unban(usize),
+    Record(i64, usize, u64, usize),
+    BeginDaily(i64, usize),
+    RecordDaily(i64, usize, u32),
+}
+
+const NAMES: [&str; 7] = ["Ada", "ADA", "Bill", "BiIl", "Eve", "СССР", "cccp"];
+const LEVELS: [&str; 3] = ["cellar", "museum", "observatory"];
+const DAYS: [u32; 2] = [20_261_122, 20_261_123];
+
+fn target(index: usize) -> BanTarget {
+    match index {
+        0..7 => BanTarget::Name(name(NAMES[index])),
+        7 | 8 => BanTarget::Key(key(index as u8 - 6)),
+        _ => BanTarget::Addresses(AddressPrefix::parse("2001:db8::/32").unwrap()),
+    }
+}
+
+/// A call, and the days that pass before it.
+fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
+    let account = || 1..4_i64;
+    let call = prop_oneof![
+        4 => (1..4_u8, 0..NAMES.len()).prop_map(|(key, name)| Call::Create(key, name)),
+        4 => (0..2_u8, 1..4_u8, 0..NAMES.len())
+            .prop_map(|(network, key, name)| Call::CreateFrom(network, key, name)),
+        3 => (account(), 0..NAMES.len()).prop_map(|(id, name)| Call::Rename(id, name)),
+        1 => account().prop_map(Call::Visit),
+        1 => (account(), any::<bool>(), any::<String>())
+            .prop_map(|(id, bell, text)| Call::Set(id, bell, text)),
+        1 => (0..10_usize, prop::option::of(0..20_u64), any::<String>())
+            .prop_map(|(target, days, reason)| Call::Ban(target, days, reason)),
+        1 => (0..10_usize).prop_map(Call::Unban),
+        4 => (account(), 0..LEVELS.len(), 1..5_u64, 0..4_usize)
+            .prop_map(|(id, level, steps, rank)| Call::Record(id, level, steps, rank)),
+        2 => (account(), 0..DAYS.len()).prop_map(|(id, day)| Call::BeginDaily(id, day)),
+        2 => (account(), 0..DAYS.len(), 0..4_u32)
+            .prop_map(|(id, day, floors)| Call::RecordDaily(id, day, floors)),
+    ];
+    prop::collection::vec((prop_oneof![Just(0), Just(8), Just(31)], call), 1..40)
+}
+
+/// The answer of a store. What it says about a failure is its own.
+fn answer(store: &mut dyn HostStore, call: &Call, now: UnixTime) -> String {
+    let of_failure = |_: StoreFailure| "failure";
+    match call {
+        Call::Create(number, text) => {
+            format!("{:?}", store.create_account(&key(*number), &name(NAMES[*text]), now))
+        }
+        Call::CreateFrom(network, number, text) => {
+            let rate = AccountRate { per_hour: 1, at_once: 1 };
+            let origin = Origin::new([192, 0, *network, 7].into(), rate);
+            let (key, name) = (key(*number), name(NAMES[*text]));
+            format!("{:?}", store.create_account_from(Some(&origin), &key, &name, now))
+        }
+        Call::Rename(id, text) => {
+            format!("{:?}", store.rename(AccountId(*id), &name(NAMES[*text]), now))
+        }
+        Call::Visit(id) => format!("{:?}", store.note_visit(AccountId(*id), now)),
+        Call::Set(id, bell, text) => {
+            let preferences = Preferences { bell: *bell, ..Preferences::default() };
+            let settings = AccountSettings { preferences, configuration: text.clone() };
+            format!("{:?}", store.set_settings(AccountId(*id), &settings).map_err(of_failure))
+        }
+        Call::Ban(index, days, reason) => {
+            let until = days.map(|days| now.after(days * DAY));
+            let (reason, by) = (reason.clone(), reason.clone());
+            let ban = Ban { target: target(*index), until, reason, by, made_at: now };
+            format!("{:?}", store.ban(&ban))
+        }
+        Call::Unban(index) => format!("{:?}", store.unban(&target(*index))),
+        Call::Record(id, level, steps, rank) => {
+            let run = run(LEVELS[*level], *steps, Rank::ALL[*rank]);
+            format!("{:?}", store.record(AccountId(*id), &run, now).map_err(of_failure))
+        }
+        Call::BeginDaily(id, day) => {
+            let day = Day::from_number(DAYS[*day]).unwrap();
+            format!("{:?}", store.begin_daily(AccountId(*id), day, now).map_err(of_failure))
+        }
+        Call::RecordDaily(id, day, floors) => {
+            let (account, seed) = (AccountId(*id), u64::from(DAYS[*day]));
+            let daily = DailyTry { account, day: Day::from_number(DAYS[*day]).unwrap() };
+            format!("{:?}", store.record_daily(&daily, &descent(seed, *floors, 7), now))
+        }
+    }
+}
+
+/// Everything that a store shows.
+fn shown(store: &mut dyn HostStore, now: UnixTime) -> String {
+    let mut shown = format!("{:?} {:?}", store.bans(now), store.level_boards());
+    for number in 1..4 {
+        let id = AccountId(number.into());
+        let (account, settings) = (store.account(&key(number)), store.settings(id));
+        _ = write!(shown, "{account:?} {settings:?} {:?}", store.bests(id));
+        shown += &LEVELS.map(|level| format!("{:?}", store.script(id, &board(level)))).concat();
+    }
+    shown += &NAMES.map(|text| format!("{:?}", store.account_named(&name(text)))).concat();
+    shown += &LEVELS.map(|level| format!("{:?}", store.level_scores(&board(level), 2))).concat();
+    let day = |number| Day::from_number(number).unwrap();
+    shown + &DAYS.map(|number| format!("{:?}", store.daily_scores(day(number), 2))).concat()
+}
+
+fn answers_as_memory_does(
+    store: &mut dyn HostStore,
+    calls: &[(u64, Call)],
+) -> Result<(), TestCaseError> {
+    let (mut memory, mut day) = (MemoryStore::default(), 0);
+    for (days, call) in calls {
+        day += days;
+        let answers = [answer(store, call, at(day)), answer(&mut memory, call, at(day))];
+        prop_assert_eq!(&answers[0], &answers[1], "{:?}", call);
+    }
+    prop_assert_eq!(shown(store, at(day)), shown(&mut memory, at(day)));
+    Ok(())
+}
+
+#[cfg(all(unix, feature = "system-tests"))]
+proptest! {
+    // Each has tables of its own.
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn a_database_answers_as_memory_does(calls in calls()) {
+        let address = postgres_server::PostgresServer::shared().address();
+        answers_as_memory_does(&mut PostgresStore::open(&address).unwrap(), &calls)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn a_file_answers_as_memory_does(calls in calls()) {
+        answers_as_memory_does(&mut SqliteStore::in_memory(), &calls)?;
+    }
+
+    #[test]
+    fn names_of_accounts_are_told_from_each_other(texts in prop::collection::vec(
+        "[a-cA-CIl1iOo0аАсС]{2,4}", 2..60
+    )) {
+        let mut store = MemoryStore::default();
+        let mut accepted: Vec<Name> = Vec::new();
+        for (number, text) in (1_u8..).zip(&texts) {
+            let Ok(name) = Name::new(text) else { continue };
+            if store.create_account(&key(number), &name, at(0)).is_ok() {
+                let skeleton = |name: &Name| -> String {
+                    unicode_security::skeleton(name.as_str()).collect()
+                };
+                prop_assert!(accepted.iter().all(|other| skeleton(other) != skeleton(&name)));
+                accepted.push(name);
+            }
+        }
+    }
+}

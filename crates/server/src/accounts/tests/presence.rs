@@ -1,0 +1,176 @@
+//! Visits and hosts, by a clock that is set and by that of a database.
+
+use super::*;
+
+/// Runs a test with a store of each kind.
+fn with_each(test: impl Fn(&mut dyn TimedPresence)) {
+    test(&mut MemoryPresence::default());
+    #[cfg(all(unix, feature = "system-tests"))]
+    test(&mut postgres_store());
+}
+
+/// The presence of hosts and visitors, whose clock a test can let run.
+trait TimedPresence: Presence + Timed {}
+
+impl<T: Presence + Timed> TimedPresence for T {}
+
+impl Timed for MemoryPresence {
+    fn wait(&mut self, time: Duration) {
+        self.pass(time);
+    }
+}
+
+const LONG: Duration = Duration::from_mins(1);
+const SHORT: Duration = Duration::from_millis(200);
+
+fn ada() -> Visitor {
+    Visitor::Key(key(1))
+}
+
+fn network() -> Visitor {
+    Visitor::Addresses(AddressPrefix::parse("2001:db8::/64").unwrap())
+}
+
+fn notice(name: &str, load: u32) -> HostNotice {
+    HostNotice {
+        name: name.to_owned(),
+        version: "0.1.0".to_owned(),
+        address: format!("{name}.example.org:2222"),
+        load,
+    }
+}
+
+fn announce(presence: &mut dyn TimedPresence, hosts: &[&str]) {
+    for host in hosts {
+        presence.announce(&notice(host, 0)).unwrap();
+    }
+}
+
+/// A visit that is let in.
+fn begin(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> VisitId {
+    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
+        VisitBegin::Begun(visit) => visit,
+        VisitBegin::TooMany(ago) => panic!("too many on hosts that were there {ago:?} ago"),
+    }
+}
+
+/// How fresh a refusal is.
+fn refused(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> Duration {
+    match presence.begin_visit(host, visitor, most, LONG).unwrap() {
+        VisitBegin::TooMany(ago) => ago,
+        VisitBegin::Begun(visit) => panic!("{visit:?} has begun"),
+    }
+}
+
+#[test]
+fn the_visits_of_somebody_are_limited_over_all_hosts() {
+    with_each(|presence| {
+        announce(presence, &["one", "other", "third"]);
+        let first = begin(presence, "one", &ada(), 2);
+        let second = begin(presence, "other", &ada(), 2);
+        assert_ne!(first, second);
+        for host in ["one", "other", "third"] {
+            refused(presence, host, &ada(), 2);
+        }
+        let third = begin(presence, "one", &network(), 1);
+        let visits = presence.visits(LONG).unwrap();
+        let shown: Vec<_> = visits.iter().map(|it| (it.id, it.host.as_str(), it.visitor)).collect();
+        let expected = [(first, "one", ada()), (second, "other", ada()), (third, "one", network())];
+        assert_eq!(shown, expected);
+        assert!(visits.iter().all(|visit| visit.since < LONG));
+        presence.end_visit(first).unwrap();
+        begin(presence, "third", &ada(), 2);
+        assert_eq!(refused(presence, "third", &ada(), 0), Duration::ZERO);
+        // A host that has ended has nobody, and is not there.
+        presence.leave("one").unwrap();
+        assert_eq!(presence.visits(LONG).unwrap().len(), 2);
+        assert_eq!(presence.hosts(LONG).unwrap().len(), 2);
+    });
+}
+
+#[test]
+fn visits_count_while_their_host_is_there() {
+    with_each(|presence| {
+        announce(presence, &["one", "killed"]);
+        begin(presence, "one", &ada(), 1);
+        begin(presence, "killed", &network(), 1);
+        presence.wait(SHORT * 2);
+        announce(presence, &["one", "other"]);
+        assert!(refused(presence, "other", &ada(), 1) < SHORT);
+        // It may have been killed: of its visits is said how old their host's last word is.
+        assert!(refused(presence, "other", &network(), 1) >= SHORT * 2);
+        assert_eq!(presence.visits(SHORT).unwrap().len(), 1);
+        let begun = presence.begin_visit("other", &network(), 1, SHORT).unwrap();
+        assert!(matches!(begun, VisitBegin::Begun(_)), "{begun:?}");
+        // A host that was late has its visitors none the less.
+        announce(presence, &["killed"]);
+        assert_eq!(presence.visits(SHORT).unwrap().len(), 3);
+        refused(presence, "other", &network(), 2);
+    });
+}
+
+#[test]
+fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
+    with_each(|presence| {
+        announce(presence, &["old", "one", "other"]);
+        for host in ["old", "one", "other"] {
+            begin(presence, host, &ada(), 3);
+        }
+        presence.wait(SHORT * 2);
+        announce(presence, &["one", "other"]);
+        assert!(refused(presence, "one", &ada(), 3) >= SHORT * 2);
+        assert!(refused(presence, "one", &ada(), 2) < SHORT);
+    });
+}
+
+#[test]
+fn a_host_is_there_while_it_announces_itself() {
+    with_each(|presence| {
+        presence.announce(&notice("one", 1)).unwrap();
+        presence.announce(&notice("other", 2)).unwrap();
+        presence.wait(SHORT * 2);
+        presence.announce(&notice("one", 3)).unwrap();
+        let told = |presence: &mut dyn TimedPresence, time| -> Vec<HostNotice> {
+            presence.hosts(time).unwrap().into_iter().map(|row| row.notice).collect()
+        };
+        assert_eq!(told(presence, LONG), [notice("one", 3), notice("other", 2)]);
+        assert_eq!(told(presence, SHORT), [notice("one", 3)]);
+        let rows = presence.hosts(LONG).unwrap();
+        assert!(rows[0].ago < rows[1].ago && rows[1].ago >= SHORT * 2, "{rows:?}");
+    });
+}
+
+#[test]
+fn a_visitor_is_read_as_it_is_written() {
+    for visitor in [ada(), network()] {
+        assert_eq!(Visitor::parse(&visitor.to_string()), Some(visitor));
+    }
+    assert_eq!(Visitor::parse("ada"), None);
+}
+
+#[cfg(all(unix, feature = "system-tests"))]
+#[test]
+fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
+    let address = postgres_server::PostgresServer::shared().address();
+    let hosts = ["a", "b", "c", "d", "e", "f"];
+    announce(&mut PostgresStore::open(&address).unwrap(), &hosts);
+    let barrier = std::sync::Barrier::new(hosts.len());
+    let begun: Vec<VisitBegin> = std::thread::scope(|scope| {
+        let threads: Vec<_> = hosts
+            .into_iter()
+            .map(|host| {
+                let (barrier, address) = (&barrier, &address);
+                scope.spawn(move || {
+                    let mut store = PostgresStore::open(address).unwrap();
+                    barrier.wait();
+                    let mut begin = || store.begin_visit(host, &ada(), 7, LONG).unwrap();
+                    [begin(), begin(), begin()]
+                })
+            })
+            .collect();
+        threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+    });
+    let begun = begun.iter().filter(|it| matches!(it, VisitBegin::Begun(_))).count();
+    assert_eq!(begun, 7);
+    assert_eq!(PostgresStore::open(&address).unwrap().visits(LONG).unwrap().len(), 7);
+}

@@ -1,0 +1,172 @@
+//! Results that wait for a store that is away.
+
+use super::*;
+
+const WON: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
+
+/// A store that is away, or that refuses all changes.
+struct Failing<'a>(&'a mut MemoryStore, Option<StoreFailure>);
+
+impl Failing<'_> {
+    fn fault(&self) -> Result<(), StoreFailure> {
+        self.1.clone().map_or(Ok(()), Err)
+    }
+}
+
+/// Methods that fail while the store does, and then do the same as those of the store in memory.
+macro_rules! failing {
+    ($($name:ident($($argument:ident: $type:ty),*) -> $value:ty;)*) => {
+        impl HostStore for Failing<'_> {
+            $(fn $name(&mut self, $($argument: $type),*) -> $value {
+                self.fault()?;
+                self.0.$name($($argument),*)
+            })*
+        }
+    };
+}
+
+failing! {
+    account(key: &AccountKey) -> Result<Option<Account>, StoreFailure>;
+    account_named(name: &Name) -> Result<Option<Account>, StoreFailure>;
+    create_account_from(origin: Option<&Origin>, key: &AccountKey, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
+    rename(account: AccountId, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
+    note_visit(account: AccountId, now: UnixTime) -> Result<(), StoreFailure>;
+    settings(account: AccountId) -> Result<AccountSettings, StoreFailure>;
+    set_settings(account: AccountId, settings: &AccountSettings) -> Result<(), StoreFailure>;
+    ban(ban: &Ban) -> Result<(), StoreFailure>;
+    unban(target: &BanTarget) -> Result<bool, StoreFailure>;
+    bans(now: UnixTime) -> Result<Vec<Ban>, StoreFailure>;
+    record(account: AccountId, run: &VerifiedLevel, now: UnixTime) -> Result<Improved, StoreFailure>;
+    begin_daily(account: AccountId, day: Day, now: UnixTime) -> Result<Option<DailyTry>, StoreFailure>;
+    record_daily(daily: &DailyTry, run: &VerifiedDescent, now: UnixTime) -> Result<bool, StoreFailure>;
+    bests(account: AccountId) -> Result<Vec<(LevelBoard, Best)>, StoreFailure>;
+    level_boards() -> Result<Vec<LevelBoard>, StoreFailure>;
+    level_scores(board: &LevelBoard, most: usize) -> Result<Vec<LevelScore>, StoreFailure>;
+    daily_scores(day: Day, most: usize) -> Result<Vec<DailyScore>, StoreFailure>;
+    script(account: AccountId, board: &LevelBoard) -> Result<Option<String>, StoreFailure>;
+}
+
+fn waiting(folder: &Folder) -> WaitingResults {
+    fs::create_dir_all(&folder.0).unwrap();
+    let (waiting, sentence) = WaitingResults::open(&folder.0).unwrap();
+    assert_eq!(sentence, None);
+    waiting
+}
+
+fn result(number: u8, day: u64, script: &str) -> WaitingResult {
+    WaitingResult { key: key(number), at: at(day), script: script.to_owned() }
+}
+
+fn cellar(store: &mut MemoryStore) -> Vec<LevelScore> {
+    store.level_scores(&LevelBoard::new("cellar", Difficulty::Normal).unwrap(), 9).unwrap()
+}
+
+#[test]
+fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
+    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    for (number, text) in [(1, "Ada"), (2, "Bob")] {
+        store.create_account(&key(number), &name(text), at(0)).unwrap();
+    }
+    let mut before = waiting(&folder);
+    before.add(result(2, 3, WON)).unwrap();
+    before.add(result(1, 4, WON)).unwrap();
+    before.save().unwrap();
+    drop(before);
+
+    let mut after = waiting(&folder);
+    assert_eq!(after.len(), 2);
+    let mut away = Failing(&mut store, Some(StoreFailure::away("gone")));
+    assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
+    assert_eq!(after.len(), 2);
+    for text in ["Bob", "Ada"] {
+        let late = after.record(0, &mut store, |_| None, at(5));
+        assert!(matches!(late, Some(Late::Recorded(account, _)) if account.name == name(text)));
+    }
+    assert!(after.record(0, &mut store, |_| None, at(5)).is_none());
+    let scores = cellar(&mut store);
+    assert_eq!(scores.iter().map(|it| it.verified_at).collect::<Vec<_>>(), [at(3), at(4)]);
+
+    // The host is killed before it saves: all are recorded again, and nothing changes.
+    let mut again = waiting(&folder);
+    assert_eq!(again.len(), 2);
+    while again.record(0, &mut store, |_| None, at(9)).is_some() {}
+    assert_eq!(cellar(&mut store), scores);
+    again.save().unwrap();
+    assert!(waiting(&folder).is_empty());
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0);
+}
+
+#[test]
+fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() {
+    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let mut waiting = waiting(&folder);
+    waiting.add(result(7, 0, WON)).unwrap();
+    waiting.add(result(1, 0, "level cellar\n2 s forward\n")).unwrap();
+    waiting.add(result(1, 0, WON)).unwrap();
+    let nobody = waiting.record(0, &mut store, |_| None, at(6));
+    assert!(matches!(nobody, Some(Late::Refused(_))), "{nobody:?}");
+    let refuted = waiting.record(1, &mut store, |_| None, at(6));
+    assert!(matches!(refuted, Some(Late::Refuted(_, Unverified::NotWon))), "{refuted:?}");
+    // It does not hold those behind it.
+    let recorded = waiting.record(1, &mut store, |_| None, at(6));
+    assert!(matches!(recorded, Some(Late::Recorded(..))), "{recorded:?}");
+    let mut full = Failing(&mut store, Some(StoreFailure::new("the disk is full")));
+    assert!(matches!(waiting.record(0, &mut full, |_| None, at(6)), Some(Late::Refused(_))));
+    assert!(matches!(waiting.record(0, &mut store, |_| None, at(8)), Some(Late::GivenUp(..))));
+    assert!(waiting.is_empty());
+}
+
+#[test]
+fn the_file_is_bounded_and_what_cannot_be_read_is_put_aside() {
+    let folder = Folder::new();
+    let mut waiting = waiting(&folder);
+    let long = "#".repeat(6 << 20);
+    waiting.add(result(1, 0, &long)).unwrap();
+    waiting.add(result(1, 1, &long)).unwrap();
+    assert!(waiting.add(result(1, 2, &long)).is_err());
+    assert_eq!(waiting.len(), 2);
+    waiting.save().unwrap();
+
+    let file = folder.0.join("waiting_results");
+    let mut content = fs::read(&file).unwrap();
+    content.truncate(content.len() - 9);
+    fs::write(&file, &content).unwrap();
+    let (waiting, sentence) = WaitingResults::open(&folder.0).unwrap();
+    assert!(sentence.unwrap().contains("waiting_results.damaged"));
+    assert_eq!(waiting.len(), 1);
+    assert_eq!(fs::read(folder.0.join("waiting_results.damaged")).unwrap(), content);
+    assert_eq!(WaitingResults::open(&folder.0).unwrap().1, None);
+}
+
+#[cfg(unix)]
+#[test]
+fn nobody_else_reads_the_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    let mut waiting = waiting(&folder);
+    waiting.add(result(1, 0, WON)).unwrap();
+    waiting.save().unwrap();
+    let mode = fs::metadata(folder.0.join("waiting_results")).unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
+}
+
+#[test]
+fn what_cannot_be_written_waits_in_memory_until_it_can() {
+    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let mut results = waiting(&folder);
+    fs::remove_dir_all(&folder.0).unwrap();
+    results.add(result(1, 1, WON)).unwrap();
+    assert!(results.save().is_err());
+    assert_eq!(results.len(), 1);
+    // A store that is full takes nothing, however long it lasts.
+    let mut full = Failing(&mut store, Some(StoreFailure::full("no room")));
+    assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
+    fs::create_dir_all(&folder.0).unwrap();
+    results.save().unwrap();
+    assert_eq!(waiting(&folder).len(), 1);
+    assert!(matches!(results.record(0, &mut store, |_| None, at(99)), Some(Late::Recorded(..))));
+    assert_eq!(cellar(&mut store)[0].verified_at, at(1));
+}

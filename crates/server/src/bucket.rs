@@ -1,0 +1,61 @@
+//! A token bucket: how many of something may come, at once and in the long run.
+
+use std::time::Duration;
+
+/// A token bucket, which is full at first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bucket {
+    per_second: f64,
+    most: f64,
+    tokens: f64,
+    filled: Duration,
+}
+
+impl Bucket {
+    /// `most` tokens may be taken at once, and `per_second` in the long run.
+    pub(crate) fn new(per_second: f64, most: f64, now: Duration) -> Self {
+        Self { per_second, most, tokens: most, filled: now }
+    }
+
+    /// The tokens at `now`.
+    pub(crate) fn fill(&mut self, now: Duration) -> f64 {
+        let added = now.saturating_sub(self.filled).as_secs_f64() * self.per_second;
+        self.tokens = (self.tokens + added).min(self.most);
+        self.filled = now;
+        self.tokens
+    }
+
+    /// The time until there are so many tokens, if nobody takes any; zero if there are.
+    pub(crate) fn time_until(&self, tokens: f64) -> Duration {
+        Duration::from_secs_f64((tokens - self.tokens).max(0.0) / self.per_second)
+    }
+
+    /// Takes tokens, of which some may be missing.
+    pub(crate) fn take(&mut self, tokens: f64) {
+        self.tokens -= tokens;
+    }
+
+    /// Takes a token, unless none is left.
+    pub(crate) fn takes_one(&mut self, now: Duration) -> bool {
+        let takes = self.fill(now) >= 1.0;
+        if takes {
+            self.take(1.0);
+        }
+        takes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_as_the_burst_come_at_once_and_then_as_many_as_the_rate_allows() {
+        let mut bucket = Bucket::new(200.0, 300.0, Duration::ZERO);
+        let mut taken = |milliseconds| {
+            let now = Duration::from_millis(milliseconds);
+            (0..1000).filter(|_| bucket.takes_one(now)).count()
+        };
+        assert_eq!([1000, 1000, 1500, 1501, 60_000].map(&mut taken), [300, 0, 100, 0, 300]);
+    }
+}

@@ -1,0 +1,352 @@
+//! The arguments of the server's commands.
+
+use std::env;
+use std::fmt;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use cellcaster::cli::parse::Takes;
+use cellcaster::world::Difficulty;
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+
+use super::database::Database;
+use crate::accounts::{AccountKey, AddressPrefix, Day};
+use crate::ops::admin::Target;
+use crate::ops::logging::LogFormat;
+use crate::sessions::visitors::SessionId;
+
+/// An SSH server in which people play Cellcaster together
+///
+/// Prints the line that people type to play. The host key and the server's data are in the data folder; the key is made
+/// at the first start. SIGTERM and Ctrl-C end the server after its visitors had time for their end; a second one ends it
+/// at once. SIGHUP reads the configuration again. The log goes to standard error.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cellcaster-server",
+    version,
+    args_conflicts_with_subcommands = true,
+    args_override_self = true,
+    max_term_width = 80,
+    after_help = "Examples:\n  cellcaster-server\n  cellcaster-server --listen 0.0.0.0:2222 --data /var/lib/cellcaster --maps maps\n  cellcaster-server admin who"
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) serve: Serve,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    #[cfg(unix)]
+    Admin(Admin),
+    Scores(Scores),
+    Replay(Replay),
+}
+
+/// The options of the server itself.
+#[derive(Args, Debug)]
+pub(crate) struct Serve {
+    /// Where to listen; port 0 for a free one [default: 127.0.0.1:2222]
+    #[arg(long, value_name = "ADDRESS:PORT", value_parser = address)]
+    pub(crate) listen: Option<SocketAddr>,
+    /// The folder for data [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) store: Store,
+    /// Start although host.db is damaged: keep the file aside, and go on with what can be read of it, which may be nothing
+    #[arg(long)]
+    pub(crate) accept_empty: bool,
+    /// The NATS servers over which this host shares its rooms with others; the store must be a PostgreSQL database
+    /// [default: $`CELLCASTER_CLUSTER`, or none]
+    #[arg(long, value_name = "URL", value_parser = ClusterAddress::parse)]
+    cluster: Option<ClusterAddress>,
+    /// The configuration [default: cellcaster/serve.toml in the folder for configuration files]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) config: Option<PathBuf>,
+    /// A folder of the host's own maps, beside the built-in levels [default: the configuration's]
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) maps: Option<PathBuf>,
+    /// How the log is written
+    #[arg(long, value_name = "FORMAT", default_value = "text", value_parser = log_format)]
+    pub(crate) log: LogFormat,
+    /// A folder for the log of each room. It keeps 256 MiB and 30 days at most: the oldest recordings are removed first
+    /// [default: nothing is recorded]
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) record_room: Option<PathBuf>,
+}
+
+impl Serve {
+    /// The address of the cluster, named by the option or the environment.
+    pub(crate) fn cluster(&self) -> Option<String> {
+        let named = self.cluster.as_ref().map(|address| address.0.clone());
+        // The environment keeps a password out of the list of processes.
+        named.or_else(|| env::var("CELLCASTER_CLUSTER").ok().filter(|text| !text.is_empty()))
+    }
+}
+
+/// The option of all commands that need the store of a host.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Store {
+    /// Where accounts, bans and results are: a folder, or a PostgreSQL database that several hosts share
+    /// [default: $`CELLCASTER_STORE`, or the folder for data]
+    #[arg(long, value_name = "URL|FOLDER", value_parser = Database::parse)]
+    pub(crate) store: Option<Database>,
+}
+
+/// See who plays on a host, kick, ban, and say something to all
+///
+/// The actions ban, unban and bans work without a server, too: bans are in its store. A player is a name, --key or
+/// --address; a banned name is banned with the key of its account. In a cluster, who, say, kick and ban are of all hosts;
+/// hosts lists them, and drain ends the one whose data folder is given.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Examples:\n  cellcaster-server admin who\n  cellcaster-server admin kick ada --reason \"let others play\"\n  cellcaster-server admin ban --address 203.0.113.0/24 --for 7d"
+)]
+pub(crate) struct Admin {
+    /// The data folder of the host [default: cellcaster in the folder for data, or $`CELLCASTER_DATA`]
+    #[arg(long, global = true, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) data: Option<PathBuf>,
+    /// Where the host's store is: a folder, or a PostgreSQL database [default: $`CELLCASTER_STORE`, or the folder for data]
+    #[arg(long, global = true, value_name = "URL|FOLDER", value_parser = Database::parse)]
+    pub(crate) store: Option<Database>,
+    #[command(subcommand)]
+    pub(crate) action: AdminAction,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum AdminAction {
+    /// List who is on
+    Who,
+    /// List the open rooms
+    Rooms,
+    /// List the hosts of the cluster
+    Hosts,
+    /// End the sessions of a player, or one session
+    Kick {
+        #[command(flatten)]
+        player: Player,
+        /// One session, as \"cellcaster-server admin who\" lists it
+        #[arg(long, value_name = "ID", value_parser = session, group = "target")]
+        session: Option<SessionId>,
+        /// Why, for the player to read
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        reason: String,
+    },
+    /// Ban a player
+    Ban {
+        #[command(flatten)]
+        player: Player,
+        /// How long, such as 30m or 7d [default: for ever]
+        #[arg(long = "for", value_name = "TIME", value_parser = time)]
+        time: Option<Duration>,
+        /// Why, for the player to read
+        #[arg(long, value_name = "TEXT", default_value = "")]
+        reason: String,
+    },
+    /// End a ban
+    Unban {
+        #[command(flatten)]
+        player: Player,
+    },
+    /// List the bans in force
+    Bans,
+    /// Show a line to everybody
+    Say {
+        /// The line
+        text: String,
+    },
+    /// End the server, as SIGTERM does
+    Drain,
+}
+
+/// The player whom an action concerns, named in one of three ways.
+#[derive(Args, Debug)]
+#[group(id = "target", required = true, multiple = false)]
+pub(crate) struct Player {
+    /// The player's name
+    name: Option<String>,
+    /// The player's public key, as ssh-keygen -l prints its fingerprint
+    #[arg(long, value_name = "FINGERPRINT", value_parser = key)]
+    key: Option<AccountKey>,
+    /// All players with this address, or with an address in this range
+    #[arg(long, value_name = "RANGE", value_parser = range)]
+    address: Option<AddressPrefix>,
+}
+
+impl Player {
+    /// The target, which `session` names if nothing else does.
+    pub(crate) fn target(self, session: Option<SessionId>) -> Target {
+        let Self { name, key, address } = self;
+        name.map(Target::Name)
+            .or(key.map(|key| Target::Key(key.to_string())))
+            .or(address.map(|range| Target::Address(range.to_string())))
+            .or(session.map(|session| Target::Session(session.to_string())))
+            .unwrap_or_else(|| Target::Name(String::new()))
+    }
+}
+
+/// List the leaderboards of a host
+///
+/// For each level and difficulty it lists the fastest run of each account, with the highest rank of all its runs; for a
+/// day, how far the daily runs came. It reads the store of the server, also while that runs.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --day 2026-11-22 --format json"
+)]
+pub(crate) struct Scores {
+    /// The folder of the store [default: the folder for data files, or $`CELLCASTER_DATA`]
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) store: Store,
+    /// List this level only: a built-in one, or a map of the host
+    #[arg(long, value_name = "NAME", value_parser = level)]
+    pub(crate) level: Option<String>,
+    /// List this difficulty only: easy, normal or hard
+    #[arg(long, value_name = "LEVEL", value_parser = difficulty)]
+    pub(crate) difficulty: Option<Difficulty>,
+    /// List the daily runs of this day
+    #[arg(long, value_name = "DATE", value_parser = day, conflicts_with_all = ["level", "difficulty"])]
+    pub(crate) day: Option<Day>,
+    /// How the boards are written
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ScoresFormat,
+}
+
+/// The format of the boards.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub(crate) enum ScoresFormat {
+    #[default]
+    Table,
+    Json,
+}
+
+/// Play the recording of a room again, and say how its rounds ended
+#[derive(Args, Debug)]
+pub(crate) struct Replay {
+    /// The recording, as --record-room wrote it
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// A map file or a folder of maps, for rounds in maps of the host
+    #[arg(value_hint = ValueHint::AnyPath)]
+    pub(crate) maps: Option<PathBuf>,
+}
+
+/// The address of a cluster, which may have a password.
+#[derive(Clone)]
+struct ClusterAddress(String);
+
+impl ClusterAddress {
+    fn parse(text: &str) -> Result<Self, Takes> {
+        let is_address = |text: &str| {
+            let rest = ["nats://", "tls://"].iter().find_map(|kind| text.strip_prefix(kind));
+            rest.is_some_and(|rest| !rest.is_empty())
+        };
+        let takes =
+            "an address of NATS such as nats://host:4222, or several with commas between them";
+        text.split(',').all(is_address).then(|| Self(text.to_owned())).ok_or(Takes(takes))
+    }
+}
+
+impl fmt::Debug for ClusterAddress {
+    /// Without the password.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ClusterAddress").finish_non_exhaustive()
+    }
+}
+
+fn address(text: &str) -> Result<SocketAddr, Takes> {
+    text.parse().map_err(|_| Takes("an address and a port, such as 0.0.0.0:2222 or [::]:2222"))
+}
+
+fn log_format(text: &str) -> Result<LogFormat, Takes> {
+    match text {
+        "text" => Ok(LogFormat::Text),
+        "json" => Ok(LogFormat::Json),
+        _ => Err(Takes("text or json")),
+    }
+}
+
+fn key(text: &str) -> Result<AccountKey, Takes> {
+    AccountKey::parse(text)
+        .ok_or(Takes("a fingerprint as ssh-keygen -l prints it, such as SHA256:..."))
+}
+
+fn range(text: &str) -> Result<AddressPrefix, Takes> {
+    AddressPrefix::parse(text)
+        .ok_or(Takes("an address, or a range such as 203.0.113.0/24 or 2001:db8::/64"))
+}
+
+fn session(text: &str) -> Result<SessionId, Takes> {
+    SessionId::parse(text)
+        .ok_or(Takes("a session as \"cellcaster-server admin who\" lists it, such as 3f9a-7"))
+}
+
+fn level(text: &str) -> Result<String, Takes> {
+    let is_plain =
+        |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte);
+    let is_name = !text.is_empty() && text.bytes().all(is_plain);
+    is_name
+        .then(|| text.to_owned())
+        .ok_or(Takes("the name of a built-in level, or of a map of the host without .toml"))
+}
+
+fn difficulty(text: &str) -> Result<Difficulty, Takes> {
+    Difficulty::named(text).ok_or(Takes("easy, normal or hard"))
+}
+
+fn day(text: &str) -> Result<Day, Takes> {
+    Day::parse(text).ok_or(Takes("a date such as 2026-11-22"))
+}
+
+/// The time of a text such as `7d`, up to a hundred years.
+fn time(text: &str) -> Result<Duration, Takes> {
+    const LONGEST: u64 = 100 * 365 * 24 * 60 * 60;
+    let seconds = || {
+        let unit = text.chars().last()?;
+        let seconds = match unit {
+            'm' => 60,
+            'h' => 60 * 60,
+            'd' => 24 * 60 * 60,
+            'w' => 7 * 24 * 60 * 60,
+            _ => return None,
+        };
+        let number = text.strip_suffix(unit)?;
+        let is_number = number.bytes().all(|byte| byte.is_ascii_digit());
+        let seconds = number.parse::<u64>().ok().filter(|_| is_number)?.checked_mul(seconds)?;
+        (1..=LONGEST).contains(&seconds).then(|| Duration::from_secs(seconds))
+    };
+    seconds().ok_or(Takes("a number with m, h, d or w, such as 30m or 7d"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_is_a_number_with_a_unit() {
+        for (text, minutes) in
+            [("30m", 30), ("1h", 60), ("7d", 7 * 24 * 60), ("2w", 2 * 7 * 24 * 60)]
+        {
+            assert_eq!(time(text).ok(), Some(Duration::from_secs(minutes * 60)), "{text}");
+        }
+        for text in [
+            "",
+            "7",
+            "d",
+            "0d",
+            "-1d",
+            "+1d",
+            "1.5h",
+            "7 d",
+            "7ä",
+            "99999999999999999999d",
+            "36501d",
+        ] {
+            assert!(time(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! `cellcaster-server replay`: a recorded room is played again, and its rounds are told.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Write as _};
+
+use cellcaster::app::parts::of_steps;
+use cellcaster::cli::Error;
+
+use super::arguments::Replay;
+use crate::rooms::maps::HostMaps;
+use crate::rooms::recorded::{MOST_RECORDED_BYTES, is_room_recording, replay_room};
+
+/// Writes a line for each round of the recording, and its standings.
+///
+/// # Errors
+/// If the file is no recording of a room, or is damaged or too long.
+pub(crate) fn run(options: &Replay) -> Result<(), Error> {
+    let path = options.file.display().to_string().replace(char::is_control, "?");
+    let cannot = |reason: &dyn std::fmt::Display| {
+        Error::mistake(format!("{path} cannot be replayed: {reason}"))
+    };
+    let length = fs::metadata(&options.file).map_err(|error| cannot(&error))?;
+    if !length.is_file() || length.len() > MOST_RECORDED_BYTES {
+        return Err(cannot(&format!("it is no file of at most {MOST_RECORDED_BYTES} bytes")));
+    }
+    let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
+    if !is_room_recording(&text) {
+        return Err(cannot(&"it is no recording of a room"));
+    }
+    let maps = options.maps.as_deref().map(HostMaps::read).transpose();
+    let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
+    let rounds = replay_room(&text, &maps).map_err(|fault| cannot(&fault))?;
+    let mut lines = String::new();
+    for round in rounds {
+        // Memory accepts every byte.
+        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, of_steps(round.steps));
+        for (name, points) in round.standings {
+            _ = writeln!(lines, "  {name}  {points}");
+        }
+        _ = writeln!(lines, "  state {:016x}", round.checksum);
+    }
+    io::stdout().write_all(lines.as_bytes()).map_err(|error| Error::of_output(&error))
+}

@@ -1,0 +1,190 @@
+//! `cellcaster-server`: the SSH server.
+
+mod cluster;
+mod configuration;
+mod signals;
+
+use std::io::{self, Write};
+use std::net::{IpAddr, SocketAddr};
+use std::path::Path;
+use std::sync::Arc;
+
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+use tokio::task::JoinSet;
+
+use super::arguments::Serve;
+use super::database::Database;
+use crate::accounts::{HostStore, StoreFailure, WaitingResults};
+use crate::cli::host_store::{self, failed};
+#[cfg(unix)]
+use crate::ops::admin::AdminSocket;
+use crate::ops::config::Config;
+use crate::ops::logging::{LogFormat, Logging, events};
+use crate::ops::metrics::{Metrics, respond};
+use crate::sessions::driver::{GameHost, HostParts};
+use crate::sessions::visitors::Visitors;
+use crate::ssh::Server;
+use crate::ssh::host_key::HostKey;
+use cellcaster::cli::Error;
+use cellcaster::cli::data_folder::data_folder;
+use configuration::Configuration;
+use signals::{Hangups, Signals};
+
+/// Serves until a signal ends it.
+pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
+    let (configuration, config) = Configuration::begin(&options)?;
+    let folder = options.data.take().or_else(data_folder).ok_or_else(|| {
+        Error::mistake(
+            "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
+        )
+    })?;
+    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
+    let database = host_store::named(options.store.store.take());
+    let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
+    let cluster = cluster::pending(&options, &database)?;
+    let store = open_store(&database, options.accept_empty)?;
+    let waiting = waiting(&folder)?;
+    let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
+    let parts =
+        Parts { config, key, folder: &folder, format: options.log, store, waiting, cluster };
+    let ended = runtime.block_on(serve(configuration, parts));
+    // After a second signal, nothing is waited for.
+    runtime.shutdown_background();
+    ended
+}
+
+/// What a server is made of.
+struct Parts<'a> {
+    config: Config,
+    key: HostKey,
+    /// For data.
+    folder: &'a Path,
+    format: LogFormat,
+    store: Box<dyn HostStore>,
+    waiting: WaitingResults,
+    /// In a cluster.
+    cluster: Option<cluster::PendingCluster>,
+}
+
+async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
+    let Parts { config, key, folder, format, store, waiting, cluster } = parts;
+    let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+    let signals = Signals::catch().map_err(no_signals)?;
+    let hangups = Hangups::catch().map_err(no_signals)?;
+    let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
+    let cannot = |error| cannot_listen(wanted, &error);
+    let metrics_listener = match config.metrics {
+        Some(address) => {
+            Some(TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?)
+        }
+        None => None,
+    };
+    #[cfg(unix)]
+    let admin = bind_admin(folder)?;
+    let server = Server::bind(config, key).await.map_err(cannot)?;
+    let address = server.address().map_err(cannot)?;
+    let logging = Logging::begin(format, &filter);
+    events::listening(address, &fingerprint);
+
+    let metrics = Arc::new(Metrics::default());
+    let host = HostParts::new(server.config(), Arc::clone(&metrics), Visitors::default(), store);
+    let host = host.map_err(|error| no_thread(&error))?;
+    let mut host = host.with_maps(configuration.maps()).with_waiting(waiting);
+    if let Some(cluster) = cluster {
+        host = cluster.join(host, address).await?;
+    }
+    let host = GameHost::start(host);
+    // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
+    let text = invitation(address, &fingerprint);
+    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
+    let mut services = JoinSet::new();
+    if let Some(listener) = metrics_listener {
+        events::metrics_listening(listener.local_addr().map_err(cannot)?);
+        let counters = server.counters();
+        services.spawn(respond(listener, move || metrics.text(&counters)));
+    }
+    let operator = host.operator(signals.drain());
+    services.spawn(operator.clone().answer_others());
+    #[cfg(unix)]
+    if let Some(admin) = admin {
+        services.spawn(admin.serve(operator));
+    }
+    services.spawn(configuration.follow(hangups, server.config(), logging));
+    let ending = host.ending();
+    tokio::select! {
+        () = server.run(host, signals.first()) => ending.await,
+        () = signals.second() => {}
+    }
+    // Else the process might end before the socket is removed.
+    services.shutdown().await;
+    events::ended();
+    Ok(())
+}
+
+/// The store. A damaged one is an error unless the operator accepts that it may be empty.
+fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostStore>, Error> {
+    let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
+    if !accepts_empty {
+        return host_store::open(database).map_err(refused);
+    }
+    let (store, damage) = host_store::open_or_salvage(database).map_err(refused)?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    Ok(store)
+}
+
+/// The results that wait in the folder for data.
+fn waiting(folder: &Path) -> Result<WaitingResults, Error> {
+    let (waiting, damage) = WaitingResults::open(folder).map_err(failed)?;
+    if let Some(sentence) = damage {
+        Error::machine(sentence).warn();
+    }
+    Ok(waiting)
+}
+
+/// The socket for `cellcaster-server admin`. Without one the server runs, too, as in a folder with a name
+/// that is too long for a socket.
+#[cfg(unix)]
+fn bind_admin(folder: &Path) -> Result<Option<AdminSocket>, Error> {
+    match AdminSocket::bind(folder) {
+        Ok(socket) => Ok(Some(socket)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            let folder = folder.display().to_string().replace(char::is_control, "?");
+            Err(Error::mistake(format!("another server runs with the data in {folder}")))
+        }
+        Err(error) => {
+            Error::machine(format!("\"cellcaster-server admin\" can't reach this server: {error}"))
+                .warn();
+            Ok(None)
+        }
+    }
+}
+
+fn no_thread(error: &io::Error) -> Error {
+    Error::machine(format!("no thread can be started: {error}"))
+}
+
+fn cannot_listen(address: SocketAddr, error: &io::Error) -> Error {
+    Error::mistake(format!("{address} can't be used: {error}"))
+}
+
+/// What people type to play.
+fn invitation(address: SocketAddr, fingerprint: &str) -> String {
+    let host = match address.ip() {
+        ip if ip.is_unspecified() => "HOST".to_owned(),
+        IpAddr::V4(ip) => ip.to_string(),
+        IpAddr::V6(ip) => ip.to_string(),
+    };
+    let port = match address.port() {
+        22 => String::new(),
+        port => format!("-p {port} "),
+    };
+    format!(
+        "Listening at {address}; the host key is {fingerprint}.\n\
+         To play, type:         ssh {port}{host}\n\
+         Over a slow link:      ssh -C {port}{host}\n\
+         As a guest with a key: ssh {port}guest@{host}\n"
+    )
+}

@@ -1,0 +1,100 @@
+//! The message bus of a cluster: logs, values by key, and broadcasts.
+//!
+//! # Rules
+//!
+//! - **A room has a log.** A message is appended only if the writer names the number of the newest message
+//!   (compare and append). So a sequencer that was replaced cannot write, however late it notices.
+//! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
+//! - **A request reaches all hosts that are there**, or some of them; each answers for itself.
+//! - **A value has a key and a revision.** A host replaces only the revision that it has seen last.
+//!
+//! `JetStream` consumers for each room and host were refused: they are state in the server, and notice a loss after
+//! seconds. The sequencer broadcasts what it has appended instead, and a host reads the log only where a number is
+//! missing.
+
+use std::pin::Pin;
+
+use tokio::sync::{mpsc, oneshot};
+
+use crate::accounts::AccountKey;
+use crate::rooms::summary::RoomId;
+
+/// What the hosts of a cluster share.
+pub(crate) trait Bus: Send + Sync {
+    /// Appends a message to the log of a room, whose last message is number `last`, 0 for none; returns its
+    /// number.
+    fn append(&self, room: RoomId, last: u64, message: Vec<u8>) -> Answer<'_, u64>;
+
+    /// The first message of a room's log after number `after`, with its number.
+    fn read(&self, room: RoomId, after: u64) -> Answer<'_, Option<(u64, Vec<u8>)>>;
+
+    /// Drops the messages of a room's log before number `first`.
+    fn drop_before(&self, room: RoomId, first: u64) -> Answer<'_, ()>;
+
+    /// Drops the log of a room.
+    fn drop_log(&self, room: RoomId) -> Answer<'_, ()>;
+
+    /// Sends a message to all hosts that have subscribed to the room.
+    fn broadcast(&self, room: RoomId, message: Vec<u8>) -> Answer<'_, ()>;
+
+    /// The broadcasts to a room from now on.
+    fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+
+    /// Asks all hosts, this one too; what they answer from now on.
+    fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
+
+    /// What is asked of all hosts from now on.
+    fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>>;
+
+    /// A number that was never returned before, on any host.
+    fn next_number(&self) -> Answer<'_, u32>;
+
+    /// Keeps a value in place of the one that this host has got or put last. If another host has put one
+    /// since, it is refused, and the next one is not.
+    fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
+
+    /// Keeps a value if there is none.
+    fn create(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
+
+    /// The value of a key.
+    fn get(&self, key: Key) -> Answer<'_, Option<Vec<u8>>>;
+
+    /// Removes the value of a key.
+    fn remove(&self, key: Key) -> Answer<'_, ()>;
+
+    /// The records of all rooms, then those that change: `None` for a room that is closed.
+    fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
+}
+
+/// What is asked of all hosts.
+#[derive(Debug)]
+pub(crate) struct HostRequest {
+    pub(crate) bytes: Vec<u8>,
+    /// Dropped, it answers nothing.
+    pub(crate) reply: oneshot::Sender<Vec<u8>>,
+}
+
+/// The answer of a bus, which comes in bounded time.
+pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
+
+/// Why a bus has not done something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BusFault {
+    /// The log goes on after the message that was named, or the key has a value. Nothing was kept.
+    Refused,
+    /// There is no answer. What was to be kept may be kept or not, even later.
+    Unknown,
+}
+
+/// The key of a value.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Key {
+    /// The record of a room.
+    Room(RoomId),
+    /// The newest checkpoint of a room.
+    Checkpoint(RoomId),
+    /// The number of a standing room.
+    Standing(String),
+    /// Where the player with a key is: the room and the member.
+    Place(AccountKey),
+}

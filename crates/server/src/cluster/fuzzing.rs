@@ -1,0 +1,164 @@
+//! A room of a cluster on one host without a bus, for a fuzz target.
+
+use std::sync::{Arc, LazyLock};
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::log_message::LogMessage;
+use super::peer_message::PeerMessage;
+use super::record::Record;
+use super::room_state::{Position, RoomState};
+use super::sequencer::ClusterSequencer;
+use crate::accounts::{Leases, MemoryLeases};
+use crate::rooms::room::{Catalog, Header, Mode};
+use cellcaster::world::Difficulty;
+
+/// Read once: it takes longer than most inputs.
+static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::builtin()));
+
+/// The time of a lease.
+const LEASE: Duration = Duration::from_secs(5);
+
+/// A room on a host, which may become its sequencer.
+pub struct SharedRoom {
+    state: RoomState,
+    sequencer: Option<ClusterSequencer>,
+    record: Record,
+    leases: MemoryLeases,
+    now: Instant,
+}
+
+impl SharedRoom {
+    /// A new room in the smallest level.
+    ///
+    /// # Panics
+    /// If the catalog has no such level.
+    pub fn new(seed: u64) -> Self {
+        let mode = Mode::ALL[seed as usize % Mode::ALL.len()];
+        let header = Header::new("cellar", mode, Difficulty::Normal, seed);
+        Self::of(Record::new(header, false)).expect("the level is built in")
+    }
+
+    /// The room of a record; `None` if the bytes are none, or of an unknown level.
+    pub fn of_record(bytes: &[u8]) -> Option<Self> {
+        Self::of(Record::parse(bytes)?)
+    }
+
+    fn of(record: Record) -> Option<Self> {
+        let state = RoomState::new(&CATALOG, record.header.clone())?;
+        Some(Self::with(state, record))
+    }
+
+    fn with(state: RoomState, record: Record) -> Self {
+        let (leases, now) = (MemoryLeases::default(), Instant::now());
+        Self { state, sequencer: None, record, leases, now }
+    }
+
+    /// The room of its own checkpoint, of which the first line is another one.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    ///
+    /// # Panics
+    /// If the restored room has a checkpoint that is refused.
+    pub fn restored(self, line: &[u8]) -> Result<Self, String> {
+        let bytes = self.state.checkpoint();
+        let end = bytes.iter().position(|&byte| byte == b'\n').expect("it has a first line");
+        let state = RoomState::restore(&CATALOG, &[line, &bytes[end..]].concat())?;
+        let again = RoomState::restore(&CATALOG, &state.checkpoint());
+        assert!(again.is_ok(), "a checkpoint of a restored room");
+        Ok(Self::with(state, self.record))
+    }
+
+    /// A message of the log, as it is.
+    pub fn read(&mut self, bytes: &[u8]) {
+        let Ok(message) = LogMessage::parse(bytes) else { return };
+        assert_eq!(LogMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        self.apply(self.state.number() + 1, &message);
+    }
+
+    /// A message of another sequencer with these entries, and the numbers that the room expects.
+    pub fn follow(&mut self, steps: u64, entries: &str) {
+        let text = LogMessage {
+            epoch: self.state.epoch(),
+            last: self.state.number(),
+            tick: self.state.tick(),
+            steps,
+            check: None,
+            entries: Vec::new(),
+        };
+        self.read(&[&text.to_bytes()[..], entries.as_bytes()].concat());
+    }
+
+    /// A broadcast.
+    pub fn hear(&mut self, bytes: &[u8]) {
+        let Ok(message) = PeerMessage::parse(bytes) else { return };
+        assert_eq!(PeerMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        let now = self.now;
+        let sequencer = self.sequencer.as_mut();
+        match message {
+            PeerMessage::Appended(number, message) => self.apply(number, &message),
+            PeerMessage::Commands(commands) => {
+                if let Some(sequencer) = sequencer {
+                    commands.into_iter().for_each(|(id, it)| sequencer.command(id, it, now));
+                }
+            }
+            PeerMessage::Claim(members) => {
+                sequencer.map(|it| it.claim(&members, now));
+            }
+            PeerMessage::Join(token, is_kept, name) => {
+                sequencer.map(|it| it.request_join(token, &name, is_kept, now));
+            }
+            PeerMessage::Return(token, member) => {
+                sequencer.map(|it| it.request_return(token, member, now));
+            }
+            PeerMessage::Joined(..)
+            | PeerMessage::Full(_)
+            | PeerMessage::Taken(_)
+            | PeerMessage::Released => {}
+        }
+    }
+
+    /// Has the host write a message of that many steps, as the sequencer.
+    ///
+    /// # Panics
+    /// If the message does not read as it was written.
+    pub fn lead(&mut self, steps: u64) {
+        self.now += Duration::from_millis(500);
+        if self.sequencer.is_none() {
+            self.leases.pass(LEASE);
+            let lease = self.leases.acquire("room", "host", LEASE, self.state.epoch());
+            let lease = lease.expect("it is in memory").expect("the last one is over");
+            self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
+        }
+        let Some(sequencer) = &mut self.sequencer else { return };
+        sequencer.set_unclaimed_away(self.now);
+        let message = sequencer.next(&self.state, steps);
+        assert_eq!(LogMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        let number = self.state.number() + 1;
+        self.state.apply(Some(number), &message);
+        for answer in sequencer.note(&message, &self.state, self.now) {
+            assert_eq!(PeerMessage::parse(&answer.to_bytes()), Ok(answer));
+        }
+    }
+
+    /// The record of the room now, which reads as it is written.
+    ///
+    /// # Panics
+    /// If it does not.
+    pub fn put(self) -> Self {
+        let record = self.record.next(self.state.room(), self.sequencer.is_some());
+        assert_eq!(Record::parse(&record.to_bytes()).as_ref(), Some(&record));
+        Self { record, ..self }
+    }
+
+    fn apply(&mut self, number: u64, message: &LogMessage) {
+        if self.state.position(number, message) == Position::Next {
+            if self.sequencer.as_ref().is_some_and(|own| own.epoch() < message.epoch) {
+                self.sequencer = None;
+            }
+            self.state.apply(Some(number), message);
+        }
+    }
+}

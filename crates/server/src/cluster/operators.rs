@@ -1,0 +1,272 @@
+//! What an operator asks one host, asked of all hosts of the cluster.
+//!
+//! # Rules
+//!
+//! - A host asks the others over the bus, and waits until those that are there have answered, for [`PATIENCE`]
+//!   at most. Which ones are there, the database says.
+//! - A host answers for itself alone, with at most [`MOST_ROWS`] visitors, so that the answer is a message that
+//!   the bus takes.
+//! - Only some requests are asked of others: to end a host, its own operator has to ask.
+//!
+//! A host that every operator asks was refused: it would have to be found, and replaced.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep, timeout, timeout_at};
+
+use super::directory::SharedRooms;
+use super::shown_name;
+use crate::accounts::HostRow;
+use crate::ops::admin::{AdminReply, AdminRequest, HostInfo};
+use cellcaster::app::store::name_in_map_key;
+
+/// The most time that other hosts have for their answers.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The most time in which the database says which hosts there are.
+const DATABASE_PATIENCE: Duration = Duration::from_secs(1);
+/// The time after which a bus that was away is asked again.
+const PAUSE: Duration = Duration::from_secs(1);
+/// The most visitors in the answer of a host. Each is some 250 bytes, and NATS takes a megabyte.
+const MOST_ROWS: usize = 2_000;
+
+/// What other hosts have answered.
+#[derive(Debug, Default)]
+pub(crate) struct OtherHosts {
+    /// The answers, by the names of the hosts.
+    pub(crate) replies: BTreeMap<String, AdminReply>,
+    /// The hosts that are there and have not answered, by their names.
+    pub(crate) silent: BTreeMap<String, HostInfo>,
+    /// The seconds since each host has announced itself.
+    pub(crate) seconds: BTreeMap<String, u64>,
+    /// What an operator has to know of the answers.
+    pub(crate) remarks: Vec<String>,
+}
+
+/// What a host asks the others.
+#[derive(Serialize, Deserialize)]
+struct Question {
+    from: String,
+    request: AdminRequest,
+}
+
+/// What a host answers.
+#[derive(Serialize, Deserialize)]
+struct HostAnswer {
+    host: String,
+    reply: AdminReply,
+}
+
+impl SharedRooms {
+    /// The name of this host among all that there ever were.
+    pub(crate) fn own_name(&self) -> &str {
+        &self.context().notice.name
+    }
+
+    /// What this host says of itself.
+    pub(crate) fn own_info(&self) -> HostInfo {
+        let context = self.context();
+        HostInfo {
+            visitors: context.visitors.count(),
+            rooms: Some(context.load.metrics().each_room.written()),
+            maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
+            ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
+        }
+    }
+
+    /// Asks all other hosts.
+    pub(crate) async fn ask_others(&self, request: &AdminRequest) -> OtherHosts {
+        let context = self.context();
+        let question = Question { from: self.own_name().to_owned(), request: request.clone() };
+        let question = serde_json::to_vec(&question).unwrap_or_default();
+        let asked_at = Instant::now();
+        let (hosts, answers) = tokio::join!(
+            timeout(DATABASE_PATIENCE, context.visits.hosts()),
+            context.bus.ask_hosts(question),
+        );
+        let hosts = hosts.ok().flatten();
+        let mut others = OtherHosts::default();
+        let Some(rows) = &hosts else {
+            let remark = "the database does not say which hosts there are";
+            others.remarks.push(remark.to_owned());
+            others.hear(answers.ok(), asked_at + PATIENCE, None).await;
+            return others;
+        };
+        let seconds = |row: &HostRow| (row.notice.name.clone(), row.ago.as_secs());
+        others.seconds = rows.iter().map(seconds).collect();
+        let there = rows.iter().map(|row| row.notice.name.as_str());
+        let there: BTreeSet<&str> = there.filter(|name| *name != self.own_name()).collect();
+        others.hear(answers.ok(), asked_at + PATIENCE, Some(&there)).await;
+        let is_silent = |row: &&HostRow| {
+            let name = row.notice.name.as_str();
+            there.contains(name) && !others.replies.contains_key(name)
+        };
+        others.silent =
+            rows.iter().filter(is_silent).map(|row| (row.notice.name.clone(), info(row))).collect();
+        let silent = others.silent.values().map(|it| format!("host {} did not answer", it.host));
+        others.remarks.extend(silent);
+        others
+    }
+
+    /// How the maps of a host differ from those of this one: a sentence. `None` if they do not, or if the host did not
+    /// answer.
+    pub(crate) fn map_difference(&self, host: &HostInfo) -> Option<String> {
+        let own = self.context().catalog.map_keys().collect();
+        let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
+        let difference = difference(&own, &theirs)?;
+        let (own, other) = (shown_name(self.own_name()), &host.host);
+        Some(format!("host {other} has other maps than host {own}: it {difference}"))
+    }
+
+    /// Warns once of hosts whose maps differ from those of this one, which has just been started.
+    pub(crate) async fn compare_maps(self) {
+        sleep(PAUSE).await;
+        let others = self.ask_others(&AdminRequest::Hosts).await;
+        let hosts = others.replies.into_values().filter_map(|reply| match reply {
+            AdminReply::Hosts(hosts) => Some(hosts),
+            _ => None,
+        });
+        for difference in hosts.flatten().filter_map(|host| self.map_difference(&host)) {
+            tracing::warn!("{difference}; its rooms in them are not listed here");
+        }
+    }
+
+    /// Answers what other hosts ask, again and again.
+    pub(crate) async fn answer_others(
+        self,
+        answer: impl Fn(&AdminRequest) -> AdminReply + Send + Sync,
+    ) {
+        loop {
+            if let Ok(mut requests) = self.context().bus.host_requests().await {
+                while let Some(request) = requests.recv().await {
+                    if let Some(bytes) = self.answer_to(&request.bytes, &answer) {
+                        _ = request.reply.send(bytes);
+                    }
+                }
+            }
+            sleep(PAUSE).await;
+        }
+    }
+
+    /// The answer to another host, if it asks something that is answered.
+    fn answer_to(
+        &self,
+        bytes: &[u8],
+        answer: impl Fn(&AdminRequest) -> AdminReply,
+    ) -> Option<Vec<u8>> {
+        let Question { from, request } = serde_json::from_slice(bytes).ok()?;
+        if from == self.own_name() || !request.is_for_all_hosts() {
+            return None;
+        }
+        let reply = bounded(answer(&request), shown_name(self.own_name()));
+        serde_json::to_vec(&HostAnswer { host: self.own_name().to_owned(), reply }).ok()
+    }
+}
+
+impl OtherHosts {
+    /// Waits for answers until `end`, or until all hosts have answered that are `there`.
+    async fn hear(
+        &mut self,
+        answers: Option<mpsc::Receiver<Vec<u8>>>,
+        end: Instant,
+        there: Option<&BTreeSet<&str>>,
+    ) {
+        let Some(mut answers) = answers else {
+            return self.remarks.push("the bus of the cluster does not answer".to_owned());
+        };
+        let has_all = |replies: &BTreeMap<String, AdminReply>| {
+            there.is_some_and(|there| there.iter().all(|name| replies.contains_key(*name)))
+        };
+        while !has_all(&self.replies) {
+            let Ok(Some(bytes)) = timeout_at(end, answers.recv()).await else { return };
+            let Ok(HostAnswer { host, reply }) = serde_json::from_slice(&bytes) else { continue };
+            let reply = match reply {
+                AdminReply::AllHosts { reply, remarks } => {
+                    self.remarks.extend(remarks);
+                    *reply
+                }
+                reply => reply,
+            };
+            if let AdminReply::Fault(sentence) = &reply {
+                self.remarks.push(format!("host {}: {sentence}", shown_name(&host)));
+            }
+            self.replies.insert(host, reply);
+        }
+    }
+}
+
+/// What a host has said of itself, which says nothing of its rooms.
+fn info(row: &HostRow) -> HostInfo {
+    HostInfo {
+        host: shown_name(&row.notice.name).to_owned(),
+        address: row.notice.address.clone(),
+        version: row.notice.version.clone(),
+        visitors: row.notice.load as usize,
+        rooms: None,
+        seconds: row.ago.as_secs(),
+        maps: None,
+    }
+}
+
+/// How the maps with the keys `theirs` differ from those with the keys `own`, after "it"; `None` if they do not.
+fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
+    let names = |keys: &BTreeSet<&str>, others: &BTreeSet<&str>| -> BTreeSet<String> {
+        let names = keys.difference(others).map(|key| name_in_map_key(key).unwrap_or(key));
+        names.map(str::to_owned).collect()
+    };
+    let (lacking, more) = (names(own, theirs), names(theirs, own));
+    let list = |what: &str, names: Vec<&String>, end: &str| {
+        let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+        (!names.is_empty()).then(|| format!("{what} {}{end}", names.join(", ")))
+    };
+    let parts = [
+        list("has another text of", lacking.intersection(&more).collect(), ""),
+        list("lacks", lacking.difference(&more).collect(), ""),
+        list("has", more.difference(&lacking).collect(), " in addition"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join("; it "))
+}
+
+/// A reply that the bus takes.
+fn bounded(reply: AdminReply, host: &str) -> AdminReply {
+    match reply {
+        AdminReply::Visitors(mut rows) if rows.len() > MOST_ROWS => {
+            let remark = format!("host {host} has {} more visitors", rows.len() - MOST_ROWS);
+            rows.truncate(MOST_ROWS);
+            let reply = Box::new(AdminReply::Visitors(rows));
+            AdminReply::AllHosts { reply, remarks: vec![remark] }
+        }
+        reply => reply,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cellcaster::app::store::map_key;
+
+    fn told(own: &[(&str, &str)], theirs: &[(&str, &str)]) -> Option<String> {
+        let keys = |maps: &[(&str, &str)]| -> Vec<String> {
+            maps.iter().map(|(name, text)| map_key(name, text)).collect()
+        };
+        let (own, theirs) = (keys(own), keys(theirs));
+        let [own, theirs] = [&own, &theirs].map(|keys| keys.iter().map(String::as_str).collect());
+        difference(&own, &theirs)
+    }
+
+    #[test]
+    fn differences_of_maps_are_told_by_their_names() {
+        let moss = ("moss-2", "a");
+        assert_eq!(told(&[], &[]), None);
+        assert_eq!(told(&[moss], &[moss]), None);
+        let difference = told(
+            &[moss, ("fern", "a"), ("hall", "a")],
+            &[("moss-2", "b"), ("hall", "a"), ("cave", "a")],
+        );
+        let expected = "has another text of moss-2; it lacks fern; it has cave in addition";
+        assert_eq!(difference.as_deref(), Some(expected));
+    }
+}

@@ -1,0 +1,253 @@
+//! The state of a room on one host, which only messages of the log change.
+//!
+//! It is a function of a checkpoint, or of the room's first header, and the messages of the log after that. Each is
+//! applied once, in the order of the log. Once a second the state keeps its checksum; the message with the
+//! sequencer's checksum comes later, so that both are known then.
+
+use std::collections::VecDeque;
+use std::io::{Read, Write};
+use std::sync::Arc;
+
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+
+use super::log_message::{Check, LogMessage, number};
+use crate::rooms::room::{Catalog, Entry, Header, Queue, Room};
+use crate::rooms::sequencer::{Changes, RoundLog};
+use cellcaster::game::STEPS_PER_SECOND;
+use cellcaster::game::stored::MOST_BYTES;
+
+/// The steps from one checksum to the next.
+const CHECKED: u64 = STEPS_PER_SECOND as u64;
+/// The checksums that are remembered.
+const MOST_SUMS: usize = 8;
+
+/// A room, and how far the log is applied to it.
+pub(crate) struct RoomState {
+    room: Room,
+    log: RoundLog,
+    /// The number of the last message.
+    number: u64,
+    /// The steps that the room has taken in all rounds.
+    tick: u64,
+    /// The epoch of the newest message.
+    epoch: u64,
+    /// The newest last.
+    sums: VecDeque<Check>,
+}
+
+/// The position of a message relative to a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Position {
+    /// It is the next one.
+    Next,
+    /// It was applied.
+    Known,
+    /// Messages before it are missing.
+    Later,
+    /// It is the next one, but the sequencer's state was another one. It is a bug of the program.
+    Differs,
+}
+
+impl RoomState {
+    /// A room that nobody has entered yet. `None` if the catalog has no such level.
+    pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
+        Some(Self::with(Room::new(catalog, header)?, [0; 3]))
+    }
+
+    fn with(room: Room, [number, tick, epoch]: [u64; 3]) -> Self {
+        let log = RoundLog::new(Box::new(Queue::default()), &room);
+        Self { room, log, number, tick, epoch, sums: VecDeque::new() }
+    }
+
+    pub(crate) fn room(&self) -> &Room {
+        &self.room
+    }
+
+    /// The number of the last message.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The steps that the room has taken in all rounds.
+    pub(crate) fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// The epoch of the newest message.
+    pub(crate) fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// The newest checksum.
+    pub(crate) fn sum(&self) -> Option<Check> {
+        self.sums.back().copied()
+    }
+
+    /// The position of message `number`.
+    pub(crate) fn position(&self, number: u64, message: &LogMessage) -> Position {
+        let is_equal = |check: Check| {
+            let own = self.sums.iter().find(|own| own.tick == check.tick);
+            own.is_none_or(|own| *own == check)
+        };
+        if number <= self.number {
+            Position::Known
+        } else if message.last != self.number {
+            Position::Later
+        } else if message.tick == self.tick && message.check.is_none_or(is_equal) {
+            Position::Next
+        } else {
+            Position::Differs
+        }
+    }
+
+    /// Notes the number that the log has given to what was applied last.
+    pub(crate) fn set_number(&mut self, number: u64) {
+        self.number = number;
+    }
+
+    /// Applies the next message, which has no number as long as the log does not have it. One of an older epoch
+    /// than the last changes nothing.
+    pub(crate) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
+        let mut all = Changes::default();
+        self.number = number.unwrap_or(self.number);
+        if message.epoch < self.epoch {
+            return all;
+        }
+        self.epoch = message.epoch;
+        let mut entries = message.entries.iter().peekable();
+        for step in 0..message.steps {
+            let changes = self.log.step(&mut self.room, |pass| {
+                while let Some(Entry { member, command, .. }) =
+                    entries.next_if(|it| it.step <= step)
+                {
+                    pass(*member, command.clone());
+                }
+            });
+            all.add(changes);
+            self.tick += 1;
+            if self.tick.is_multiple_of(CHECKED) {
+                self.sums.push_back(Check { tick: self.tick, sum: self.room.checksum() });
+                if self.sums.len() > MOST_SUMS {
+                    self.sums.pop_front();
+                }
+            }
+        }
+        all
+    }
+
+    /// The whole state, compressed.
+    pub(crate) fn checkpoint(&self) -> Vec<u8> {
+        let head = format!("{} {} {}\n", self.number, self.tick, self.epoch);
+        let mut encoder = ZlibEncoder::new(head.into_bytes(), Compression::fast());
+        // Memory accepts every byte.
+        _ = encoder.write_all(&self.room.checkpoint());
+        encoder.finish().unwrap_or_default()
+    }
+
+    /// The state of a checkpoint.
+    ///
+    /// # Errors
+    /// A sentence: the bytes are none, or of another version, or of a level that the catalog does not have.
+    pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
+        let damaged = || "the checkpoint is damaged".to_owned();
+        let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
+        let head = str::from_utf8(&bytes[..end]).map_err(|_| damaged())?;
+        let numbers: Option<Vec<u64>> = head.split(' ').map(number).collect();
+        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+        let mut room = Vec::new();
+        let mut decoder = ZlibDecoder::new(&bytes[end + 1..]).take(MOST_BYTES as u64 + 1);
+        decoder.read_to_end(&mut room).map_err(|_| damaged())?;
+        Ok(Self::with(Room::restore(catalog, &room)?, numbers.ok_or_else(damaged)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rooms::room::{Command, MemberId, Mode};
+    use crate::sessions::line::Line;
+    use cellcaster::game::PlayerColor;
+    use cellcaster::world::Difficulty;
+
+    fn state() -> RoomState {
+        let header = Header::new("museum", Mode::Roam, Difficulty::Normal, 7);
+        RoomState::new(&Arc::new(Catalog::builtin()), header).unwrap()
+    }
+
+    fn message(state: &RoomState, epoch: u64, check: Option<Check>) -> LogMessage {
+        let command =
+            Command::Join { color: PlayerColor::ALL[0], name: Line::of("Mara", 16).unwrap() };
+        let entries = vec![Entry { step: 1, member: MemberId(1), command }];
+        let (last, tick) = (state.number(), state.tick());
+        LogMessage { epoch, last, tick, steps: 2, check, entries }
+    }
+
+    #[test]
+    fn a_message_is_applied_once_and_after_the_one_before() {
+        let mut state = state();
+        let first = message(&state, 1, None);
+        assert_eq!(state.position(5, &first), Position::Next);
+        assert!(state.apply(Some(5), &first).summary);
+        assert_eq!((state.number(), state.tick(), state.room().len()), (5, 2, 1));
+        assert_eq!(state.position(5, &first), Position::Known);
+        let next = message(&state, 1, None);
+        assert_eq!(state.position(9, &LogMessage { last: 8, ..next.clone() }), Position::Later);
+        assert_eq!(state.position(9, &LogMessage { tick: 3, ..next.clone() }), Position::Differs);
+        // Of an older epoch, it only counts.
+        state.epoch = 2;
+        state.apply(Some(9), &next);
+        assert_eq!((state.number(), state.tick()), (9, 2));
+    }
+
+    #[test]
+    fn another_checksum_is_a_difference() {
+        let mut state = state();
+        for number in 1..=30 {
+            let next = message(&state, 1, None);
+            state.apply(Some(number), &next);
+        }
+        let sum = state.sum().unwrap();
+        assert_eq!(sum.tick, 60);
+        let other = Check { sum: !sum.sum, ..sum };
+        for (check, position) in [(sum, Position::Next), (other, Position::Differs)] {
+            assert_eq!(state.position(31, &message(&state, 1, Some(check))), position);
+        }
+    }
+
+    #[test]
+    fn a_checkpoint_gives_the_replica_again() {
+        let catalog = Arc::new(Catalog::builtin());
+        let mut state = state();
+        let next = message(&state, 3, None);
+        state.apply(Some(4), &next);
+        let bytes = state.checkpoint();
+        let again = RoomState::restore(&catalog, &bytes).unwrap();
+        assert_eq!((again.number(), again.tick(), again.epoch), (4, 2, 3));
+        assert_eq!(again.room().checksum(), state.room().checksum());
+        for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", b"1 2\n", b"1 2 x\nabc"] {
+            assert!(RoomState::restore(&catalog, damaged).is_err());
+        }
+    }
+
+    #[test]
+    fn numbers_that_no_room_reaches_are_refused() {
+        let catalog = Arc::new(Catalog::builtin());
+        let bytes = state().checkpoint();
+        let end = bytes.iter().position(|byte| *byte == b'\n').unwrap();
+        for (line, is_possible) in [
+            ("9007199254740991 9007199254740991 9007199254740991", true),
+            ("18446744073709551615 2 3", false),
+            ("4 18446744073709551615 3", false),
+            ("4 2 18446744073709551615", false),
+        ] {
+            let state = RoomState::restore(&catalog, &[line.as_bytes(), &bytes[end..]].concat());
+            assert_eq!(state.is_ok(), is_possible, "{line}");
+            if let Ok(mut state) = state {
+                let next = message(&state, state.epoch() + 1, None);
+                state.apply(Some(state.number() + 1), &next);
+            }
+        }
+    }
+}

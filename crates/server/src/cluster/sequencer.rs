@@ -1,0 +1,280 @@
+//! The sequencer of a room of a cluster: it orders the commands of the members on all hosts into messages.
+//!
+//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which
+//! has a seat for each member and the limits of a room in one process. A message that was sent to the log is kept,
+//! unchanged, until it is known whether the log has it: another one in its place could be the second with its
+//! number.
+
+mod returning;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use self::returning::ReturnRequest;
+use super::log_message::LogMessage;
+use super::peer_message::PeerMessage;
+use super::room_state::RoomState;
+use crate::accounts::Lease;
+use crate::rooms::room::{Command, Entry, MemberId, Room};
+use crate::rooms::sequencer::Inbox;
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
+
+/// The time after which a member is away whom no host claims.
+const UNCLAIMED: Duration = Duration::from_secs(4);
+/// The most join requests that are remembered, with their answers.
+const MOST_ANSWERS: usize = 64;
+
+/// The commands that wait, the members who are claimed, and the message that is being appended.
+pub(crate) struct ClusterSequencer {
+    lease: Lease,
+    inbox: Inbox,
+    /// When each member was claimed last.
+    claimed: BTreeMap<MemberId, Instant>,
+    /// The members who are away, whom no host has to claim.
+    away: BTreeSet<MemberId>,
+    /// The requests to join, the newest last.
+    joining: VecDeque<Joining>,
+    /// The requests to return, the newest last.
+    returning: VecDeque<ReturnRequest>,
+    /// Whether the log has the first message of the epoch.
+    is_begun: bool,
+    /// Whether messages are applied that the log does not have yet. Whoever is let in must be in the log.
+    is_alone: bool,
+    /// The message that was sent, as long as it is unknown whether the log has it.
+    sending: Option<LogMessage>,
+    /// The step of the checksum that was sent last.
+    checked: u64,
+}
+
+/// A request to join.
+struct Joining {
+    token: u64,
+    member: MemberId,
+    /// Set once a message has them.
+    color: Option<PlayerColor>,
+    /// Whether the log has that message.
+    is_in: bool,
+}
+
+impl ClusterSequencer {
+    /// The sequencer of an epoch whose first message is still to be appended. Commands until then are lost: the
+    /// predecessor may still append messages that change who is in the room.
+    pub(crate) fn new(lease: Lease, state: &RoomState) -> Self {
+        let room = state.room();
+        let inbox = Inbox::new(room.header().mode, room.next_member());
+        let mut sequencer = Self {
+            lease,
+            inbox,
+            claimed: BTreeMap::new(),
+            away: BTreeSet::new(),
+            joining: VecDeque::new(),
+            returning: VecDeque::new(),
+            is_begun: false,
+            is_alone: false,
+            sending: None,
+            checked: state.tick(),
+        };
+        sequencer.sending = Some(sequencer.message(state, 0));
+        sequencer
+    }
+
+    pub(crate) fn lease(&self) -> &Lease {
+        &self.lease
+    }
+
+    pub(crate) fn epoch(&self) -> u64 {
+        self.lease.epoch()
+    }
+
+    /// The message that is being appended; otherwise the next one, of `steps` steps.
+    pub(crate) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+        let message = match self.sending.take() {
+            Some(sent) if sent.last == state.number() => sent,
+            // The predecessor has written before it was fenced off.
+            Some(sent) => {
+                LogMessage { last: state.number(), tick: state.tick(), check: None, ..sent }
+            }
+            None => self.message(state, steps),
+        };
+        self.sending = Some(message.clone());
+        message
+    }
+
+    /// Whether a message is being appended.
+    pub(crate) fn is_sending(&self) -> bool {
+        self.sending.is_some()
+    }
+
+    /// Notes that the log has a message, which was applied to `state`; returns the answers to the requests that it
+    /// fulfils.
+    pub(crate) fn note(
+        &mut self,
+        message: &LogMessage,
+        state: &RoomState,
+        now: Instant,
+    ) -> Vec<PeerMessage> {
+        if self.sending.as_ref() != Some(message) {
+            return Vec::new();
+        }
+        self.sending = None;
+        if !self.is_begun {
+            self.begin(state, now);
+        }
+        self.forget_lost(state.room());
+        self.answers()
+    }
+
+    /// Goes on alone, if the epoch has begun; returns the message that the log may have.
+    pub(crate) fn begin_alone(&mut self) -> Option<LogMessage> {
+        let message = self.sending.take_if(|_| self.is_begun)?;
+        self.is_alone = true;
+        Some(message)
+    }
+
+    /// Goes on as usual, once the log has all messages; returns the answers to the requests that they fulfil.
+    pub(crate) fn end_alone(&mut self) -> Vec<PeerMessage> {
+        self.is_alone = false;
+        self.answers()
+    }
+
+    /// The answers to those who are in the log now.
+    fn answers(&mut self) -> Vec<PeerMessage> {
+        let mut answers = Vec::new();
+        for joining in self.joining.iter_mut().filter(|joining| !joining.is_in) {
+            joining.is_in = joining.color.is_some();
+            answers.extend(joining.answer());
+        }
+        answers
+    }
+
+    /// Handles a request to join; returns the answer if it is known.
+    pub(crate) fn request_join(
+        &mut self,
+        token: u64,
+        name: &Line,
+        is_kept: bool,
+        now: Instant,
+    ) -> Option<PeerMessage> {
+        if let Some(known) = self.joining.iter().find(|joining| joining.token == token) {
+            return known.answer();
+        }
+        if !self.is_begun || self.is_alone {
+            return None;
+        }
+        let Ok(member) = self.inbox.join(name) else { return Some(PeerMessage::Full(token)) };
+        if is_kept {
+            self.inbox.keep(member);
+        }
+        self.claimed.insert(member, now);
+        self.joining.push_back(Joining { token, member, color: None, is_in: false });
+        if self.joining.len() > MOST_ANSWERS {
+            self.joining.pop_front();
+        }
+        None
+    }
+
+    /// Takes a command of a member on any host.
+    pub(crate) fn command(&mut self, member: MemberId, command: Command, now: Instant) {
+        match command {
+            Command::Leave => self.leave(member),
+            Command::Away => self.set_away(member, now),
+            // What comes too often was refused on the member's own host.
+            command => _ = self.inbox.act(member, command),
+        }
+    }
+
+    /// Notes that a host has these members; returns the answers to the requests that are refused for it.
+    pub(crate) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
+        for member in members {
+            self.claimed.entry(*member).and_modify(|time| *time = now);
+        }
+        self.refuse_returns(members)
+    }
+
+    /// Members whom no host claims any more are away.
+    pub(crate) fn set_unclaimed_away(&mut self, now: Instant) {
+        let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
+        let lost: Vec<MemberId> =
+            self.claimed.iter().filter(|(_, time)| is_lost(time)).map(|(id, _)| *id).collect();
+        for member in lost {
+            self.set_away(member, now);
+        }
+    }
+
+    /// Whether nobody is in the room, and no message is being appended.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.sending.is_none() && self.inbox.is_empty()
+    }
+
+    /// Whether the log has all that members have done.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.sending.is_none() && !self.inbox.has_moves()
+    }
+
+    /// Begins the epoch with the present members, each of whom is to be claimed within the usual time.
+    fn begin(&mut self, state: &RoomState, now: Instant) {
+        let room = state.room();
+        self.is_begun = true;
+        self.inbox = Inbox::new(room.header().mode, room.next_member());
+        room.colors().for_each(|(member, color)| self.inbox.admit(member, color));
+        let members = room.colors().map(|(member, _)| member);
+        let (away, here): (BTreeSet<MemberId>, BTreeSet<MemberId>) =
+            members.partition(|member| room.is_away(*member));
+        self.away = away;
+        self.claimed = here.into_iter().map(|member| (member, now)).collect();
+    }
+
+    fn leave(&mut self, member: MemberId) {
+        self.claimed.remove(&member);
+        self.away.remove(&member);
+        self.inbox.leave(member);
+    }
+
+    fn set_away(&mut self, member: MemberId, now: Instant) {
+        if self.claimed.remove(&member).is_some() {
+            self.away.insert(member);
+            self.inbox.set_away(member);
+            self.take_back_if_requested(member, now);
+        }
+    }
+
+    /// Forgets the members whom the room has removed itself: guests, and who was away for too long.
+    fn forget_lost(&mut self, room: &Room) {
+        for member in self.inbox.seated().into_iter().filter(|member| room.has_lost(*member)) {
+            self.claimed.remove(&member);
+            self.away.remove(&member);
+            self.inbox.dismiss(member);
+        }
+    }
+
+    /// The next message, of `steps` steps.
+    pub(crate) fn message(&mut self, state: &RoomState, steps: u64) -> LogMessage {
+        let mut entries = Vec::new();
+        let Self { inbox, joining, .. } = self;
+        for step in 0..steps {
+            inbox.take(|member, command| {
+                if let Command::Join { color, .. } = &command
+                    && let Some(joining) =
+                        joining.iter_mut().find(|joining| joining.member == member)
+                {
+                    joining.color = Some(*color);
+                }
+                entries.push(Entry { step, member, command });
+            });
+        }
+        let check = state.sum().filter(|check| check.tick > self.checked);
+        self.checked = check.map_or(self.checked, |check| check.tick);
+        let (epoch, last, tick) = (self.epoch(), state.number(), state.tick());
+        LogMessage { epoch, last, tick, steps, check, entries }
+    }
+}
+
+impl Joining {
+    fn answer(&self) -> Option<PeerMessage> {
+        let color = self.color.filter(|_| self.is_in)?;
+        Some(PeerMessage::Joined(self.token, self.member, color))
+    }
+}

@@ -1,0 +1,154 @@
+//! What an operator of one host sees and does on all of them.
+
+use std::net::IpAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::runtime::Builder;
+use tokio::sync::Notify;
+use tokio::time::{Instant, sleep};
+
+use super::{HOSTS, Run};
+use crate::accounts::AccountKey;
+use crate::ops::admin::Operator;
+use crate::ops::admin::{AdminReply, AdminRequest, Target};
+use crate::sessions::visitors::{Notice, Presence};
+
+/// Hosts with a visitor each, called `p0` and so on, and their operators.
+struct Hosts {
+    run: Run,
+    operators: Vec<Operator>,
+    visitors: Vec<Presence>,
+}
+
+impl Hosts {
+    async fn start() -> Self {
+        let run = Run::new(7);
+        let (mut operators, mut visitors) = (Vec::new(), Vec::new());
+        for (index, host) in run.hosts.iter().enumerate() {
+            let operator = Operator::new(host.visitors.clone(), Vec::new, Arc::<Notify>::default());
+            let operator = operator.in_cluster(Some(host.shared.clone()));
+            tokio::spawn(operator.clone().answer_others());
+            operators.push(operator);
+            let visitor = host.visitors.arrive(IpAddr::from([192, 0, 2, index as u8]), None);
+            visitor.set_name(&format!("p{index}"));
+            visitors.push(visitor);
+        }
+        sleep(Duration::from_secs(2)).await;
+        Self { run, operators, visitors }
+    }
+
+    /// The answer to the operator of the first host, and the remarks.
+    async fn answer(&self, request: AdminRequest) -> (AdminReply, Vec<String>) {
+        let asked_at = Instant::now();
+        let reply = self.operators[0].answer(&request).await;
+        assert!(asked_at.elapsed() < Duration::from_secs(4), "{:?}", asked_at.elapsed());
+        let AdminReply::AllHosts { reply, remarks } = reply else { panic!("{reply:?}") };
+        (*reply, remarks)
+    }
+
+    /// The names of visitors, with their hosts.
+    async fn who(&self) -> (Vec<String>, Vec<String>) {
+        let (reply, remarks) = self.answer(AdminRequest::Who).await;
+        let AdminReply::Visitors(rows) = reply else { panic!("{reply:?}") };
+        let name = |text: Option<String>| text.unwrap_or_default();
+        (rows.into_iter().map(|row| name(row.name) + " " + &name(row.host)).collect(), remarks)
+    }
+}
+
+fn run(test: impl AsyncFnOnce(Hosts)) {
+    let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
+    runtime.block_on(async { test(Hosts::start().await).await });
+}
+
+fn remove(name: &str) -> AdminRequest {
+    let target = Target::Name(name.to_owned());
+    AdminRequest::Remove { target, reason: String::new(), banned: true }
+}
+
+#[test]
+fn an_operator_sees_and_reaches_the_visitors_of_all_hosts() {
+    run(async |mut hosts| {
+        let everybody = ["p0 host:0", "p1 host:1", "p2 host:2"].map(str::to_owned).to_vec();
+        assert_eq!(hosts.who().await, (everybody, vec![]));
+        let say = AdminRequest::Say { text: "hello".to_owned() };
+        assert_eq!(hosts.answer(say).await, (AdminReply::Count(HOSTS), vec![]));
+        for visitor in &mut hosts.visitors {
+            assert_eq!(visitor.notice().await, Notice::Said("hello".to_owned()));
+        }
+        assert_eq!(hosts.answer(remove("P2")).await, (AdminReply::Count(1), vec![]));
+        assert!(matches!(hosts.visitors[2].notice().await, Notice::Removed(_)));
+        // What is wrong is wrong on each of them.
+        let fault = hosts.operators[0].answer(&remove("\u{1b}")).await;
+        assert!(matches!(fault, AdminReply::Fault(_)), "{fault:?}");
+        // A host ends alone.
+        assert_eq!(hosts.operators[0].answer(&AdminRequest::Drain).await, AdminReply::Count(1));
+    });
+}
+
+#[test]
+fn hosts_are_listed_with_those_that_do_not_answer() {
+    run(async |hosts| {
+        hosts.run.world.set(2, |link| link.is_cut = true);
+        let (reply, remarks) = hosts.answer(AdminRequest::Hosts).await;
+        assert_eq!(remarks, ["host host:2 did not answer"]);
+        let AdminReply::Hosts(rows) = reply else { panic!("{reply:?}") };
+        let shown: Vec<_> =
+            rows.iter().map(|row| (row.host.as_str(), row.visitors, row.rooms.clone())).collect();
+        let expected =
+            [("host:0", 1, Some(vec![])), ("host:1", 1, Some(vec![])), ("host:2", 1, None)];
+        assert_eq!(shown, expected);
+        assert!(rows.iter().all(|row| row.seconds < 5 && row.address.ends_with(".org:2222")));
+        // One that has ended is not there any more.
+        hosts.run.hosts[1].shared.end().await;
+        sleep(Duration::from_secs(1)).await;
+        hosts.run.world.set(2, |link| link.is_cut = false);
+        let (AdminReply::Hosts(rows), remarks) = hosts.answer(AdminRequest::Hosts).await else {
+            panic!("no hosts")
+        };
+        assert!(
+            remarks.is_empty() && rows.iter().filter(|row| row.seconds < 5).count() == rows.len()
+        );
+    });
+}
+
+#[test]
+fn without_the_bus_or_the_database_an_operator_sees_what_there_is() {
+    run(async |hosts| {
+        hosts.run.world.set(0, |link| link.has_no_database = true);
+        let (rows, remarks) = hosts.who().await;
+        assert_eq!((rows.len(), remarks.len()), (HOSTS, 1), "{remarks:?}");
+        assert!(remarks[0].contains("the database does not say"), "{remarks:?}");
+        hosts.run.world.set(0, |link| (link.has_no_database, link.is_cut) = (false, true));
+        sleep(Duration::from_secs(2)).await;
+        let (rows, remarks) = hosts.who().await;
+        assert_eq!((rows.len(), remarks.len()), (1, HOSTS), "{remarks:?}");
+        assert!(remarks[0].contains("the bus of the cluster"), "{remarks:?}");
+    });
+}
+
+#[test]
+fn the_answer_of_a_host_has_so_many_visitors_and_fits_into_a_message() {
+    run(async |hosts| {
+        let key = Some(AccountKey::new([255; 32]));
+        let crowd: Vec<Presence> = (0..2_010)
+            .map(|number| {
+                let address = format!("2001:db8:ffff:ffff:ffff:ffff:ffff:{number:x}").parse();
+                let visitor = hosts.run.hosts[1].visitors.arrive(address.unwrap(), key);
+                visitor
+                    .set_name("\u{4e00}\u{4e01}\u{4e02}\u{4e03}\u{4e04}\u{4e05}\u{4e06}\u{4e07}");
+                visitor.set_room(Some("room 4294967295".to_owned()));
+                visitor
+            })
+            .collect();
+        let (rows, remarks) = hosts.who().await;
+        assert_eq!(
+            (rows.len(), remarks),
+            (2_002, vec!["host host:1 has 11 more visitors".to_owned()])
+        );
+        let answer = serde_json::to_vec(&hosts.operators[1].answer(&AdminRequest::Who).await);
+        let bytes = answer.unwrap().len();
+        assert!(bytes < 1_000_000, "{bytes} bytes");
+        drop(crowd);
+    });
+}

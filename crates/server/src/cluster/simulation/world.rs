@@ -1,0 +1,208 @@
+//! What the hosts of a simulation have in common: logs, values, leases, and links with faults.
+
+use std::collections::BTreeMap;
+use std::iter;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep};
+
+use super::super::bus::{Bus, HostRequest, Key};
+use super::super::lease_worker::{self, Call, LeaseWorker};
+use super::super::visits::{VisitRegistry, Visits};
+use super::bus::SimulatedBus;
+use crate::accounts::{HostNotice, MemoryLeases, MemoryPresence};
+use crate::lock::locked;
+use crate::rooms::summary::RoomId;
+use cellcaster::rng::SplitMix64;
+
+pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
+/// The time from one look whether a fault is over to the next.
+pub(crate) const LOOK: Duration = Duration::from_millis(10);
+
+/// What the hosts have in common, and what is wrong.
+#[derive(Clone)]
+pub(crate) struct World(Arc<Mutex<Inner>>);
+
+pub(crate) struct Inner {
+    pub(crate) chance: SplitMix64,
+    /// All messages there ever were.
+    pub(crate) logs: BTreeMap<RoomId, Vec<Kept>>,
+    /// The number before which messages of a room are dropped.
+    pub(crate) dropped: BTreeMap<RoomId, u64>,
+    pub(crate) messages: u64,
+    pub(crate) rooms: u32,
+    pub(crate) values: BTreeMap<Key, (u64, Option<Vec<u8>>)>,
+    pub(crate) changes: Vec<(RoomId, Option<Vec<u8>>)>,
+    pub(crate) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
+    pub(crate) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
+    leases: MemoryLeases,
+    presence: MemoryPresence,
+    asked_at: Instant,
+    links: Vec<Link>,
+}
+
+/// A message of a log.
+#[derive(Clone)]
+pub(crate) struct Kept {
+    pub(crate) number: u64,
+    pub(crate) host: usize,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) at: Instant,
+}
+
+/// The links of a host.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Link {
+    /// Whether it reaches nobody on the bus.
+    pub(crate) is_cut: bool,
+    /// Whether it does not reach the database.
+    pub(crate) has_no_database: bool,
+    /// Whether the host stands still.
+    pub(crate) is_frozen: bool,
+    /// The part of answers and of what is said that is lost: one in this many.
+    pub(crate) loses_one_in: Option<usize>,
+    /// The longest delay.
+    pub(crate) delay: u64,
+}
+
+/// What a host says of itself.
+pub(crate) fn notice(host: usize) -> HostNotice {
+    let (name, address) = (format!("host:{host} 1"), format!("host{host}.example.org:2222"));
+    HostNotice { name, version: "0.1.0".to_owned(), address, load: 0 }
+}
+
+impl World {
+    pub(crate) fn new(seed: u64, hosts: usize) -> Self {
+        let good = Link { delay: 2, ..Link::default() };
+        Self(Arc::new(Mutex::new(Inner {
+            chance: SplitMix64::new(seed),
+            logs: BTreeMap::new(),
+            dropped: BTreeMap::new(),
+            messages: 0,
+            rooms: 0,
+            values: BTreeMap::new(),
+            changes: Vec::new(),
+            listeners: Vec::new(),
+            operators: Vec::new(),
+            leases: MemoryLeases::default(),
+            presence: MemoryPresence::default(),
+            asked_at: Instant::now(),
+            links: vec![good; hosts],
+        })))
+    }
+
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
+        locked(&self.0, act)
+    }
+
+    pub(crate) fn bus(&self, host: usize) -> Box<dyn Bus> {
+        Box::new(SimulatedBus::new(self.clone(), host))
+    }
+
+    /// The leases of a host, by the one clock of the database.
+    pub(crate) fn lease_worker(&self, host: usize) -> LeaseWorker {
+        let (worker, mut queue) = LeaseWorker::new();
+        let world = self.clone();
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                world.pass(host).await;
+                if world.link(host).has_no_database {
+                    sleep(PATIENCE).await;
+                    continue;
+                }
+                world.run(call, host);
+                world.pass(host).await;
+            }
+        });
+        worker
+    }
+
+    /// The visits of a host, by the same clock.
+    pub(crate) fn visits(&self, host: usize) -> Visits {
+        let (visits, mut queue) = Visits::new();
+        let mut registry = VisitRegistry::new(notice(host), &visits);
+        let world = self.clone();
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                world.pass(host).await;
+                if !world.link(host).has_no_database {
+                    world.with(|inner| registry.run(inner.presence(), call));
+                }
+            }
+        });
+        visits
+    }
+
+    fn run(&self, call: Call, host: usize) {
+        self.with(|inner| {
+            inner.let_time_pass();
+            lease_worker::run(iter::once(call), &mut inner.leases, &notice(host).name);
+        });
+    }
+
+    pub(crate) fn link(&self, host: usize) -> Link {
+        self.with(|inner| inner.links[host])
+    }
+
+    pub(crate) fn set(&self, host: usize, change: impl FnOnce(&mut Link)) {
+        self.with(|inner| change(&mut inner.links[host]));
+    }
+
+    /// All messages of a room's log that there ever were.
+    pub(crate) fn log(&self, room: RoomId) -> Vec<Kept> {
+        self.with(|inner| inner.logs.get(&room).cloned().unwrap_or_default())
+    }
+
+    /// The first record of a room.
+    pub(crate) fn first_record(&self, room: RoomId) -> Option<Vec<u8>> {
+        self.with(|inner| inner.changes.iter().find(|change| change.0 == room)?.1.clone())
+    }
+
+    /// A way through the network; a host that stands still does not go on.
+    pub(crate) async fn pass(&self, host: usize) {
+        let delay = self.with(|inner| {
+            let longest = inner.links[host].delay;
+            inner.chance.below(longest as usize + 1)
+        });
+        sleep(Duration::from_millis(delay as u64)).await;
+        while self.link(host).is_frozen {
+            sleep(LOOK).await;
+        }
+    }
+
+    pub(crate) fn is_lost(&self, host: usize) -> bool {
+        self.with(|inner| {
+            let link = inner.links[host];
+            link.is_cut || link.loses_one_in.is_some_and(|most| inner.chance.one_in(most))
+        })
+    }
+}
+
+impl Inner {
+    fn let_time_pass(&mut self) {
+        let now = Instant::now();
+        self.leases.pass(now - self.asked_at);
+        self.presence.pass(now - self.asked_at);
+        self.asked_at = now;
+    }
+
+    fn presence(&mut self) -> &mut MemoryPresence {
+        self.let_time_pass();
+        &mut self.presence
+    }
+
+    pub(crate) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {
+        if let Key::Room(room) = key {
+            self.changes.push((room, value.clone()));
+        }
+        self.messages += 1;
+        self.values.insert(key, (self.messages, value));
+        self.messages
+    }
+
+    pub(crate) fn revision(&self, key: &Key) -> u64 {
+        self.values.get(key).map_or(0, |value| value.0)
+    }
+}

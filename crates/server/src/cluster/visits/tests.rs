@@ -1,0 +1,219 @@
+//! Hosts that count their visits together, in simulated time.
+
+use tokio::runtime::Builder;
+use tokio::task::JoinHandle;
+
+use super::*;
+use crate::accounts::{MemoryPresence, Visit, VisitBegin};
+
+/// Some hosts and the database that they share.
+struct Hosts {
+    database: Arc<Mutex<Database>>,
+    running: Vec<Running>,
+}
+
+struct Running {
+    visits: Visits,
+    tasks: [JoinHandle<()>; 2],
+}
+
+struct Database {
+    presence: MemoryPresence,
+    asked_at: Instant,
+    is_away: bool,
+}
+
+impl Hosts {
+    fn new(count: usize) -> Self {
+        let (presence, asked_at) = (MemoryPresence::default(), Instant::now());
+        let database = Database { presence, asked_at, is_away: false };
+        let mut hosts = Self { database: Arc::new(Mutex::new(database)), running: Vec::new() };
+        (0..count).for_each(|host| hosts.add(host));
+        hosts
+    }
+
+    /// A host that announces itself.
+    fn add(&mut self, host: usize) {
+        let (visits, mut queue) = Visits::new();
+        let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
+        let mut registry = VisitRegistry::new(notice, &visits);
+        let database = Arc::clone(&self.database);
+        let announcing = visits.clone();
+        let announces = tokio::spawn(async move {
+            loop {
+                announcing.announce(0);
+                sleep(ANNOUNCED).await;
+            }
+        });
+        let keeps = tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                locked(&database, |database| database.run(&mut registry, call));
+            }
+        });
+        self.running.push(Running { visits, tasks: [announces, keeps] });
+    }
+
+    async fn begin(&self, host: usize, new_visit: NewVisit) -> Result<CountedVisit, VisitRefusal> {
+        self.running[host].visits.begin(new_visit).await
+    }
+
+    /// Nothing of a host reaches the database any more.
+    fn kill(&self, host: usize) {
+        self.running[host].tasks.iter().for_each(JoinHandle::abort);
+    }
+
+    fn set_away(&self, is_away: bool) {
+        locked(&self.database, |database| database.is_away = is_away);
+    }
+
+    /// The number of visits that count, each once by the key and once by the address.
+    fn count(&self) -> usize {
+        locked(&self.database, |database| {
+            database.pass();
+            database.presence.visits(THERE).unwrap().len()
+        })
+    }
+}
+
+impl Database {
+    fn run(&mut self, registry: &mut VisitRegistry, call: Call) {
+        self.pass();
+        if self.is_away {
+            registry.run(&mut Away, call);
+        } else {
+            registry.run(&mut self.presence, call);
+        }
+    }
+
+    fn pass(&mut self) {
+        let now = Instant::now();
+        self.presence.pass(now - self.asked_at);
+        self.asked_at = now;
+    }
+}
+
+/// A database that does not answer.
+struct Away;
+
+fn away<T>() -> Result<T, StoreFailure> {
+    Err(StoreFailure::away("the database does not answer"))
+}
+
+impl Presence for Away {
+    fn begin_visit(
+        &mut self,
+        _: &str,
+        _: &Visitor,
+        _: u32,
+        _: Duration,
+    ) -> Result<VisitBegin, StoreFailure> {
+        away()
+    }
+
+    fn end_visit(&mut self, _: VisitId) -> Result<(), StoreFailure> {
+        away()
+    }
+
+    fn visits(&mut self, _: Duration) -> Result<Vec<Visit>, StoreFailure> {
+        away()
+    }
+
+    fn announce(&mut self, _: &HostNotice) -> Result<(), StoreFailure> {
+        away()
+    }
+
+    fn leave(&mut self, _: &str) -> Result<(), StoreFailure> {
+        away()
+    }
+
+    fn hosts(&mut self, _: Duration) -> Result<Vec<HostRow>, StoreFailure> {
+        away()
+    }
+}
+
+fn run(test: impl AsyncFnOnce(Hosts)) {
+    let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
+    runtime.block_on(async { test(Hosts::new(2)).await });
+}
+
+fn new_visit(key: u8, last: u8) -> NewVisit {
+    let address = IpAddr::from([192, 0, 2, last]);
+    NewVisit { key: Some(AccountKey::new([key; 32])), per_key: 1, address, per_address: 2 }
+}
+
+const TOO_MANY_KEYS: VisitRefusal = VisitRefusal::TooMany(Refusal::Key);
+
+#[test]
+fn a_key_and_an_address_are_limited_over_all_hosts() {
+    run(async |hosts| {
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
+        let came = Instant::now();
+        assert_eq!(hosts.begin(1, new_visit(1, 2)).await.unwrap_err(), TOO_MANY_KEYS);
+        assert!(came.elapsed() < ANNOUNCED * 2, "{:?}", came.elapsed());
+        let _other = hosts.begin(1, new_visit(2, 1)).await.unwrap();
+        let refusal = VisitRefusal::TooMany(Refusal::Address);
+        assert_eq!(hosts.begin(1, new_visit(3, 1)).await.unwrap_err(), refusal);
+        // Who is refused by one limit counts by none.
+        assert_eq!(hosts.count(), 4);
+        drop(visit);
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
+    });
+}
+
+#[test]
+fn one_who_returns_waits_for_the_end_of_the_visit_on_a_host_that_was_killed() {
+    run(async |hosts| {
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
+        sleep(Duration::from_secs(10)).await;
+        hosts.kill(0);
+        drop(visit);
+        let came = Instant::now();
+        let _visit = hosts.begin(1, new_visit(1, 1)).await.unwrap();
+        assert!(came.elapsed() < THERE + ANNOUNCED, "{:?}", came.elapsed());
+        assert!(came.elapsed() + ANNOUNCED >= THERE, "{:?}", came.elapsed());
+    });
+}
+
+#[test]
+fn what_ends_while_the_database_is_away_is_ended_later() {
+    run(async |hosts| {
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
+        let other = hosts.begin(0, new_visit(2, 2)).await.unwrap();
+        hosts.set_away(true);
+        let refusal = hosts.begin(1, new_visit(3, 3)).await.unwrap_err();
+        assert!(matches!(refusal, VisitRefusal::NotNow(_)), "{refusal:?}");
+        drop(visit);
+        sleep(Duration::from_secs(20)).await;
+        hosts.set_away(false);
+        sleep(ANNOUNCED * 2).await;
+        assert_eq!(hosts.count(), 2);
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
+        assert_eq!(hosts.begin(1, new_visit(2, 2)).await.unwrap_err(), TOO_MANY_KEYS);
+        drop(other);
+    });
+}
+
+#[test]
+fn a_visitor_who_has_gone_before_the_answer_counts_no_more() {
+    run(async |hosts| {
+        let begin = hosts.begin(0, new_visit(1, 1));
+        assert!(tokio::time::timeout(Duration::ZERO, begin).await.is_err());
+        sleep(Duration::from_millis(1)).await;
+        assert_eq!(hosts.count(), 0);
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
+    });
+}
+
+#[test]
+fn a_host_that_ends_has_nobody() {
+    run(async |hosts| {
+        let visit = hosts.begin(0, new_visit(1, 1)).await.unwrap();
+        let host = &hosts.running[0].visits;
+        assert_eq!(host.hosts().await.unwrap().len(), 2);
+        host.leave().await;
+        drop(visit);
+        sleep(ANNOUNCED * 2).await;
+        assert_eq!((hosts.count(), host.hosts().await.unwrap().len()), (0, 1));
+        hosts.begin(1, new_visit(1, 1)).await.unwrap();
+    });
+}

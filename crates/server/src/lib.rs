@@ -1,0 +1,46 @@
+//! The SSH server in which people play Cellcaster together.
+//!
+//! ```text
+//! socket ─ ssh ─▶ Link + Visitor ─ sessions ─▶ requests ─ rooms ─▶ snapshots ─ sessions ─▶ frames ─ ssh ─▶ socket
+//! ```
+//!
+//! | module | is |
+//! |---|---|
+//! | [`ssh`] | the listener, connections, admission, and the one frame on its way to each visitor |
+//! | [`sessions`] | what each visitor sees and does: a session without a connection or a clock, and its driver, which has both |
+//! | [`rooms`] | rooms as deterministic state machines, the sequencer that orders their entries, and their directory |
+//! | [`accounts`] | accounts, names, bans and results, in a SQLite file or a PostgreSQL database |
+//! | [`cluster`] | several hosts whose players are in the same rooms |
+//! | [`ops`] | configuration, the operator's socket, metrics, the log |
+//! | [`cli`] | the command line |
+//!
+//! # Rules
+//!
+//! - A visitor holds one session channel with a terminal, and nothing else: no command, subsystem,
+//!   forwarding, agent or X11.
+//! - A public key is an account, and its comment does not matter. A visitor without a key is a guest.
+//! - Memory for a connection is bounded in both directions. What a client sends waits in its socket
+//!   while the session is busy, and at most one frame waits for a client that does not read.
+//! - A client costs the others nothing: connections, bytes and time before authentication are
+//!   limited, and so are the bytes a second after it.
+//! - Policies take time and chance as arguments; only [`ssh`] has sockets and a clock.
+//!
+//! Rejected: `russh`'s own accept loop. It has no limit of connections, no deadline before
+//! authentication, and its queue to a channel tells nothing about the socket.
+
+#![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
+
+pub mod accounts;
+mod bucket;
+pub mod cli;
+pub mod cluster;
+#[cfg(fuzzing)]
+#[doc(hidden)]
+pub mod fuzzing;
+mod lock;
+pub mod ops;
+pub mod rooms;
+pub mod sessions;
+#[cfg(test)]
+mod simulation;
+pub mod ssh;

@@ -1,0 +1,125 @@
+use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::ssh::Counters;
+use crate::ssh::admission::Refusal;
+
+/// The samples of a text, and a check of its form.
+fn samples(text: &str) -> BTreeMap<String, f64> {
+    let mut samples = BTreeMap::new();
+    let mut name = "";
+    for line in text.lines() {
+        if let Some(help) = line.strip_prefix("# HELP ") {
+            name = help.split(' ').next().unwrap();
+        } else if let Some(kind) = line.strip_prefix("# TYPE ") {
+            assert!(kind.starts_with(&format!("{name} ")), "{line}");
+        } else {
+            let (sample, value) = line.rsplit_once(' ').unwrap();
+            assert!(sample.starts_with(name), "{line}");
+            assert!(samples.insert(sample.to_owned(), value.parse().unwrap()).is_none(), "{line}");
+        }
+    }
+    samples
+}
+
+#[test]
+fn each_figure_has_a_sample() {
+    let metrics = Metrics::default();
+    let counters = Counters::default();
+    metrics.rooms.set(3);
+    metrics.members.add(7);
+    metrics.members.add(-2);
+    metrics.results_refused.count();
+    metrics.entries.add(4096);
+    counters.accepted.store(9, Ordering::Relaxed);
+    counters.refuse(Refusal::Penalty);
+    counters.refuse(Refusal::Penalty);
+    let samples = samples(&metrics.text(&counters));
+    for (name, value) in [
+        ("cellcaster_rooms", 3.0),
+        ("cellcaster_members", 5.0),
+        ("cellcaster_results_total{verdict=\"refused\"}", 1.0),
+        ("cellcaster_results_total{verdict=\"verified\"}", 0.0),
+        ("cellcaster_log_entries_total", 4096.0),
+        ("cellcaster_connections_accepted_total", 9.0),
+        ("cellcaster_connections_refused_total{reason=\"penalty\"}", 2.0),
+        ("cellcaster_connections_refused_total{reason=\"full\"}", 0.0),
+    ] {
+        assert_eq!(samples.get(name), Some(&value), "{name}");
+    }
+    if cfg!(target_os = "linux") {
+        assert!(samples["process_resident_memory_bytes"] > 1e6);
+        assert!(samples["process_cpu_seconds_total"] > 0.0);
+    }
+}
+
+#[test]
+fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
+    let metrics = Metrics::default();
+    metrics.host.set("a \"b\"\\".to_owned()).unwrap();
+    let [old, new] = [0; 2].map(|_| metrics.each_room.add(7));
+    // A room that was replaced takes nothing with it.
+    metrics.each_room.remove(7, &old);
+    new.members.set(3);
+    new.checks_different.count();
+    let other = metrics.each_room.add(8);
+    other.writes.set(1);
+    assert_eq!(metrics.each_room.written(), [8]);
+    let text = metrics.text(&Counters::default());
+    let lines = samples(&text);
+    let host = "host=\"a \\\"b\\\"\\\\\"";
+    assert!(lines.keys().all(|line| line.contains(host)), "{text}");
+    for (line, value) in [
+        (format!("cellcaster_rooms{{{host}}}"), 0.0),
+        (format!("cellcaster_room_members{{{host},room=\"7\"}}"), 3.0),
+        (format!("cellcaster_room_writes{{{host},room=\"8\"}}"), 1.0),
+        (
+            format!("cellcaster_each_room_checks_total{{{host},room=\"7\",result=\"different\"}}"),
+            1.0,
+        ),
+    ] {
+        assert_eq!(lines.get(&line), Some(&value), "{line}");
+    }
+    metrics.each_room.remove(7, &new);
+    metrics.each_room.remove(8, &other);
+    assert!(!metrics.text(&Counters::default()).contains("room=\""));
+}
+
+#[test]
+fn a_duration_is_in_the_buckets_from_its_bound_on() {
+    let metrics = Metrics::default();
+    for microseconds in [0, 100, 16_667, 2_500_001] {
+        metrics.key_time.add(Duration::from_micros(microseconds));
+    }
+    metrics.key_time.add(Duration::from_nanos(100_001));
+    let samples = samples(&metrics.text(&Counters::default()));
+    let sample = |end: &str| samples[&format!("cellcaster_key_seconds_{end}")];
+    for (end, count) in [
+        ("bucket{le=\"0.0001\"}", 2.0),
+        ("bucket{le=\"0.00025\"}", 3.0),
+        ("bucket{le=\"0.016667\"}", 4.0),
+        ("bucket{le=\"2.5\"}", 4.0),
+        ("bucket{le=\"+Inf\"}", 5.0),
+        ("count", 5.0),
+    ] {
+        assert_eq!(sample(end), count, "{end}");
+    }
+    assert!((sample("sum") - 2.516_868_001).abs() < 1e-9);
+}
+
+proptest! {
+    #[test]
+    fn buckets_grow_and_end_with_the_count(times in prop::collection::vec(any::<u64>(), 0..40)) {
+        let metrics = Metrics::default();
+        for &time in &times {
+            metrics.frame_time.add(Duration::from_nanos(time >> (time % 64)));
+        }
+        let distribution = metrics.frame_time.distribution();
+        prop_assert!(distribution.up_to.is_sorted());
+        prop_assert_eq!(distribution.up_to[histogram::BOUNDS.len()], times.len() as u64);
+    }
+}

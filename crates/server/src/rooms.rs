@@ -1,0 +1,9 @@
+//! Rooms: games that several people play, as deterministic state machines.
+
+pub mod directory;
+pub mod ghost;
+pub mod maps;
+pub mod recorded;
+pub mod room;
+pub mod sequencer;
+pub mod summary;

@@ -1,0 +1,446 @@
+//! Recordings of rooms: files of a folder that never grows beyond a bound.
+//!
+//! # Rules
+//!
+//! - The folder holds at most [`Bounds::bytes`], each file counted in whole blocks, and none that is finished for
+//!   longer than [`Bounds::age`]. The oldest finished recordings are removed first, and none that is written.
+//! - Where only those are left, or one has [`MOST_RECORDED_BYTES`], a recording ends with a whole entry. Its room goes
+//!   on, and its next round is recorded again.
+//! - A round begins another file where the last one has [`Bounds::file`], so that long recordings get old, too.
+//!
+//! Entries are few and short. They wait in memory for a second at most, see
+//! [`RoundLog`](crate::rooms::sequencer::RoundLog), so that a killed server loses no more, and each
+//! write ends with a whole line. So the disk is touched seldom, and a thread for it was refused. The folder is
+//! read once, when the server starts: reading the names of 65,536 files again would delay a step of a room.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fmt;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::mem;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, SystemTime};
+
+use crate::lock::locked;
+use crate::rooms::recorded::MOST_RECORDED_BYTES;
+use crate::rooms::room::{Entry, Header, Log, Queue, Recorded};
+use crate::rooms::summary::RoomId;
+use cellcaster::app::store::private;
+
+/// Gives each room its log.
+pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);
+
+impl Logs {
+    /// Logs as `open` gives them.
+    pub(crate) fn new(open: impl Fn(RoomId) -> Box<dyn Log> + Send + Sync + 'static) -> Self {
+        Self(Box::new(open))
+    }
+
+    /// Queues, which are recorded in `folder` if there is one.
+    pub(crate) fn recorded(folder: Option<PathBuf>) -> Self {
+        let Some(folder) = folder else { return Self::new(|_| Box::new(Queue::default())) };
+        let folder = Arc::new(Folder::open(folder, Bounds::default()));
+        Self::new(move |room| Box::new(RecordedRoom::new(folder.clone(), room)))
+    }
+
+    /// The log of a new room.
+    pub(crate) fn open(&self, id: RoomId) -> Box<dyn Log> {
+        (self.0)(id)
+    }
+}
+
+impl fmt::Debug for Logs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Logs").finish_non_exhaustive()
+    }
+}
+
+/// The log of a room, with its recording.
+struct RecordedRoom {
+    folder: Arc<Folder>,
+    room: RoomId,
+    log: Recorded<Queue, Output>,
+}
+
+/// A recording; `None` where it has ended before its round.
+#[derive(Default)]
+struct Output(Option<Recording>);
+
+/// A file that is written.
+struct Recording {
+    folder: Arc<Folder>,
+    path: PathBuf,
+    file: BufWriter<File>,
+    bytes: u64,
+}
+
+/// What a folder of recordings holds at most.
+struct Bounds {
+    bytes: u64,
+    age: Duration,
+    /// The bytes of a file from which on the next round begins another one.
+    file: u64,
+}
+
+/// A folder of recordings.
+struct Folder {
+    path: PathBuf,
+    bounds: Bounds,
+    held: Mutex<Held>,
+}
+
+/// The recordings in a folder.
+#[derive(Default)]
+struct Held {
+    /// Those that nobody writes, the oldest first, with their bytes.
+    finished: BTreeMap<(SystemTime, PathBuf), u64>,
+    /// In blocks: of all recordings.
+    blocks: u64,
+}
+
+/// In bytes: what a file takes of a disk at least, with its name.
+const BLOCK: u64 = 4 << 10;
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { bytes: 256 << 20, age: Duration::from_hours(30 * 24), file: 16 << 20 }
+    }
+}
+
+impl RecordedRoom {
+    fn new(folder: Arc<Folder>, room: RoomId) -> Self {
+        Self { folder, room, log: Recorded::new(Queue::default(), Output::default()) }
+    }
+}
+
+impl Log for RecordedRoom {
+    fn begin(&mut self, header: &Header) -> io::Result<()> {
+        let most = self.folder.bounds.file;
+        if self.log.output().0.as_ref().is_none_or(|recording| recording.bytes >= most) {
+            // The file of the rounds before is finished first, so that it can make room for this one.
+            self.log = Recorded::new(Queue::default(), Output::default());
+            let opened = Recording::open(self.folder.clone(), self.room);
+            let opened = opened.map_err(|error| {
+                tracing::error!(%error, room = %self.room, "a room cannot be recorded");
+            });
+            self.log = Recorded::new(Queue::default(), Output(opened.ok()));
+        }
+        self.log.begin(header)
+    }
+
+    fn append(&mut self, entry: Entry) -> io::Result<()> {
+        self.log.append(entry)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.log.flush()
+    }
+
+    fn next(&mut self, step: u64) -> Option<Entry> {
+        self.log.next(step)
+    }
+}
+
+impl Write for Output {
+    /// Takes all bytes or none. Those of a recording that has ended are lost.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some(recording) = &mut self.0 {
+            if !recording.has_room_for(bytes.len() as u64) {
+                self.0 = None;
+                let reason = "it ends here, since recordings have all bytes that they may have";
+                return Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason));
+            }
+            recording.file.write_all(bytes)?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.as_mut().map_or(Ok(()), |recording| recording.file.flush())
+    }
+}
+
+impl Recording {
+    /// A file that did not exist before.
+    fn open(folder: Arc<Folder>, room: RoomId) -> io::Result<Self> {
+        private::create_folder(&folder.path)?;
+        if !folder.take(1) {
+            return Err(io::ErrorKind::QuotaExceeded.into());
+        }
+        match new_file(&folder.path, room) {
+            Ok((path, file)) => Ok(Self { folder, path, file: BufWriter::new(file), bytes: 0 }),
+            Err(error) => {
+                locked(&folder.held, |held| held.blocks -= 1);
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes room in the folder for more bytes, if there is any.
+    fn has_room_for(&mut self, more: u64) -> bool {
+        let bytes = self.bytes + more;
+        let has_room =
+            bytes <= MOST_RECORDED_BYTES && self.folder.take(blocks(bytes) - blocks(self.bytes));
+        if has_room {
+            self.bytes = bytes;
+        }
+        has_room
+    }
+}
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        // A fault was reported when the entries were written.
+        _ = self.file.flush();
+        let key = (SystemTime::now(), mem::take(&mut self.path));
+        locked(&self.folder.held, |held| held.finished.insert(key, self.bytes));
+    }
+}
+
+impl Folder {
+    /// A folder, with the recordings that are in it.
+    fn open(path: PathBuf, bounds: Bounds) -> Self {
+        let mut held = Held::default();
+        for (key, bytes) in recordings(&path) {
+            held.blocks += blocks(bytes);
+            held.finished.insert(key, bytes);
+        }
+        let folder = Self { path, bounds, held: Mutex::new(held) };
+        folder.take(0);
+        folder
+    }
+
+    /// Takes so many blocks, after it has removed what is too old and the oldest that is too much; returns whether
+    /// there is room for them.
+    fn take(&self, more: u64) -> bool {
+        let now = SystemTime::now();
+        let most = self.bounds.bytes / BLOCK;
+        locked(&self.held, |held| {
+            while let Some(oldest) = held.finished.first_entry() {
+                let age = now.duration_since(oldest.key().0).unwrap_or_default();
+                if held.blocks + more <= most && age <= self.bounds.age {
+                    break;
+                }
+                let ((_, path), bytes) = oldest.remove_entry();
+                held.blocks -= blocks(bytes);
+                remove(&path);
+            }
+            let has_room = held.blocks + more <= most;
+            if has_room {
+                held.blocks += more;
+            }
+            has_room
+        })
+    }
+}
+
+/// The blocks of a file.
+fn blocks(bytes: u64) -> u64 {
+    bytes.div_ceil(BLOCK).max(1)
+}
+
+/// The recordings in a folder, with their times and bytes; none if it can't be read, as before the first one.
+fn recordings(folder: &Path) -> impl Iterator<Item = ((SystemTime, PathBuf), u64)> {
+    fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|entry| {
+        let data = entry.metadata().ok()?;
+        let is_recording = data.is_file() && is_name(&entry.file_name());
+        is_recording.then_some(((data.modified().ok()?, entry.path()), data.len()))
+    })
+}
+
+/// Whether it is the name of a recording, `room-7.log` or `room-7-2.log`.
+fn is_name(name: &OsStr) -> bool {
+    let numbers = name.to_str().and_then(|name| name.strip_prefix("room-")?.strip_suffix(".log"));
+    numbers.is_some_and(|text| text.split('-').all(|number| number.parse::<u32>().is_ok()))
+}
+
+fn remove(path: &Path) {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            tracing::error!(%error, "an old recording of a room cannot be removed");
+        }
+        _ => {}
+    }
+}
+
+fn new_file(folder: &Path, room: RoomId) -> io::Result<(PathBuf, File)> {
+    for number in 0.. {
+        let suffix = if number == 0 { String::new() } else { format!("-{number}") };
+        let path = folder.join(format!("room-{room}{suffix}.log"));
+        let mut options = OpenOptions::new();
+        // What players say to each other is in it.
+        private::restrict_file(&mut options);
+        match options.write(true).create_new(true).open(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            opened => return opened.map(|file| (path, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{env, process};
+
+    use super::*;
+    use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, parse_log};
+    use crate::sessions::line::Line;
+    use cellcaster::world::Difficulty;
+
+    const DAY: Duration = Duration::from_hours(24);
+
+    /// A folder that does not exist yet, and is removed at the end.
+    struct Place(PathBuf);
+
+    impl Place {
+        fn new(name: &str) -> Self {
+            let path =
+                env::temp_dir().join(format!("cellcaster-recordings-{}-{name}", process::id()));
+            _ = fs::remove_dir_all(&path);
+            Self(path)
+        }
+
+        fn open(&self, bytes: u64) -> Arc<Folder> {
+            let bounds = Bounds { bytes, file: 3 * BLOCK, ..Bounds::default() };
+            Arc::new(Folder::open(self.0.clone(), bounds))
+        }
+
+        /// The recordings of a server that has run before, so many days old.
+        fn with_old(self, old: &[(&str, u64)]) -> Self {
+            fs::create_dir_all(&self.0).unwrap();
+            for (name, days) in old {
+                let file = File::create(self.0.join(name)).unwrap();
+                file.set_len(BLOCK).unwrap();
+                file.set_modified(SystemTime::now() - DAY * *days as u32).unwrap();
+            }
+            self
+        }
+
+        fn names(&self) -> Vec<String> {
+            let entries = fs::read_dir(&self.0).unwrap();
+            let mut names: Vec<String> =
+                entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort_unstable();
+            names
+        }
+
+        fn bytes(&self) -> u64 {
+            recordings(&self.0).map(|(_, bytes)| blocks(bytes) * BLOCK).sum()
+        }
+    }
+
+    impl Drop for Place {
+        fn drop(&mut self) {
+            _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn header() -> Header {
+        Header::new("hall", Mode::Tag, Difficulty::Normal, 7)
+    }
+
+    /// The log of a room in its first round.
+    fn begun(folder: &Arc<Folder>, room: u32) -> RecordedRoom {
+        let mut log = RecordedRoom::new(folder.clone(), RoomId(room));
+        log.begin(&header()).unwrap();
+        log
+    }
+
+    fn say(log: &mut RecordedRoom, lines: u64) -> io::Result<()> {
+        let text = Line::of("They said the tower had no door.", CHAT_COLUMNS).unwrap();
+        (0..lines).try_for_each(|step| {
+            let said = Entry { step, member: MemberId(1), command: Command::Say(text.clone()) };
+            let written = log.append(said);
+            assert!(log.next(step).is_some(), "a line that is not recorded is in the log");
+            written
+        })
+    }
+
+    #[test]
+    fn the_oldest_recordings_go_first_and_never_one_that_is_written() {
+        let place = Place::new("oldest").with_old(&[
+            ("room-1.log", 2),
+            ("room-2.log", 3),
+            ("notes.txt", 90),
+        ]);
+        let folder = place.open(4 * BLOCK);
+        let (_one, two) = (begun(&folder, 11), begun(&folder, 12));
+        assert_eq!(
+            place.names(),
+            ["notes.txt", "room-1.log", "room-11.log", "room-12.log", "room-2.log"]
+        );
+        let _three = begun(&folder, 13);
+        assert_eq!(
+            place.names(),
+            ["notes.txt", "room-1.log", "room-11.log", "room-12.log", "room-13.log"]
+        );
+        drop(two);
+        let (_four, _five) = (begun(&folder, 14), begun(&folder, 15));
+        assert_eq!(
+            place.names(),
+            ["notes.txt", "room-11.log", "room-13.log", "room-14.log", "room-15.log"]
+        );
+    }
+
+    #[test]
+    fn recordings_of_more_than_thirty_days_are_removed() {
+        let place = Place::new("age").with_old(&[("room-1.log", 29), ("room-2.log", 31)]);
+        let _folder = place.open(1 << 20);
+        assert_eq!(place.names(), ["room-1.log"]);
+    }
+
+    /// However many rooms say however much, the folder keeps its bound, and each recording is one.
+    #[test]
+    fn a_folder_never_has_more_than_its_bytes() {
+        let place = Place::new("bytes");
+        let folder = place.open(8 * BLOCK);
+        let mut logs = [1, 2, 3].map(|room| begun(&folder, room));
+        for round in 0..20 {
+            for log in &mut logs {
+                _ = say(log, 10 + 7 * round);
+                log.flush().unwrap();
+                assert!(place.bytes() <= 8 * BLOCK, "{} bytes", place.bytes());
+            }
+            for log in &mut logs {
+                _ = log.begin(&header());
+            }
+        }
+        drop(logs);
+        assert!(place.bytes() > 4 * BLOCK, "{} bytes", place.bytes());
+        for (_, path) in recordings(&place.0).map(|(key, _)| key) {
+            let text = fs::read_to_string(path).unwrap();
+            assert!(parse_log(&text).is_some(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_recording_that_fills_the_folder_ends_and_the_next_round_takes_its_place() {
+        let place = Place::new("full");
+        let folder = place.open(2 * BLOCK);
+        let mut log = begun(&folder, 1);
+        assert_eq!(say(&mut log, 1000).unwrap_err().kind(), io::ErrorKind::QuotaExceeded);
+        say(&mut log, 1).unwrap();
+        assert_eq!(place.names(), ["room-1.log"]);
+        log.begin(&header()).unwrap();
+        say(&mut log, 20).unwrap();
+        log.flush().unwrap();
+        assert_eq!(place.names(), ["room-1.log"]);
+        let text = fs::read_to_string(place.0.join("room-1.log")).unwrap();
+        assert_eq!(parse_log(&text).unwrap()[0].1.len(), 20);
+        assert!(place.bytes() <= 2 * BLOCK);
+    }
+
+    #[test]
+    fn a_round_after_a_long_recording_begins_another_file() {
+        let place = Place::new("next");
+        let folder = place.open(1 << 20);
+        let mut log = begun(&folder, 7);
+        log.begin(&header()).unwrap();
+        assert_eq!(place.names(), ["room-7.log"]);
+        say(&mut log, 400).unwrap();
+        log.begin(&header()).unwrap();
+        assert_eq!(place.names(), ["room-7-1.log", "room-7.log"]);
+    }
+}

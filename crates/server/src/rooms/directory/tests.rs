@@ -1,0 +1,200 @@
+use std::io;
+
+use tokio::runtime::Builder;
+
+use super::*;
+use crate::ops::logging::LogFormat;
+use crate::ops::logging::tests::logged;
+use crate::ops::metrics::Metrics;
+use crate::rooms::room::{Command, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
+use cellcaster::game::PlayerColor;
+use cellcaster::world::Difficulty;
+
+impl Rooms {
+    /// The newest snapshot of a room; `None` if there is no such room.
+    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
+        locked(&self.0.open, |open| {
+            open.rooms.get(&id).and_then(|room| room.interface.shown.view())
+        })
+    }
+
+    /// Ends a room as a fault does.
+    pub(crate) fn close(&self, id: RoomId, sentence: &str) {
+        locked(&self.0.open, |open| open.rooms[&id].interface.close(sentence));
+    }
+}
+
+/// A log that panics at the first entry.
+struct Broken;
+
+impl Log for Broken {
+    fn begin(&mut self, _: &Header) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn append(&mut self, _: Entry) -> io::Result<()> {
+        panic!("the log is broken")
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn next(&mut self, _: u64) -> Option<Entry> {
+        None
+    }
+}
+
+fn wish(mode: Mode) -> RoomWish {
+    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+}
+
+/// Rooms of which the ones in `broken` panic as soon as anybody joins. The first is a standing one.
+fn rooms(broken: &'static [u32]) -> Rooms {
+    let limits = RoomLimits {
+        most: 4,
+        most_watchers: 4,
+        closes_after: Duration::ZERO,
+        standing: vec![wish(Mode::Roam)],
+    };
+    let logs = Logs::new(|id| -> Box<dyn Log> {
+        if broken.contains(&id.0) { Box::new(Broken) } else { Box::<Queue>::default() }
+    });
+    let load = Arc::new(Load::new(Arc::<Metrics>::default()));
+    Rooms::new(limits, Arc::new(Catalog::builtin()), logs, load, 7)
+}
+
+/// What is logged of rooms while `act` runs.
+fn run(act: impl AsyncFnOnce()) -> String {
+    let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+    logged(LogFormat::Text, "off,rooms=info", |_| runtime.block_on(act()))
+}
+
+fn name(text: &str) -> Line {
+    Line::of(text, NAME_COLUMNS).unwrap()
+}
+
+async fn end_of(place: &mut Place) -> Arc<str> {
+    loop {
+        if let Some(sentence) = place.closed() {
+            return sentence;
+        }
+        place.changed().await;
+    }
+}
+
+/// Waits until the lobby lists exactly these rooms.
+async fn listed(rooms: &Rooms, ids: &[u32]) {
+    let mut summaries = rooms.summaries();
+    let is_right =
+        |list: &Arc<[RoomSummary]>| list.iter().map(|room| room.id.0).eq(ids.iter().copied());
+    summaries.wait_for(is_right).await.unwrap();
+}
+
+#[test]
+fn a_panic_ends_its_room_alone() {
+    let text = run(async || {
+        let rooms = rooms(&[2]);
+        let mut ben = rooms.enter(RoomId(1), &name("Ben")).unwrap();
+        let mut ada = rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap();
+        let mut watcher = rooms.watch(RoomId(2)).unwrap();
+        assert!(end_of(&mut ada).await.contains("fault"));
+        assert!(end_of(&mut watcher).await.contains("fault"));
+        assert_eq!(ada.act(Command::Again), Ok(()));
+        drop((ada, watcher));
+        listed(&rooms, &[1]).await;
+        assert_eq!(rooms.enter(RoomId(2), &name("Ada")).err(), Some(RoomRefusal::Gone));
+        let before = ben.view().unwrap().step;
+        ben.changed().await;
+        assert!(ben.view().unwrap().step > before);
+        assert_eq!(rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap().room(), RoomId(3));
+    });
+    let failed: Vec<&str> = text.lines().filter(|line| line.contains("failed")).collect();
+    assert_eq!(failed.len(), 1, "{text}");
+    assert!(failed[0].contains(r#"room=2 error="the log is broken""#), "{text}");
+}
+
+#[test]
+fn a_standing_room_that_panics_is_opened_anew() {
+    run(async || {
+        let rooms = rooms(&[1]);
+        let mut ada = rooms.enter(RoomId(1), &name("Ada")).unwrap();
+        end_of(&mut ada).await;
+        listed(&rooms, &[2]).await;
+        let mut ada = rooms.enter(RoomId(2), &name("Ada")).unwrap();
+        ada.changed().await;
+        assert_eq!(ada.closed(), None);
+    });
+}
+
+/// Whoever comes and goes leaves nothing behind but the standing rooms.
+#[test]
+fn rooms_that_are_left_are_closed_and_forgotten() {
+    run(async || {
+        let rooms = rooms(&[]);
+        for _ in 0..20 {
+            let places: Vec<Place> =
+                (0..3).map(|_| rooms.open(&wish(Mode::Tag), &name("Ada")).unwrap()).collect();
+            let full = rooms.open(&wish(Mode::Tag), &name("Ben")).err();
+            assert_eq!(full, Some(RoomRefusal::TooMany));
+            drop(places);
+            listed(&rooms, &[1]).await;
+        }
+        assert_eq!(locked(&rooms.0.open, |open| open.rooms.len()), 1);
+    });
+}
+
+#[test]
+fn the_end_of_a_round_is_an_event() {
+    let text = run(async || {
+        let rooms = rooms(&[]);
+        let header = Header::new("museum", Mode::Hide, Difficulty::default(), 7);
+        let mut room = Room::new(rooms.catalog(), header).unwrap();
+        let NewRoom { id, .. } = rooms.add(&wish(Mode::Hide), false).unwrap();
+        for (member, member_name) in [(1, "Ada"), (2, "Ben")] {
+            let command = Command::Join { color: PlayerColor::ALL[0], name: name(member_name) };
+            room.apply(&Entry { step: room.step(), member: MemberId(member), command });
+        }
+        while !matches!(room.phase(), Phase::Over { .. }) {
+            room.advance();
+            rooms.change(id, &room);
+        }
+        room.advance();
+        rooms.change(id, &room);
+    });
+    let ended: Vec<&str> = text.lines().filter(|line| line.contains("round ended")).collect();
+    assert_eq!(ended.len(), 1, "{text}");
+    assert!(ended[0].contains("winner="), "{text}");
+}
+
+#[test]
+fn a_member_who_returns_by_another_connection_has_another_place() {
+    use tokio::sync::watch;
+
+    use crate::rooms::room::{CHAT_COLUMNS, Room};
+    use crate::rooms::sequencer::{Inbox, RoomInterface, Shown};
+    use crate::simulation;
+
+    let catalog = Arc::new(simulation::catalog(simulation::HALL));
+    let header = Header::new("hall", Mode::Roam, Difficulty::Normal, 7);
+    let room = Room::new(&catalog, header).unwrap();
+    let interface = Arc::new(RoomInterface {
+        inbox: Inbox::new(Mode::Roam, room.next_member()),
+        shown: Shown::new(room.view()),
+        closes_after: watch::Sender::new(None),
+    });
+    let member = interface.inbox.join(&Line::of("Mara", NAME_COLUMNS).unwrap()).unwrap();
+    let place = || Place::member(RoomId(1), member, Arc::clone(&interface));
+    let first = place();
+    assert!(first.closed().is_none());
+    interface.inbox.dismiss(member);
+    interface.inbox.admit(member, PlayerColor::ALL[0]);
+    let second = place();
+    assert!(first.closed().is_some() && second.closed().is_none());
+    let hello = Command::Say(Line::of("hello", CHAT_COLUMNS).unwrap());
+    assert!(first.act(hello.clone()).is_err());
+    drop(first);
+    assert!(second.closed().is_none() && second.act(hello).is_ok());
+    drop(second);
+    assert_eq!(interface.inbox.seated(), []);
+}

@@ -1,0 +1,166 @@
+//! Ghosts: the best runs of a level, which walk along as see-through figures.
+//!
+//! A ghost is a picture and no more. It is outside of the room: nobody can touch it, and a room is the
+//! same, bit for bit, whether somebody sees ghosts or not.
+//!
+//! The script of a run is played once, on the thread of the store, into a [`Pose`] for every second
+//! step. A game for each session that plays the script beside the room was refused: a session would
+//! step a second game with its guards 60 times a second, and could not begin in the middle of a round.
+
+mod kept;
+mod pose;
+
+use std::sync::Arc;
+
+pub(crate) use self::kept::KeptRuns;
+use self::pose::Pose;
+use crate::sessions::line::Line;
+use cellcaster::game::{Game, PlayerColor, Rules, Script};
+use cellcaster::world::{FieldOfView, Figure, SpriteId, World};
+
+/// The most steps of a run that are shown: ten minutes, the longest race.
+const MOST_STEPS: usize = 10 * 60 * 60;
+/// A pose is kept for each of these steps.
+const EVERY: usize = 2;
+/// How much of a ghost shows, of 255: as much as at home.
+const OPACITY: u8 = 96;
+/// The colour of the best run. It is the last but one that members get.
+const BEST: PlayerColor = PlayerColor::Orange;
+
+/// A run, as it looks.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Run {
+    poses: Box<[Pose]>,
+}
+
+/// A run that a visitor sees.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ghost {
+    run: Arc<Run>,
+    /// Whose run it is; `None` for the visitor's own.
+    name: Option<Line>,
+}
+
+impl Run {
+    /// The run of `script` in `world`, until its first exit.
+    fn played(world: World, rules: Rules, script: &Script) -> Self {
+        let mut game = Game::with_rules(world, rules);
+        let mut walked = 0.0;
+        let mut poses = Vec::new();
+        for (step, (_section, intents)) in script.iter().take(MOST_STEPS).enumerate() {
+            if game.is_finished() {
+                break;
+            }
+            if step % EVERY == 0 {
+                poses.push(Pose::of(&game, walked));
+            }
+            let before = game.camera(FieldOfView::default()).position();
+            game.step(intents);
+            walked += before.distance(game.camera(FieldOfView::default()).position());
+        }
+        Self { poses: poses.into() }
+    }
+
+    /// The memory of the poses, in bytes.
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        size_of_val(&*self.poses)
+    }
+}
+
+impl Ghost {
+    /// Somebody's run; `None` for the visitor's own.
+    pub(crate) fn new(run: Arc<Run>, name: Option<Line>) -> Self {
+        Self { run, name }
+    }
+
+    /// What stands above the figure.
+    pub(crate) fn label(&self) -> String {
+        match &self.name {
+            Some(name) => format!("{name}'s best"),
+            None => "your best".to_owned(),
+        }
+    }
+
+    /// The colour of the figure: the visitor's `own` for their own run.
+    pub(crate) fn color(&self, own: Option<PlayerColor>) -> PlayerColor {
+        own.filter(|_| self.name.is_none()).unwrap_or(BEST)
+    }
+
+    /// The figure after `step` steps of the run; `None` after its end.
+    pub(crate) fn figure(&self, step: u64, sprite: SpriteId) -> Option<Figure> {
+        let index = usize::try_from(step).ok()? / EVERY;
+        Some(self.run.poses.get(index)?.figure(sprite, OPACITY))
+    }
+}
+
+#[cfg(test)]
+impl Ghost {
+    /// The run of a script of these lines in `world`.
+    pub(crate) fn of_script(world: &World, script: &str, name: Option<&str>) -> Self {
+        let script = Script::parse(script, "it").unwrap_or_else(|faults| panic!("{faults}"));
+        let run = Run::played(world.clone(), Rules::default(), &script);
+        Self::new(Arc::new(run), name.and_then(|name| Line::of(name, 16)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cellcaster::map::builtin;
+
+    const WON: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../maps/scripts/cellar.normal.script"
+    ));
+
+    fn cellar() -> World {
+        builtin::LEVELS.iter().find(|level| level.name == "cellar").unwrap().world().unwrap()
+    }
+
+    #[test]
+    fn a_ghost_is_where_the_script_was_in_that_step() {
+        let script = Script::parse(WON, "it").unwrap();
+        let ghost = Ghost::of_script(&cellar(), WON, Some("Mara"));
+        let mut game = Game::with_rules(cellar(), script.header().rules());
+        let mut shown = 0;
+        for (step, (_, intents)) in script.iter().enumerate() {
+            if game.is_finished() {
+                break;
+            }
+            if step % EVERY == 0 {
+                let figure = ghost.figure(step as u64, SpriteId(0)).unwrap();
+                let camera = game.camera(FieldOfView::default());
+                assert!(figure.position.distance(camera.position()) < 1e-4, "step {step}");
+                assert!((figure.base - game.feet()).abs() < 1e-4, "step {step}");
+                let turned = figure.heading.degrees() - camera.heading.degrees();
+                assert!(turned.abs().min(360.0 - turned.abs()) < 0.01, "step {step}");
+                shown += 1;
+            }
+            game.step(intents);
+        }
+        assert!(game.is_finished() && shown > 100);
+        assert_eq!(ghost.figure(2 * shown, SpriteId(0)), None, "it has left the level");
+        assert_eq!(ghost.figure(u64::MAX, SpriteId(0)), None);
+        assert_eq!(ghost.label(), "Mara's best");
+    }
+
+    #[test]
+    fn a_ghost_walks() {
+        let ghost = Ghost::of_script(&cellar(), WON, None);
+        let frames = (0..400).filter_map(|step| Some(ghost.figure(step, SpriteId(0))?.frame));
+        let frames: std::collections::BTreeSet<u8> = frames.collect();
+        assert!(frames.len() >= 3, "{frames:?}");
+        assert_eq!(ghost.color(Some(PlayerColor::Sky)), PlayerColor::Sky);
+        assert_eq!(ghost.color(None), BEST);
+    }
+
+    #[test]
+    fn the_longest_run_takes_less_than_300_kilobytes() {
+        let text = format!("level cellar\n{} steps stand\n", MOST_STEPS + 100);
+        let script = Script::parse(&text, "it").unwrap();
+        let run = Run::played(cellar().without_guards(), Rules::default(), &script);
+        assert_eq!(run.poses.len(), MOST_STEPS / EVERY);
+        assert!(run.bytes() < 300_000, "{}", run.bytes());
+    }
+}

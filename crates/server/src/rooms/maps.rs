@@ -1,0 +1,199 @@
+//! The host's own maps: levels beside the built-in ones.
+//!
+//! Every `*.toml` file of a folder is a map, read once, when the server starts. All faults of all
+//! maps are reported in one run, as `cellcaster check` reports them.
+//!
+//! # Rules
+//!
+//! - A map has a grid: nobody else could be met among bodies.
+//! - Its name is that of its file without the ending: 1 to 32 of the characters a to z, 0 to 9, `-` and
+//!   `_`. It is no name of a built-in level.
+//! - Logs, scripts and boards call it by its [key](map_key), which has a hash of its text: results of a map
+//!   that has changed since do not compare with the new ones.
+//! - There are at most [`MOST_MAPS`] maps, of at most [`MOST_MAP_BYTES`] each and [`MOST_BYTES`] together.
+//!
+//! Maps that are read again while the server runs were refused: the rooms in them, and the boards,
+//! would have two maps of one name.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cellcaster::app::store::map_key;
+use cellcaster::fault::{Faults, printable_path};
+use cellcaster::map::{self, Folder, builtin};
+use cellcaster::world::World;
+
+/// The most maps of a host.
+pub const MOST_MAPS: usize = 100;
+/// The largest map of a host, in bytes.
+pub const MOST_MAP_BYTES: u64 = 256 << 10;
+/// The most bytes of all maps of a host.
+pub const MOST_BYTES: u64 = 4 << 20;
+
+/// The host's own maps, in the order of their names.
+#[derive(Clone, Debug, Default)]
+pub struct HostMaps(Vec<HostMap>);
+
+#[derive(Clone, Debug)]
+pub(crate) struct HostMap {
+    /// The name of the file, without its ending.
+    pub(crate) name: String,
+    pub(crate) key: String,
+    pub(crate) world: Arc<World>,
+}
+
+/// Why maps cannot be taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MapsError {
+    /// A sentence.
+    Sentence(String),
+    /// Several sentences, or reports like those of `cellcaster check`, in lines.
+    Report(String),
+}
+
+impl HostMaps {
+    /// The maps of a folder, or of one map file.
+    ///
+    /// # Errors
+    /// All faults of all maps, or the reason why the folder cannot be read.
+    pub fn read(path: &Path) -> Result<Self, MapsError> {
+        let files = map_files(path)?;
+        let (mut maps, mut errors, mut bytes) = (Vec::new(), Vec::new(), 0);
+        for file in &files {
+            match read_map(file) {
+                Ok((map, length)) => {
+                    bytes += length;
+                    maps.push(map);
+                }
+                Err(error) => errors.push(error),
+            }
+            if bytes > MOST_BYTES {
+                let most = MOST_BYTES >> 20;
+                return Err(MapsError::Sentence(format!(
+                    "the maps in {} have more than {most} MiB together",
+                    printable_path(path)
+                )));
+            }
+        }
+        match MapsError::of_all(errors) {
+            None => Ok(Self(maps)),
+            Some(error) => Err(error),
+        }
+    }
+
+    /// The names of the maps.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|map| map.name.as_str())
+    }
+
+    /// The names of all levels: the built-in ones, then the maps.
+    pub fn level_names(&self) -> Vec<&str> {
+        builtin::LEVELS.iter().map(|level| level.name).chain(self.names()).collect()
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &HostMap> {
+        self.0.iter()
+    }
+}
+
+impl MapsError {
+    /// One error for all; `None` if there are none.
+    fn of_all(mut errors: Vec<Self>) -> Option<Self> {
+        if errors.len() <= 1 {
+            return errors.pop();
+        }
+        let texts: Vec<String> = errors.iter().map(Self::to_string).collect();
+        Some(Self::Report(texts.join("\n")))
+    }
+}
+
+impl fmt::Display for MapsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Sentence(text) | Self::Report(text)) = self;
+        f.write_str(text)
+    }
+}
+
+impl std::error::Error for MapsError {}
+
+impl From<Faults> for MapsError {
+    fn from(faults: Faults) -> Self {
+        Self::Report(faults.to_string().trim_end().to_owned())
+    }
+}
+
+/// The map files in a folder, sorted by name; a file alone.
+fn map_files(path: &Path) -> Result<Vec<PathBuf>, MapsError> {
+    let unreadable = |error| {
+        MapsError::Sentence(format!("the maps in {} can't be read: {error}", printable_path(path)))
+    };
+    if !fs::metadata(path).map_err(unreadable)?.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    for entry in fs::read_dir(path).map_err(unreadable)? {
+        let file = entry.map_err(unreadable)?.path();
+        if file.extension().is_some_and(|ending| ending == "toml") {
+            files.push(file);
+        }
+        if files.len() > MOST_MAPS {
+            return Err(MapsError::Sentence(format!(
+                "there are more than {MOST_MAPS} maps in {}",
+                printable_path(path)
+            )));
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// A map, and its length in bytes.
+fn read_map(path: &Path) -> Result<(HostMap, u64), MapsError> {
+    let name = map_name(path)?;
+    let shown = printable_path(path);
+    let unreadable = |error| MapsError::Sentence(format!("{shown} can't be read: {error}"));
+    // Opening a pipe would wait for its other end.
+    if !fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err(MapsError::Sentence(format!("{shown} is no file")));
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(MOST_MAP_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    let length = bytes.len() as u64;
+    if length > MOST_MAP_BYTES {
+        let most = MOST_MAP_BYTES >> 10;
+        return Err(MapsError::Sentence(format!(
+            "{shown} is larger than a map of a host may be, {most} KiB"
+        )));
+    }
+    let text = Faults::text_of(bytes, &shown, "map")?;
+    let world = Arc::new(map::parse(&text, &shown, &Folder::of(path))?);
+    let key = map_key(&name, &text);
+    Ok((HostMap { name, key, world }, length))
+}
+
+/// The name of the map in a file, if it may have it.
+fn map_name(path: &Path) -> Result<String, MapsError> {
+    const LONGEST: usize = 32;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let is_plain = |byte: u8| matches!(byte, b'a'..=b'z' | b'0'..=b'9' | b'-' | b'_');
+    if !(1..=LONGEST).contains(&name.len()) || !name.bytes().all(is_plain) {
+        return Err(MapsError::Sentence(format!(
+            "{} needs another name: 1 to {LONGEST} of the characters a to z, 0 to 9, - and _, then .toml",
+            printable_path(path)
+        )));
+    }
+    if builtin::LEVELS.iter().any(|level| level.name == name) {
+        return Err(MapsError::Sentence(format!(
+            "{} needs another name: {name} is a built-in level",
+            printable_path(path)
+        )));
+    }
+    Ok(name.into_owned())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,136 @@
+//! Checkpoints: the whole state of a room between two steps as bytes, and back.
+//!
+//! A host that has a checkpoint and the entries of the log from its step on has the room, bit for bit,
+//! and needs nothing of the log before. The level comes from the host's own catalog.
+//!
+//! The first line says who can read the rest, as in a [stored game](cellcaster::game::stored). The header of
+//! the round follows as its text, then the room, and the game. What was true of a room may be restored;
+//! whether it ever was is not checked: hosts believe each other, but no byte makes one of them fail.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::entry::{CHAT_COLUMNS, MemberId, NAME_COLUMNS};
+use super::member::Member;
+use super::presence::KeptPlace;
+use super::replayed::no_level;
+use super::talk::SAID;
+use super::{Catalog, Header, Room, Said};
+use crate::accounts::printable;
+use crate::sessions::line::Line;
+use cellcaster::game::PlayerColor;
+use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
+use cellcaster::rng;
+
+/// What the first line calls a room.
+const KIND: &str = "room-checkpoint";
+/// The widest line of what is said, in columns: a name and what its owner does.
+const SAID_COLUMNS: usize = CHAT_COLUMNS + NAME_COLUMNS;
+
+impl Room {
+    /// The whole state.
+    pub(crate) fn checkpoint(&self) -> Vec<u8> {
+        let talk = (self.header.to_string(), &self.said, self.said_count);
+        let mut bytes = written(KIND, &(talk, self.play()));
+        // A catalog has levels of maps, which all can be stored.
+        bytes.extend(self.game.stored().unwrap_or_default());
+        bytes
+    }
+
+    /// The room of which `bytes` are a checkpoint.
+    ///
+    /// # Errors
+    /// A sentence: the bytes are of no room, of one of another version, or of one in a level that the
+    /// catalog does not have; or they are damaged.
+    pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
+        let sentence = |error: Unrestorable| error.to_string();
+        let mut input = Reader::new(KIND, bytes, (0, 0)).map_err(sentence)?;
+        let header = read_header(&mut input).map_err(sentence)?;
+        let room = Self::without_members(catalog, header.clone());
+        let mut room = room.ok_or_else(|| no_level(&printable(&header.level, CHAT_COLUMNS)))?;
+        room.read(&mut input).map_err(sentence)?;
+        Ok(room)
+    }
+
+    /// A number that differs, almost certainly, between rooms in different states. What was said is no
+    /// part of it: it goes on from round to round, and changes nothing.
+    pub(crate) fn checksum(&self) -> u64 {
+        rng::hash(self.step, [checksum(&self.play()), self.game.checksum()])
+    }
+
+    /// All but the header, what was said, and the game.
+    fn play(&self) -> impl Serialize {
+        let Self {
+            catalog: _,
+            header: _,
+            game: _,
+            round,
+            members,
+            next_member,
+            step,
+            again,
+            emotes,
+            said: _,
+            said_count: _,
+            // Filled in each step.
+            inputs: _,
+            // Those of the round.
+            standings: _,
+        } = self;
+        (step, next_member, round, members, again, emotes)
+    }
+
+    fn read(&mut self, input: &mut Reader) -> Result<(), Unrestorable> {
+        (self.said, self.said_count) = input.read()?;
+        (self.step, self.next_member, self.round) = input.read()?;
+        (self.members, self.again, self.emotes) = input.read()?;
+        self.standings = self.round.standings().into();
+        let start = self.game.as_ref().clone();
+        self.game = Arc::new(start.restored(input.rest())?);
+        self.check()
+    }
+
+    /// Refuses a state in which a step could fail, or that shows what nobody can type.
+    fn check(&self) -> Result<(), Unrestorable> {
+        self.round.check(self.header.mode, self.step)?;
+        check(self.next_member <= MemberId::MOST.0 + 1, "the number of the next member")?;
+        check(self.members.len() <= self.header.mode.most(), "the number of members")?;
+        check(self.are_members_possible(), "a member")?;
+        let is_possible = |said: &Said| {
+            let is_name = |(name, _): &(Line, PlayerColor)| name.fits(NAME_COLUMNS);
+            said.number <= self.said_count
+                && said.by.as_ref().is_none_or(is_name)
+                && printable(&said.text, SAID_COLUMNS) == said.text
+        };
+        let is_said = self.said.len() <= SAID && self.said.iter().all(is_possible);
+        check(is_said, "what was said")
+    }
+
+    /// Whether each member has a number and a player of their own.
+    fn are_members_possible(&self) -> bool {
+        let color = |member: &Member| {
+            let player = member.player?;
+            self.game.seen_by(player)?.color()
+        };
+        self.members.iter().enumerate().all(|(index, member)| {
+            let is_other = |other: &Member| {
+                other.id != member.id && (other.player.is_none() || other.player != member.player)
+            };
+            self.members[..index].iter().all(is_other)
+                && member.name.fits(NAME_COLUMNS)
+                && member.id < self.next_member()
+                && member.kept.is_none_or(KeptPlace::is_possible)
+                && (member.player.is_none() || color(member) == Some(member.color))
+        })
+    }
+}
+
+fn read_header(input: &mut Reader) -> Result<Header, Unrestorable> {
+    let text: String = input.read()?;
+    let header = Header::parse(text.lines()).filter(|header| header.to_string() == text);
+    header.ok_or(Unrestorable::Damaged("the header"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,304 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::simulation;
+use cellcaster::game::{Intent, Outcome, PlayerColor};
+use cellcaster::world::{Difficulty, FieldOfView};
+
+/// Two levels with a hall in which the exit is straight ahead.
+pub(crate) fn catalog() -> Arc<Catalog> {
+    let map = simulation::HALL
+        .replace("............>#", ".............#")
+        .replace("@............#", "@.......>....#");
+    Arc::new(simulation::catalog(&map))
+}
+
+pub(crate) fn room(mode: Mode) -> Room {
+    Room::new(&catalog(), Header::new("hall", mode, Difficulty::Normal, 7)).unwrap()
+}
+
+pub(crate) fn line(text: &str) -> Line {
+    Line::of(text, CHAT_COLUMNS).unwrap()
+}
+
+pub(crate) fn join(room: &mut Room, name: &str) -> MemberId {
+    let member = room.next_member();
+    let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
+    do_now(room, member, Command::Join { color, name: line(name) });
+    member
+}
+
+pub(crate) fn do_now(room: &mut Room, member: MemberId, command: Command) {
+    let step = room.step();
+    room.apply(&Entry { step, member, command });
+}
+
+pub(crate) fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
+    let seen = room.view().game.steps();
+    let intents = intents.iter().copied().collect();
+    do_now(room, member, Command::Intents { seen, intents });
+}
+
+pub(crate) fn advance(room: &mut Room, steps: u64) {
+    (0..steps).for_each(|_| room.advance());
+}
+
+pub(crate) fn position(room: &Room, member: MemberId) -> glam::DVec2 {
+    let view = room.view();
+    let player = view.member(member).unwrap().player.unwrap();
+    view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()
+}
+
+#[test]
+fn members_walk_side_by_side() {
+    let mut room = room(Mode::Roam);
+    let [one, other] = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    want(&mut room, one, &[Intent::Forward]);
+    let before = position(&room, other);
+    advance(&mut room, 60);
+    assert!(position(&room, one).x > 2.5);
+    assert_eq!(position(&room, other), before);
+    do_now(&mut room, one, Command::Leave);
+    advance(&mut room, 1);
+    assert_eq!(room.view().members.len(), 1);
+    let said: Vec<String> = room.view().said.iter().map(|it| it.text.clone()).collect();
+    assert_eq!(said, ["Mara comes in.", "Jon comes in.", "Mara leaves."]);
+}
+
+#[test]
+fn a_race_counts_down_and_is_won_at_the_exit() {
+    let mut room = room(Mode::Race);
+    let [one, other] = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    want(&mut room, one, &[Intent::Forward, Intent::Run]);
+    let start = position(&room, one);
+    advance(&mut room, 3 * SECOND);
+    assert_eq!(position(&room, one), start, "before the start, nobody walks");
+    advance(&mut room, 4 * SECOND);
+    let view = room.view();
+    let player = view.member(one).unwrap().player.unwrap();
+    assert_eq!(view.game.seen_by(player).unwrap().outcome(), Outcome::Won);
+    assert_eq!(view.member(one).unwrap().role, Role::Done);
+    assert!(matches!(view.phase, Phase::Playing { .. }));
+    advance(&mut room, 60 * SECOND);
+    let view = room.view();
+    assert!(matches!(view.phase, Phase::Over { .. }));
+    assert_eq!((view.standings[0].member, view.standings[0].points), (one, 1));
+    assert_eq!((view.standings[1].member, view.standings[1].points), (other, 0));
+    let next = room.next_header();
+    assert_eq!((next.round, next.level.as_str()), (2, "museum"));
+    assert_eq!(next.members.iter().map(|seat| seat.points).collect::<Vec<_>>(), [1, 0]);
+}
+
+fn said(room: &Room) -> Vec<String> {
+    room.view().said.iter().map(|it| it.text.clone()).collect()
+}
+
+#[test]
+fn all_are_told_of_a_finish_and_of_how_long_the_race_goes_on() {
+    let mut room = room(Mode::Race);
+    let [one, other, third] = ["Mara", "Jon", "Kim"].map(|name| join(&mut room, name));
+    advance(&mut room, 3 * SECOND + 1);
+    let left = |room: &Room| match room.phase() {
+        Phase::Playing { ends, .. } => ends - room.step(),
+        phase => panic!("{phase:?}"),
+    };
+    assert!(left(&room) > 9 * 60 * SECOND);
+    want(&mut room, one, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 3 * SECOND);
+    assert!((58 * SECOND..60 * SECOND).contains(&left(&room)), "{}", left(&room));
+    let finished = said(&room).pop().unwrap();
+    assert!(finished.starts_with("Mara finished 1st, 0:01."), "{finished}");
+    want(&mut room, other, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 4 * SECOND);
+    let finished = said(&room).pop().unwrap();
+    assert!(finished.starts_with("Jon finished 2nd, 0:0"), "{finished}");
+    // Another finish gives nobody more time.
+    assert!(left(&room) < 55 * SECOND);
+    advance(&mut room, 55 * SECOND);
+    assert!(matches!(room.phase(), Phase::Over { .. }));
+    let last = *room.view().standings.last().unwrap();
+    assert_eq!((last.member, last.steps), (third, None));
+}
+
+#[test]
+fn members_begin_apart_in_every_round() {
+    for mode in Mode::ALL {
+        let mut room = room(mode);
+        let ids: Vec<MemberId> =
+            (0..mode.most()).map(|number| join(&mut room, &format!("m{number}"))).collect();
+        for _ in 0..2 {
+            let places: Vec<_> = ids.iter().map(|&id| position(&room, id)).collect();
+            for (index, place) in places.iter().enumerate() {
+                let is_apart = |other: &glam::DVec2| other.distance(*place) >= 1.0;
+                assert!(places[..index].iter().all(is_apart), "{mode:?}: {places:?}");
+            }
+            room.begin_next();
+        }
+    }
+}
+
+#[test]
+fn a_touch_passes_it_on() {
+    let mut room = room(Mode::Tag);
+    let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    // The one who stands before the other steps back until they touch.
+    want(&mut room, ids[1], &[Intent::Back]);
+    advance(&mut room, 3 * SECOND + 1);
+    let it = |room: &Room| {
+        ids.into_iter().find(|&id| room.view().member(id).unwrap().role == Role::Seeker)
+    };
+    let first = it(&room).unwrap();
+    let other = ids.into_iter().find(|&id| id != first).unwrap();
+    for id in ids {
+        want(&mut room, id, &[]);
+    }
+    advance(&mut room, 2 * SECOND);
+    assert_eq!(it(&room), Some(other), "they stand in each other's reach");
+    want(&mut room, first, &[Intent::Forward, Intent::Run]);
+    advance(&mut room, 3 * 60 * SECOND);
+    let view = room.view();
+    assert!(matches!(view.phase, Phase::Over { .. }));
+    assert_eq!(view.standings[0].member, first);
+}
+
+#[test]
+fn seekers_wait_and_find() {
+    let mut room = room(Mode::Hide);
+    let ids = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    advance(&mut room, 1);
+    let view = room.view();
+    let seeker = view.members.iter().find(|member| member.role == Role::Seeker).unwrap();
+    assert!(seeker.is_blind);
+    let hidden = ids.into_iter().find(|&id| id != seeker.id).unwrap();
+    want(&mut room, hidden, &[Intent::Forward]);
+    want(&mut room, seeker.id, &[Intent::Forward]);
+    advance(&mut room, 3 * SECOND);
+    assert!(position(&room, hidden).distance(position(&room, seeker.id)) > 2.0);
+    want(&mut room, hidden, &[]);
+    advance(&mut room, 17 * SECOND);
+    assert!(!room.view().member(seeker.id).unwrap().is_blind);
+    advance(&mut room, 10 * SECOND);
+    assert!(matches!(room.view().phase, Phase::Over { .. }), "the hall is straight");
+    assert_eq!(room.view().standings[0].member, hidden);
+}
+
+#[test]
+fn a_round_that_nobody_else_joins_waits() {
+    let mut room = room(Mode::Tag);
+    let one = join(&mut room, "Mara");
+    advance(&mut room, 100 * SECOND);
+    assert_eq!(room.view().phase, Phase::Waiting);
+    join(&mut room, "Jon");
+    advance(&mut room, 10);
+    assert!(matches!(room.view().phase, Phase::Countdown { .. }));
+    do_now(&mut room, one, Command::Leave);
+    advance(&mut room, 1);
+    assert_eq!(room.view().phase, Phase::Waiting);
+}
+
+#[test]
+fn a_full_room_admits_nobody() {
+    let mut room = room(Mode::Tag);
+    for number in 0..20 {
+        join(&mut room, &format!("m{number}"));
+    }
+    assert_eq!(room.len(), Mode::Tag.most());
+    assert!(room.is_full());
+}
+
+/// A list of entries in order, with the steps between them.
+fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
+    let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..4);
+    let intents = intents.prop_map(|it| it.into_iter().collect::<Intents>());
+    let command = prop_oneof![
+        2 => Just(Command::Join { color: PlayerColor::ALL[0], name: line("Mara") }),
+        1 => Just(Command::Leave),
+        2 => Just(Command::Keep),
+        1 => Just(Command::Away),
+        1 => any::<u64>().prop_map(|token| Command::Return { token }),
+        6 => (0_u64..500, intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
+        1 => Just(Command::Say(line("hello"))),
+        1 => Just(Command::Emote(Emote::Wave)),
+    ];
+    prop::collection::vec((0_u64..40, 0_u32..10, command), 0..40)
+}
+
+/// Plays a round; entries beyond the step at which it is read are not known yet.
+fn played(log: &mut dyn Log, header: &Header, steps: u64) -> Room {
+    let mut room = Room::new(&catalog(), header.clone()).unwrap();
+    while room.step() < steps {
+        while let Some(entry) = log.next(room.step()) {
+            room.apply(&entry);
+        }
+        room.advance();
+    }
+    room
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_log_is_the_room(
+        mode in prop::sample::select(&Mode::ALL),
+        seed: u64,
+        commands in commands(),
+    ) {
+        let header = Header::new("hall", mode, Difficulty::Normal, seed);
+        let mut step = 0;
+        let mut text = Vec::new();
+        let mut recorded = Recorded::new(Queue::default(), &mut text);
+        recorded.begin(&header).unwrap();
+        for (wait, member, command) in commands {
+            step += wait;
+            recorded.append(Entry { step, member: MemberId(member), command }).unwrap();
+        }
+        let one = played(&mut recorded, &header, step + 60);
+        drop(recorded);
+        let rounds = parse_log(&String::from_utf8(text).unwrap()).unwrap();
+        let [(read, entries)] = &rounds[..] else { panic!("one round") };
+        prop_assert_eq!(read, &header);
+        let mut queue = Queue::default();
+        for entry in entries {
+            queue.append(entry.clone()).unwrap();
+        }
+        let other = played(&mut queue, read, step + 60);
+        prop_assert_eq!(one.checksum(), other.checksum());
+        prop_assert_eq!(one.game, other.game);
+    }
+}
+
+#[test]
+fn a_recording_is_played_again() {
+    let header = Header::new("hall", Mode::Race, Difficulty::Normal, 7);
+    let mut text = Vec::new();
+    let mut log = Recorded::new(Queue::default(), &mut text);
+    let mut room = Room::new(&catalog(), header.clone()).unwrap();
+    log.begin(&header).unwrap();
+    let runs = [Intent::Forward, Intent::Run].into_iter().collect();
+    let name = line("Mara");
+    for command in [
+        Command::Join { color: PlayerColor::ALL[0], name },
+        Command::Intents { seen: 0, intents: runs },
+    ] {
+        log.append(Entry { step: 0, member: MemberId(1), command }).unwrap();
+    }
+    while !room.is_over() {
+        while let Some(entry) = log.next(room.step()) {
+            room.apply(&entry);
+        }
+        room.advance();
+    }
+    log.begin(&room.next_header()).unwrap();
+    let (steps, checksum) = (room.step(), room.checksum());
+    drop(log);
+    let text = String::from_utf8(text).unwrap();
+    let older = replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog());
+    assert!(older.unwrap_err().contains("another version"));
+    let reports = replayed(&text, &catalog()).unwrap();
+    assert_eq!(reports.len(), 2);
+    assert_eq!((reports[0].steps, reports[0].checksum), (steps, checksum));
+    assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);
+    assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "museum"));
+    assert!(replayed("nonsense", &catalog()).is_err());
+}

@@ -1,0 +1,244 @@
+//! Drivers: each connects the link of a visitor with a session, a room and the store.
+//!
+//! # Rules
+//!
+//! - A frame is drawn only when the one before has left, from the newest snapshot. Between frames, a
+//!   driver holds no snapshot, so that steps do not copy the game.
+//! - Frames of large windows are drawn on threads of their own, at most one for two processors at a time. On the
+//!   threads of the runtime, one session with a window of 500×200 cells delayed the keys of others by up to a whole
+//!   frame, since the thread that draws may be the one that waits for sockets.
+//! - Rooms step whether anybody draws or not, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
+//! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
+//! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
+//!   is away or full, waits in a file or in memory, and is recorded later.
+
+mod account;
+mod counted;
+mod follow;
+mod late_results;
+mod parts;
+mod requests;
+mod results;
+#[cfg(test)]
+mod simulated;
+mod stay;
+mod store_worker;
+mod terminal;
+mod visit;
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::available_parallelism;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use tokio::sync::{Notify, Semaphore};
+use tokio::time::{Instant, interval, timeout};
+
+use self::account::NamesInUse;
+use self::follow::follow;
+pub use self::parts::HostParts;
+use self::results::Recorder;
+#[cfg(test)]
+pub(crate) use self::simulated::{Setup, Simulated, Visiting};
+use self::store_worker::StoreWorker;
+use self::visit::Visit;
+use crate::accounts::UnixTime;
+use crate::cluster::SharedRooms;
+use crate::ops::admin::{Operator, RoomRow};
+use crate::ops::config::LiveConfig;
+use crate::ops::metrics::Metrics;
+use crate::rooms::directory::{RoomLimits, Rooms};
+use crate::rooms::ghost::KeptRuns;
+use crate::rooms::room::Catalog;
+use crate::rooms::summary::RoomSummary;
+use crate::sessions::governor::Governor;
+use crate::sessions::line::Line;
+use crate::sessions::load::Load;
+use crate::sessions::visitors::Visitors;
+use crate::ssh::{Departure, Host, Link, Visitor};
+
+/// The host of the game: rooms, accounts, and a session for each visitor.
+#[derive(Debug)]
+pub struct GameHost {
+    shared: Arc<Shared>,
+}
+
+/// What the drivers have in common.
+#[derive(Debug)]
+struct Shared {
+    config: LiveConfig,
+    metrics: Arc<Metrics>,
+    visitors: Visitors,
+    begun: Instant,
+    rooms: Rooms,
+    /// In a cluster, the ways into rooms.
+    cluster: Option<SharedRooms>,
+    /// Whether another host keeps the places of players with accounts when this one ends.
+    keeps_places: bool,
+    store: StoreWorker,
+    recorder: Recorder,
+    /// The runs of boards that walk along. Only the thread of the store uses them.
+    runs: Arc<Mutex<KeptRuns>>,
+    names: NamesInUse,
+    load: Arc<Load>,
+    /// The large frames that may be drawn at a time.
+    large_frames: Arc<Semaphore>,
+    next_guest: AtomicU32,
+}
+
+/// The time between two decisions of the governor.
+const GOVERNED: Duration = Duration::from_millis(250);
+/// The most time that the store has for its end.
+const STORE_END: Duration = Duration::from_secs(10);
+
+impl GameHost {
+    /// A host of these parts.
+    ///
+    /// It is to be called within a runtime, on which the rooms run.
+    pub fn start(parts: HostParts) -> Self {
+        let cluster = parts.cluster;
+        let HostParts {
+            live, metrics, visitors, catalog, logs, load, store, waiting, seed, ..
+        } = parts;
+        let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
+        let (limits, standing) = match &cluster {
+            Some(_) => (RoomLimits { standing: Vec::new(), ..limits.clone() }, limits.standing),
+            None => (limits, Vec::new()),
+        };
+        let rooms = Rooms::new(limits, Arc::new(catalog), logs, Arc::clone(&load), seed);
+        let shared_rooms = cluster
+            .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
+        let keeps_places = shared_rooms.is_some();
+        let recorder = Recorder {
+            catalog: Arc::clone(rooms.catalog()),
+            metrics: Arc::clone(&metrics),
+            visitors: visitors.clone(),
+            waiting: waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
+        };
+        let processors = available_parallelism().map_or(1, NonZero::get);
+        let shared = Arc::new(Shared {
+            config: live,
+            metrics,
+            visitors,
+            begun: Instant::now(),
+            rooms,
+            cluster: shared_rooms,
+            keeps_places,
+            store,
+            recorder,
+            runs: Arc::default(),
+            names: NamesInUse::default(),
+            load,
+            large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
+            next_guest: AtomicU32::new(1),
+        });
+        tokio::spawn(govern(Arc::downgrade(&shared)));
+        tokio::spawn(follow(shared.config.subscribe(), shared.limited()));
+        if shared.recorder.waiting.is_some() {
+            tokio::spawn(late_results::record_all(Arc::downgrade(&shared)));
+        }
+        Self { shared }
+    }
+
+    /// Ends the rooms after the last session, so that their recordings are whole, and then the store, after
+    /// all that was asked of it.
+    pub fn ending(&self) -> impl Future<Output = ()> + use<> {
+        let shared = Arc::clone(&self.shared);
+        async move {
+            if let Some(rooms) = &shared.cluster {
+                rooms.end().await;
+            }
+            shared.rooms.end().await;
+            let recorder = shared.recorder.clone();
+            let ended = shared.store.call(move |store| recorder.end(store));
+            _ = timeout(STORE_END, ended).await;
+        }
+    }
+
+    /// An operator of this host, who notifies `drain` to end it.
+    pub fn operator(&self, drain: Arc<Notify>) -> Operator {
+        let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
+
+        operator.in_cluster(self.shared.cluster.clone())
+    }
+
+    /// Lists the rooms, for an operator.
+    pub fn room_rows(&self) -> impl Fn() -> Vec<RoomRow> + Send + Sync + use<> {
+        let summaries = self.shared.rooms.summaries();
+        let catalog = Arc::clone(self.shared.rooms.catalog());
+        move || summaries.borrow().iter().map(|room| room_row(room, &catalog)).collect()
+    }
+}
+
+fn room_row(room: &RoomSummary, catalog: &Catalog) -> RoomRow {
+    RoomRow {
+        room: room.id.0,
+        mode: room.mode.name().to_owned(),
+        level: catalog.short(&room.level).to_owned(),
+        difficulty: room.difficulty.name().to_owned(),
+        members: room.members.iter().map(Line::to_string).collect(),
+        most: room.mode.most(),
+        watchers: room.watchers,
+    }
+}
+
+impl Host for GameHost {
+    async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
+        let shared = Arc::clone(&self.shared);
+        if let Some(sentence) = terminal::refusal(&visitor) {
+            return refuse(link, &sentence, Departure::REFUSED).await;
+        }
+        let known = match shared.log_in(&visitor).await {
+            Ok(known) => known,
+            Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
+        };
+        let _counted = match shared.begin_visit(&visitor, known.key).await {
+            Ok(counted) => counted,
+            Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
+        };
+        let options = terminal::options(&visitor);
+        let mut visit = Visit::new(shared, &visitor, known, options);
+        visit.look_for_place();
+        Departure { status: visit.run(&mut link).await, refusal: None }
+    }
+}
+
+impl Shared {
+    /// The time since the server began.
+    fn now(&self) -> Duration {
+        self.begun.elapsed()
+    }
+
+    /// The number of the next guest.
+    fn guest_number(&self) -> u32 {
+        self.next_guest.fetch_add(1, Ordering::Relaxed)
+    }
+}
+
+/// Tells somebody who may not play why, and returns their `departure`.
+async fn refuse(link: Link, sentence: &str, departure: Departure) -> Departure {
+    let Link { mut outbox, .. } = link;
+    _ = outbox.try_send(format!("{sentence}\r\n").into_bytes());
+    outbox.drained().await;
+    departure
+}
+
+/// Sets the frame rate as long as the host exists.
+async fn govern(shared: std::sync::Weak<Shared>) {
+    let mut governor = Governor::new();
+    let mut ticks = interval(GOVERNED);
+    loop {
+        ticks.tick().await;
+        let Some(shared) = shared.upgrade() else { return };
+        let most = shared.config.get().frames_per_second;
+        let sample = shared.load.sample(GOVERNED);
+        shared.load.set_frame_time(governor.decide(sample, most));
+    }
+}
+
+/// The time of the clock on the wall.
+fn unix_time() -> UnixTime {
+    let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    UnixTime::new(time.as_secs())
+}

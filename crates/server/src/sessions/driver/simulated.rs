@@ -1,0 +1,134 @@
+//! Drivers in simulated time: a store that is a task, and visits that can be looked into.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::{mpsc, oneshot};
+use tokio::task::JoinHandle;
+
+use super::store_worker::StoreWorker;
+use super::terminal;
+use super::visit::Visit;
+use super::{GameHost, HostParts, Shared, refuse};
+use crate::accounts::HostStore;
+use crate::ops::config::LiveConfig;
+use crate::ops::metrics::Metrics;
+use crate::rooms::directory::{Logs, Place, Rooms};
+use crate::rooms::room::{Catalog, RoomView};
+use crate::sessions::load::{Load, Worker};
+use crate::sessions::session::Session;
+use crate::sessions::visitors::Visitors;
+use crate::ssh::{Link, Visitor};
+use cellcaster::terminal::Options;
+
+/// A host in simulated time.
+pub(crate) struct Simulated {
+    host: GameHost,
+}
+
+/// What a host in simulated time begins with.
+pub(crate) struct Setup {
+    pub(crate) live: LiveConfig,
+    pub(crate) visitors: Visitors,
+    pub(crate) catalog: Catalog,
+    pub(crate) logs: Logs,
+    pub(crate) store: Box<dyn HostStore>,
+    /// How long the store takes for a call.
+    pub(crate) store_time: Duration,
+    pub(crate) worker: Worker,
+    pub(crate) seed: u64,
+}
+
+/// A visit that runs.
+pub(crate) struct Visiting {
+    looks: mpsc::UnboundedSender<Look>,
+    task: JoinHandle<u8>,
+}
+
+type Look = Box<dyn FnOnce(&mut Visit) + Send>;
+
+impl Simulated {
+    /// It is to be called within a runtime.
+    pub(crate) fn new(setup: Setup) -> Self {
+        let metrics = Arc::<Metrics>::default();
+        let time = setup.store_time;
+        let host = GameHost::start(HostParts {
+            live: setup.live,
+            visitors: setup.visitors,
+            catalog: setup.catalog,
+            logs: setup.logs,
+            load: Load::simulated(Arc::clone(&metrics), setup.worker),
+            metrics,
+            store: StoreWorker::simulated(setup.store, time),
+            waiting: None,
+            seed: setup.seed,
+            cluster: None,
+        });
+        Self { host }
+    }
+
+    pub(crate) fn metrics(&self) -> &Metrics {
+        &self.host.shared.metrics
+    }
+
+    pub(crate) fn rooms(&self) -> &Rooms {
+        &self.host.shared.rooms
+    }
+
+    /// Serves a visitor, of whose terminal `change` knows more than their environment tells.
+    pub(crate) fn serve(
+        &self,
+        visitor: Visitor,
+        link: Link,
+        change: impl FnOnce(&mut Options),
+    ) -> Visiting {
+        let mut options = terminal::options(&visitor);
+        change(&mut options);
+        let (looks, looked) = mpsc::unbounded_channel();
+        let shared = Arc::clone(&self.host.shared);
+        Visiting { looks, task: tokio::spawn(serve(shared, visitor, link, options, looked)) }
+    }
+}
+
+/// Does what [`GameHost`] does for a visitor, and lets others look in between.
+async fn serve(
+    shared: Arc<Shared>,
+    visitor: Visitor,
+    mut link: Link,
+    options: Options,
+    mut looked: mpsc::UnboundedReceiver<Look>,
+) -> u8 {
+    let known = match shared.log_in(&visitor).await {
+        Ok(known) => known,
+        Err((sentence, departure)) => return refuse(link, &sentence, departure).await.status,
+    };
+    let mut visit = Visit::new(shared, &visitor, known, options);
+    loop {
+        tokio::select! {
+            biased;
+            Some(look) = looked.recv() => look(&mut visit),
+            status = visit.run(&mut link) => return status,
+        }
+    }
+}
+
+impl Visiting {
+    /// Looks into the session with the newest snapshot of its room; `None` if it has ended.
+    pub(crate) async fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
+    ) -> Option<T> {
+        let (answer, answered) = oneshot::channel();
+        let look = move |visit: &mut Visit| {
+            let room = visit.place.as_ref().map(Place::room);
+            let view = room.and_then(|room| visit.shared.rooms.view(room));
+            _ = answer.send(look(&mut visit.session, view.as_deref()));
+        };
+        self.looks.send(Box::new(look)).ok()?;
+        answered.await.ok()
+    }
+
+    pub(crate) fn is_over(&self) -> bool {
+        self.task.is_finished()
+    }
+}

@@ -1,0 +1,61 @@
+//! Lines that players type: names and chat.
+//!
+//! Nothing that a player typed reaches the terminal of another one but through a [`Line`]. So an
+//! escape sequence, a direction mark or a pile of accents ends here, whoever forgets to check.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::accounts::printable;
+
+/// Printable characters that fit in a number of columns, as [`printable`] leaves them. It is not empty.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) struct Line(String);
+
+impl Line {
+    /// The printable characters of `text`, as many as fit in `columns`. `None` if there are none.
+    pub(crate) fn of(text: &str, columns: usize) -> Option<Self> {
+        let line = printable(text, columns);
+        (!line.is_empty()).then_some(Self(line))
+    }
+
+    /// Whether it fits in that many columns.
+    pub(crate) fn fits(&self, columns: usize) -> bool {
+        printable(&self.0, columns) == self.0
+    }
+
+    /// The text.
+    pub(crate) fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+/// A line that is as it is shown.
+impl TryFrom<String> for Line {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, &'static str> {
+        Self::of(&text, usize::MAX).filter(|line| line.0 == text).ok_or("a line")
+    }
+}
+
+impl fmt::Display for Line {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_left_of_what_a_terminal_would_obey() {
+        let line = |text| Line::of(text, 40).map(|line| line.to_string());
+        assert_eq!(line("\x1b[31mred\x07\n"), Some("[31mred".to_owned()));
+        assert_eq!(line(" \t\u{7f}\u{202e}\u{301}"), None);
+        assert_eq!(Line::of("日本語", 5).unwrap().as_str(), "日本");
+    }
+}

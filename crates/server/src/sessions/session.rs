@@ -1,0 +1,367 @@
+//! The session of a visitor: what they see, and what their keys do.
+//!
+//! A session has no connection, no clock and no room. The driver passes it what arrives and when,
+//! takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows it the newest
+//! [snapshot](RoomView) of the room. The order of calls:
+//!
+//! - after each [`receive`](Session::receive), [`resize`](Session::resize), [`notify`](Session::notify),
+//!   [`wake`](Session::wake) and [`draw`](Session::draw): take [`requests`](Session::requests) and [`output`](Session::output);
+//! - when the outbox is empty and [`is_due`](Session::is_due): [`draw`](Session::draw), and take the output;
+//! - at [`wakes_at`](Session::wakes_at): [`wake`](Session::wake).
+//!
+//! A frame is drawn only while the terminal has answered the ones before and something on it has
+//! changed. So a session of a client that does not read keeps one frame, and a visitor who does
+//! nothing among others who do nothing costs no bytes.
+//!
+//! Keys that are pressed faster than anybody types are dropped, since some open a page or change a setting, which
+//! takes a hundred times as long as to decode them.
+
+mod choice;
+mod draw;
+mod events;
+mod ghosts;
+mod idle;
+mod intent_queue;
+mod keys;
+mod line_entry;
+mod look;
+mod menus;
+mod messages;
+mod pace;
+mod page;
+mod room_keys;
+mod settings;
+mod shown_steps;
+mod stay;
+mod talk;
+#[cfg(test)]
+mod tests;
+mod unanswered;
+mod visit;
+
+use std::time::Duration;
+
+use self::look::Look;
+pub(crate) use self::messages::{BoardRow, HostFacts, Identity, IdleLimits, Request, SessionEvent};
+use self::pace::Pace;
+use self::unanswered::{Effect, Unanswered};
+use self::visit::Visit;
+use crate::bucket::Bucket;
+use crate::rooms::room::RoomView;
+use cellcaster::app::parts::{Meter, Stats};
+use cellcaster::game::Intents;
+use cellcaster::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
+
+/// The keys that a visitor may press in a second. A held key repeats some 30 times a second.
+const KEYS: f64 = 200.0;
+/// The keys that they may press at once: more than a line of chat that is pasted has characters.
+const KEYS_AT_ONCE: f64 = 300.0;
+/// A frame with more cells is large. One of 200×60 cells takes 1.2 ms, and one of 500×200 eight times as long.
+const LARGE: usize = 12_000;
+/// The least round-trip time of a link that is not local.
+const FAR: Duration = Duration::from_millis(3);
+
+/// The session of a visitor.
+pub(crate) struct Session {
+    protocol: Protocol,
+    visit: Visit,
+    ending: Ending,
+    pace: Pace,
+    /// The keys that the visitor may press now.
+    keys: Bucket,
+    /// Whether the next frame answers a key, and the step of the room that the key was pressed in.
+    answers_key: Option<u64>,
+    /// When the oldest key came that no frame has answered.
+    unanswered: Unanswered,
+    /// When the oldest key came that the last frame answers.
+    answered: Option<Duration>,
+    /// The step of the room in the last frame.
+    drawn_step: u64,
+    meter: Meter,
+    /// Whether the link has made pictures of a room coarser; `None` if there was none yet.
+    is_limited: Option<bool>,
+}
+
+/// How far the session has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Ending {
+    /// It goes on.
+    Not,
+    /// The terminal is asked to answer all that was sent; then it shows this sentence.
+    Asked(String),
+    /// All is in the output.
+    Over,
+}
+
+impl Session {
+    /// A session with a terminal of which `options` are known.
+    pub(crate) fn new(
+        identity: Identity,
+        options: Options,
+        size: WindowSize,
+        host: HostFacts,
+        now: Duration,
+    ) -> Self {
+        let mut protocol = Protocol::new(options, size);
+        protocol.begin(now);
+        let look = Look::new(options.is_ascii, &identity);
+        let pace = Pace::new(host.frame_time);
+        let mut session = Self {
+            protocol,
+            visit: Visit::new(identity, host, look, now),
+            ending: Ending::Not,
+            pace,
+            keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
+            answers_key: None,
+            unanswered: Unanswered::default(),
+            answered: None,
+            drawn_step: 0,
+            meter: Meter::default(),
+            is_limited: None,
+        };
+        session.follow_terminal();
+        session.show_choices();
+        session
+    }
+
+    /// Interprets bytes from the terminal. They may be cut at any place.
+    pub(crate) fn receive(&mut self, bytes: &[u8], now: Duration) {
+        self.protocol.receive(bytes, now);
+        self.handle_events(now);
+    }
+
+    /// Records a new size of the window.
+    pub(crate) fn resize(&mut self, size: WindowSize, now: Duration) {
+        self.protocol.resize(size, now);
+        self.handle_events(now);
+    }
+
+    /// Records what the driver brings.
+    pub(crate) fn notify(&mut self, event: SessionEvent, now: Duration) {
+        self.visit.advance(now);
+        self.visit.notify(event);
+        self.finish(now);
+    }
+
+    /// Does what is due at `now` without bytes and events.
+    pub(crate) fn wake(&mut self, now: Duration) {
+        self.protocol.wake(now);
+        self.handle_events(now);
+        self.visit.wake(now);
+        self.finish(now);
+    }
+
+    /// When the oldest key came that the frames since the last call answer; `None` if they answer none.
+    pub(crate) fn answered(&mut self) -> Option<Duration> {
+        self.answered.take()
+    }
+
+    /// Looks at the newest snapshot of the room, so that a key by which nothing has changed there waits for no frame.
+    pub(crate) fn look_at(&mut self, room: &RoomView) {
+        if self.has_acted(room) && !self.visit.is_stale(Some(room)) {
+            self.unanswered.forget_wanted();
+        }
+    }
+
+    fn has_acted(&self, room: &RoomView) -> bool {
+        self.visit.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
+    }
+
+    /// What the session wants since the last call.
+    pub(crate) fn requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.visit.requests)
+    }
+
+    /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
+    pub(crate) fn is_due(&self, room: Option<&RoomView>, now: Duration) -> bool {
+        self.due_at(room, now).is_some_and(|due| due <= now)
+    }
+
+    /// Whether a frame may take longer than others should wait for their turn.
+    pub(crate) fn is_large(&self) -> bool {
+        let WindowSize { columns, rows, .. } = self.protocol.size();
+        usize::from(columns) * usize::from(rows) > LARGE
+    }
+
+    /// Adds a frame to the output.
+    pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
+        if self.visit.is_stale(room) {
+            self.draw_anew(room, now);
+        } else {
+            self.protocol.refine();
+        }
+        self.protocol.output(now);
+        if let (Some(stay), Some(room)) = (&mut self.visit.stay, room) {
+            stay.frames.drawn(self.protocol.frames_sent(), room.game.steps());
+        }
+        self.pace.drawn(now);
+    }
+
+    fn draw_anew(&mut self, room: Option<&RoomView>, now: Duration) {
+        // Before the picture, which shows the newest figures then.
+        self.measure(now);
+        let has_acted = room.is_none_or(|room| self.has_acted(room));
+        let answered = self.unanswered.answer(has_acted);
+        self.answered = self.answered.into_iter().chain(answered).min();
+        let Self { protocol, visit, .. } = self;
+        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
+            visit.requests.extend(stay.look_at(room, now));
+            if stay.watch.take_ring() && visit.identity.preferences.bell {
+                protocol.ring_bell();
+            }
+        }
+        protocol.draw(|screen| visit.draw(screen, room));
+        visit.is_stale = false;
+        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
+            stay.drawn(room, &visit.look);
+            self.drawn_step = room.step;
+        }
+        self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
+    }
+
+    /// Measures the frames so far.
+    fn measure(&mut self, now: Duration) {
+        let Self { protocol, visit, meter, .. } = self;
+        if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
+            let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
+            let is_limited = protocol.is_limited_by_network();
+            let wants_compression = is_limited && !visit.host.compresses;
+            self.is_limited = visit.stay.is_some().then_some(is_limited).or(self.is_limited);
+            visit.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
+        }
+    }
+
+    /// The bytes to send. The driver takes all of them.
+    pub(crate) fn output(&mut self, now: Duration) -> &mut Vec<u8> {
+        self.protocol.output(now)
+    }
+
+    /// Records that all bytes so far have left.
+    pub(crate) fn written(&mut self, now: Duration) {
+        self.protocol.written(now);
+    }
+
+    /// The time at which to [`wake`](Self::wake) the session and to ask again whether a frame
+    /// [is due](Self::is_due), if nothing happens before; `None` for never.
+    pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        let visit = self.visit.wakes_at().filter(|_| self.ending == Ending::Not);
+        self.due_at(room, now).into_iter().chain(visit).chain(self.protocol.wakes_at()).min()
+    }
+
+    /// The time from which on a newer snapshot may bring a frame; `None` until the terminal answers or
+    /// [`wakes_at`](Self::wakes_at).
+    pub(crate) fn looks_at(&self, now: Duration) -> Option<Duration> {
+        let looks = self.ending == Ending::Not && self.protocol.is_ready(now);
+        looks.then(|| self.pace.next(self.answers_key.is_some()))
+    }
+
+    /// Sets the time between two frames.
+    pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
+        self.pace.set_frame_time(frame_time);
+    }
+
+    /// Whether the session has ended, and the connection may be closed after the output is sent.
+    pub(crate) fn is_over(&self) -> bool {
+        self.ending == Ending::Over
+    }
+
+    /// The time of the next frame; `None` if nothing has changed or the terminal is not ready.
+    fn due_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
+        if self.ending != Ending::Not || !self.protocol.is_ready(now) {
+            return None;
+        }
+        let is_stale = self.visit.is_stale(room);
+        if !is_stale && self.protocol.is_settled() {
+            return None;
+        }
+        let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.visit.is_stale;
+        let is_prompt = is_stale && self.answers_key.is_some_and(answers);
+        Some(self.pace.next(is_prompt).max(now))
+    }
+
+    /// Handles the events of the terminal.
+    fn handle_events(&mut self, now: Duration) {
+        self.visit.answered = self.protocol.frames_answered();
+        self.visit.wants_compression = self.wants_compression();
+        while let Some(event) = self.protocol.next_event() {
+            match event {
+                Event::Key(event) if !self.takes_key(event, now) => continue,
+                Event::Key(_) | Event::Mouse(_) => self.answers_key = Some(self.drawn_step),
+                Event::Resized | Event::ColorDepth(_) | Event::Identified => self.follow_terminal(),
+                _ => {}
+            }
+            if let Event::Key(_) = event {
+                self.press(event, now);
+            } else {
+                self.visit.event(event, now);
+            }
+        }
+        self.show_choices();
+        self.finish(now);
+    }
+
+    /// Handles a key, and records what it changes.
+    fn press(&mut self, key: Event, now: Duration) {
+        self.visit.advance(now);
+        let was_stale = std::mem::take(&mut self.visit.is_stale);
+        let wanted = self.wanted();
+        self.visit.event(key, now);
+        let effect = Effect { is_shown: self.visit.is_stale, is_wanted: self.wanted() != wanted };
+        self.unanswered.press(effect, now);
+        self.visit.is_stale |= was_stale;
+    }
+
+    /// What the visitor wants of the room.
+    fn wanted(&self) -> Option<Intents> {
+        self.visit.stay.as_ref().map(|stay| stay.intents.newest())
+    }
+
+    /// Whether a key counts. Releases do, whatever was pressed, so that no key is held for ever.
+    fn takes_key(&mut self, event: KeyEvent, now: Duration) -> bool {
+        event.phase == Phase::Release || self.keys.takes_one(now)
+    }
+
+    /// Whether compression would make pictures finer. Before the first pictures of a room have shown
+    /// that, it may on every link that is not local.
+    fn wants_compression(&self) -> bool {
+        let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
+        !self.visit.host.compresses && self.is_limited.unwrap_or(is_far)
+    }
+
+    /// Requests what the visitor has chosen from the terminal.
+    fn show_choices(&mut self) {
+        let Self { protocol, visit, .. } = self;
+        protocol.set_mouse(visit.pointer.is_on());
+        protocol.set_ascii(visit.look.is_ascii());
+    }
+
+    /// Takes over what is known of the terminal.
+    fn follow_terminal(&mut self) {
+        let Self { protocol, visit, .. } = self;
+        visit.look.follow_terminal(protocol, &visit.identity.preferences);
+        visit.detection.depth = visit.look.depth;
+        let is_chosen = visit.identity.preferences.colors.is_some();
+        visit.detection.is_tmux = protocol.is_tmux();
+        visit.detection.source = (!is_chosen).then(|| protocol.color_source());
+        visit.pointer.set_columns(protocol.size().columns);
+    }
+
+    /// Ends the session if it should, and gives the screen back once the terminal has answered all
+    /// that it was asked.
+    fn finish(&mut self, now: Duration) {
+        if self.ending == Ending::Not
+            && let Some(sentence) = self.visit.farewell.take()
+        {
+            self.protocol.end(now);
+            self.ending = Ending::Asked(sentence);
+        }
+        if let Ending::Asked(sentence) = &self.ending
+            && self.protocol.has_ended(now)
+        {
+            let sentence = format!("{sentence}\r\n");
+            self.protocol.finish();
+            self.protocol.output(now).extend_from_slice(sentence.as_bytes());
+            self.ending = Ending::Over;
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Drawing: what a visitor sees.
+
+mod ghost;
+mod members;
+mod overhead;
+mod room_status;
+mod said;
+
+use std::borrow::Cow;
+use std::cell::Cell;
+
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::Block;
+
+use self::ghost::Ghost;
+use super::page::Page;
+use super::stay::seconds_left;
+use super::visit::Visit;
+use crate::rooms::room::{Phase, RoomView};
+use crate::sessions::line;
+use cellcaster::app::parts::{
+    DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
+    picture_and_status, too_small, whole_seconds,
+};
+use cellcaster::color::palette::ColorDepth;
+use cellcaster::tui::View;
+use cellcaster::tui::canvas::Canvas;
+use cellcaster::world::{Figure, World};
+
+/// The keys in a room that bindings do not change.
+const ROOM_KEYS: [&str; 2] = [
+    "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
+    "Tab lists the members, or watches another one.",
+];
+/// What is said on a link that may make pictures coarse.
+pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
+
+/// The least rows of a picture with a banner above a menu.
+const LEAST_WITH_BANNER: u16 = 20;
+
+thread_local! {
+    /// The renderer of the sessions that are drawn on this thread. Its memory is half a megabyte in a
+    /// level with steps, and a picture needs nothing of the one before.
+    static VIEW: Cell<Option<View>> = const { Cell::new(None) };
+}
+
+impl Visit {
+    /// Draws the page, with `room` as the newest snapshot.
+    pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
+        let area = canvas.bounds();
+        if is_too_small(area) {
+            return too_small(canvas);
+        }
+        let [picture, status] = picture_and_status(area);
+        match (self.stay.is_some(), room) {
+            (true, Some(room)) => {
+                self.draw_room(canvas, picture, room);
+                self.draw_room_status(canvas, status, room);
+                self.draw_panel(canvas, picture);
+            }
+            _ => self.draw_lobby(canvas, picture, status),
+        }
+        if self.idle.is_warned() {
+            let effect = if self.stay.is_some() { "leave the room" } else { "end this session" };
+            notice(canvas, picture, &format!("Still there? Press a key, or soon you {effect}."));
+        }
+    }
+
+    fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
+        let below = if picture.height >= LEAST_WITH_BANNER {
+            draw_banner(canvas, picture, self.look.glyphs, self.look.depth)
+        } else {
+            picture
+        };
+        let text = match self.page {
+            Page::Name => "type a name, Enter takes it",
+            _ => "up and down, Enter, Esc",
+        };
+        canvas.draw_widget(hint(text), status);
+        self.draw_panel(canvas, below);
+    }
+
+    /// Draws what the page shows over the picture.
+    fn draw_panel(&mut self, canvas: &mut impl Canvas, area: Rect) {
+        match self.page {
+            Page::Name => self.draw_name(canvas, area),
+            Page::Help => {
+                let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
+                self.help.draw(canvas, area, (&room_keys, &self.bindings), notes.into_iter());
+            }
+            Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
+            Page::Room => {}
+            Page::Chat => self.draw_chat_entry(canvas, area),
+            _ => self.menu.draw(canvas, area),
+        }
+    }
+
+    fn draw_name(&self, canvas: &mut impl Canvas, area: Rect) {
+        let identity = &self.identity;
+        let about = match (identity.has_account, identity.is_named) {
+            (true, true) => "Welcome back. Your key is your account.",
+            (true, false) => "Your key is your account. Choose its name.",
+            (false, _) => "You are a guest. With a key, your results rank.",
+        };
+        let about = self.host.notice.as_ref().map_or(about, line::Line::as_str);
+        let room = usize::from(area.width.saturating_sub(6));
+        let entry = self.entry.shown(room);
+        let note = self.note.clone().unwrap_or_else(|| about.to_owned());
+        let mut menu: Menu<()> = Menu::new("your name").line(note).entry(entry, ());
+        menu.draw(canvas, area);
+    }
+
+    /// What the help says of the link and of the terminal.
+    fn help_notes(&self) -> Vec<String> {
+        let compression = self.wants_compression.then(|| COMPRESSION.to_owned());
+        compression.into_iter().chain(self.detection.lines()).collect()
+    }
+
+    fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
+        let (look, page) = (self.look, self.page);
+        let preferences = self.identity.preferences;
+        let Some(stay) = &mut self.stay else { return };
+        let seen_through = stay.seen_through(room);
+        if seen_through.is_some_and(|(member, _)| member.is_blind) {
+            draw_darkness(canvas, area, room, look.depth);
+        } else {
+            let camera = stay.camera(room, look.field_of_view);
+            let flash = seen_through.and_then(|(_, player)| player.flash());
+            let flash = flash.map(|flash| (flash, camera.heading));
+            let options = DrawOptions { flash, ..look.options() };
+            let (game, seconds) = (&room.game, room.game.elapsed());
+            let ghosts: Vec<Ghost> =
+                stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
+            let world = with_ghosts(game.world(), &ghosts);
+            let mut view = VIEW.take().unwrap_or_default();
+            options.draw(&*world, &camera, seconds, canvas, area, &mut view);
+            stay.next_change = view.next_change();
+            if let Some((_, player)) = seen_through {
+                overhead::draw(canvas, area, &options, &player, room, &ghosts);
+                let overlay = Overlay::new(game, player.id(), &options, preferences);
+                if let Some(overlay) = overlay {
+                    overlay.draw_map(canvas, area, &mut stay.map, &view);
+                    overlay.draw_hud(canvas, area, page == Page::Room);
+                }
+            }
+            VIEW.set(Some(view));
+        }
+        if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
+            members::draw_standings(canvas, area, room, look.depth);
+        } else if stay.shows_members && page == Page::Room {
+            members::draw_members(canvas, area, room, &self.host.catalog, look.depth);
+        }
+        said::draw(canvas, area, stay.talk.shown(), page == Page::Chat, look.depth);
+        if let Some(draining) = self.draining {
+            notice(canvas, area, &draining.sentence(self.now));
+        }
+    }
+}
+
+/// The world with the figures of `ghosts`. Where there are some, it is copied, since the room and other
+/// sessions share it.
+fn with_ghosts<'w>(world: &'w World, ghosts: &[Ghost]) -> Cow<'w, World> {
+    let mut world = Cow::Borrowed(world);
+    if !ghosts.is_empty() {
+        let figures = world.figures().iter().copied().chain(ghosts.iter().map(|it| it.figure));
+        let figures: Vec<Figure> = figures.collect();
+        world.to_mut().set_figures(figures.into_iter());
+    }
+    world
+}
+
+/// Draws the darkness in which seekers wait.
+fn draw_darkness(canvas: &mut impl Canvas, area: Rect, room: &RoomView, depth: ColorDepth) {
+    let style = match depth {
+        ColorDepth::Mono => Style::new(),
+        _ => Style::new().bg(Color::Black).fg(Color::Gray),
+    };
+    canvas.draw_widget(Block::new().style(style), area);
+    let left = whole_seconds(seconds_left(room).unwrap_or(0) as f64);
+    let text = format!("The others hide.\nYou see again in {left}.");
+    message(canvas, area, "you seek", Text::from(text).centered());
+}
+
+/// Draws a sentence in the first row of the picture.
+fn notice(canvas: &mut impl Canvas, picture: Rect, text: &str) {
+    let line = Line::raw(format!(" {text} "));
+    let width = (line.width() as u16).min(picture.width);
+    let area = Rect { x: picture.x + (picture.width - width) / 2, width, height: 1, ..picture };
+    canvas.draw_widget(line.style(Style::new().add_modifier(Modifier::REVERSED)), area);
+}

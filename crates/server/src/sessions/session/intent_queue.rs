@@ -1,0 +1,144 @@
+//! The intents of a member, on its way into the log of the room.
+//!
+//! An intent is sent when it changes, at most 30 times a second, and none is left out: a tap may
+//! begin and end between two of those times. In rooms where touches are judged by what the member
+//! saw, what they want is also sent again while they move, since it tells the room what they saw.
+//!
+//! The angles of the mouse add up until they are sent, since they count in one step of the room.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use cellcaster::game::{Intents, Look};
+
+/// The least time between two changes that are sent: two steps, so that each takes effect in a step
+/// of its own.
+const LEAST: Duration = Duration::from_millis(34);
+/// The time after which a member who moves tells again what they saw.
+const RENEWED: Duration = Duration::from_millis(250);
+/// The most changes that wait. If more do, all but the newest are left out.
+const MOST: usize = 8;
+
+/// The intents of a member.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct IntentQueue {
+    sent: Intents,
+    sent_at: Option<Duration>,
+    waiting: VecDeque<Intents>,
+    /// The turn and the tilt that are not sent yet, in units of [`Look`].
+    angles: [i32; 2],
+}
+
+impl IntentQueue {
+    /// Records what the member wants from now on.
+    pub(crate) fn set(&mut self, intents: Intents) {
+        if self.newest() == intents {
+            return;
+        }
+        if self.waiting.len() >= MOST {
+            self.waiting.clear();
+        }
+        self.waiting.push_back(intents);
+    }
+
+    /// Records that the member turns and tilts by these angles.
+    pub(crate) fn turn(&mut self, by: Look) {
+        let [turn, tilt] = self.angles;
+        self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
+    }
+
+    /// What the member wants now.
+    pub(crate) fn newest(&self) -> Intents {
+        *self.waiting.back().unwrap_or(&self.sent)
+    }
+
+    /// What is to be sent at `now`, if something is.
+    pub(crate) fn take(&mut self, now: Duration) -> Option<Intents> {
+        if self.next_at().is_none_or(|due| due > now) {
+            return None;
+        }
+        self.sent = self.waiting.pop_front().unwrap_or(self.sent);
+        self.sent_at = Some(now);
+        let [turn, tilt] = std::mem::take(&mut self.angles).map(|angle| angle as i16);
+        Some(self.sent.with_look(Look { turn, tilt }))
+    }
+
+    /// The time of the next [`take`](Self::take) that gives something; `None` for never.
+    pub(crate) fn next_at(&self) -> Option<Duration> {
+        let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
+        let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
+        match (is_renewed, self.sent.is_empty()) {
+            (false, _) => Some(after(LEAST)),
+            (true, false) => Some(after(RENEWED)),
+            (true, true) => None,
+        }
+    }
+}
+
+/// The nearest angle that a [`Look`] can have.
+fn within(angle: i32) -> i32 {
+    angle.clamp(-i32::from(i16::MAX), i16::MAX.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cellcaster::game::Intent;
+
+    fn at(milliseconds: u64) -> Duration {
+        Duration::from_millis(milliseconds)
+    }
+
+    #[test]
+    fn a_tap_begins_and_ends_in_steps_of_their_own() {
+        let mut intents = IntentQueue::default();
+        assert_eq!(intents.next_at(), None);
+        let strike: Intents = [Intent::Strike].into_iter().collect();
+        intents.set(strike);
+        assert_eq!(intents.take(at(5)), Some(strike));
+        intents.set(Intents::new());
+        assert_eq!(intents.take(at(22)), None);
+        assert_eq!(intents.next_at(), Some(at(39)));
+        assert_eq!(intents.take(at(39)), Some(Intents::new()));
+        assert_eq!(intents.next_at(), None);
+    }
+
+    #[test]
+    fn who_moves_tells_again_what_they_saw() {
+        let mut intents = IntentQueue::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        intents.set(forward);
+        intents.take(at(0));
+        intents.set(forward);
+        assert_eq!(intents.take(at(249)), None);
+        assert_eq!(intents.take(at(250)), Some(forward));
+    }
+
+    #[test]
+    fn angles_add_up_and_are_sent_once() {
+        let mut intents = IntentQueue::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        intents.set(forward);
+        assert_eq!(intents.take(at(0)), Some(forward));
+        intents.turn(Look { turn: 150, tilt: -20 });
+        intents.turn(Look { turn: 50, tilt: 0 });
+        assert_eq!(intents.take(at(33)), None);
+        assert_eq!(intents.take(at(34)), Some(forward.with_look(Look { turn: 200, tilt: -20 })));
+        assert_eq!(intents.next_at(), Some(at(284)));
+        (0..4).for_each(|_| intents.turn(Look { turn: i16::MIN, tilt: i16::MAX }));
+        let most = Look { turn: -i16::MAX, tilt: i16::MAX };
+        assert_eq!(intents.take(at(70)), Some(forward.with_look(most)));
+    }
+
+    #[test]
+    fn only_some_changes_wait() {
+        let mut intents = IntentQueue::default();
+        let forward: Intents = [Intent::Forward].into_iter().collect();
+        for change in 0..1000 {
+            intents.set(if change % 2 == 0 { forward } else { Intents::new() });
+        }
+        assert!(intents.waiting.len() <= MOST);
+        let last = (0..20).filter_map(|step| intents.take(at(50 * step))).last();
+        assert_eq!(last, Some(Intents::new()));
+    }
+}

@@ -1,0 +1,158 @@
+//! A line of text that the visitor types.
+
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+use crate::accounts::printable;
+use crate::sessions::line::Line;
+use cellcaster::terminal::{Key, KeyEvent};
+
+/// A line that is being typed. What is typed is what [`printable`] leaves of it, except for a blank at
+/// its end.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LineEntry {
+    text: String,
+    /// The most columns.
+    columns: usize,
+    /// Whether the text is an offer, in whose place the first character is typed.
+    is_offer: bool,
+}
+
+impl LineEntry {
+    /// An empty line of at most `columns`.
+    pub(crate) fn new(columns: usize) -> Self {
+        Self { columns, ..Self::default() }
+    }
+
+    /// A line with an offer in it.
+    pub(crate) fn offering(offer: &Line, columns: usize) -> Self {
+        Self { text: offer.to_string(), columns, is_offer: true }
+    }
+
+    /// The text.
+    #[cfg(test)]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text as a line; `None` if it is blank.
+    pub(crate) fn line(&self) -> Option<Line> {
+        Line::of(&self.text, self.columns)
+    }
+
+    /// Changes the text by a key. Returns whether it has changed.
+    pub(crate) fn press(&mut self, event: KeyEvent) -> bool {
+        if event.key == Key::Backspace {
+            self.is_offer = false;
+            return self.text.pop().is_some();
+        }
+        let Some(character) = event.typed() else { return false };
+        let offer = self.is_offer.then(|| std::mem::take(&mut self.text));
+        let is_taken = append(&mut self.text, character, self.columns);
+        match offer {
+            Some(offer) if !is_taken => self.text = offer,
+            _ => self.is_offer = false,
+        }
+        is_taken
+    }
+
+    /// The end of the text that fits in `columns` with a cursor after it.
+    pub(crate) fn shown(&self, columns: usize) -> String {
+        let mut room = columns.saturating_sub(1);
+        let fits = |character: &char| {
+            let width = character.width().unwrap_or(0);
+            let fits = width <= room;
+            room = room.saturating_sub(width);
+            fits
+        };
+        let mut shown: Vec<char> = self.text.chars().rev().take_while(fits).collect();
+        shown.reverse();
+        shown.into_iter().chain(['_']).collect()
+    }
+}
+
+/// Appends a character to `line`, with whose last one it may combine. Returns whether it is taken.
+fn append(line: &mut String, character: char, columns: usize) -> bool {
+    if character.is_whitespace() {
+        let is_taken = !line.is_empty() && !line.ends_with(' ') && line.width() < columns;
+        line.extend(is_taken.then_some(' '));
+        return is_taken;
+    }
+    // No earlier character than the last one combines with it.
+    let last = line.chars().next_back().filter(|last| *last != ' ');
+    line.truncate(line.len() - last.map_or(0, char::len_utf8));
+    let room = columns.saturating_sub(line.width());
+    let end = printable(&last.into_iter().chain([character]).collect::<String>(), room);
+    let is_taken = !end.chars().eq(last);
+    line.push_str(&end);
+    is_taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cellcaster::terminal::{Modifiers, Phase};
+
+    fn event(key: Key, shift: bool) -> KeyEvent {
+        let modifiers = Modifiers { shift, ..Modifiers::default() };
+        KeyEvent { key, base: None, modifiers, phase: Phase::Press }
+    }
+
+    fn type_all(entry: &mut LineEntry, text: &str) {
+        for character in text.chars() {
+            entry.press(event(Key::Char(character), false));
+        }
+    }
+
+    #[test]
+    fn the_first_character_replaces_an_offer() {
+        let offer = Line::of("guest-fox", 16).unwrap();
+        let mut entry = LineEntry::offering(&offer, 16);
+        assert_eq!(entry.line(), Some(offer.clone()));
+        entry.press(event(Key::Char('m'), true));
+        type_all(&mut entry, "ara v ");
+        assert_eq!(entry.text(), "Mara v ");
+        assert_eq!(entry.line().unwrap().as_str(), "Mara v");
+        let mut entry = LineEntry::offering(&offer, 16);
+        entry.press(event(Key::Backspace, false));
+        type_all(&mut entry, "!");
+        assert_eq!(entry.text(), "guest-fo!");
+    }
+
+    #[test]
+    fn only_what_is_printable_and_fits_is_taken() {
+        let mut entry = LineEntry::new(6);
+        type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
+        // The accent combines with what was typed before.
+        assert_eq!(entry.text(), "á日b日");
+        assert_eq!(entry.shown(4), "b日_");
+        assert_eq!(entry.shown(0), "_");
+        assert_eq!(LineEntry::new(4).line(), None);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn a_line_typed_key_by_key_is_the_line_at_once(
+            text in "([a-e漢 \u{a0}][\u{300}-\u{303}]?|[ᄀ-ᄂ][ᅡ-ᅣ][ᆨ-ᆪ]?){0,16}",
+        ) {
+            let mut entry = LineEntry::new(60);
+            type_all(&mut entry, &text);
+            assert_eq!(entry.line(), Line::of(&text, 60), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_typed_is_what_the_line_will_be() {
+        for text in ["e\u{301}te\u{301}", "a  b \u{a0}c", "\u{ad}\u{3164}x\u{e000}", "שלום 日本"]
+        {
+            let mut entry = LineEntry::new(12);
+            type_all(&mut entry, text);
+            assert_eq!(entry.line(), Line::of(text, 12), "{text:?}");
+        }
+        let mut entry = LineEntry::new(12);
+        type_all(&mut entry, "cafe\u{301} ");
+        assert_eq!(entry.text(), "café ");
+        assert!(!entry.press(event(Key::Char(' '), false)));
+        assert!(!entry.press(event(Key::Char('\u{202e}'), false)));
+        assert_eq!(entry.text(), "café ");
+    }
+}

@@ -1,0 +1,135 @@
+//! What a session and its driver tell each other, and what a session knows from the beginning.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::accounts::AccountSettings;
+use crate::rooms::ghost::Ghost;
+use crate::rooms::room::{Catalog, Command, MemberId};
+use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::sessions::line::Line;
+use cellcaster::app::Configuration;
+use cellcaster::app::store::Preferences;
+use cellcaster::game::Rank;
+use cellcaster::world::Difficulty;
+
+/// Who the visitor is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Identity {
+    /// Whether they have an account, so that their results rank. Otherwise they are a guest.
+    pub(crate) has_account: bool,
+    /// The name of the account, or else a name that nobody has, to be offered.
+    pub(crate) name: Line,
+    /// Whether the account has that name already.
+    pub(crate) is_named: bool,
+    pub(crate) preferences: Preferences,
+    /// The keys that they use, and how the game begins.
+    pub(crate) configuration: Configuration,
+}
+
+/// What a session knows of the host and of the connection.
+#[derive(Clone, Debug)]
+pub(crate) struct HostFacts {
+    /// The name of the host.
+    pub(crate) name: Line,
+    /// The message of the day.
+    pub(crate) message: Option<Line>,
+    /// What the visitor is to read about their key.
+    pub(crate) notice: Option<Line>,
+    /// Whether the connection compresses what is sent.
+    pub(crate) compresses: bool,
+    /// The setting of the visitor's locale that restricts them to ASCII, such as `LANG=C`.
+    pub(crate) ascii_locale: Option<Line>,
+    pub(crate) catalog: Arc<Catalog>,
+    pub(crate) idle: IdleLimits,
+    /// The least time between two frames, at first.
+    pub(crate) frame_time: Duration,
+}
+
+impl HostFacts {
+    /// Whether rooms in that level can be played here. In a cluster, other hosts may have other maps.
+    pub(crate) fn has_level(&self, name: &str) -> bool {
+        self.catalog.world(name).is_some()
+    }
+}
+
+/// How long a visitor may press no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct IdleLimits {
+    /// As a member of a room; then they are in the lobby.
+    pub(crate) in_room: Duration,
+    /// Elsewhere; then the session ends.
+    pub(crate) elsewhere: Duration,
+    /// How long before that they are warned.
+    pub(crate) warning: Duration,
+}
+
+impl Default for IdleLimits {
+    /// Five minutes in a room, and a quarter of an hour elsewhere, with a warning a minute before.
+    fn default() -> Self {
+        let [in_room, elsewhere, warning] = [5, 15, 1].map(Duration::from_mins);
+        Self { in_room, elsewhere, warning }
+    }
+}
+
+/// A request of a session to its driver.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Request {
+    /// To have this name: [`SessionEvent::Named`].
+    Name(String),
+    /// The rooms, now and whenever they change, until the session is in a room: [`SessionEvent::Rooms`].
+    Rooms,
+    /// To be in a room, as a member or to watch: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
+    Enter { room: RoomId, watches: bool },
+    /// To be a member of a new room: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
+    Open(RoomWish),
+    /// To do something in the room: neither [`Command::Join`] nor [`Command::Leave`].
+    Command(Command),
+    /// To be in the room no more. Nothing is answered.
+    Leave,
+    /// A board: [`SessionEvent::Board`].
+    Board { level: String, difficulty: Difficulty },
+    /// The runs that walk along in a level: [`SessionEvent::Ghosts`].
+    Ghosts { level: String, difficulty: Difficulty },
+    /// To keep the settings. Nothing is answered.
+    Save(AccountSettings),
+}
+
+/// What the driver tells a session.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SessionEvent {
+    /// The visitor has this name, or a sentence why they cannot have it.
+    Named(Result<Line, String>),
+    /// The rooms.
+    Rooms(Arc<[RoomSummary]>),
+    /// The visitor is in a room; `None` if they watch.
+    Entered { room: RoomId, member: Option<MemberId> },
+    /// A sentence why they cannot be in the room.
+    Refused(String),
+    /// The visitor is in the room no more, and why: a sentence.
+    Left(String),
+    /// A board, the best first.
+    Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
+    /// The runs that walk along in a level.
+    Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
+    /// What became of a result: a sentence.
+    Result(String),
+    /// A line from the host to all.
+    Said(Line),
+    /// The server ends at `ends_at`; whether the visitor finds the room as it was on another one.
+    Draining { ends_at: Duration, can_return: bool },
+    /// The session ends, and why: a sentence.
+    Ended(String),
+}
+
+/// An entry of a board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct BoardRow {
+    pub(crate) name: Line,
+    /// The time of the fastest run, in steps.
+    pub(crate) steps: u64,
+    /// The highest rank.
+    pub(crate) rank: Rank,
+    /// Whether it is the visitor's own.
+    pub(crate) is_own: bool,
+}

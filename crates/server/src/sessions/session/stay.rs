@@ -1,0 +1,229 @@
+//! A visitor's stay in a room, as a member or to watch.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::ghosts::{Ghosts, Seen};
+use super::intent_queue::IntentQueue;
+use super::look::Look;
+use super::messages::Request;
+use super::shown_steps::ShownSteps;
+use super::talk::Talk;
+use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
+use cellcaster::app::MapDisplay;
+use cellcaster::app::parts::{MapPanel, Watch};
+use cellcaster::game::{self, Outcome, PlayerView, STEPS_PER_SECOND};
+use cellcaster::world::{Camera, FieldOfView, Figure};
+
+/// A stay in a room.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+pub(crate) struct Stay {
+    /// The visitor as a member; `None` if they watch.
+    pub(crate) member: Option<MemberId>,
+    /// The member that they watch, unless they play themselves.
+    watched: Option<MemberId>,
+    /// Whether the last picture is that of another member: the visitor is no member, or has finished.
+    pub(crate) is_watching: bool,
+    pub(crate) talk: Talk,
+    pub(crate) intents: IntentQueue,
+    pub(crate) frames: ShownSteps,
+    pub(crate) map: MapPanel,
+    /// What the bell rings for.
+    pub(crate) watch: Watch,
+    /// The time in the game at which the last picture changes without a cause.
+    pub(crate) next_change: Option<f64>,
+    pub(crate) ghosts: Ghosts,
+    pub(crate) shows_members: bool,
+    /// Whether the player is in the air in the last picture.
+    pub(crate) is_airborne: bool,
+    /// The time since which pictures show the player dead; `None` if the last one does not.
+    pub(crate) dead_since: Option<Duration>,
+    /// Whether the dead begin the round again, in place of going on from a checkpoint.
+    pub(crate) dies_for_good: bool,
+    /// The members who could be watched in the last picture.
+    members: Vec<MemberId>,
+    /// What the last picture shows; `None` before the first one.
+    shown: Option<Shown>,
+}
+
+/// The part of a room that a picture depends on.
+#[derive(Debug)]
+struct Shown {
+    header: Arc<Header>,
+    revision: u64,
+    camera: Camera,
+    phase: Phase,
+    times: [Option<u64>; 2],
+    members: Vec<MemberView>,
+    ghosts: Vec<Figure>,
+    standings: usize,
+    /// The time in the game of the next change that nobody causes.
+    animates_at: Option<f64>,
+}
+
+impl Stay {
+    pub(crate) fn new(member: Option<MemberId>, map: MapDisplay) -> Self {
+        Self {
+            member,
+            watched: None,
+            is_watching: false,
+            talk: Talk::default(),
+            intents: IntentQueue::default(),
+            frames: ShownSteps::default(),
+            map: MapPanel::new(map),
+            watch: Watch::default(),
+            next_change: None,
+            ghosts: Ghosts::default(),
+            shows_members: false,
+            is_airborne: false,
+            dead_since: None,
+            dies_for_good: false,
+            members: Vec::new(),
+            shown: None,
+        }
+    }
+
+    /// Takes over what is new in `room` before it is drawn; returns what is wanted to draw it.
+    pub(crate) fn look_at(&mut self, room: &RoomView, now: Duration) -> Option<Request> {
+        self.talk.hear(&room.said, now);
+        self.talk.forget_old(now);
+        let is_same_round = |shown: &Shown| Arc::ptr_eq(&shown.header, &room.header);
+        let begins = !self.shown.as_ref().is_some_and(is_same_round);
+        if begins && self.shown.is_some() {
+            self.map.begin_level();
+            self.frames.forget();
+        }
+        if let Some(player) = self.member.and_then(|id| room.member(id)?.player) {
+            if begins {
+                self.watch = Watch::of(&room.game, player);
+            }
+            self.watch.look_at(&room.game, player);
+        }
+        // A picture without the level changes with nothing in it.
+        self.next_change = None;
+        let playing = room.members.iter().filter(|member| member.finish.is_none());
+        self.members = playing.map(|member| member.id).collect();
+        if self.watched.is_none_or(|id| !self.members.contains(&id)) {
+            self.watched = self.members.first().copied();
+        }
+        let seen_through = self.seen_through(room).map(|(member, _)| member.id);
+        self.is_watching = self.member.is_none() || seen_through != self.member;
+        // Tab chooses another one then.
+        self.shows_members &= !self.is_watching;
+        let own = self.member.and_then(|id| room.game.seen_by(room.member(id)?.player?));
+        self.is_airborne = own.is_some_and(|player| player.is_airborne());
+        let is_dead = |player: PlayerView| matches!(player.outcome(), Outcome::Dead { .. });
+        self.dies_for_good = room.game.multiplayer_rules().is_some_and(|rules| !rules.respawns);
+        let is_dead = own.is_some_and(is_dead);
+        self.dead_since = is_dead.then(|| self.dead_since.unwrap_or(now));
+        begins.then(|| self.ghosts.begin(room)).flatten()
+    }
+
+    /// Whether `room` has acted on all that the member wants.
+    pub(crate) fn has_acted(&self, room: &RoomView) -> bool {
+        let acted = self.member.and_then(|id| room.acted(id));
+        acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
+    }
+
+    /// The ghosts in the picture.
+    pub(crate) fn ghosts<'r>(
+        &'r self,
+        room: &'r RoomView,
+        look: &Look,
+    ) -> impl Iterator<Item = Seen<'r>> {
+        let own = self.member.and_then(|id| room.member(id)).map(|member| member.color);
+        let is_on = look.shows_ghosts;
+        self.ghosts.seen(room, own).filter(move |_| is_on)
+    }
+
+    /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
+    /// Those who have finished are seen through only if nobody else plays. `None` if nobody is there.
+    pub(crate) fn seen_through<'r>(
+        &self,
+        room: &'r RoomView,
+    ) -> Option<(&'r MemberView, PlayerView<'r>)> {
+        let own = self.member.and_then(|id| room.member(id));
+        let watched = self.watched.and_then(|id| room.member(id));
+        let candidates = || own.into_iter().chain(watched).chain(&room.members);
+        let seen = |it: &'r MemberView| Some((it, room.game.seen_by(it.player?)?));
+        let playing = candidates().filter(|it| it.finish.is_none()).find_map(seen);
+        playing.or_else(|| candidates().find_map(seen))
+    }
+
+    /// The camera of the picture.
+    pub(crate) fn camera(&self, room: &RoomView, view: FieldOfView) -> Camera {
+        let start = || room.game.world().start_camera(view);
+        self.seen_through(room).map_or_else(start, |(_, player)| player.camera(view))
+    }
+
+    /// Watches the next member, or the one before.
+    pub(crate) fn watch_another(&mut self, forward: bool) {
+        let count = self.members.len();
+        if count > 0 {
+            let index = self.members.iter().position(|&id| Some(id) == self.watched).unwrap_or(0);
+            let by = if forward { 1 } else { count - 1 };
+            self.watched = self.members.get((index + by) % count).copied();
+        }
+    }
+
+    /// Whether a picture of `room` would differ from the last one.
+    pub(crate) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
+        let Some(shown) = &self.shown else { return true };
+        let elapsed = room.game.elapsed();
+        shown.revision != room.game.revision()
+            || shown.camera != self.camera(room, look.field_of_view)
+            || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
+            || shown.times != times(room)
+            || shown.members != room.members
+            || !self.ghosts(room, look).map(|seen| seen.figure).eq(shown.ghosts.iter().copied())
+            || shown.standings != room.standings.len()
+            || self.talk.is_behind(&room.said)
+            || shown.animates_at.is_some_and(|time| time <= elapsed)
+            || !Arc::ptr_eq(&shown.header, &room.header)
+    }
+
+    /// Records that `room` was drawn.
+    pub(crate) fn drawn(&mut self, room: &RoomView, look: &Look) {
+        self.shown = Some(Shown {
+            header: Arc::clone(&room.header),
+            revision: room.game.revision(),
+            camera: self.camera(room, look.field_of_view),
+            phase: room.phase,
+            times: times(room),
+            members: room.members.clone(),
+            ghosts: self.ghosts(room, look).map(|seen| seen.figure).collect(),
+            standings: room.standings.len(),
+            animates_at: self.next_change,
+        });
+    }
+}
+
+/// The times that the picture may show, in seconds.
+fn times(room: &RoomView) -> [Option<u64>; 2] {
+    [seconds_left(room), run_seconds(room)]
+}
+
+/// The seconds of a round whose time counts; `None` in the others.
+pub(crate) fn run_seconds(room: &RoomView) -> Option<u64> {
+    match room.header.mode {
+        Mode::Race | Mode::Together | Mode::Alone => {
+            Some(room.step.saturating_sub(room.begun?) / u64::from(STEPS_PER_SECOND))
+        }
+        Mode::Roam | Mode::Tag | Mode::Hide => None,
+    }
+}
+
+/// The seconds until something that the picture counts down to; `None` if it counts nothing down.
+pub(crate) fn seconds_left(room: &RoomView) -> Option<u64> {
+    let counts = |ends: u64| match room.header.mode {
+        Mode::Tag | Mode::Hide => true,
+        // Others may go on for a while after the first one has finished.
+        mode => mode.after_first().is_some_and(|last| ends.saturating_sub(room.step) <= last),
+    };
+    match room.phase {
+        Phase::Countdown { ends } | Phase::Over { ends } => Some(ends),
+        Phase::Playing { ends } if counts(ends) => Some(ends),
+        Phase::Playing { .. } | Phase::Waiting => None,
+    }
+    .map(|ends| ends.saturating_sub(room.step).div_ceil(u64::from(STEPS_PER_SECOND)))
+}

@@ -1,0 +1,227 @@
+//! The way from the name into a room, and back.
+
+use super::*;
+use crate::rooms::summary::RoomId;
+use crate::sessions::session::choice::Target;
+use crate::sessions::session::page::Page;
+use crate::simulation::emulator::{Emulator, Modes};
+
+#[test]
+fn enter_alone_leads_to_a_first_walk() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("amber-fox", (80, 24), Speaks::Kitty);
+    assert_eq!(rig.page(one), Page::Name);
+    for page in [Page::Lobby, Page::Card(Target::Existing(ROOM)), Page::Room] {
+        rig.press(one, ENTER);
+        assert_eq!(rig.page(one), page, "{}", rig.text(one));
+    }
+    let before = rig.position(one);
+    rig.send(one, "\x1b[119;1:1u");
+    rig.pump(600);
+    assert!(rig.position(one).x > before.x + 1.0, "{:?}", rig.position(one));
+}
+
+#[test]
+fn a_name_is_typed_in_place_of_the_offer() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("amber-fox", (80, 24), Speaks::Plain);
+    rig.press(one, "\x1b]0;evil\x07\x1b[31mMara\x1b[2J\u{9b}31m\u{202e} v");
+    assert!(rig.text(one).contains("Mara31m v_"), "{}", rig.text(one));
+    assert_eq!(rig.clients[one].look(|emulator| emulator.title().to_owned()), "");
+    rig.press(one, "\x7f\x7f\x7f\x7f\x7f\r");
+    let name = rig.session(one, |session, _| session.visit.identity.name.clone());
+    assert_eq!(name, line("Mara"));
+    assert_eq!(rig.page(one), Page::Lobby);
+}
+
+#[test]
+fn a_name_that_is_refused_is_typed_again() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("g", (80, 24), Speaks::Plain);
+    rig.press(one, "\x7f\r");
+    assert!(rig.text(one).contains("A name ends with a letter"), "{}", rig.text(one));
+    rig.press(one, "\x7f\x7f\x7f\x7f\x7f\x7fJo\r");
+    assert_eq!(rig.page(one), Page::Lobby, "{}", rig.text(one));
+}
+
+#[test]
+fn escape_goes_back_and_asks_before_it_leaves() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::RoomMenu);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::Room);
+    rig.press(one, "q");
+    rig.press(one, "q");
+    assert_eq!(rig.page(one), Page::Lobby);
+    assert_eq!(rig.view().members.len(), 0);
+    rig.press(one, ESCAPE);
+    assert_eq!(rig.page(one), Page::Leaving);
+    rig.press(one, "x");
+    assert_eq!(rig.page(one), Page::Lobby);
+    rig.press(one, "\x03");
+    rig.press(one, "\x03");
+    assert!(rig.is_over(one));
+    let modes = rig.clients[one].look(Emulator::modes);
+    assert_eq!(modes, Modes::default());
+    assert!(rig.text(one).contains("Goodbye."));
+}
+
+#[test]
+fn arrow_keys_put_nobody_out() {
+    for speaks in [Speaks::Plain, Speaks::Kitty] {
+        let mut rig = Rig::new(Mode::Roam);
+        let one = rig.visitor("Mara", (80, 24), speaks);
+        for _ in 0..4 {
+            for arrow in ["\x1b[A", "\x1b[B", "\x1b[C", "\x1b[D", "\x1bOA", "\x1bOB"] {
+                rig.press(one, arrow);
+            }
+            // Half an arrow, and the rest of it after a while.
+            rig.send(one, "\x1b");
+            rig.pump(20);
+            rig.press(one, "[A");
+            rig.press(one, "\x1b[H");
+            rig.press(one, ENTER);
+        }
+        assert_eq!(rig.page(one), Page::Chat, "{}", rig.text(one));
+    }
+}
+
+#[test]
+fn who_presses_no_key_is_warned_and_put_out() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Kitty);
+    rig.pump(240_000);
+    assert!(rig.text(one).contains("Still there?"), "{}", rig.text(one));
+    rig.press(one, "\x1b[109;1:1u\x1b[109;1:3u");
+    assert!(!rig.text(one).contains("Still there?"));
+    rig.pump(300_000);
+    assert_eq!(rig.page(one), Page::Lobby);
+    assert!(rig.text(one).contains("You pressed no key for 5 minutes."), "{}", rig.text(one));
+    assert_eq!(rig.view().members.len(), 0);
+    rig.pump(14 * 60_000);
+    assert!(rig.text(one).contains("end this session"), "{}", rig.text(one));
+    rig.pump(60_000);
+    assert!(rig.is_over(one));
+}
+
+#[test]
+fn a_room_is_opened_and_watched() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    rig.press(one, "2");
+    assert_eq!(rig.page(one), Page::Modes, "{}", rig.text(one));
+    rig.press(one, "2");
+    assert_eq!(rig.page(one), Page::Levels(Mode::Tag));
+    rig.press(one, ENTER);
+    assert!(rig.text(one).contains("Touch another one"), "{}", rig.text(one));
+    rig.press(one, ENTER);
+    assert!(rig.text(one).contains("waiting for another one"), "{}", rig.text(one));
+    let other = rig.visitor("Jon", (80, 24), Speaks::Plain);
+    rig.press(other, ENTER);
+    // After the two rooms, and a new one.
+    rig.press(other, "4");
+    rig.press(other, ENTER);
+    rig.press(other, "2");
+    assert!(rig.text(other).contains("watching Mara"), "{}", rig.text(other));
+    let view = rig.rooms().view(RoomId(2)).unwrap();
+    assert_eq!(view.members.len(), 1);
+    rig.press(other, "hello\r");
+    let view = rig.rooms().view(RoomId(2)).unwrap();
+    assert!(view.said.iter().all(|said| said.text != "hello"));
+}
+
+#[test]
+fn keys_beyond_what_anybody_types_are_dropped() {
+    let mut rig = Rig::new(Mode::Roam);
+    let [fast, slow] = ["Mara", "Jon"].map(|name| {
+        let visitor = rig.visitor(name, (80, 24), Speaks::Plain);
+        rig.press(visitor, ENTER);
+        rig.press(visitor, "6");
+        visitor
+    });
+    rig.pump(2_000);
+    rig.press(fast, &"\x1b[C".repeat(1000));
+    (0..KEYS_AT_ONCE as usize % 3).for_each(|_| rig.press(slow, "\x1b[C"));
+    let difficulty = |rig: &Rig, index| {
+        rig.session(index, |session, _| session.visit.identity.preferences.difficulty)
+    };
+    assert_eq!(difficulty(&rig, fast), difficulty(&rig, slow));
+    for visitor in [fast, slow] {
+        rig.press(visitor, "\x1b[C");
+    }
+    assert_eq!(difficulty(&rig, fast), difficulty(&rig, slow));
+    rig.press(fast, &("w".repeat(20_000) + "\x03"));
+    assert_eq!(rig.page(fast), Page::Leaving);
+}
+
+#[test]
+fn a_line_that_is_pasted_is_whole() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.member("Mara", (80, 24), Speaks::Plain);
+    let line: String =
+        ('a'..='z').cycle().take(60).flat_map(|letter| [letter, '\u{301}']).collect();
+    rig.press(one, &format!("/{line} and more that does not fit\r"));
+    let said = rig.view().said.last().map(|said| said.text.clone());
+    assert_eq!(said, crate::sessions::line::Line::of(&line, 60).map(|line| line.to_string()));
+}
+
+#[test]
+fn boards_settings_and_help_lead_back() {
+    let mut rig = Rig::new(Mode::Roam);
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    for (number, shown) in [
+        ("4", "left and right change"),
+        ("5", "board"),
+        ("6", "Difficulty"),
+        ("7", "walk back"),
+        ("8", "Enter ends the session"),
+    ] {
+        rig.press(one, number);
+        assert!(rig.text(one).contains(shown), "{number}: {}", rig.text(one));
+        rig.press(one, ESCAPE);
+        assert_eq!(rig.page(one), Page::Lobby, "{number}");
+    }
+    rig.press(one, "5\r");
+    assert_eq!(rig.page(one), Page::Board);
+    assert!(rig.text(one).contains("Nobody has won it yet."), "{}", rig.text(one));
+    rig.press(one, "\x1b[C");
+    assert!(rig.text(one).contains("On hard"), "{}", rig.text(one));
+}
+
+#[test]
+fn rooms_in_maps_that_this_host_lacks_are_not_listed() {
+    use crate::rooms::room::Phase;
+    use crate::rooms::summary::RoomSummary;
+    use cellcaster::world::Difficulty;
+
+    let mut rig = Rig::new(Mode::Roam);
+    let room = |id, level: &str| RoomSummary {
+        id: RoomId(id),
+        level: level.to_owned(),
+        mode: Mode::Tag,
+        difficulty: Difficulty::Normal,
+        phase: Phase::Waiting,
+        members: [line("Kim")].into(),
+        watchers: 0,
+    };
+    let elsewhere = |level| vec![room(7, level), room(8, "museum")];
+    rig.rooms().show_shared(elsewhere("hall"));
+    let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
+    rig.press(one, ENTER);
+    assert_eq!(rig.text(one).matches("Tag in The Hall").count(), 2, "{}", rig.text(one));
+    // The room moves on to a map of other hosts while she looks at it.
+    rig.press(one, ENTER);
+    rig.rooms().show_shared(elsewhere("moss-0123456789abcdef"));
+    rig.pump(500);
+    let text = rig.text(one);
+    assert!(text.contains("This host does not have the map of this room."), "{text}");
+    assert!(!text.contains("Go in"), "{text}");
+    rig.press(one, ESCAPE);
+    let text = rig.text(one);
+    assert_eq!(text.matches("Tag in").count(), 1, "{text}");
+    assert!(!text.contains("moss"), "{text}");
+}

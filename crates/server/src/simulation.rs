@@ -1,0 +1,262 @@
+//! A host in simulated time: rooms, sequencers, drivers, sessions and the store as they are, and
+//! clients with terminal emulators at the far ends of pipes.
+//!
+//! Everything runs on one thread under a clock that advances when nothing else is left to do. So what
+//! happens depends on the seed alone, and a minute takes less than a second. Tokio wakes those who wait
+//! for one `watch` channel in a random order, which only an unstable option seeds; no run depends on
+//! that order, as a test shows that plays seeds twice. Where computing [costs](Worker) time, the order decides
+//! who is some milliseconds later.
+
+mod client;
+#[path = "../../../tests/support/emulator.rs"]
+pub(crate) mod emulator;
+#[path = "../../../tests/support/looks.rs"]
+mod looks;
+mod replay;
+mod seeds;
+mod tapes;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::{Instant, sleep};
+
+pub(crate) use self::client::{Client, Conditions, guest};
+pub(crate) use self::emulator::Speaks;
+pub(crate) use self::tapes::Tapes;
+use crate::accounts::MemoryStore;
+use crate::ops::config::StandingRoom;
+use crate::ops::config::{Config, LiveConfig};
+use crate::ops::metrics::Metrics;
+use crate::rooms::directory::Rooms;
+use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
+use crate::rooms::summary::{RoomId, RoomWish};
+use crate::sessions::driver::{Setup, Simulated};
+use crate::sessions::line::Line;
+use crate::sessions::load::Worker;
+use crate::sessions::session::Session;
+use crate::sessions::visitors::Visitors;
+use crate::ssh::Visitor;
+use cellcaster::color::palette::ColorDepth;
+use cellcaster::map;
+use cellcaster::world::{Difficulty, FieldOfView};
+
+pub(crate) const HALL: &str = r##"
+title = "The Hall"
+grid = '''
+###############
+#@............#
+#.............#
+#.............#
+#............>#
+###############
+'''
+[tiles]
+"#" = { wall = "#808080" }
+[things]
+"@" = { start = 0 }
+">" = { exit = true }
+"##;
+
+/// The standing room.
+pub(crate) const ROOM: RoomId = RoomId(1);
+pub(crate) const ENTER: &str = "\r";
+pub(crate) const ESCAPE: &str = "\x1b";
+
+/// A host, and the clients that have come so far.
+pub(crate) struct Rig {
+    runtime: Runtime,
+    host: Simulated,
+    pub(crate) live: LiveConfig,
+    pub(crate) visitors: Visitors,
+    pub(crate) clients: Vec<Client>,
+    pub(crate) tapes: Tapes,
+}
+
+/// What may differ from rig to rig.
+pub(crate) struct Wish {
+    pub(crate) catalog: Catalog,
+    /// The level and the mode of the standing room.
+    pub(crate) level: &'static str,
+    pub(crate) mode: Mode,
+    /// How long the store takes for a call.
+    pub(crate) store_time: Duration,
+    pub(crate) worker: Worker,
+    pub(crate) seed: u64,
+}
+
+pub(crate) fn line(text: &str) -> Line {
+    Line::of(text, NAME_COLUMNS).unwrap()
+}
+
+/// Two levels with the same map.
+pub(crate) fn catalog(map: &str) -> Catalog {
+    let mut catalog = Catalog::default();
+    for name in ["museum", "hall"] {
+        catalog.add(name, map::parse(map, name, &map::NoFiles).unwrap());
+    }
+    catalog
+}
+
+impl Wish {
+    /// Two levels with the hall, and a standing room in it.
+    pub(crate) fn new(mode: Mode) -> Self {
+        let (store_time, worker) = (Duration::ZERO, Worker::default());
+        Self { catalog: catalog(HALL), level: "hall", mode, store_time, worker, seed: 7 }
+    }
+}
+
+impl Rig {
+    /// A host with a standing room of that mode.
+    pub(crate) fn new(mode: Mode) -> Self {
+        Self::with(Wish::new(mode))
+    }
+
+    pub(crate) fn with(wish: Wish) -> Self {
+        let runtime =
+            Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
+        let (level, difficulty) = (wish.level.to_owned(), Difficulty::Normal);
+        let room = StandingRoom(RoomWish { level, mode: wish.mode, difficulty });
+        let config =
+            Config { message: "Be kind.".to_owned(), standing: vec![room], ..Config::default() };
+        let (live, visitors, tapes) =
+            (LiveConfig::new(config), Visitors::default(), Tapes::default());
+        let setup = Setup {
+            live: live.clone(),
+            visitors: visitors.clone(),
+            catalog: wish.catalog,
+            logs: tapes.logs(),
+            store: Box::new(MemoryStore::default()),
+            store_time: wish.store_time,
+            worker: wish.worker,
+            seed: wish.seed,
+        };
+        let host = runtime.block_on(async { Simulated::new(setup) });
+        Self { runtime, host, live, visitors, clients: Vec::new(), tapes }
+    }
+
+    /// Adds a visitor whose terminal has no colours, and returns their index.
+    pub(crate) fn visitor(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
+        self.visitor_with(name, size, speaks, ColorDepth::Mono)
+    }
+
+    pub(crate) fn visitor_with(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+        depth: ColorDepth,
+    ) -> usize {
+        let index = self.arrive(name, size, speaks, depth);
+        self.pump(300);
+        index
+    }
+
+    /// A guest connects; no time passes.
+    pub(crate) fn arrive(
+        &mut self,
+        name: &str,
+        size: (u16, u16),
+        speaks: Speaks,
+        depth: ColorDepth,
+    ) -> usize {
+        self.connect(guest(name, size), speaks, depth)
+    }
+
+    /// That visitor connects; no time passes.
+    pub(crate) fn connect(&mut self, visitor: Visitor, speaks: Speaks, depth: ColorDepth) -> usize {
+        let Self { runtime, host, .. } = self;
+        let client = runtime.block_on(async { Client::come(host, visitor, speaks, depth) });
+        self.clients.push(client);
+        self.clients.len() - 1
+    }
+
+    /// A visitor who is in the room.
+    pub(crate) fn member(&mut self, name: &str, size: (u16, u16), speaks: Speaks) -> usize {
+        let index = self.visitor(name, size, speaks);
+        for _ in 0..3 {
+            self.press(index, ENTER);
+        }
+        assert!(self.member_id(index).is_some(), "{}", self.text(index));
+        index
+    }
+
+    /// Types bytes, and lets half a second pass.
+    pub(crate) fn press(&mut self, index: usize, bytes: &str) {
+        self.send(index, bytes);
+        self.pump(500);
+    }
+
+    pub(crate) fn send(&self, index: usize, bytes: impl AsRef<[u8]>) {
+        let _guard = self.runtime.enter();
+        self.clients[index].send(bytes.as_ref());
+    }
+
+    /// Lets that many milliseconds pass.
+    pub(crate) fn pump(&mut self, milliseconds: u64) {
+        self.runtime.block_on(async { sleep(Duration::from_millis(milliseconds)).await });
+    }
+
+    /// The simulated time.
+    pub(crate) fn now(&self) -> Instant {
+        let _guard = self.runtime.enter();
+        Instant::now()
+    }
+
+    /// What the visitor's screen shows.
+    pub(crate) fn text(&self, index: usize) -> String {
+        self.clients[index].look(|emulator| {
+            let screen = emulator.screen();
+            let (_, columns) = screen.size();
+            let rows = screen.rows(0, columns.get()).map(|row| row.trim_end().to_owned() + "\n");
+            rows.collect()
+        })
+    }
+
+    /// Looks into a session that has not ended, with the newest snapshot of its room.
+    pub(crate) fn session<T: Send + 'static>(
+        &self,
+        index: usize,
+        look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
+    ) -> T {
+        let looked = self.runtime.block_on(self.clients[index].visiting.look(look));
+        looked.expect("the session has ended")
+    }
+
+    /// The number of the visitor as a member.
+    pub(crate) fn member_id(&self, index: usize) -> Option<MemberId> {
+        self.session(index, |session, _| session.member())
+    }
+
+    pub(crate) fn is_over(&self, index: usize) -> bool {
+        self.clients[index].visiting.is_over()
+    }
+
+    pub(crate) fn metrics(&self) -> &Metrics {
+        self.host.metrics()
+    }
+
+    pub(crate) fn rooms(&self) -> &Rooms {
+        self.host.rooms()
+    }
+
+    /// The newest snapshot of the standing room.
+    pub(crate) fn view(&self) -> Arc<RoomView> {
+        self.rooms().view(ROOM).expect("the room is there")
+    }
+
+    pub(crate) fn position(&self, index: usize) -> glam::DVec2 {
+        self.session(index, |session, room| {
+            let room = room.expect("a room");
+            let member = room.member(session.member().unwrap()).unwrap();
+            let player = room.game.seen_by(member.player.unwrap()).unwrap();
+            player.camera(FieldOfView::default()).position()
+        })
+    }
+
+    /// The tasks of the host and its clients.
+    pub(crate) fn tasks(&self) -> usize {
+        self.runtime.metrics().num_alive_tasks()
+    }
+}

@@ -1,0 +1,161 @@
+//! The server's key, by which clients recognise it.
+
+use std::fmt;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use russh::keys::ssh_key::LineEnding;
+use russh::keys::ssh_key::private::Ed25519Keypair;
+use russh::keys::{HashAlg, PrivateKey};
+
+use cellcaster::app::store::private;
+use cellcaster::fault::printable_path;
+
+/// An ed25519 key of a server.
+#[derive(Clone)]
+pub struct HostKey {
+    key: PrivateKey,
+}
+
+/// Why there is no host key.
+#[derive(Debug)]
+pub struct HostKeyError {
+    sentence: String,
+}
+
+/// The name of its file in the data folder.
+const NAME: &str = "host_key";
+/// In bytes; a key has about 400.
+const LARGEST: u64 = 16 << 10;
+
+impl HostKey {
+    /// The key in the file `host_key` of `folder`. If there is none, a new one is made, in a file that
+    /// only its owner can read.
+    ///
+    /// # Errors
+    /// Others can read the file; or it is no key of this kind; or the folder can't be read or written.
+    pub fn open(folder: &Path) -> Result<Self, HostKeyError> {
+        let path = folder.join(NAME);
+        match private::open(&path) {
+            Ok(file) => read(file, &path),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => make(folder, &path),
+            Err(error) => Err(unreadable(&path, &error)),
+        }
+    }
+
+    /// The fingerprint as `ssh` shows it to somebody who connects for the first time.
+    pub fn fingerprint(&self) -> String {
+        self.key.fingerprint(HashAlg::Sha256).to_string()
+    }
+
+    /// The key of a seed that everybody knows.
+    #[cfg(fuzzing)]
+    pub(crate) fn of_seed(seed: [u8; 32]) -> Self {
+        Self { key: PrivateKey::from(Ed25519Keypair::from_seed(&seed)) }
+    }
+
+    pub(crate) fn private_key(&self) -> PrivateKey {
+        self.key.clone()
+    }
+}
+
+fn read(file: File, path: &Path) -> Result<HostKey, HostKeyError> {
+    refuse_readable(&file, path)?;
+    let mut text = String::new();
+    let read = file.take(LARGEST).read_to_string(&mut text);
+    read.map_err(|error| unreadable(path, &error))?;
+    let key = PrivateKey::from_openssh(&text).ok().filter(|key| key.key_data().is_ed25519());
+    let no_key = || {
+        let path = printable_path(path);
+        error(format!(
+            "{path} is no ed25519 key without a passphrase in OpenSSH's format; move it away to get a \
+             new one"
+        ))
+    };
+    key.map(|key| HostKey { key }).ok_or_else(no_key)
+}
+
+/// Makes a key. Where two servers begin at once, both take the one whose file was there first.
+fn make(folder: &Path, path: &Path) -> Result<HostKey, HostKeyError> {
+    let not_written = |cause: &dyn fmt::Display| {
+        error(format!("{} can't be written: {cause}", printable_path(path)))
+    };
+    let mut seed = [0; 32];
+    getrandom::fill(&mut seed).map_err(|cause| not_written(&cause))?;
+    let key = PrivateKey::from(Ed25519Keypair::from_seed(&seed));
+    let text = key.to_openssh(LineEnding::LF).map_err(|cause| not_written(&cause))?;
+    private::create_folder(folder).map_err(|cause| not_written(&cause))?;
+    match write_new(path, text.as_bytes()) {
+        Ok(()) => Ok(HostKey { key }),
+        Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {
+            let file = private::open(path).map_err(|cause| unreadable(path, &cause))?;
+            read(file, path)
+        }
+        Err(cause) => Err(not_written(&cause)),
+    }
+}
+
+/// Writes a file that must not exist, so that it is complete or absent at any time.
+fn write_new(path: &Path, content: &[u8]) -> io::Result<()> {
+    let mark = getrandom::u64().map_err(io::Error::other)?;
+    let new = path.with_extension(format!("{mark:016x}.new"));
+    let written = private_file(&new).and_then(|mut file| {
+        file.write_all(content)?;
+        file.sync_all()?;
+        fs::hard_link(&new, path)
+    });
+    let removed = fs::remove_file(&new);
+    written.and(removed)
+}
+
+fn private_file(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}
+
+#[cfg(unix)]
+fn refuse_readable(file: &File, path: &Path) -> Result<(), HostKeyError> {
+    use std::os::unix::fs::PermissionsExt;
+    let mode = file.metadata().map_err(|error| unreadable(path, &error))?.permissions().mode();
+    let others = 0o077;
+    if mode & others == 0 {
+        return Ok(());
+    }
+    let path = printable_path(path);
+    Err(error(format!(
+        "{path} can be read or written by others, so it is no secret; type \"chmod 600 {path}\" if \
+         nobody has copied it, or move it away to get a new one"
+    )))
+}
+
+#[cfg(not(unix))]
+fn refuse_readable(_: &File, _: &Path) -> Result<(), HostKeyError> {
+    Ok(())
+}
+
+fn unreadable(path: &Path, cause: &io::Error) -> HostKeyError {
+    error(format!("{} can't be read: {cause}", printable_path(path)))
+}
+
+fn error(sentence: String) -> HostKeyError {
+    HostKeyError { sentence }
+}
+
+impl fmt::Debug for HostKey {
+    /// The secret part is not shown.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("HostKey").field(&self.fingerprint()).finish()
+    }
+}
+
+impl fmt::Display for HostKeyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+impl std::error::Error for HostKeyError {}

@@ -1,0 +1,312 @@
+//! What a visitor sends, on its way from the connection to the session.
+//!
+//! Bytes wait in one buffer of bounded size. Where it is full, the connection is read no further, so
+//! that a flood waits in the client's own socket. Of sizes of the window, only the newest waits. A
+//! queue of messages was refused: a message of one byte costs a hundred.
+//!
+//! Bytes come at the rate at which a client may send them before compression. Without that, eight clients that
+//! compressed what they sent took two processors.
+//!
+//! A session takes a flood in parts, and others have their turn between two of them. Whole buffers were refused:
+//! eight visitors who typed a name all the time delayed a bystander's key by up to 0.3 s.
+
+use std::mem;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use tokio::sync::Notify;
+use tokio::task::yield_now;
+use tokio::time::{Instant, timeout};
+
+use super::locked;
+use super::wire::{ByteLimits, FEWEST};
+use crate::bucket::Bucket;
+use cellcaster::terminal::WindowSize;
+
+/// What has arrived from a visitor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Arrival {
+    /// What they typed, at most [`Inbound::MOST_AT_ONCE`].
+    Bytes(Vec<u8>),
+    /// The new size of their window.
+    Resized(WindowSize),
+    /// The server ends soon. The session is to say so, and to end in time.
+    Drains,
+    /// The link has ended: nothing arrives any more, and nothing can be sent.
+    Ended,
+}
+
+/// The session's end.
+#[derive(Debug)]
+pub struct Inbound {
+    shared: Arc<Shared>,
+    /// Whether the last arrival was a part of more, so that others have their turn before the next.
+    yields: bool,
+}
+
+/// The connection's end.
+#[derive(Clone, Debug)]
+pub(crate) struct Inlet {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    begun: Instant,
+    waiting: Mutex<Waiting>,
+    /// For the session: something has arrived.
+    arrived: Notify,
+    /// For the connection: there is room.
+    taken: Notify,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    /// The bytes that may come.
+    bucket: Bucket,
+    bytes: Vec<u8>,
+    size: Option<WindowSize>,
+    drains: bool,
+    ended: bool,
+    /// Nobody takes what arrives.
+    is_abandoned: bool,
+}
+
+/// What has become of bytes.
+enum Appended {
+    /// So many of them are done with.
+    Some(usize),
+    /// There is no room.
+    Full,
+    /// More of them may come after this time.
+    TooFast(Duration),
+}
+
+/// Both ends.
+pub(crate) fn inbound(limits: ByteLimits) -> (Inlet, Inbound) {
+    let waiting = Waiting::new(limits.bucket(Duration::ZERO));
+    let [arrived, taken] = [(); 2].map(|()| Notify::new());
+    let begun = Instant::now();
+    let shared = Arc::new(Shared { begun, waiting: Mutex::new(waiting), arrived, taken });
+    (Inlet { shared: shared.clone() }, Inbound { shared, yields: false })
+}
+
+impl Arrival {
+    /// Whether more of the same may wait.
+    fn is_full(&self) -> bool {
+        matches!(self, Self::Bytes(bytes) if bytes.len() == Inbound::MOST_AT_ONCE)
+    }
+}
+
+impl Inbound {
+    /// The most bytes that wait.
+    pub const MOST_BYTES: usize = 16 << 10;
+    /// The most bytes of an arrival. A session that takes them does so in well under a millisecond.
+    pub const MOST_AT_ONCE: usize = 256;
+
+    /// The next arrival. [`Arrival::Ended`] comes last, after all bytes, and then each time.
+    ///
+    /// It loses nothing if it is dropped before it is ready.
+    pub async fn next(&mut self) -> Arrival {
+        if mem::take(&mut self.yields) {
+            yield_now().await;
+        }
+        loop {
+            if let Some(arrival) = locked(&self.shared.waiting, Waiting::take) {
+                self.yields = arrival.is_full();
+                self.shared.taken.notify_one();
+                return arrival;
+            }
+            self.shared.arrived.notified().await;
+        }
+    }
+}
+
+impl Drop for Inbound {
+    fn drop(&mut self) {
+        locked(&self.shared.waiting, |waiting| {
+            *waiting = Waiting { is_abandoned: true, ..Waiting::new(waiting.bucket) };
+        });
+        self.shared.taken.notify_one();
+    }
+}
+
+impl Inlet {
+    /// Passes bytes on, and waits where there is no room for them, or where they come too fast.
+    pub(crate) async fn bytes(&self, mut bytes: &[u8]) {
+        while !bytes.is_empty() {
+            let now = self.shared.begun.elapsed();
+            let appended = locked(&self.shared.waiting, |waiting| waiting.append(bytes, now));
+            let taken = self.shared.taken.notified();
+            match appended {
+                Appended::Some(count) => {
+                    self.shared.arrived.notify_one();
+                    bytes = &bytes[count..];
+                }
+                Appended::Full => taken.await,
+                // The session may end meanwhile.
+                Appended::TooFast(pause) => _ = timeout(pause, taken).await,
+            }
+        }
+    }
+
+    pub(crate) fn resize(&self, size: WindowSize) {
+        self.change(|waiting| waiting.size = Some(size));
+    }
+
+    pub(crate) fn drain(&self) {
+        self.change(|waiting| waiting.drains = true);
+    }
+
+    pub(crate) fn end(&self) {
+        self.change(|waiting| waiting.ended = true);
+        self.shared.taken.notify_one();
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Waiting)) {
+        locked(&self.shared.waiting, change);
+        self.shared.arrived.notify_one();
+    }
+}
+
+impl Waiting {
+    fn new(bucket: Bucket) -> Self {
+        let bytes = Vec::new();
+        Self { bucket, bytes, size: None, drains: false, ended: false, is_abandoned: false }
+    }
+
+    fn take(&mut self) -> Option<Arrival> {
+        if mem::take(&mut self.drains) {
+            return Some(Arrival::Drains);
+        }
+        if let Some(size) = self.size.take() {
+            return Some(Arrival::Resized(size));
+        }
+        if !self.bytes.is_empty() {
+            let rest = self.bytes.split_off(self.bytes.len().min(Inbound::MOST_AT_ONCE));
+            return Some(Arrival::Bytes(mem::replace(&mut self.bytes, rest)));
+        }
+        self.ended.then_some(Arrival::Ended)
+    }
+
+    fn append(&mut self, bytes: &[u8], now: Duration) -> Appended {
+        if self.is_abandoned || self.ended {
+            return Appended::Some(bytes.len());
+        }
+        let room = bytes.len().min(Inbound::MOST_BYTES - self.bytes.len());
+        if room == 0 {
+            return Appended::Full;
+        }
+        let allowed = self.bucket.fill(now);
+        let fewest = FEWEST.min(room as f64);
+        if allowed < fewest {
+            return Appended::TooFast(self.bucket.time_until(fewest));
+        }
+        let count = room.min(allowed as usize);
+        self.bucket.take(count as f64);
+        self.bytes.extend_from_slice(&bytes[..count]);
+        Appended::Some(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::future::Future;
+    use std::pin::pin;
+    use std::task::{Context, Poll, Waker};
+
+    use super::*;
+
+    const LIMITS: ByteLimits = ByteLimits { before_login: 0, per_second: 64 << 10 };
+
+    fn poll<T>(future: impl Future<Output = T>) -> Option<T> {
+        match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(value) => Some(value),
+            Poll::Pending => None,
+        }
+    }
+
+    /// The next arrival, if there is one.
+    fn next(inbound: &mut Inbound) -> Option<Arrival> {
+        // Between two parts of a flood it yields once.
+        poll(inbound.next()).or_else(|| poll(inbound.next()))
+    }
+
+    #[test]
+    fn a_flood_waits_and_takes_no_memory() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        let flood = vec![b'w'; 10 << 20];
+        assert_eq!(poll(inlet.bytes(&flood)), None);
+        let held =
+            |inlet: &Inlet| locked(&inlet.shared.waiting, |waiting| waiting.bytes.capacity());
+        assert!(held(&inlet) <= 2 * Inbound::MOST_BYTES);
+        let mut taken = 0;
+        while let Some(Arrival::Bytes(bytes)) = next(&mut inbound) {
+            assert!(bytes.len() <= Inbound::MOST_AT_ONCE);
+            taken += bytes.len();
+        }
+        assert_eq!(taken, Inbound::MOST_BYTES);
+        assert_eq!(poll(inlet.bytes(b"d")), Some(()));
+        assert_eq!(next(&mut inbound), Some(Arrival::Bytes(b"d".to_vec())));
+    }
+
+    #[test]
+    fn bytes_keep_their_order_across_waits() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        let sent: Vec<u8> = (0..100_000_u32).map(|number| number as u8).collect();
+        let mut sending = pin!(inlet.bytes(&sent));
+        let mut received = Vec::new();
+        loop {
+            let is_sent = poll(sending.as_mut()).is_some();
+            while let Some(Arrival::Bytes(bytes)) = next(&mut inbound) {
+                received.extend(bytes);
+            }
+            if is_sent {
+                break;
+            }
+        }
+        assert_eq!(received, sent);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn bytes_that_were_compressed_come_at_the_rate_of_others() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        let sending = async {
+            inlet.bytes(&vec![b'w'; 20 * (64 << 10)]).await;
+            inlet.end();
+        };
+        let taking = async { while inbound.next().await != Arrival::Ended {} };
+        let begun = Instant::now();
+        tokio::join!(sending, taking);
+        // Those of the first four seconds come at once.
+        assert_eq!(begun.elapsed().as_millis().next_multiple_of(100), 16_000);
+    }
+
+    #[test]
+    fn of_many_sizes_the_newest_arrives() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        for columns in 1..=500 {
+            inlet.resize(WindowSize::of_cells(columns, 24));
+        }
+        assert_eq!(next(&mut inbound), Some(Arrival::Resized(WindowSize::of_cells(500, 24))));
+        assert_eq!(next(&mut inbound), None);
+    }
+
+    #[test]
+    fn the_end_comes_after_the_bytes_and_stays() {
+        let (inlet, mut inbound) = inbound(LIMITS);
+        assert_eq!(poll(inlet.bytes(b"q")), Some(()));
+        inlet.end();
+        assert_eq!(next(&mut inbound), Some(Arrival::Bytes(b"q".to_vec())));
+        assert_eq!(next(&mut inbound), Some(Arrival::Ended));
+        assert_eq!(next(&mut inbound), Some(Arrival::Ended));
+    }
+
+    #[test]
+    fn a_connection_never_waits_for_a_session_that_is_gone() {
+        let (inlet, inbound) = inbound(LIMITS);
+        assert_eq!(poll(inlet.bytes(&vec![0; Inbound::MOST_BYTES + 1])), None);
+        drop(inbound);
+        assert_eq!(poll(inlet.bytes(&vec![0; 1 << 20])), Some(()));
+    }
+}

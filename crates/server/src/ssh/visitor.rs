@@ -1,0 +1,104 @@
+//! Visitors, and the bounds of what they say about themselves.
+
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+
+use super::KeyData;
+use cellcaster::terminal::WindowSize;
+
+/// A connected client with a terminal.
+#[derive(Clone, Debug)]
+pub struct Visitor {
+    /// The address that they connect from.
+    pub peer: SocketAddr,
+    /// The key that they have proved to own; `None` for a guest.
+    pub key: Option<KeyData>,
+    /// What a guest is to read about their key.
+    pub notice: Option<&'static str>,
+    /// The user name that their client sent: printable, at most 64 characters. It proves nothing.
+    pub user: String,
+    /// `TERM`: printable, at most 64 characters.
+    pub term: String,
+    /// The variables of the environment that describe a terminal or a language.
+    pub environment: BTreeMap<String, String>,
+    /// The size of the window at first.
+    pub size: WindowSize,
+    /// Whether what is sent to them is compressed on the way.
+    pub compresses: bool,
+}
+
+/// In characters: of a user name, of `TERM`, and of the value of a variable.
+pub(crate) const LONGEST_WORD: usize = 64;
+/// The most variables that are kept.
+pub(crate) const MOST_VARIABLES: usize = 16;
+
+/// The printable characters of `text`, at most [`LONGEST_WORD`] of them.
+pub(crate) fn word(text: &str) -> String {
+    text.chars().filter(|char| !char.is_control()).take(LONGEST_WORD).collect()
+}
+
+/// Whether a variable of that name is kept.
+pub(crate) fn is_kept(name: &str) -> bool {
+    let is_locale = name.strip_prefix("LC_").is_some_and(|category| {
+        (1..=32).contains(&category.len())
+            && category.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_')
+    });
+    is_locale || ["LANG", "COLORTERM", "TERM_PROGRAM", "NO_COLOR"].contains(&name)
+}
+
+/// The size of a window as a client states it, within 1 to `most` cells in each direction.
+pub(crate) fn window_size(cells: [u32; 2], pixels: [u32; 2], most: [u16; 2]) -> WindowSize {
+    let [columns, rows] =
+        [0, 1].map(|axis| u16::try_from(cells[axis]).unwrap_or(u16::MAX).clamp(1, most[axis]));
+    // Pixels of a window that was cut say nothing about the shape of a cell.
+    let is_whole = [u32::from(columns), u32::from(rows)] == cells;
+    let [width, height] =
+        pixels.map(|pixels| if is_whole { u16::try_from(pixels).unwrap_or(0) } else { 0 });
+    WindowSize::new((columns, rows), (width, height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_has_no_control_characters_and_an_end() {
+        assert_eq!(word("ann\u{1b}[31m\r\n\0"), "ann[31m");
+        assert_eq!(word("\u{9b}31m"), "31m");
+        assert_eq!(word(&"é".repeat(1000)).chars().count(), LONGEST_WORD);
+    }
+
+    #[test]
+    fn only_variables_about_terminals_and_languages_are_kept() {
+        for name in ["LANG", "LC_ALL", "LC_CTYPE", "COLORTERM", "TERM_PROGRAM", "NO_COLOR"] {
+            assert!(is_kept(name), "{name}");
+        }
+        for name in ["", "LC_", "LC_all", "LC_\u{1b}", "PATH", "LD_PRELOAD", "LANGUAGE", "lang"] {
+            assert!(!is_kept(name), "{name}");
+        }
+        assert!(!is_kept(&format!("LC_{}", "A".repeat(33))));
+    }
+
+    #[test]
+    fn a_window_has_a_bounded_size() {
+        let size = |cells, pixels| window_size(cells, pixels, [500, 200]);
+        for (cells, bounded) in [
+            ([0, 0], (1, 1)),
+            ([80, 24], (80, 24)),
+            ([501, 200], (500, 200)),
+            ([u32::MAX, u32::MAX], (500, 200)),
+            ([65_536, 65_537], (500, 200)),
+        ] {
+            let size = size(cells, [u32::MAX, u32::MAX]);
+            assert_eq!((size.columns, size.rows), bounded, "{cells:?}");
+        }
+    }
+
+    #[test]
+    fn pixels_count_for_a_whole_window_only() {
+        let size = |cells, pixels| window_size(cells, pixels, [500, 200]).cell_aspect;
+        assert_eq!(size([80, 24], [640, 384]), Some(2.0));
+        assert_eq!(size([80, 24], [640, 70_000]), None);
+        assert_eq!(size([1000, 24], [8000, 384]), None);
+    }
+}

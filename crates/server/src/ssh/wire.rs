@@ -1,0 +1,259 @@
+//! The stream between a socket and russh: limits of bytes and time, and what they are counted for.
+//!
+//! russh reads and writes when it likes, so limits belong below it. Before authentication, a client
+//! has a budget of bytes. After it, bytes are read at a limited rate: whatever a client floods its
+//! connection with, be it keys, empty packets or key exchanges, costs the server no more than that. What
+//! compression has made small is limited once more, on its [way](super::inbound) to the session.
+//!
+//! russh makes room for a packet as soon as its length has arrived, up to 256 KB, and then reads the
+//! packet at once. A read of more than a packet of this server's channel has ends the connection.
+
+use std::pin::Pin;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::task::{Context, Poll, Waker, ready};
+use std::time::Duration;
+use std::{io, mem};
+
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::time::{Instant, Sleep, sleep_until};
+
+use super::hello::Hello;
+use super::locked;
+use super::outbox::Passage;
+use crate::bucket::Bucket;
+
+/// The limits of a client's bytes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ByteLimits {
+    /// The most bytes before authentication.
+    pub(crate) before_login: u64,
+    /// The most bytes a second after it. Bytes of four seconds may come at once.
+    pub(crate) per_second: u32,
+}
+
+impl ByteLimits {
+    /// The bytes that may come after authentication, from `now` on.
+    pub(crate) fn bucket(&self, now: Duration) -> Bucket {
+        let rate = f64::from(self.per_second);
+        Bucket::new(rate, rate * BURST, now)
+    }
+}
+
+/// A socket with limits.
+pub(crate) struct Wire<S> {
+    socket: S,
+    line: Arc<Line>,
+    hello: Hello,
+    bucket: Bucket,
+    pause: Pin<Box<Sleep>>,
+    /// Whether the last write has found no room.
+    is_full: bool,
+}
+
+/// The state of a connection, for the tasks that it concerns.
+#[derive(Debug)]
+pub(crate) struct Line {
+    pub(crate) passage: Arc<Passage>,
+    limits: ByteLimits,
+    begun: Instant,
+    has_version: AtomicBool,
+    has_exchanged: AtomicBool,
+    is_logged_in: AtomicBool,
+    compresses: AtomicBool,
+    read: AtomicU64,
+    /// In milliseconds since the begin.
+    last_sign: AtomicU64,
+    is_cut: AtomicBool,
+    /// Of the reader and the writer.
+    wakers: Mutex<[Option<Waker>; 2]>,
+}
+
+/// The time whose bytes may come at once.
+const BURST: f64 = 4.0;
+/// The fewest bytes that are read after a pause, so that pauses are few.
+pub(crate) const FEWEST: f64 = 1024.0;
+/// The most bytes that are read at once. Packets are 32 KB and their frame (RFC 4253, section 6.1).
+const LONGEST_PACKET: usize = 35_000;
+const READER: usize = 0;
+const WRITER: usize = 1;
+
+impl<S> Wire<S> {
+    pub(crate) fn new(socket: S, line: Arc<Line>) -> Self {
+        let bucket = line.limits.bucket(line.begun.elapsed());
+        let pause = Box::pin(sleep_until(Instant::now()));
+        Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
+    }
+}
+
+impl Line {
+    pub(crate) fn new(limits: ByteLimits, passage: Arc<Passage>) -> Self {
+        Self {
+            passage,
+            limits,
+            begun: Instant::now(),
+            has_version: AtomicBool::new(false),
+            has_exchanged: AtomicBool::new(false),
+            is_logged_in: AtomicBool::new(false),
+            compresses: AtomicBool::new(false),
+            read: AtomicU64::new(0),
+            last_sign: AtomicU64::new(0),
+            is_cut: AtomicBool::new(false),
+            wakers: Mutex::default(),
+        }
+    }
+
+    /// Whether the client has sent the line of its version.
+    pub(crate) fn has_version(&self) -> bool {
+        self.has_version.load(Ordering::Acquire)
+    }
+
+    /// Whether the client has sent its half of the key exchange, after which it may wait for its
+    /// user.
+    pub(crate) fn has_exchanged(&self) -> bool {
+        self.has_exchanged.load(Ordering::Acquire)
+    }
+
+    /// Whether what is sent is compressed after authentication.
+    pub(crate) fn compresses(&self) -> bool {
+        self.compresses.load(Ordering::Acquire)
+    }
+
+    pub(crate) fn is_logged_in(&self) -> bool {
+        self.is_logged_in.load(Ordering::Acquire)
+    }
+
+    /// The client is authenticated.
+    pub(crate) fn log_in(&self) {
+        self.is_logged_in.store(true, Ordering::Release);
+    }
+
+    pub(crate) fn limits(&self) -> ByteLimits {
+        self.limits
+    }
+
+    pub(crate) fn begun(&self) -> Instant {
+        self.begun
+    }
+
+    /// When the client has last sent anything, or made room in a full socket. While a frame does not
+    /// fit in the socket, russh reads nothing, and on a slow link that lasts.
+    pub(crate) fn last_sign(&self) -> Instant {
+        self.begun + Duration::from_millis(self.last_sign.load(Ordering::Acquire))
+    }
+
+    /// Fails all reading and writing from now on.
+    pub(crate) fn cut(&self) {
+        self.is_cut.store(true, Ordering::Release);
+        for waker in locked(&self.wakers, mem::take).into_iter().flatten() {
+            waker.wake();
+        }
+    }
+
+    fn check(&self, side: usize, cx: &Context<'_>) -> io::Result<()> {
+        locked(&self.wakers, |wakers| match &mut wakers[side] {
+            Some(waker) => waker.clone_from(cx.waker()),
+            none => *none = Some(cx.waker().clone()),
+        });
+        let is_cut = self.is_cut.load(Ordering::Acquire);
+        if is_cut { Err(io::ErrorKind::ConnectionAborted.into()) } else { Ok(()) }
+    }
+
+    fn count(&self, bytes: usize) {
+        self.read.fetch_add(bytes as u64, Ordering::Relaxed);
+        self.note_sign();
+    }
+
+    fn note_sign(&self) {
+        self.last_sign.store(self.begun.elapsed().as_millis() as u64, Ordering::Release);
+    }
+}
+
+impl<S> Wire<S> {
+    /// The most bytes that may be read now.
+    fn allowance(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+        let Line { limits, read, .. } = &*self.line;
+        if !self.line.is_logged_in() {
+            let left = limits.before_login.saturating_sub(read.load(Ordering::Relaxed));
+            return Poll::Ready(match left {
+                0 => Err(io::ErrorKind::QuotaExceeded.into()),
+                left => Ok(left as usize),
+            });
+        }
+        let fewest = FEWEST.min(f64::from(limits.per_second));
+        loop {
+            let now = Instant::now();
+            let bytes = self.bucket.fill(now.saturating_duration_since(self.line.begun));
+            if bytes >= fewest {
+                return Poll::Ready(Ok(bytes as usize));
+            }
+            self.pause.as_mut().reset(now + self.bucket.time_until(fewest));
+            ready!(self.pause.as_mut().poll(cx));
+        }
+    }
+
+    fn received(&mut self, bytes: &[u8]) {
+        self.line.count(bytes.len());
+        self.bucket.take(bytes.len() as f64);
+        if self.line.has_exchanged() {
+            return;
+        }
+        let has_exchanged = self.hello.receive(bytes);
+        self.line.has_version.store(self.hello.has_version(), Ordering::Release);
+        self.line.compresses.store(self.hello.compresses(), Ordering::Release);
+        self.line.has_exchanged.store(has_exchanged, Ordering::Release);
+    }
+}
+
+impl<S: AsyncRead + Unpin> AsyncRead for Wire<S> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        self.line.check(READER, cx)?;
+        if buffer.remaining() > LONGEST_PACKET {
+            return Poll::Ready(Err(io::ErrorKind::FileTooLarge.into()));
+        }
+        let most = ready!(self.allowance(cx))?.min(buffer.remaining());
+        let mut part = ReadBuf::new(buffer.initialize_unfilled_to(most));
+        ready!(Pin::new(&mut self.socket).poll_read(cx, &mut part))?;
+        let count = part.filled().len();
+        if count > 0 {
+            self.received(part.filled());
+        }
+        buffer.advance(count);
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl<S: AsyncWrite + Unpin> AsyncWrite for Wire<S> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        self.line.check(WRITER, cx)?;
+        let written = Pin::new(&mut self.socket).poll_write(cx, bytes);
+        if mem::replace(&mut self.is_full, written.is_pending()) && written.is_ready() {
+            self.line.note_sign();
+        }
+        written
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        ready!(Pin::new(&mut self.socket).poll_flush(cx))?;
+        self.line.passage.flushed();
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.socket).poll_shutdown(cx)
+    }
+}
+
+impl<S> Drop for Wire<S> {
+    fn drop(&mut self) {
+        self.line.passage.close();
+    }
+}

@@ -1,0 +1,29 @@
+//! A host on which people play together: real clients of OpenSSH in pseudo-terminals, clients that
+//! break the rules, and what is kept.
+#![cfg(unix)]
+
+#[path = "../../../../tests/support/emulator.rs"]
+mod emulator;
+mod kept;
+#[path = "../support/lamp.rs"]
+mod lamp;
+#[path = "../../../../tests/support/looks.rs"]
+mod looks;
+#[cfg(feature = "system-tests")]
+#[path = "../support/nats_server.rs"]
+mod nats_server;
+mod ops;
+mod play;
+#[path = "../../../../tests/support/player.rs"]
+mod player;
+#[cfg(feature = "system-tests")]
+#[path = "../support/postgres_server.rs"]
+mod postgres_server;
+mod scores;
+mod soak;
+#[cfg(all(target_os = "linux", feature = "system-tests"))]
+#[path = "../../../../tests/support/strace.rs"]
+mod strace;
+#[path = "../support/mod.rs"]
+mod support;
+mod transport;

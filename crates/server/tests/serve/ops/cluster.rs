@@ -1,0 +1,256 @@
+//! Three hosts over one NATS server and one PostgreSQL.
+
+mod cut_off;
+mod limits;
+mod maps;
+mod network;
+mod operators;
+mod returning;
+
+use std::collections::BTreeMap;
+use std::env;
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::process::Output;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+
+use self::network::Network;
+use super::metrics::scrape_at;
+use super::running::Running;
+use crate::nats_server::NatsServer;
+use crate::play::{enter_room, see_each_other_walk};
+use crate::player::Player;
+use crate::postgres_server::PostgresServer;
+use crate::support::server;
+use crate::transport::folder;
+
+/// The longest time in which a room goes on after its host was killed.
+const TAKEOVER: Duration = Duration::from_secs(5);
+
+/// Hosts that share their rooms.
+struct Hosts {
+    /// Each with the address of its metrics.
+    running: Vec<(Running, SocketAddr)>,
+    nats: NatsServer,
+    postgres: PostgresServer,
+    /// The address of their store.
+    store: String,
+}
+
+impl Hosts {
+    fn start(count: usize) -> Self {
+        Self::start_with(count, "")
+    }
+
+    /// Hosts with these settings.
+    fn start_with(count: usize, settings: &str) -> Self {
+        let (nats, postgres) = (NatsServer::start(), PostgresServer::start());
+        let (bus, store) = (nats.address(), postgres.address());
+        let host = |_| host(None, Ipv4Addr::LOCALHOST, &bus, &store, settings);
+        let running = (0..count).map(host).collect();
+        Self { running, nats, postgres, store }
+    }
+
+    /// Two hosts, of which the first one is in a network of its own.
+    fn start_behind(network: &Network) -> Self {
+        let shared = network.shared();
+        let (nats, postgres) = (NatsServer::start_at(shared), PostgresServer::start_at(shared));
+        let (bus, store) = (nats.address(), postgres.address_at(shared));
+        let running = vec![
+            host(Some(network.namespace()), network.host(), &bus, &store, ""),
+            host(None, Ipv4Addr::LOCALHOST, &bus, &store, ""),
+        ];
+        Self { running, nats, postgres, store }
+    }
+
+    /// A player on a host, who is in the first room.
+    fn player(&self, host: usize, name: &str) -> Player {
+        let player = self.running[host].0.visitor();
+        enter_room(&player, name);
+        player
+    }
+
+    fn figure(&self, host: usize, name: &str) -> f64 {
+        self.figures(host)[&format!("cellcaster_{name}")]
+    }
+
+    /// All figures of a host, each of which has the name of the host, which is left out here.
+    fn figures(&self, host: usize) -> BTreeMap<String, f64> {
+        let lines = scrape_at(self.running[host].1).into_iter().map(|(line, value)| {
+            let (name, rest) = line.split_once("{host=\"").expect(&line);
+            let (_, labels) = rest.split_once('"').expect(&line);
+            let labels = labels.trim_start_matches(',').trim_end_matches('}');
+            let labels = if labels.is_empty() { String::new() } else { format!("{{{labels}}}") };
+            (format!("{name}{labels}"), value)
+        });
+        lines.collect()
+    }
+
+    /// Asserts that hosts have compared the states of rooms since, and found no difference.
+    fn assert_equal(&self, hosts: &[usize], least: f64) {
+        for &host in hosts {
+            assert_eq!(self.figure(host, "room_checks_total{result=\"different\"}"), 0.0);
+        }
+        let equal = |host: &usize| self.figure(*host, "room_checks_total{result=\"equal\"}");
+        let equal: Vec<f64> = hosts.iter().map(equal).collect();
+        // The sequencer's own host has nothing to compare with.
+        let compared = equal.iter().filter(|count| **count >= least).count();
+        assert!(compared >= hosts.len() - 1, "{equal:?}");
+    }
+}
+
+/// A host in a namespace of networks, with metrics at `address`, and where they are.
+fn host(
+    namespace: Option<&str>,
+    address: Ipv4Addr,
+    bus: &str,
+    store: &str,
+    settings: &str,
+) -> (Running, SocketAddr) {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let config = format!("{settings}[metrics]\nlisten = \"{address}:{port}\"\n");
+    let options = ["--store", store, "--cluster", bus];
+    let running = Running::start_in(namespace, &config, "text", &options);
+    (running, (address, port).into())
+}
+
+/// Says something that `other` reads, and returns the time that it takes.
+fn says(player: &Player, other: &Player, text: &str) -> Duration {
+    let start = Instant::now();
+    player.send(format!("/{text}\r"));
+    other.wait_for(text);
+    start.elapsed()
+}
+
+/// Waits until a player reads what they say, in a room that has lost its host; returns the time. What is said
+/// before another one has the room is lost.
+fn goes_on(player: &Player, text: &str) -> Duration {
+    let start = Instant::now();
+    while !player.text().contains(&format!("Jon {text}")) {
+        assert!(start.elapsed() < TAKEOVER, "{}", player.text());
+        player.send(format!("/{text}\r"));
+        thread::sleep(Duration::from_millis(300));
+    }
+    start.elapsed()
+}
+
+#[test]
+fn players_on_three_hosts_see_each_other_walk_and_their_rooms_stay_equal() {
+    let hosts = Hosts::start(3);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
+    see_each_other_walk(&mara, &jon);
+    let kim = hosts.player(2, "Kim");
+    mara.wait_for("Kim comes in.");
+    says(&kim, &jon, "here I am");
+    let seconds = env::var("CLUSTER_SECONDS").ok().and_then(|it| it.parse().ok()).unwrap_or(5);
+    let players = [&mara, &jon, &kim];
+    for second in 0..seconds {
+        players[second % 3].send("\x1b[119;1:1u\x1b[98;1:1u\x1b[98;1:3u");
+        thread::sleep(Duration::from_secs(1));
+        players[second % 3].send("\x1b[119;1:3u");
+    }
+    hosts.assert_equal(&[0, 1, 2], seconds as f64 * 0.6);
+    drop(kim);
+    jon.wait_for("Kim leaves.");
+}
+
+#[test]
+fn a_room_goes_on_when_its_host_is_killed() {
+    let hosts = Hosts::start(3);
+    let _mara = hosts.player(0, "Mara");
+    let (jon, kim) = (hosts.player(1, "Jon"), hosts.player(2, "Kim"));
+    jon.wait_for("Kim comes in.");
+    assert!(hosts.running[0].0.log().contains("this host has a room now"));
+    hosts.running[0].0.signal(Signal::KILL);
+    let time = goes_on(&jon, "anybody there");
+    kim.wait_for("anybody there");
+    println!("the room goes on after {time:?}");
+    jon.wait_for("Mara leaves.");
+    says(&kim, &jon, "she is gone");
+    thread::sleep(Duration::from_secs(2));
+    hosts.assert_equal(&[1, 2], 1.0);
+}
+
+#[test]
+fn without_nats_rooms_wait_and_without_the_database_they_go_on() {
+    let mut hosts = Hosts::start(2);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(1, "Jon"));
+    mara.wait_for("Jon comes in.");
+    hosts.nats.kill();
+    for player in [&mara, &jon] {
+        player.wait_for("the game waits");
+    }
+    hosts.nats.restart();
+    for player in [&mara, &jon] {
+        player.wait_for("reach each other again");
+    }
+    says(&jon, &mara, "that was long");
+
+    hosts.postgres.crash();
+    thread::sleep(Duration::from_secs(4));
+    let time = says(&mara, &jon, "no results now");
+    assert!(time < Duration::from_secs(1), "{time:?}");
+    hosts.postgres.restart();
+    thread::sleep(Duration::from_secs(2));
+    says(&jon, &mara, "and again");
+    hosts.assert_equal(&[0, 1], 1.0);
+}
+
+#[test]
+fn a_room_of_one_host_goes_on_while_nats_is_away() {
+    let mut hosts = Hosts::start(2);
+    let (mara, jon) = (hosts.player(0, "Mara"), hosts.player(0, "Jon"));
+    mara.wait_for("Jon comes in.");
+    hosts.nats.kill();
+    for player in [&mara, &jon] {
+        player.wait_for("the game goes on alone");
+    }
+    let time = says(&mara, &jon, "just the two of us");
+    assert!(time < Duration::from_secs(1), "{time:?}");
+    hosts.nats.restart();
+    for player in [&mara, &jon] {
+        player.wait_for("reach each other again");
+    }
+    assert!(hosts.figure(0, "room_steps_alone_total") > 0.0);
+    let kim = hosts.player(1, "Kim");
+    says(&kim, &mara, "what have I missed");
+    thread::sleep(Duration::from_secs(3));
+    hosts.assert_equal(&[0, 1], 1.0);
+}
+
+#[test]
+fn a_host_that_drains_leaves_its_rooms_to_the_others() {
+    let mut hosts = Hosts::start(2);
+    let _mara = hosts.player(0, "Mara");
+    let jon = hosts.player(1, "Jon");
+    hosts.running[0].0.signal(Signal::TERM);
+    hosts.running[0].0.signal(Signal::TERM);
+    assert_eq!(hosts.running[0].0.wait_for_end(), Some(0));
+    jon.wait_for("Mara leaves.");
+}
+
+#[test]
+fn what_a_cluster_needs_is_told() {
+    let serve = |options: &[&str]| -> Output {
+        let words = [&["--listen", "127.0.0.1:0"], options].concat();
+        server(&words).env("CELLCASTER_DATA", folder()).output().unwrap()
+    };
+    let postgres = PostgresServer::shared().address();
+    let nobody = "nats://ada:geheim@127.0.0.1:1";
+    for (options, sentence) in [
+        (vec!["--cluster", nobody], "a cluster needs a database that all hosts share"),
+        (vec!["--cluster", nobody, "--store", &postgres], "NATS at 127.0.0.1:1"),
+        (vec!["--cluster", "localhost"], "an address of NATS"),
+        (
+            vec!["--cluster", nobody, "--store", &postgres, "--record-room", "x"],
+            "rooms of a cluster are not recorded",
+        ),
+    ] {
+        let output = serve(&options);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(sentence) && !error.contains("geheim"), "{error}");
+    }
+}

@@ -1,0 +1,257 @@
+//! Each system call that a host makes in the folder of its data fails once: while it starts and ends, and while a
+//! visitor takes a name and wins.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::thread;
+
+use cellcaster_server::accounts::{
+    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
+};
+use rustix::process::{Pid, Signal, kill_process};
+
+use super::killed::user_key;
+use super::maps::{maps, scores};
+use super::running::Running;
+use crate::kept::WON;
+use crate::player::Player;
+use crate::strace::{Failure, Traced, failures};
+use crate::transport::{folder, wait_until};
+
+/// Of many calls of one name, one in this many fails, after the first ones.
+const SAMPLED: u32 = 5;
+
+/// A closet with its exit in front of the start.
+const CLOSET: &str = r##"title = "The moss closet"
+grid = '''
+#####
+#@.>#
+#####
+'''
+[tiles]
+"#" = { wall = "#507050" }
+[things]
+"@" = { start = 0 }
+">" = { exit = true }
+"##;
+
+/// The account that is kept before.
+const KEY: AccountKey = AccountKey::new([7; 32]);
+
+/// All that a host opens in the folder of its data.
+fn paths(folder: &Path) -> Vec<PathBuf> {
+    let database = ["host.db", "host.db-wal", "host.db-shm", "host.db-journal"];
+    let others =
+        ["host_key", "host_key.new", "waiting_results", "waiting_results.new", "admin.sock"];
+    let names = database.into_iter().chain(others);
+    names.map(|name| folder.join(name)).chain([folder.to_owned()]).collect()
+}
+
+fn sample(failures: Vec<Failure>) -> Vec<Failure> {
+    let is_taken = |it: &Failure| it.number <= SAMPLED || it.number.is_multiple_of(SAMPLED);
+    failures.into_iter().filter(is_taken).collect()
+}
+
+/// Runs `test` for each failure, on as many threads as tests run on.
+fn for_each(failures: Vec<Failure>, test: impl Fn(&Failure) + Sync) {
+    let waiting = Mutex::new(failures.into_iter());
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                while let Some(failure) = { waiting.lock().unwrap().next() } {
+                    test(&failure);
+                }
+            });
+        }
+    });
+}
+
+/// A host that has run, with an account that has a result.
+fn host_that_has_run() -> PathBuf {
+    let data = folder();
+    let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
+    let mut store = SqliteStore::open(&data).unwrap();
+    let now = UnixTime::new(1_795_300_000);
+    let account = store.create_account(&KEY, &Name::new("Mara").unwrap(), now).unwrap();
+    store.record(account.id, &run, now).unwrap();
+    drop(store);
+    start_and_end(&data, None);
+    data
+}
+
+fn copied(data: &Path) -> PathBuf {
+    let copy = folder();
+    for entry in fs::read_dir(data).unwrap().map(Result::unwrap) {
+        if entry.file_type().unwrap().is_file() {
+            fs::copy(entry.path(), copy.join(entry.file_name())).unwrap();
+        }
+    }
+    copy
+}
+
+/// Starts a host and ends it, unless it ends by itself. Returns its process; a host that fails says why in one
+/// sentence.
+#[track_caller]
+fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
+    let log = data.join("log");
+    let mut words = traced.map_or_else(Vec::new, Traced::words);
+    words.push(env!("CARGO_BIN_EXE_cellcaster-server"));
+    let mut host = Command::new(words[0])
+        .args(&words[1..])
+        .args(["--listen", "127.0.0.1:0"])
+        .env_clear()
+        .env("PATH", "/usr/bin:/bin")
+        .env("CELLCASTER_DATA", data)
+        .stdout(Stdio::piped())
+        .stderr(File::create(&log).unwrap())
+        .spawn()
+        .unwrap();
+    let lines = BufReader::new(host.stdout.take().unwrap()).lines();
+    if lines.map(Result::unwrap).any(|line| line.contains("ssh -p ")) {
+        _ = kill_process(Pid::from_child(&host), Signal::TERM);
+    }
+    let (process, status) = (host.id(), host.wait().unwrap());
+    let log = fs::read_to_string(&log).unwrap();
+    let sentences = log.lines().filter(|line| line.starts_with("cellcaster: ")).count();
+    assert!(sentences <= 1 && (status.success() || sentences == 1), "{status}: {log}");
+    assert!(!log.contains("panicked"), "{log}");
+    process
+}
+
+#[test]
+fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
+    let before = host_that_has_run();
+    let start = |failure: Option<&Failure>| {
+        let data = copied(&before);
+        let traced = Traced::new(&data, &paths(&data), failure);
+        let process = start_and_end(&data, Some(&traced));
+        let mut store = SqliteStore::open(&data).unwrap();
+        let account = store.account(&KEY).unwrap();
+        let account = account.unwrap_or_else(|| panic!("{failure:?} lost the account"));
+        assert_eq!(store.bests(account.id).unwrap().len(), 1, "{failure:?}");
+        let key = |folder: &Path| fs::read(folder.join("host_key")).unwrap();
+        assert!(key(&data) == key(&before), "{failure:?} changed the key of the host");
+        (traced, process)
+    };
+    let (traced, process) = start(None);
+    let counts = traced.counts(process);
+    assert!(["openat", "pwrite64", "fsync"].iter().all(|call| counts.contains_key(*call)));
+    for_each(sample(failures(&counts)), |failure| {
+        let (traced, process) = start(Some(failure));
+        assert!(traced.has_failed(process), "{failure:?} of {counts:?}");
+    });
+}
+
+/// What a visitor was told that is kept.
+#[derive(Debug, Default)]
+struct Told {
+    name: bool,
+    result: bool,
+    /// Recorded later.
+    waits: bool,
+}
+
+fn wait_for_one(player: &Player, texts: &[&str]) {
+    player.wait_until(&format!("showed one of {texts:?}"), |emulator| {
+        texts.iter().any(|text| emulator.text().contains(text))
+    });
+}
+
+/// Takes the name Jon, and wins in the map of the host.
+fn win(player: &Player) -> Told {
+    let mut told = Told::default();
+    wait_for_one(player, &["Enter takes it", "can't look you up"]);
+    if player.text().contains("can't look you up") {
+        return told;
+    }
+    player.send("\x15Jon");
+    player.wait_for("Jon");
+    let lobby = "Alone, for the board";
+    player.send("\r");
+    wait_for_one(player, &[lobby, "now; try again later"]);
+    if !player.text().contains(lobby) {
+        player.send("\r");
+        player.wait_for(lobby);
+    }
+    told.name = true;
+    player.send("4");
+    player.wait_for("The moss closet");
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("comes in.");
+    let sentences =
+        ["You are number 1.", "will be recorded", "waits until", "can't keep your", "your best."];
+    wait_until("the result", || {
+        player.send("w");
+        sentences.iter().any(|sentence| player.text().contains(sentence))
+    });
+    told.waits = ["will be recorded", "waits until"].iter().any(|it| player.text().contains(it));
+    told.result = told.waits || player.text().contains("your best.");
+    told
+}
+
+#[test]
+fn what_a_visitor_is_told_is_kept_whichever_system_call_fails() {
+    let maps = maps(&[("moss.toml", CLOSET)]);
+    let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
+    let serve = |failure: Option<&Failure>| {
+        let mut running = Running::start(&config, "text");
+        let key = user_key(&running.folder);
+        let traced = Traced::new(&running.folder, &paths(&running.folder), failure);
+        let attached = traced.attach(running.process());
+        let player = running.player(Some(&key));
+        let told = win(&player);
+        running.admin_says(&["who"]);
+        let process = running.process();
+        running.signal(Signal::KILL);
+        running.wait_for_end();
+        let result = (traced.has_failed(process), traced.counts(process));
+        drop(attached);
+        assert!(!running.log().contains("panicked"), "{failure:?}: {}", running.log());
+        let has_result = || scores(&running.folder, &["--level", "moss"]).contains("Jon");
+        if told.result && !told.waits {
+            assert!(has_result(), "{failure:?} lost a result");
+        }
+        running.restart();
+        if told.waits {
+            wait_until("the result that waits", || {
+                scores(&running.folder, &["--level", "moss"]).contains("Jon")
+            });
+        }
+        let player = running.player(Some(&key));
+        if told.name {
+            player.wait_for("> Jon");
+        }
+        result
+    };
+    let (_, counts) = serve(None);
+    assert!(["fcntl", "fsync", "pwrite64"].iter().all(|call| counts.contains_key(*call)));
+    let happened = Mutex::new(Vec::new());
+    for_each(sample(failures(&counts)), |failure| {
+        let (has_happened, _) = serve(Some(failure));
+        happened.lock().unwrap().push(has_happened);
+    });
+    let happened = happened.into_inner().unwrap();
+    // What the host does in the background may move the last ones beyond the end.
+    assert!(happened.iter().filter(|it| **it).count() * 2 > happened.len(), "{happened:?}");
+}
+
+/// Connections of clients that the system does not hand over now wait in its queue.
+#[test]
+fn a_visitor_gets_in_after_a_failure_to_accept_one() {
+    let running = Running::start("", "text");
+    for error in ["EMFILE", "ENFILE", "ECONNABORTED", "ENOBUFS", "EINTR"] {
+        let failure = Failure { call: "accept4".to_owned(), error, number: 1 };
+        let log = running.folder.join(error);
+        let traced = Traced::new(&log, &[], Some(&failure));
+        let attached = traced.attach(running.process());
+        running.visitor().wait_for("Enter takes it");
+        drop(attached);
+        let calls = fs::read_to_string(log.with_extension("calls")).unwrap();
+        assert!(calls.contains(error), "{error} did not happen");
+    }
+}

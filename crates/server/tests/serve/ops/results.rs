@@ -1,0 +1,120 @@
+//! Results of runs that were played to the end over SSH.
+
+#[cfg(feature = "system-tests")]
+use std::fs::{self, File};
+#[cfg(feature = "system-tests")]
+use std::io::Write;
+#[cfg(feature = "system-tests")]
+use std::path::PathBuf;
+#[cfg(feature = "system-tests")]
+use std::process::Command;
+
+use rustix::process::Signal;
+
+use super::killed::user_key;
+use super::maps::{HALL, choose, maps, scores};
+use super::running::Running;
+use crate::player::Player;
+use crate::transport::wait_until;
+
+/// Plays the map of the host alone until `sentence` says what became of the result.
+fn win(player: &Player, name: &str, sentence: &str) {
+    choose(player, name, "4");
+    player.wait_for("The moss hall");
+    // The last level of the list.
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("comes in.");
+    wait_until(sentence, || {
+        player.send("w");
+        player.text().contains(sentence)
+    });
+}
+
+#[test]
+fn results_of_accounts_rank_and_outlive_a_kill_and_those_of_guests_do_not_rank() {
+    let maps = maps(&[("moss.toml", HALL)]);
+    let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
+    let mut running = Running::start(&config, "text");
+    let key = user_key(&running.folder);
+    win(&running.visitor(), "Jon", "A guest's result does not rank");
+    assert!(!scores(&running.folder, &[]).contains("Jon"));
+    win(&running.player(Some(&key)), "Mara", "You are number 1.");
+    running.signal(Signal::KILL);
+    running.wait_for_end();
+    let boards = scores(&running.folder, &["--level", "moss"]);
+    assert!(boards.contains("Mara") && !boards.contains("Jon"), "{boards}");
+
+    running.restart();
+    let player = running.player(Some(&key));
+    player.wait_for("> Mara");
+    player.send("\r");
+    player.wait_for("Alone, for the board");
+    player.send("5");
+    player.wait_for("The moss hall");
+    player.send("\x1b[F\r");
+    player.wait_for("Mara (you)");
+    assert!(!player.text().contains("Jon"), "{}", player.text());
+}
+
+/// A file system of one megabyte, unmounted at the end.
+#[cfg(feature = "system-tests")]
+struct SmallDisk(PathBuf);
+
+#[cfg(feature = "system-tests")]
+impl SmallDisk {
+    fn mount() -> Self {
+        let folder = crate::transport::folder();
+        let mut mount = Command::new("mount");
+        mount.args(["-t", "tmpfs", "-o", "size=1m,mode=700", "tmpfs"]).arg(&folder);
+        assert!(mount.status().unwrap().success(), "root can mount");
+        Self(folder)
+    }
+
+    fn fill(&self) {
+        let mut file = File::create(self.0.join("filler")).unwrap();
+        while file.write_all(&[0; 4096]).is_ok() {}
+    }
+
+    fn make_room(&self) {
+        fs::remove_file(self.0.join("filler")).unwrap();
+    }
+}
+
+#[cfg(feature = "system-tests")]
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        _ = Command::new("umount").arg("--lazy").arg(&self.0).status();
+    }
+}
+
+#[cfg(feature = "system-tests")]
+#[test]
+fn a_result_waits_until_a_full_disk_has_room() {
+    let disk = SmallDisk::mount();
+    let maps = maps(&[("moss.toml", HALL)]);
+    let config = format!("maps = \"{}\"\nroom = []\n", maps.display());
+    let data = ["--data", disk.0.to_str().unwrap()];
+    let mut running = Running::start_with(&config, "text", &data);
+    let key = user_key(&running.folder);
+    let player = running.player(Some(&key));
+    choose(&player, "Mara", "4");
+    player.wait_for("The moss hall");
+    player.send("\x1b[F\r");
+    player.wait_for("Go in");
+    player.send("\r");
+    player.wait_for("comes in.");
+    disk.fill();
+    wait_until("the result", || {
+        player.send("w");
+        player.text().contains("The host's disk is full; your result waits until there is room.")
+    });
+    assert!(!scores(&disk.0, &[]).contains("Mara"));
+    assert!(!disk.0.join("waiting_results.new").exists());
+    disk.make_room();
+    player.wait_for("is recorded now.");
+    assert!(scores(&disk.0, &["--level", "moss"]).contains("Mara"));
+    running.signal(Signal::KILL);
+    running.wait_for_end();
+}

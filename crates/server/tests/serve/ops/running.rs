@@ -1,0 +1,184 @@
+//! A server in a process of its own.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use cellcaster_server::accounts::SqliteStore;
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::emulator::Speaks;
+use crate::player::Player;
+use crate::support::server;
+use crate::transport::{PATIENCE, folder, wait_until};
+
+pub(crate) struct Running {
+    pub(crate) folder: PathBuf,
+    process: Child,
+    port: String,
+    options: Vec<String>,
+    /// Of its network; `None` for that of the tests.
+    namespace: Option<String>,
+}
+
+impl Running {
+    /// A server with this configuration, logging in `format`.
+    pub(crate) fn start(config: &str, format: &str) -> Self {
+        Self::start_with(config, format, &[])
+    }
+
+    /// As [`Running::start`], with more options.
+    pub(crate) fn start_with(config: &str, format: &str, options: &[&str]) -> Self {
+        Self::start_in(None, config, format, options)
+    }
+
+    /// As [`Running::start_with`], in a namespace of networks.
+    pub(crate) fn start_in(
+        namespace: Option<&str>,
+        config: &str,
+        format: &str,
+        options: &[&str],
+    ) -> Self {
+        let folder = folder();
+        // A host that has run before.
+        drop(SqliteStore::open(&folder).unwrap());
+        fs::write(folder.join("serve.toml"), config).unwrap();
+        let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
+        let namespace = namespace.map(str::to_owned);
+        let (process, port) = spawn(&folder, format, &options, namespace.as_deref());
+        Self { folder, process, port, options, namespace }
+    }
+
+    /// Adds an option for the next start.
+    pub(crate) fn add_option(&mut self, option: &str) {
+        self.options.push(option.to_owned());
+    }
+
+    /// Starts the server again in the same folder, with the same options.
+    pub(crate) fn restart(&mut self) {
+        (self.process, self.port) =
+            spawn(&self.folder, "text", &self.options, self.namespace.as_deref());
+    }
+
+    /// A connection that says nothing yet.
+    pub(crate) fn connect(&self) -> TcpStream {
+        TcpStream::connect(format!("127.0.0.1:{}", self.port)).unwrap()
+    }
+
+    pub(crate) fn log(&self) -> String {
+        fs::read_to_string(self.folder.join("log")).unwrap()
+    }
+
+    pub(crate) fn wait_for_log(&self, text: &str) {
+        wait_until(&format!("{text} in the log"), || self.log().contains(text));
+    }
+
+    /// A client of OpenSSH in a terminal.
+    pub(crate) fn visitor(&self) -> Player {
+        self.player(None)
+    }
+
+    /// A client of OpenSSH with a key, or as a guest.
+    pub(crate) fn player(&self, key: Option<&Path>) -> Player {
+        let key = key.map_or_else(|| "none".to_owned(), |key| key.display().to_string());
+        let identity = format!("IdentityFile={key}");
+        let options = "-F none -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null \
+                       -o LogLevel=ERROR -o IdentitiesOnly=yes -tt -p";
+        let user = if key == "none" { "guest@127.0.0.1" } else { "ann@127.0.0.1" };
+        let last = [self.port.as_str(), "-o", &identity, user];
+        let words = ["ssh"].into_iter().chain(options.split_whitespace()).chain(last);
+        let words: Vec<&str> = within(self.namespace.as_deref()).into_iter().chain(words).collect();
+        Player::start((80, 24), Speaks::Kitty, words[0], &words[1..], &[])
+    }
+
+    /// Waits until the operator sees so many visitors.
+    pub(crate) fn wait_for_visitors(&self, count: usize) {
+        wait_until("visitors", || {
+            let lines = self.admin_says(&["who"]).lines().count();
+            lines == if count == 0 { 1 } else { count + 1 }
+        });
+    }
+
+    pub(crate) fn admin(&self, arguments: &[&str]) -> Output {
+        let words = [&["admin"], arguments].concat();
+        server(&words).env("CELLCASTER_DATA", &self.folder).output().unwrap()
+    }
+
+    /// What `admin` writes, which succeeds.
+    pub(crate) fn admin_says(&self, arguments: &[&str]) -> String {
+        let output = self.admin(arguments);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), error.as_str()), (Some(0), ""), "{arguments:?}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The number of the process.
+    #[cfg(all(target_os = "linux", feature = "system-tests"))]
+    pub(crate) fn process(&self) -> u32 {
+        self.process.id()
+    }
+
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_child(&self.process), signal).unwrap();
+    }
+
+    /// The exit status of the process.
+    pub(crate) fn wait_for_end(&mut self) -> Option<i32> {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(status) = self.process.try_wait().unwrap() {
+                return status.code();
+            }
+            assert!(Instant::now() < end, "the server goes on; its log:\n{}", self.log());
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+/// The words by which a command runs in a namespace of networks.
+fn within(namespace: Option<&str>) -> Vec<&str> {
+    namespace.map_or_else(Vec::new, |name| vec!["ip", "netns", "exec", name])
+}
+
+/// The process, and its port.
+fn spawn(
+    folder: &Path,
+    format: &str,
+    options: &[String],
+    namespace: Option<&str>,
+) -> (Child, String) {
+    let log = File::create(folder.join("log")).unwrap();
+    let mut words = within(namespace);
+    words.push(env!("CARGO_BIN_EXE_cellcaster-server"));
+    let mut process = Command::new(words[0])
+        .args(&words[1..])
+        .args(["--listen", "127.0.0.1:0", "--log", format, "--config"])
+        .arg(folder.join("serve.toml"))
+        .args(options)
+        .env_clear()
+        .env("PATH", "/usr/sbin:/usr/bin:/sbin:/bin")
+        .env("CELLCASTER_DATA", folder)
+        .stdout(Stdio::piped())
+        .stderr(log)
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
+    let line = lines.find(|line| line.as_ref().unwrap().contains("ssh -p ")).unwrap().unwrap();
+    let (_, rest) = line.split_once("ssh -p ").unwrap();
+    let port = rest.split(' ').next().unwrap().to_owned();
+    (process, port)
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        _ = self.process.kill();
+        _ = self.process.wait();
+        if !thread::panicking() {
+            _ = fs::remove_dir_all(&self.folder);
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Races with ghosts.
+
+use cellcaster_server::accounts::{
+    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
+};
+
+use super::server::GameServer;
+
+/// A run whose first seven seconds lead straight on.
+const RUN: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/archive.normal.script"));
+
+fn record_run_of_mara(store: &mut SqliteStore) {
+    let now = UnixTime::new(1_000);
+    let key = AccountKey::new([7; 32]);
+    let mara = store.create_account(&key, &Name::new("Mara").unwrap(), now).unwrap();
+    let Ok(VerifiedRun::Level(run)) = verify(RUN) else { panic!("not a run") };
+    store.record(mara.id, &run, now).unwrap();
+}
+
+#[test]
+fn the_best_run_of_the_board_walks_along_in_a_race() {
+    let server = GameServer::open_with(record_run_of_mara);
+    let jon = server.player(&[]);
+    jon.wait_for("Enter takes it");
+    jon.send("\x15Jon\r");
+    for (shown, key) in
+        [("Open a room", "3"), ("Campaign together", "4"), ("The Archive", "5"), ("Go in", "\r")]
+    {
+        jon.wait_for(shown);
+        jon.send(key);
+    }
+    jon.wait_for("Jon comes in.");
+    jon.wait_for("Mara's best");
+}

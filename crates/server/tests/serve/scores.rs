@@ -1,0 +1,117 @@
+//! `scores`: the leaderboards of a host.
+
+use std::path::Path;
+use std::process::Output;
+
+use cellcaster_server::accounts::{
+    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
+};
+use serde_json::Value;
+
+use crate::kept::{WON, scratch};
+use crate::support::server;
+
+const HARD: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.hard.script"));
+const MUSEUM: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
+
+/// A store in which two accounts have results. It stays open, as while a host runs.
+fn filled(folder: &Path) -> SqliteStore {
+    let mut store = SqliteStore::open(folder).unwrap();
+    let now = UnixTime::new(1_795_300_000);
+    for (number, name, scripts) in [(1, "漢字", &[WON, HARD][..]), (2, "Ada", &[WON, MUSEUM])] {
+        let (key, name) = (AccountKey::new([number; 32]), Name::new(name).unwrap());
+        let account = store.create_account(&key, &name, now).unwrap();
+        for script in scripts {
+            let VerifiedRun::Level(run) = verify(script).unwrap() else { panic!("not a level") };
+            store.record(account.id, &run, now.after(u64::from(number))).unwrap();
+        }
+    }
+    store
+}
+
+fn scores(folder: &Path, arguments: &[&str]) -> Output {
+    let words = [&["scores"], arguments].concat();
+    server(&words).env("CELLCASTER_DATA", folder).output().unwrap()
+}
+
+fn written(folder: &Path, arguments: &[&str]) -> String {
+    let output = scores(folder, arguments);
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0), "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn boards_are_listed_while_a_host_runs() {
+    let folder = scratch("boards");
+    let _host = filled(&folder);
+    let table = written(&folder, &[]);
+    let titles: Vec<&str> = table.lines().filter(|line| line.contains(", ")).collect();
+    assert_eq!(titles, ["cellar, normal", "cellar, hard", "museum, normal"]);
+    let entries: Vec<&str> = table.lines().skip(2).take(2).collect();
+    // The same run twice: the earlier one is first.
+    assert!(
+        entries[0].starts_with("   1  漢字              ")
+            && entries[1].starts_with("   2  Ada               ")
+    );
+    assert_eq!(entries[0].split_whitespace().nth(2), entries[1].split_whitespace().nth(2));
+    let some = written(&folder, &["--level", "cellar", "--difficulty", "hard"]);
+    assert_eq!(
+        some.lines().filter(|line| line.contains(", ")).collect::<Vec<_>>(),
+        ["cellar, hard"]
+    );
+    assert_eq!(written(&folder, &["--level", "prison"]), "no results\n");
+    assert_eq!(written(&folder, &["--day", "2026-11-22"]), "2026-11-22: no results\n");
+    let elsewhere = scratch("elsewhere");
+    assert_eq!(written(&elsewhere, &["--data", folder.to_str().unwrap()]), table);
+}
+
+#[test]
+fn json_has_every_figure() {
+    let folder = scratch("json");
+    drop(filled(&folder));
+    let boards: Value = serde_json::from_str(&written(&folder, &["--format", "json"])).unwrap();
+    let VerifiedRun::Level(run) = verify(MUSEUM).unwrap() else { panic!("not a level") };
+    let museum = &boards[2];
+    assert_eq!((&museum["level"], &museum["difficulty"]), (&"museum".into(), &"normal".into()));
+    let entry = &museum["entries"][0];
+    assert_eq!((&entry["place"], &entry["name"]), (&1.into(), &"Ada".into()));
+    assert_eq!(entry["steps"], run.tally().steps);
+    assert_eq!(entry["rank"], run.rank().name());
+    assert_eq!(entry["verified"], 1_795_300_002_u64);
+    let day = written(&folder, &["--day", "2026-11-22", "--format", "json"]);
+    assert_eq!(day, "{\"day\":\"2026-11-22\",\"entries\":[]}\n");
+}
+
+#[test]
+fn what_is_wrong_is_told_in_a_sentence() {
+    let folder = scratch("absent");
+    for (arguments, said) in [
+        (&[][..], "there is no store of a host in"),
+        (&["--level", "No where"], "the name of a built-in level, or of a map"),
+        (&["--day", "2026-02-30"], "a date such as 2026-11-22"),
+        (&["--day", "2026-11-22", "--level", "cellar"], "--day goes without --level"),
+    ] {
+        let output = scores(&folder, arguments);
+        let sentence = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}");
+        assert!(sentence.contains(said) && sentence.lines().count() == 1, "{sentence}");
+    }
+}
+
+#[test]
+fn a_folder_can_be_named_as_the_store() {
+    let folder = scratch("named");
+    let _host = filled(&folder);
+    let elsewhere = scratch("unnamed");
+    let table = written(&folder, &[]);
+    assert_eq!(written(&elsewhere, &["--store", folder.to_str().unwrap()]), table);
+    let mut command = server(&["scores"]);
+    command.env("CELLCASTER_DATA", &elsewhere).env("CELLCASTER_STORE", &folder);
+    assert_eq!(String::from_utf8(command.output().unwrap().stdout).unwrap(), table);
+    let output = scores(&folder, &["--store", ""]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("--store takes a folder, or an address"), "{error}");
+}

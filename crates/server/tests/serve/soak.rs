@@ -1,0 +1,210 @@
+//! Clients that come and go leave nothing behind in the server.
+//!
+//! `cargo run --release --features serve --example load -- --soak` does the same for ten minutes.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::future;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::ops::admin::RoomRow;
+use cellcaster_server::ops::config::Config;
+use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::sessions::driver::{GameHost, HostParts};
+use cellcaster_server::sessions::visitors::Visitors;
+use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::ssh::{Counters, Server};
+use russh::Error;
+use russh::client::{self, Handler};
+use russh::keys::PublicKeyOrCertificate;
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::oneshot;
+use tokio::task::JoinSet;
+use tokio::time::{sleep, timeout};
+
+use self::wanderer::Leaving;
+use crate::transport::{PATIENCE, folder};
+
+#[path = "../support/wanderer.rs"]
+mod wanderer;
+
+/// A server whose insides can be counted.
+struct Counted {
+    runtime: Runtime,
+    address: SocketAddr,
+    counters: Arc<Counters>,
+    metrics: Arc<Metrics>,
+    visitors: Visitors,
+    rooms: Box<dyn Fn() -> Vec<RoomRow>>,
+}
+
+/// Believes every server.
+struct Anyone;
+
+/// What a server holds.
+#[derive(Debug, PartialEq, Eq)]
+struct Held {
+    tasks: usize,
+    connections: usize,
+    sessions: usize,
+    frame_bytes: usize,
+    visitors: usize,
+    rooms: usize,
+    members: i64,
+    watchers: i64,
+}
+
+const CLIENTS: u64 = 16;
+const TIME: Duration = Duration::from_secs(10);
+const LONGEST: Duration = Duration::from_secs(2);
+
+impl Counted {
+    fn start() -> Self {
+        let folder = folder();
+        let mut config = Config { listen: ([127, 0, 0, 1], 0).into(), ..Config::default() };
+        config.admission.per_address = 1000;
+        config.admission.startups = 1000;
+        config.bytes_per_second = 1 << 20;
+        config.silence = Duration::from_secs(3);
+        // A client that takes nothing is not what is tested here.
+        config.stall = 2 * PATIENCE;
+        config.empty_room = Duration::from_secs(1);
+        let key = HostKey::open(&folder).unwrap();
+        let store = SqliteStore::open(&folder).unwrap();
+        let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
+        let server = runtime.block_on(Server::bind(config, key)).unwrap();
+        let (address, counters) = (server.address().unwrap(), server.counters());
+        let (metrics, visitors) = (Arc::<Metrics>::default(), Visitors::default());
+        let guard = runtime.enter();
+        let (counts, seen) = (Arc::clone(&metrics), visitors.clone());
+        let host = HostParts::new(server.config(), counts, seen, Box::new(store));
+        let host = GameHost::start(host.unwrap());
+        drop(guard);
+        let rooms = Box::new(host.room_rows());
+        runtime.spawn(server.run(host, future::pending()));
+        fs::remove_dir_all(&folder).unwrap();
+        Self { runtime, address, counters, metrics, visitors, rooms }
+    }
+
+    fn held(&self) -> Held {
+        Held {
+            tasks: self.runtime.metrics().num_alive_tasks(),
+            connections: self.counters.connections.load(Ordering::Relaxed),
+            sessions: self.counters.sessions.load(Ordering::Relaxed),
+            frame_bytes: self.counters.held.load(Ordering::Relaxed),
+            visitors: self.visitors.list().len(),
+            rooms: (self.rooms)().len(),
+            members: self.metrics.members.get(),
+            watchers: self.metrics.watchers.get(),
+        }
+    }
+
+    fn wait_until(&self, is_right: impl Fn(&Held) -> bool) {
+        let end = Instant::now() + PATIENCE;
+        while !is_right(&self.held()) {
+            assert!(Instant::now() < end, "{:?}", self.held());
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+#[test]
+fn clients_that_come_and_go_leave_nothing() {
+    let server = Counted::start();
+    let before = server.held();
+    assert_eq!((before.connections, before.visitors, before.rooms), (0, 0, 2), "{before:?}");
+    let address = server.address;
+    // On a runtime of their own, so that their tasks do not count.
+    let clients = thread::spawn(move || {
+        Builder::new_current_thread().enable_all().build().unwrap().block_on(soak(address))
+    });
+    let mut most = 0;
+    while !clients.is_finished() {
+        most = most.max(server.held().members);
+        thread::sleep(Duration::from_millis(20));
+    }
+    let ends = clients.join().unwrap();
+    for leaving in [Leaving::ByKeys, Leaving::Disconnected, Leaving::Cut] {
+        assert!(ends.get(&leaving).is_some_and(|&count| count > 2), "{ends:?}");
+    }
+    assert!(most > 2, "{most} members");
+    server.wait_until(|held| *held == before);
+    server.runtime.shutdown_background();
+}
+
+/// What a session is to ask must not wait without bound for a client that reads nothing.
+#[test]
+fn a_client_that_provokes_queries_and_reads_none_is_sent_away() {
+    let server = Counted::start();
+    let before = server.held();
+    let address = server.address;
+    let (stop, stopped) = oneshot::channel::<()>();
+    let client = thread::spawn(move || {
+        let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            tokio::select! {
+                () = provoke(address) => {}
+                _ = stopped => {}
+            }
+        });
+    });
+    server.wait_until(|held| held.sessions == 1);
+    server.wait_until(|held| *held == before);
+    drop(stop);
+    client.join().unwrap();
+    server.runtime.shutdown_background();
+}
+
+/// Takes a byte of what the server sends, and states again and again that the terminal is xterm, which
+/// the server then asks for its colours, until the connection has ended.
+async fn provoke(address: SocketAddr) {
+    let config = client::Config { window_size: 1, ..client::Config::default() };
+    let mut client = client::connect(Arc::new(config), address, Anyone).await.unwrap();
+    while !client.authenticate_none("provoker").await.unwrap().success() {}
+    let channel = client.channel_open_session().await.unwrap();
+    channel.request_pty(false, "xterm", 80, 24, 0, 0, &[]).await.unwrap();
+    channel.request_shell(false).await.unwrap();
+    let answers = b"\x1bP>|XTerm(390)\x1b\\".repeat(100);
+    while channel.data(&answers[..]).await.is_ok() {}
+}
+
+impl Handler for Anyone {
+    type Error = Error;
+
+    async fn check_server_key(&mut self, _: &PublicKeyOrCertificate) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
+
+/// Lets clients come and go, and counts how they left.
+async fn soak(address: SocketAddr) -> BTreeMap<Leaving, usize> {
+    let mut clients = JoinSet::new();
+    for client in 0..CLIENTS {
+        clients.spawn(async move {
+            let mut ends = BTreeMap::<Leaving, usize>::new();
+            _ = timeout(TIME, async {
+                for visit in 0.. {
+                    let seed = client << 32 | visit;
+                    match wanderer::visit(address, seed, LONGEST).await {
+                        Ok(leaving) => *ends.entry(leaving).or_default() += 1,
+                        Err(_) => sleep(Duration::from_millis(50)).await,
+                    }
+                }
+            })
+            .await;
+            ends
+        });
+    }
+    let all = clients.join_all().await;
+    all.into_iter().fold(BTreeMap::new(), |mut all, ends| {
+        for (leaving, count) in ends {
+            *all.entry(leaving).or_default() += count;
+        }
+        all
+    })
+}

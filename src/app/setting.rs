@@ -1,0 +1,387 @@
+//! Settings as tables: a row for each, with its key, a text about it, and where its value is kept.
+//!
+//! One row serves the file, which it reads and writes, the settings page, and the merging of two games'
+//! choices. A type of values is a [`Value`]; one with a few named values is a [`Choice`].
+//!
+//! Rejected: serde. It stops at the first fault of a file, writes no comments, and knows no page.
+
+use std::fmt::Write;
+use std::num::NonZeroU32;
+
+use toml::de::DeValue;
+
+use crate::app::bindings::Preset;
+use crate::color::palette::ColorDepth;
+use crate::fault::document::Entry;
+use crate::fault::{Fault, nearest, quoted};
+use crate::terminal::Fidelity;
+use crate::tui::{Correction, GlyphSet};
+use crate::world::{Difficulty, FieldOfView};
+
+/// A setting that `C` contains.
+pub struct Setting<C: 'static> {
+    /// The key in a file.
+    pub key: &'static str,
+    /// Its meaning in lines of a comment, or its label on a settings page.
+    pub about: &'static str,
+    /// The value.
+    pub value: &'static dyn Field<C>,
+}
+
+/// The value of a setting in `C`.
+pub trait Field<C>: Sync {
+    /// Reads the value of `entry`, or reports a fault.
+    fn read(&self, entry: &Entry<'_, '_>, into: &mut C);
+
+    /// The value as TOML.
+    fn write(&self, of: &C) -> String;
+
+    /// Whether the values differ.
+    fn differs(&self, one: &C, other: &C) -> bool;
+
+    /// Copies the value.
+    fn copy(&self, from: &C, into: &mut C);
+
+    /// Takes the next value, or the one before if `forward` is false.
+    fn change(&self, of: &mut C, forward: bool);
+
+    /// The value on a settings page.
+    fn label(&self, of: &C) -> String;
+}
+
+/// The field of `C` that a function returns. Reading a value goes by a copy of `C`, so that a row needs one
+/// function only.
+pub(crate) struct At<C, T>(pub(crate) fn(&mut C) -> &mut T);
+
+impl<C: Clone, T: Value> At<C, T> {
+    fn get(&self, of: &C) -> T {
+        *self.0(&mut of.clone())
+    }
+}
+
+impl<C: Clone, T: Value> Field<C> for At<C, T> {
+    fn read(&self, entry: &Entry<'_, '_>, into: &mut C) {
+        if let Some(value) = T::read(entry) {
+            *self.0(into) = value;
+        }
+    }
+
+    fn write(&self, of: &C) -> String {
+        self.get(of).write()
+    }
+
+    fn differs(&self, one: &C, other: &C) -> bool {
+        self.get(one) != self.get(other)
+    }
+
+    fn copy(&self, from: &C, into: &mut C) {
+        *self.0(into) = self.get(from);
+    }
+
+    fn change(&self, of: &mut C, forward: bool) {
+        let value = self.0(of);
+        *value = value.after(forward);
+    }
+
+    fn label(&self, of: &C) -> String {
+        self.get(of).label()
+    }
+}
+
+/// A value that a setting can have.
+pub trait Value: Copy + PartialEq {
+    /// The value of `entry`. Reports a fault if it is none.
+    fn read(entry: &Entry<'_, '_>) -> Option<Self>;
+
+    /// The value as TOML.
+    fn write(self) -> String;
+
+    /// The next value on a settings page, or the one before. A value that no page changes stays.
+    #[must_use]
+    fn after(self, _forward: bool) -> Self {
+        self
+    }
+
+    /// The value on a settings page.
+    fn label(self) -> String {
+        self.write()
+    }
+}
+
+/// A value, its name in files, and its label on a settings page.
+type Named<T> = (T, &'static str, &'static str);
+
+/// A value that is one of a few with names.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// The label of no value, which lets the terminal decide, if a settings page offers it.
+    const AUTO: Option<&'static str> = None;
+    /// The values, in the order of a settings page.
+    const ALL: &'static [Named<Self>];
+
+    /// The name in files.
+    fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(value, ..)| *value == self).map_or("", |(_, name, _)| name)
+    }
+
+    /// The value with that name.
+    fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known, _)| *known == name).map(|&(value, ..)| value)
+    }
+}
+
+impl Choice for GlyphSet {
+    const ALL: &'static [Named<Self>] = &[
+        (Self::Half, "half", "half blocks"),
+        (Self::Quadrant, "quadrant", "quadrants"),
+        (Self::Sextant, "sextant", "sextants"),
+        (Self::Octant, "octant", "octants"),
+        (Self::Ascii, "ascii", "ASCII"),
+        (Self::Ramp, "ramp", "ramp"),
+    ];
+}
+
+impl Choice for ColorDepth {
+    const AUTO: Option<&'static str> = Some("the terminal's");
+    const ALL: &'static [Named<Self>] = &[
+        (Self::True, "true", "all"),
+        (Self::Indexed256, "256", "256"),
+        (Self::Indexed16, "16", "16"),
+        (Self::Mono, "mono", "none"),
+    ];
+}
+
+impl Choice for Correction {
+    const ALL: &'static [Named<Self>] = &[
+        (Self::None, "none", "as it is"),
+        (Self::Contrast, "contrast", "more contrast"),
+        (Self::RedGreen, "red-green", "red and green apart"),
+    ];
+}
+
+impl Choice for Difficulty {
+    const ALL: &'static [Named<Self>] = &[
+        (Self::Easy, "easy", "easy"),
+        (Self::Normal, "normal", "normal"),
+        (Self::Hard, "hard", "hard"),
+    ];
+}
+
+impl Choice for Preset {
+    const ALL: &'static [Named<Self>] = &[
+        (Self::Qwerty, "qwerty", "qwerty"),
+        (Self::Azerty, "azerty", "azerty"),
+        (Self::Hjkl, "hjkl", "hjkl"),
+    ];
+}
+
+impl<T: Choice> Value for T {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        read_name(entry, &names::<T>().collect::<Vec<_>>()).and_then(T::named)
+    }
+
+    fn write(self) -> String {
+        toml_string(self.name())
+    }
+
+    fn after(self, forward: bool) -> Self {
+        next(T::ALL, |(value, ..)| *value == self, forward).0
+    }
+
+    fn label(self) -> String {
+        T::ALL.iter().find(|(value, ..)| *value == self).map_or("", |(.., label)| label).to_owned()
+    }
+}
+
+/// The name of a value that the terminal decides.
+const AUTO: &str = "auto";
+
+/// `None` if the terminal decides.
+impl<T: Choice> Value for Option<T> {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let known: Vec<&str> = [AUTO].into_iter().chain(names::<T>()).collect();
+        let name = read_name(entry, &known)?;
+        Some(T::named(name))
+    }
+
+    fn write(self) -> String {
+        toml_string(self.map_or(AUTO, T::name))
+    }
+
+    fn after(self, forward: bool) -> Self {
+        let auto = T::AUTO.map(|_| None);
+        let all: Vec<Self> =
+            auto.into_iter().chain(T::ALL.iter().map(|&(value, ..)| Some(value))).collect();
+        next(&all, |&value| value == self, forward)
+    }
+
+    fn label(self) -> String {
+        self.map_or_else(|| T::AUTO.unwrap_or_default().to_owned(), Value::label)
+    }
+}
+
+impl Value for bool {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let DeValue::Boolean(boolean) = entry.value else {
+            let example = format!("{} = true", entry.key);
+            entry.faults.push(entry.wrong_type("true or false", &example));
+            return None;
+        };
+        Some(*boolean)
+    }
+
+    fn write(self) -> String {
+        self.to_string()
+    }
+
+    fn after(self, _: bool) -> Self {
+        !self
+    }
+
+    fn label(self) -> String {
+        if self { "on" } else { "off" }.to_owned()
+    }
+}
+
+impl Value for FieldOfView {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let example = format!("{} = {}", entry.key, Self::default().write());
+        let Some(degrees) = entry.number() else {
+            entry.faults.push(entry.wrong_type("a number of degrees", &example));
+            return None;
+        };
+        let view = Self::from_degrees(degrees);
+        if view.is_none() {
+            entry.faults.push(out_of_range(entry, "degrees above 0 and below 180", &example));
+        }
+        view
+    }
+
+    fn write(self) -> String {
+        self.degrees().to_string()
+    }
+}
+
+/// The most frames a second.
+pub(crate) const FRAME_RATE: NonZeroU32 = NonZeroU32::new(30).unwrap();
+/// The rates that a settings page offers.
+const FRAME_RATES: [u32; 4] = [15, 30, 60, 120];
+
+/// Frames a second, from 1 to 240.
+impl Value for NonZeroU32 {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let example = format!("{} = {FRAME_RATE}", entry.key);
+        let DeValue::Integer(_) = entry.value else {
+            entry.faults.push(entry.wrong_type("a whole number", &example));
+            return None;
+        };
+        let number = entry.number().filter(|number| (1.0..=240.0).contains(number));
+        let frames = number.and_then(|number| Self::new(number as u32));
+        if frames.is_none() {
+            entry.faults.push(out_of_range(entry, "a whole number from 1 to 240", &example));
+        }
+        frames
+    }
+
+    fn write(self) -> String {
+        self.to_string()
+    }
+
+    fn after(self, forward: bool) -> Self {
+        let rate = next(&FRAME_RATES, |&rate| rate >= self.get(), forward);
+        Self::new(rate).unwrap_or(self)
+    }
+}
+
+/// `None` for the default.
+impl Value for Option<NonZeroU32> {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        NonZeroU32::read(entry).map(Some)
+    }
+
+    fn write(self) -> String {
+        self.unwrap_or(FRAME_RATE).write()
+    }
+
+    fn after(self, forward: bool) -> Self {
+        Some(self.unwrap_or(FRAME_RATE).after(forward))
+    }
+}
+
+/// `None` if the link to the terminal decides.
+impl Value for Option<Fidelity> {
+    fn read(entry: &Entry<'_, '_>) -> Option<Self> {
+        let example = format!("{} = \"{AUTO}\"", entry.key);
+        let text = match entry.number() {
+            Some(number) => number.to_string(),
+            None => entry.string(&example)?.to_owned(),
+        };
+        if text == AUTO {
+            return Some(None);
+        }
+        let fidelity = text.parse().ok();
+        if fidelity.is_none() {
+            let wanted = "\"auto\", \"exact\", \"high\", \"low\" or a whole number from 0 to 255";
+            entry.faults.push(out_of_range(entry, wanted, &example));
+        }
+        fidelity.map(Some)
+    }
+
+    fn write(self) -> String {
+        toml_string(&self.map_or(AUTO.to_owned(), |fidelity| fidelity.to_string()))
+    }
+}
+
+fn names<T: Choice>() -> impl Iterator<Item = &'static str> {
+    T::ALL.iter().map(|&(_, name, _)| name)
+}
+
+/// The name in `entry`, which is one of `known`. Numbers, such as 256 colours, need no quotes.
+fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
+    let number = entry.number().map(|number| number.to_string());
+    let of_number = known.iter().find(|&&name| Some(name) == number.as_deref());
+    if let Some(&name) = of_number {
+        return Some(name);
+    }
+    let text = entry.string(&format!("{} = \"{}\"", entry.key, known[0]))?;
+    let name = known.iter().copied().find(|&name| name == text);
+    if name.is_none() {
+        let help = if let Some(meant) = nearest(text, known) {
+            format!("the nearest is {}", quoted(meant))
+        } else {
+            let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
+            format!("write one of {}", all.join(", "))
+        };
+        let message = format!("{} is no value of {}", quoted(text), quoted(entry.key));
+        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    }
+    name
+}
+
+fn out_of_range(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Fault {
+    let message = format!("{} must be {wanted}", quoted(entry.key));
+    Fault::new(entry.value_place.clone(), message).help(format!("write {example}"))
+}
+
+/// The value after the one that `is_it`, or before it; from the last, the first.
+fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
+    let index = values.iter().position(is_it).unwrap_or(0);
+    let by = if forward { 1 } else { values.len() - 1 };
+    values[(index + by) % values.len()]
+}
+
+/// `text` as a TOML string.
+pub(crate) fn toml_string(text: &str) -> String {
+    let mut string = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => string.extend(['\\', character]),
+            character if character.is_control() => {
+                // Writing to a string never fails.
+                _ = write!(string, "\\u{:04x}", u32::from(character));
+            }
+            character => string.push(character),
+        }
+    }
+    string.push('"');
+    string
+}

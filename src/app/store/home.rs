@@ -1,0 +1,312 @@
+//! The store's folder: reading, and replacing files under a lock.
+//!
+//! File operations are behind a trait, so that tests can let each of them fail.
+
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use std::{fmt, thread};
+
+use crate::app::store::private;
+use crate::app::store::progress::{Change, Progress};
+use crate::app::store::text::{self, Content};
+use crate::fault::printable_path;
+use crate::sort;
+
+/// A folder of a store.
+#[derive(Debug)]
+pub(crate) struct Home {
+    folder: PathBuf,
+    disk: Box<dyn Disk>,
+    /// The attempts to get the lock; one after another process did not return it.
+    attempts: u32,
+}
+
+/// The result of a change.
+#[derive(Debug)]
+pub(crate) struct Written {
+    /// The state of the file before.
+    pub(crate) before: Progress,
+    /// The state of the file now.
+    pub(crate) progress: Progress,
+    /// A sentence about a damaged file.
+    pub(crate) sentence: Option<String>,
+}
+
+/// The content of the progress file, and what is wrong with it.
+enum Found {
+    Sound(Progress),
+    /// Parts can be read; the bytes are to be kept.
+    Damaged(Progress, Vec<u8>),
+    TooLarge,
+}
+
+const PROGRESS: &str = "progress.toml";
+const LOCK: &str = "progress.lock";
+const RUNS: &str = "runs";
+/// In bytes.
+const LARGEST_PROGRESS: u64 = 4 << 20;
+/// In bytes: that is more than a day of play.
+pub(crate) const LARGEST_SCRIPT: u64 = 4 << 20;
+/// The number of damaged files that are kept, the newest ones.
+const MOST_DAMAGED: usize = 3;
+/// They take two seconds.
+const ATTEMPTS: u32 = 1000;
+
+impl Home {
+    pub(crate) fn new(folder: PathBuf, disk: Box<dyn Disk>) -> Self {
+        Self { folder, disk, attempts: ATTEMPTS }
+    }
+
+    /// The progress in the file, and a sentence if it is damaged or can't be used. A damaged file is
+    /// put aside.
+    pub(crate) fn open(&mut self) -> (Progress, Option<String>) {
+        match self.find() {
+            Ok(Found::Sound(progress)) => (progress, None),
+            Ok(Found::Damaged(progress, _)) => self.repair(progress),
+            Ok(Found::TooLarge) => self.repair(Progress::default()),
+            Err(sentence) => (Progress::default(), Some(sentence)),
+        }
+    }
+
+    fn repair(&mut self, readable: Progress) -> (Progress, Option<String>) {
+        match self.write(&[], &readable) {
+            Ok(written) => (written.progress, written.sentence),
+            Err(sentence) => (readable, Some(sentence)),
+        }
+    }
+
+    /// The progress in the file, unless it is missing or damaged.
+    pub(crate) fn read_again(&self) -> Option<Progress> {
+        match self.find() {
+            Ok(Found::Sound(progress)) => Some(progress),
+            _ => None,
+        }
+    }
+
+    /// The text of a script.
+    pub(crate) fn script(&self, name: &str) -> Option<String> {
+        let content = self.disk.read(&self.folder.join(RUNS).join(name), LARGEST_SCRIPT).ok()?;
+        String::from_utf8(content).ok()
+    }
+
+    /// Applies `changes` to the file. What is damaged in it is completed from `known`, the state in
+    /// memory.
+    ///
+    /// # Errors
+    /// A sentence why nothing was written.
+    pub(crate) fn write(
+        &mut self,
+        changes: &[Change],
+        known: &Progress,
+    ) -> Result<Written, String> {
+        let not_kept = |folder: &Path, error: &io::Error| {
+            format!("{} can't be written: {error}; this game is not kept", printable_path(folder))
+        };
+        let lock = self
+            .disk
+            .create_folder(&self.folder.join(RUNS))
+            .and_then(|()| self.disk.lock(&self.folder.join(LOCK), self.attempts));
+        self.attempts = if lock.is_ok() { ATTEMPTS } else { 1 };
+        let _lock = lock.map_err(|error| not_kept(&self.folder, &error))?;
+        let found = self.find()?;
+        self.replace(found, changes, known).map_err(|error| not_kept(&self.folder, &error))
+    }
+
+    fn find(&self) -> Result<Found, String> {
+        let file = self.folder.join(PROGRESS);
+        let content = match self.disk.read(&file, LARGEST_PROGRESS) {
+            Ok(content) => content,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Ok(Found::Sound(Progress::default()));
+            }
+            Err(error) if error.kind() == io::ErrorKind::FileTooLarge => {
+                return Ok(Found::TooLarge);
+            }
+            Err(error) => {
+                return Err(format!(
+                    "{} can't be read: {error}; nothing is kept",
+                    printable_path(&file)
+                ));
+            }
+        };
+        match text::read(&content) {
+            Content::Sound(progress) => Ok(Found::Sound(progress)),
+            Content::Damaged(progress) => Ok(Found::Damaged(progress, content)),
+            Content::Newer(version) => Err(format!(
+                "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
+                 nothing is kept",
+                printable_path(&file)
+            )),
+        }
+    }
+
+    fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<Written> {
+        let is_damaged = !matches!(found, Found::Sound(_));
+        let sentence = match &found {
+            Found::Sound(_) => None,
+            Found::Damaged(_, content) => Some(self.put_aside(Some(content))?),
+            Found::TooLarge => Some(self.put_aside(None)?),
+        };
+        let (Found::Sound(mut progress) | Found::Damaged(mut progress, _)) = found else {
+            return self
+                .replace(Found::Sound(known.clone()), changes, known)
+                .map(|written| Written { sentence, ..written });
+        };
+        if is_damaged {
+            progress.complete(known);
+        }
+        let before = progress.clone();
+        for change in changes {
+            progress.apply(change);
+        }
+        let after: BTreeSet<String> = sort::gathered(progress.scripts());
+        let scripts = changes.iter().filter_map(Change::written);
+        for (name, text) in scripts.filter(|(name, _)| after.contains(name)) {
+            self.write_whole(&Path::new(RUNS).join(name), text.as_bytes())?;
+        }
+        self.write_whole(Path::new(PROGRESS), progress.to_string().as_bytes())?;
+        for name in before.scripts().filter(|name| !after.contains(name)) {
+            // The progress is written; a script too many does no harm.
+            _ = self.disk.remove(&self.folder.join(RUNS).join(name));
+        }
+        Ok(Written { before, progress, sentence })
+    }
+
+    /// Keeps the damaged file under another name, as a copy of its content if that is known, and
+    /// returns a sentence about it.
+    fn put_aside(&self, content: Option<&[u8]>) -> io::Result<String> {
+        let names = self.disk.names(&self.folder)?;
+        let aside = |number: u64| format!("{PROGRESS}.damaged-{number}");
+        let number_of = |name: &OsString| {
+            let number = name.to_str()?.rsplit_once('-')?.1.parse().ok()?;
+            (*name == *aside(number)).then_some(number)
+        };
+        let mut numbers: Vec<u64> = names.iter().filter_map(number_of).collect();
+        sort::by_key(&mut numbers, |&number| number);
+        let number = numbers.last().map_or(1, |last| last.saturating_add(1));
+        let name = aside(number);
+        let kept = if let Some(content) = content {
+            self.write_whole(Path::new(&name), content)?;
+            "everything in it that can be read stays in force"
+        } else {
+            self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
+            "it is too large to be read"
+        };
+        numbers.retain(|&known| known != number);
+        for &old in numbers.iter().rev().skip(MOST_DAMAGED - 1) {
+            // One too many does no harm.
+            _ = self.disk.remove(&self.folder.join(aside(old)));
+        }
+        let file = printable_path(&self.folder.join(PROGRESS));
+        Ok(format!("{file} was damaged and is kept as {name}; {kept}"))
+    }
+
+    /// Writes a file in the folder so that it has either its old or its new content at any time.
+    fn write_whole(&self, name: &Path, content: &[u8]) -> io::Result<()> {
+        let file = self.folder.join(name);
+        let mut new = file.clone().into_os_string();
+        new.push(".new");
+        let written = self.disk.write(Path::new(&new), content);
+        let renamed = written.and_then(|()| self.disk.rename(Path::new(&new), &file));
+        if renamed.is_err() {
+            // On a full disk, the part that was written would take the last room.
+            _ = self.disk.remove(Path::new(&new));
+        }
+        renamed
+    }
+}
+
+/// File operations.
+pub trait Disk: fmt::Debug + Send {
+    /// Creates a folder and those that it is in, unless it exists.
+    fn create_folder(&self, folder: &Path) -> io::Result<()>;
+
+    /// The content of a file.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::FileTooLarge`] if it has more than `most` bytes.
+    fn read(&self, file: &Path, most: u64) -> io::Result<Vec<u8>>;
+
+    /// Writes a file and waits until it is on the disk.
+    fn write(&self, file: &Path, content: &[u8]) -> io::Result<()>;
+
+    /// Renames a file, in place of another one, and waits until that is on the disk.
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
+
+    /// Removes a file.
+    fn remove(&self, file: &Path) -> io::Result<()>;
+
+    /// The names in a folder.
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>>;
+
+    /// Locks a file until the returned one is closed; `None` if the file system has no locks.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::WouldBlock`] if another process still has it after `attempts`.
+    fn lock(&self, file: &Path, attempts: u32) -> io::Result<Option<File>>;
+}
+
+/// The operating system's files.
+#[derive(Clone, Copy, Debug)]
+pub struct Real;
+
+/// The time between two attempts to lock a file.
+const PAUSE: Duration = Duration::from_millis(2);
+
+impl Disk for Real {
+    fn create_folder(&self, folder: &Path) -> io::Result<()> {
+        private::create_folder(folder)
+    }
+
+    fn read(&self, file: &Path, most: u64) -> io::Result<Vec<u8>> {
+        private::read(file, most)
+    }
+
+    fn write(&self, file: &Path, content: &[u8]) -> io::Result<()> {
+        let mut file = private::open_to_write(file)?;
+        file.set_len(0)?;
+        file.write_all(content)?;
+        file.sync_all()
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::rename(from, to)?;
+        // Not every system can synchronise a folder. The file is complete under one of the names.
+        let folder = to.parent().and_then(|folder| File::open(folder).ok());
+        folder.map(|folder| folder.sync_all());
+        Ok(())
+    }
+
+    fn remove(&self, file: &Path) -> io::Result<()> {
+        fs::remove_file(file)
+    }
+
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+        fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect()
+    }
+
+    fn lock(&self, file: &Path, attempts: u32) -> io::Result<Option<File>> {
+        let file = private::open_to_write(file)?;
+        for _ in 1..attempts {
+            match file.try_lock() {
+                Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),
+                other => return locked(file, other),
+            }
+        }
+        let last = file.try_lock();
+        locked(file, last)
+    }
+}
+
+fn locked(file: File, attempt: Result<(), TryLockError>) -> io::Result<Option<File>> {
+    match attempt {
+        Ok(()) => Ok(Some(file)),
+        Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}

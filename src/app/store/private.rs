@@ -1,0 +1,151 @@
+//! Files of the program's own: it reads regular ones only, and nobody else on the machine reads them.
+
+use std::error::Error;
+use std::fmt;
+use std::fs::{self, DirBuilder, File, FileType, Metadata, OpenOptions};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// A path at which there is no regular file.
+#[derive(Debug)]
+struct NoFile(&'static str);
+
+/// Opens a file to read it. Never waits: a named pipe, on which a reader waits for a writer, is an error
+/// as all are that are no regular files.
+pub fn open(file: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true);
+    do_not_wait(&mut options);
+    let opened = options.open(file)?;
+    refuse_others(&opened.metadata()?)?;
+    Ok(opened)
+}
+
+/// The content of a regular file.
+///
+/// # Errors
+/// [`io::ErrorKind::FileTooLarge`] if it has more than `most` bytes.
+pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    open(file)?.take(most.saturating_add(1)).read_to_end(&mut content)?;
+    if content.len() as u64 > most {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    Ok(content)
+}
+
+/// The text in a regular file.
+///
+/// # Errors
+/// As those of [`read`]; [`io::ErrorKind::InvalidData`] if it is no UTF-8.
+#[cfg(feature = "cli")]
+pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
+    let content = read(file, most)?;
+    String::from_utf8(content)
+        .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
+}
+
+/// Creates a folder, and those that it is in, unless it exists. Only its owner can look into it.
+pub fn create_folder(folder: &Path) -> io::Result<()> {
+    let mut builder = DirBuilder::new();
+    builder.recursive(true);
+    restrict_folder(&mut builder);
+    builder.create(folder)
+}
+
+/// Opens a file to write to it, and creates it unless it exists. Only its owner can read it, then and
+/// from now on.
+pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.create(true).truncate(false).write(true);
+    restrict_file(&mut options);
+    do_not_wait(&mut options);
+    let opened = options.open(file).or_else(|error| {
+        // A named pipe that nobody reads can't be opened.
+        fs::metadata(file).map_or(Ok(()), |metadata| refuse_others(&metadata)).and(Err(error))
+    })?;
+    refuse_others(&opened.metadata()?)?;
+    restrict_existing(&opened)?;
+    Ok(opened)
+}
+
+/// Creates an empty file unless it exists. Only its owner can read it, then and from now on.
+pub fn create_file(file: &Path) -> io::Result<()> {
+    open_to_write(file).map(drop)
+}
+
+/// An error unless `file` is a regular file.
+pub fn check_is_file(file: &Path) -> io::Result<()> {
+    refuse_others(&fs::metadata(file)?)
+}
+
+/// Lets only the owner read the file that is created with `options`.
+#[cfg(unix)]
+pub fn restrict_file(options: &mut OpenOptions) {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.mode(0o600);
+}
+
+#[cfg(not(unix))]
+pub(crate) fn restrict_file(_: &mut OpenOptions) {}
+
+fn refuse_others(metadata: &Metadata) -> io::Result<()> {
+    let kind = metadata.file_type();
+    if kind.is_file() {
+        return Ok(());
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidInput, NoFile(name_of(kind))))
+}
+
+#[cfg(unix)]
+fn name_of(kind: FileType) -> &'static str {
+    use std::os::unix::fs::FileTypeExt;
+    match () {
+        () if kind.is_dir() => "a folder",
+        () if kind.is_fifo() => "a named pipe",
+        () if kind.is_socket() => "a socket",
+        () => "a device",
+    }
+}
+
+#[cfg(not(unix))]
+fn name_of(kind: FileType) -> &'static str {
+    if kind.is_dir() { "a folder" } else { "a device" }
+}
+
+impl fmt::Display for NoFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "it is {}, and must be a file: move it away", self.0)
+    }
+}
+
+impl Error for NoFile {}
+
+#[cfg(unix)]
+fn do_not_wait(options: &mut OpenOptions) {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
+}
+
+#[cfg(unix)]
+fn restrict_folder(builder: &mut DirBuilder) {
+    use std::os::unix::fs::DirBuilderExt;
+    builder.mode(0o700);
+}
+
+#[cfg(unix)]
+fn restrict_existing(file: &File) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(fs::Permissions::from_mode(0o600))
+}
+
+#[cfg(not(unix))]
+fn do_not_wait(_: &mut OpenOptions) {}
+
+#[cfg(not(unix))]
+fn restrict_folder(_: &mut DirBuilder) {}
+
+#[cfg(not(unix))]
+fn restrict_existing(_: &File) -> io::Result<()> {
+    Ok(())
+}

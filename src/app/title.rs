@@ -1,0 +1,226 @@
+//! The title screen: the level that plays itself behind it, and what it offers from outside of the
+//! program.
+//!
+//! - The demo has no guards: their pictures take twice the time of everything else in the first frame.
+//! - The app knows neither files nor the date. Its caller passes them as [`Offers`].
+//! - While tmux sends fewer colours than the terminal is known to show, and nothing else decides about
+//!   colours, an entry offers to tell tmux. It opens a panel with the command, and only an answer there
+//!   has the loop run it. Rejected: a letter as its key. A player can bind every letter, and letters
+//!   that walk select in menus.
+
+use std::fmt;
+
+use crate::app::App;
+use crate::app::menu::Menu;
+use crate::app::menus::Choice;
+use crate::app::played::Played;
+use crate::app::recording::ScriptCursor;
+use crate::app::screen::Screen;
+use crate::color::palette::ColorDepth;
+use crate::game::{Intents, Script};
+use crate::map::{Level, builtin};
+use crate::terminal::{ColorSource, TmuxClient};
+
+/// The level, and the script that plays it.
+const LEVEL: &str = "citadel";
+const SCRIPT: &str = include_str!("../../maps/showcase.script");
+
+/// A level that a script plays, again and again.
+pub(crate) struct Demo {
+    level: &'static builtin::Level,
+    cursor: ScriptCursor,
+}
+
+impl Demo {
+    /// The demo and its level at the start. Only this level is read, as the first picture of the
+    /// program needs no other.
+    pub(crate) fn begin() -> Option<(Self, Played)> {
+        let level = builtin::LEVELS.iter().find(|level| level.name == LEVEL)?;
+        let script = Script::parse(SCRIPT, "showcase").ok()?;
+        let demo = Self { level, cursor: ScriptCursor::new(&script) };
+        let played = demo.again()?;
+        Some((demo, played))
+    }
+
+    /// The intents of the next step; `None` at the end of the script.
+    pub(crate) fn next(&mut self) -> Option<Intents> {
+        self.cursor.next()
+    }
+
+    /// Returns to the start of the script, and returns the level at its start.
+    pub(crate) fn rewind(&mut self) -> Option<Played> {
+        self.cursor.rewind();
+        self.again()
+    }
+
+    fn again(&self) -> Option<Played> {
+        let world = self.level.world().ok()?.without_guards();
+        Some(Played::new(Level::from(world)))
+    }
+}
+
+/// What the title screen offers beside the built-in levels.
+#[derive(Default)]
+pub struct Offers {
+    /// Finds the player's own maps. It is called when the player asks for them.
+    pub maps: Option<FindMaps>,
+    /// Loads the map file at a path, to go on with a game that was saved in it.
+    pub load: Option<LoadMap>,
+    /// The date, such as 20261122, whose daily run is offered.
+    pub today: Option<u32>,
+    /// The seed of the first endless descent. Each further one has the next seed.
+    pub seed: u64,
+}
+
+/// Returns the player's own maps.
+pub type FindMaps = Box<dyn FnMut() -> Vec<OwnMap>>;
+
+/// Loads the map at a path; an error is a sentence for the player.
+pub type LoadMap = Box<dyn Fn(&str) -> Result<OwnLevel, String>>;
+
+/// A map of the player's own.
+pub struct OwnMap {
+    /// Its name in the list.
+    pub name: String,
+    /// The key of its results in the store, when it was found.
+    pub key: String,
+    /// Reads it; an error is a sentence for the player.
+    pub load: Box<dyn Fn() -> Result<OwnLevel, String>>,
+}
+
+/// The level of a map of the player's own.
+#[derive(Clone, Debug)]
+pub struct OwnLevel {
+    /// The level.
+    pub level: Level,
+    /// The key of its results in the store. It differs from that of the map if the file was changed after it
+    /// was found.
+    pub key: String,
+    /// The absolute path of its file, for [`Offers::load`]. Without it, the map is found by its key.
+    pub file: Option<String>,
+}
+
+impl fmt::Debug for Offers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Offers").field("maps", &self.maps.is_some()).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for OwnMap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OwnMap").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// The state of the player's order to tell tmux.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum TmuxOrder {
+    #[default]
+    None,
+    /// The loop has not taken it yet.
+    Given,
+    Running,
+    Done,
+    Failed,
+}
+
+impl App {
+    /// The command that is offered; `None` if nothing is offered.
+    pub(crate) fn tmux_remedy(&self) -> Option<String> {
+        let decides = self.detection.source == Some(ColorSource::Tmux);
+        let is_offered =
+            decides && self.settings.depth.is_none() && self.depth() == ColorDepth::Indexed256;
+        self.detection.tmux.as_ref().filter(|_| is_offered).and_then(TmuxClient::remedy)
+    }
+
+    /// Adds the offer to the title.
+    pub(crate) fn with_tmux_offer(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        match self.tmux_remedy() {
+            Some(_) => menu.entry("24-bit colours in tmux", Choice::Open(Screen::Tmux)),
+            None => menu,
+        }
+    }
+
+    pub(crate) fn tmux_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("tmux sends 256 colours");
+        let Some(remedy) = self.tmux_remedy() else { return menu.entry("Back", Choice::Back) };
+        let menu = match self.tmux_order {
+            TmuxOrder::None => menu
+                .line("Tell this server, then detach and attach again:")
+                .line(format!("tmux {remedy}"))
+                .line("For good, add to ~/.tmux.conf:")
+                .line(remedy)
+                .entry("Tell tmux", Choice::TellTmux),
+            TmuxOrder::Given | TmuxOrder::Running => menu.line("Telling tmux."),
+            TmuxOrder::Done => menu
+                .line("Done. Detach (prefix d), attach again, and press a key.")
+                .line("For good, add to ~/.tmux.conf:")
+                .line(remedy),
+            TmuxOrder::Failed => menu.line("tmux did not take the command; see docs/terminals.md."),
+        };
+        menu.entry("Back", Choice::Back)
+    }
+
+    pub(crate) fn order_tmux(&mut self) {
+        self.tmux_order = TmuxOrder::Given;
+        self.renew_menu();
+    }
+
+    /// Whether tmux must be told now. The loop does it once for each order.
+    pub(crate) fn take_tmux_order(&mut self) -> bool {
+        let is_given = self.tmux_order == TmuxOrder::Given;
+        if is_given {
+            self.tmux_order = TmuxOrder::Running;
+        }
+        is_given
+    }
+
+    /// Shows whether telling tmux has worked.
+    pub(crate) fn tmux_told(&mut self, has_worked: bool) {
+        self.tmux_order = if has_worked { TmuxOrder::Done } else { TmuxOrder::Failed };
+        if self.screen() == Screen::Tmux {
+            self.renew_menu();
+        }
+    }
+
+    /// Follows a change of what was `offered` before. The selected entry of the title stays selected.
+    pub(crate) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
+        let now = self.tmux_remedy();
+        if now.as_deref() == offered {
+            return;
+        }
+        self.tmux_order = TmuxOrder::None;
+        match self.screen() {
+            Screen::Tmux if now.is_none() => self.close(),
+            Screen::Tmux => self.renew_menu(),
+            Screen::Title => {
+                let selected = self.pages.menu.choice();
+                self.renew_menu();
+                if let Some(choice) = selected {
+                    self.pages.menu.select_choice(choice);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_demo_moves_and_comes_to_its_end() {
+        let (mut demo, mut played) = Demo::begin().unwrap();
+        let start = played.grid().unwrap().clone();
+        let mut steps = 0;
+        while let Some(intents) = demo.next() {
+            played.step(intents);
+            steps += 1;
+        }
+        assert!(steps > 600, "{steps} steps");
+        assert_ne!(*played.grid().unwrap(), start);
+        assert_eq!(*demo.rewind().unwrap().grid().unwrap(), start);
+        assert!(demo.next().is_some());
+    }
+}

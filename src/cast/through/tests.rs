@@ -1,0 +1,147 @@
+//! Shapes against rational arithmetic, for origins and directions of all sizes.
+
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+use proptest::prelude::*;
+
+use super::*;
+
+const CELL: Cell = Cell { column: 1, row: 1 };
+
+fn exact(value: f64) -> BigRational {
+    BigRational::from_float(value).unwrap()
+}
+
+fn cross_of([a, b]: [&BigRational; 2], [c, d]: [&BigRational; 2]) -> BigRational {
+    a * d - b * c
+}
+
+/// The `t` and the position along `line` at which `ray` meets it; `None` if it misses.
+fn expected(ray: &Ray, line: Line) -> Option<(BigRational, BigRational)> {
+    let [ox, oy, dx, dy] = [ray.origin(), ray.direction()]
+        .map(|vector| vector.to_array())
+        .as_flattened()
+        .iter()
+        .map(|&it| exact(it))
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap();
+    let (start, extent) = (line.start(CELL), line.stretch());
+    let way = [exact(start.x) - ox, exact(start.y) - oy];
+    let [way, extent] = [[&way[0], &way[1]], [&exact(extent.x), &exact(extent.y)]];
+    let across = cross_of([&dx, &dy], extent);
+    if across.is_zero() {
+        return None;
+    }
+    let t = cross_of(way, extent) / &across;
+    let along = cross_of(way, [&dx, &dy]) / &across;
+    let is_hit = !t.is_negative() && !along.is_negative() && along <= BigRational::one();
+    is_hit.then_some((t, along))
+}
+
+/// A coordinate in or near the cell, on its lines, or a hair from 0.
+fn coordinate() -> impl Strategy<Value = f64> {
+    let special = prop::sample::select(vec![0.0, 1.0, 1.5, 2.0, 5e-324, 3e-310, -1e-300, 1e-17]);
+    prop_oneof![2 => -1.0..4.0, 2 => special]
+}
+
+/// A component of a direction of any size.
+fn component() -> impl Strategy<Value = f64> {
+    let special = vec![0.0, 1.0, -1.0, 5e-324, -5e-324, 1e-320, 1e-300, -1e300, f64::MAX];
+    let scaled =
+        (-1.0..1.0_f64, -1073..1023).prop_map(|(part, exponent)| libm::scalbn(part, exponent));
+    prop_oneof![-2.0..2.0, scaled, prop::sample::select(special)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2048))]
+
+    #[test]
+    fn lines_are_hit_where_rational_arithmetic_says(
+        (x, y) in (coordinate(), coordinate()),
+        (dx, dy) in (component(), component()),
+        line in prop::sample::select(&Line::ALL[..]),
+    ) {
+        prop_assume!((dx, dy) != (0.0, 0.0));
+        let ray = Ray::new(DVec2::new(x, y), DVec2::new(dx, dy)).unwrap();
+        let (hit, expected) = (meet_shape(&ray, CELL, Outline::Line(line)), expected(&ray, line));
+        prop_assert_eq!(hit.is_some(), expected.is_some());
+        if let (Some(hit), Some((t, along))) = (hit, expected) {
+            if hit.t.is_finite() {
+                let error = (exact(hit.t) - &t).abs();
+                let allowed = t * exact(4.0 * f64::EPSILON) + exact(5e-324);
+                prop_assert!(error <= allowed, "{}", hit.t);
+            } else {
+                prop_assert!(t >= exact(f64::MAX));
+            }
+            let along = along.to_f64().unwrap();
+            let off = (hit.u - along).abs().min((hit.u - (1.0 - along)).abs());
+            prop_assert!(off < 1e-12, "{} {along}", hit.u);
+        }
+    }
+}
+
+#[test]
+fn a_thin_wall_is_hit_by_the_smallest_component() {
+    let ray = Ray::new(DVec2::new(1.25, 1.0), DVec2::new(1.0, 5e-324)).unwrap();
+    let hit = meet_shape(&ray, CELL, Outline::Line(Line::North)).unwrap();
+    assert_eq!((hit.t, hit.u), (0.0, 0.75));
+}
+
+fn passage_of_pillar(origin: (f64, f64), direction: (f64, f64)) -> Passage {
+    let pillar = Outline::Pillar(PillarRadius::new(0.25).unwrap());
+    Passage::new(&Ray::new(origin.into(), direction.into()).unwrap(), CELL, pillar)
+}
+
+#[test]
+fn a_pillar_is_hit_from_any_distance() {
+    for exponent in [16, 50, 99, 101, 150, 200, 300, 308] {
+        let far = 10_f64.powi(exponent);
+        for unit in [1.0, 1e-300, 1e300] {
+            let Passage { hit: Some(hit), end: Some(end) } =
+                passage_of_pillar((-far, 1.5), (unit, 0.0))
+            else {
+                panic!("it is hit from {far} cells, in units of {unit}")
+            };
+            let t = exact(far + 1.25) / exact(unit);
+            for found in [hit.t, end] {
+                if t < exact(f64::MAX) {
+                    let error = (exact(found) / &t - BigRational::one()).abs();
+                    assert!(error < exact(1e-15), "{far}, {unit}");
+                } else {
+                    assert_eq!(found, f64::INFINITY);
+                }
+            }
+            assert_eq!((hit.cell, hit.side), (CELL, Side::X));
+            assert_eq!(passage_of_pillar((-far, 1.5), (-unit, 0.0)), Passage::NONE);
+            let beside = 1.75_f64.next_up();
+            assert_eq!(passage_of_pillar((-far, beside), (unit, 0.0)), Passage::NONE);
+            assert!(passage_of_pillar((-far, 1.75), (unit, 0.0)).hit.is_some(), "it is touched");
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn far_pillars_are_hit_by_the_rays_that_rational_arithmetic_says(
+        exponent in 90..308,
+        angle in 0.0..7.0_f64,
+        aside in -0.6..0.6,
+    ) {
+        let far = 10_f64.powi(exponent);
+        let toward = DVec2::new(libm::cos(angle), libm::sin(angle));
+        let [x, y] = (CELL.center() - toward * far).to_array();
+        // The direction to a point beside the axis, from the origin as it was rounded.
+        let lever = BigRational::from_float(far).unwrap();
+        let to_axis = [exact(1.5) - exact(x), exact(1.5) - exact(y)].map(|it| (it / &lever).to_f64().unwrap());
+        let direction = (to_axis[0] - toward.y * aside / far, to_axis[1] + toward.x * aside / far);
+        let [dx, dy] = [direction.0, direction.1].map(exact);
+        let miss = cross_of([&(exact(1.5) - exact(x)), &(exact(1.5) - exact(y))], [&dx, &dy]);
+        let length_squared = &dx * &dx + &dy * &dy;
+        let share = &miss * &miss / length_squared / exact(0.0625);
+        let is_doubtful = (&share - BigRational::one()).abs() < exact(1e-9);
+        prop_assume!(!is_doubtful);
+        let hit = passage_of_pillar((x, y), direction).hit;
+        prop_assert_eq!(hit.is_some(), share < BigRational::one());
+    }
+}

@@ -1,0 +1,160 @@
+//! Commands of other programs: `cellcaster NAME` runs `cellcaster-NAME`, as git and cargo do.
+//!
+//! A program beside this one comes before one on the `PATH`. Commands that once were part of this program go
+//! to the one that has them now.
+
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::Error;
+
+/// Commands of other programs: the name here, the program, and the words before the arguments there.
+const MOVED: [(&str, &str, &[&str]); 6] = [
+    ("serve", "server", &[]),
+    ("admin", "server", &["admin"]),
+    ("scores", "server", &["scores"]),
+    ("accuracy", "lab", &["accuracy"]),
+    ("bench", "lab", &["bench"]),
+    ("wire", "lab", &["wire"]),
+];
+
+/// The programs of this project, and how each is installed.
+const INSTALLED: [(&str, &str); 2] =
+    [("server", "cargo install cellcaster-server"), ("lab", "cargo install --path crates/lab")];
+
+/// A command of another program.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct External {
+    /// What follows `cellcaster-` in its name.
+    program: String,
+    arguments: Vec<OsString>,
+}
+
+impl External {
+    /// The command of another program that `words` request; `None` for a command of this program. The first word is this
+    /// program's own name.
+    pub(crate) fn of(words: &[OsString]) -> Option<Self> {
+        let (_, arguments) = words.split_first()?;
+        if let Some(method) = caster(arguments)
+            && method != "exact"
+        {
+            return Some(Self::new("lab", arguments.to_vec()));
+        }
+        let (name, rest) = arguments.split_first()?;
+        let name = name.to_str()?;
+        if let Some((_, program, words)) = MOVED.iter().find(|(moved, ..)| *moved == name) {
+            let words = words.iter().map(OsString::from).chain(rest.iter().cloned());
+            return Some(Self::new(program, words.collect()));
+        }
+        let is_ours = INSTALLED.iter().any(|(program, _)| *program == name);
+        (is_ours || installed(name).is_some()).then(|| Self::new(name, rest.to_vec()))
+    }
+
+    fn new(program: &str, arguments: Vec<OsString>) -> Self {
+        Self { program: program.to_owned(), arguments }
+    }
+
+    /// The command that replays a recording of a room.
+    pub(crate) fn room_replay(arguments: impl IntoIterator<Item = OsString>) -> Self {
+        Self::new("server", ["replay".into()].into_iter().chain(arguments).collect())
+    }
+
+    /// Runs the program in place of this one.
+    ///
+    /// # Errors
+    /// If it is not installed, cannot be started, or ends with a failure.
+    pub(crate) fn run(self) -> Result<(), Error> {
+        let Self { program, arguments } = self;
+        let Some(path) = installed(&program) else {
+            let known = INSTALLED.iter().find(|(name, _)| *name == program);
+            let install = known.map_or("install it", |(_, command)| command);
+            return Err(Error::mistake(format!(
+                "this needs the program cellcaster-{program}, which is neither beside this one nor on the \
+                 PATH; \"{install}\" installs it"
+            )));
+        };
+        let mut command = Command::new(&path);
+        command.args(arguments);
+        let cannot_start =
+            |error| Error::machine(format!("{} can't be started: {error}", path.display()));
+        #[cfg(unix)]
+        {
+            use std::os::unix::process::CommandExt;
+            Err(cannot_start(command.exec()))
+        }
+        #[cfg(not(unix))]
+        match command.status().map_err(cannot_start)? {
+            status if status.success() => Ok(()),
+            status => Err(Error::exited(status.code().unwrap_or(1))),
+        }
+    }
+}
+
+/// The value of the last `--caster` in `arguments`.
+fn caster(arguments: &[OsString]) -> Option<&OsStr> {
+    let mut value = None;
+    for (index, word) in arguments.iter().enumerate() {
+        if word == "--" {
+            break;
+        }
+        let Some(word) = word.to_str() else { continue };
+        if word == "--caster" {
+            value = arguments.get(index + 1).map(OsString::as_os_str);
+        } else if let Some(method) = word.strip_prefix("--caster=") {
+            value = Some(OsStr::new(method));
+        }
+    }
+    value
+}
+
+/// The path of `cellcaster-NAME`: beside this program, or on the `PATH`.
+fn installed(name: &str) -> Option<PathBuf> {
+    let is_name = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
+    if name.is_empty() || name.starts_with('-') || !name.bytes().all(is_name) {
+        return None;
+    }
+    let file = format!("cellcaster-{name}{}", env::consts::EXE_SUFFIX);
+    let own = env::current_exe().ok();
+    let beside = own.as_deref().and_then(Path::parent).map(Path::to_owned);
+    let path = env::var_os("PATH").unwrap_or_default();
+    beside
+        .into_iter()
+        .chain(env::split_paths(&path))
+        .map(|folder| folder.join(&file))
+        .find(|it| it.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn external(line: &str) -> String {
+        let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+        External::of(&words).map_or("here".to_owned(), |External { program, arguments }| {
+            let arguments: Vec<_> = arguments.iter().map(|word| word.to_str().unwrap()).collect();
+            format!("{program}: {}", arguments.join(" "))
+        })
+    }
+
+    #[test]
+    fn commands_that_moved_and_other_casters_go_to_other_programs() {
+        for (line, expected) in [
+            ("c", "here"),
+            ("c cellar", "here"),
+            ("c maps/cellar.toml", "here"),
+            ("c serve --listen [::]:2222", "server: --listen [::]:2222"),
+            ("c admin who", "server: admin who"),
+            ("c server admin who", "server: admin who"),
+            ("c wire --size 80x24", "lab: wire --size 80x24"),
+            ("c lab accuracy", "lab: accuracy"),
+            ("c snapshot --caster exact", "here"),
+            ("c snapshot --caster dda cellar", "lab: snapshot --caster dda cellar"),
+            ("c --caster=march:0.1 cast", "lab: --caster=march:0.1 cast"),
+            ("c snapshot -- --caster dda", "here"),
+        ] {
+            assert_eq!(external(line), expected, "{line}");
+        }
+    }
+}

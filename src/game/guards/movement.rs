@@ -1,0 +1,296 @@
+//! The body of a guard: turning, walking, climbing and falling.
+//!
+//! A guard collides with the world as the player does, and also with everything they avoid: edges of high
+//! drops, water, spikes. In the middle of level floor, where nothing can be in
+//! the way, a step is an addition; elsewhere it is a [`slide`].
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::ways::{DROP, Footing, Gait, Terrain};
+use crate::game::STEP;
+use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, is_clear, slide};
+use crate::game::fall::Flight;
+use crate::game::player::STEP_HEIGHT;
+use crate::world::{Cell, Heading, Outline, World};
+
+/// The radius of all guards, in cells.
+pub(crate) const RADIUS: Radius =
+    Radius::new(0.25).expect("a quarter is between nothing and a half");
+
+/// The change of velocity in one step, in cells per second.
+const ACCELERATION: f64 = 0.6;
+
+/// Where a guard is and how they move.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Mover {
+    pub(crate) body: Body,
+    /// The height of the feet, in cells.
+    pub(crate) feet: f64,
+    /// Cells per second, upwards.
+    rising: f64,
+    pub(crate) heading: Heading,
+    /// The unit vector of the heading.
+    #[serde(skip)]
+    pub(crate) facing: DVec2,
+}
+
+impl Mover {
+    pub(crate) fn new(world: &World, cell: Cell, heading: Heading) -> Self {
+        Self {
+            body: Body { position: cell.center(), velocity: DVec2::ZERO },
+            feet: world.floor_at(cell),
+            rising: 0.0,
+            heading,
+            facing: heading.direction(),
+        }
+    }
+
+    /// The same, facing the heading.
+    pub(crate) fn facing_ahead(self) -> Self {
+        Self { facing: self.heading.direction(), ..self }
+    }
+
+    pub(crate) fn position(&self) -> DVec2 {
+        self.body.position
+    }
+
+    /// The cell of the middle.
+    pub(crate) fn cell(&self) -> Cell {
+        Cell::at(self.body.position)
+    }
+
+    /// Whether the guard neither falls nor flies.
+    pub(crate) fn is_on_floor(&self) -> bool {
+        self.rising == 0.0
+    }
+
+    /// Whether no floor moves a guard who neither walks nor is pushed.
+    pub(crate) fn is_at_rest(&self, world: &World) -> bool {
+        world.moving_tiles().is_empty()
+            || self.rising == 0.0 && self.feet == world.floor_at(self.cell())
+    }
+
+    /// Turns towards `direction`, of any length but zero, by at most `degrees`.
+    pub(crate) fn turn(&mut self, direction: DVec2, degrees: f64) {
+        let across = self.facing.perp_dot(direction);
+        let along = self.facing.dot(direction);
+        if across == 0.0 && along >= 0.0 {
+            return;
+        }
+        let angle = libm::atan2(across, along);
+        let most = degrees.to_radians();
+        self.heading = self.heading.turned(angle.clamp(-most, most));
+        self.facing = self.heading.direction();
+    }
+
+    /// Changes the velocity towards `wanted`, and moves for that many steps.
+    pub(crate) fn walk(&mut self, ground: &Ground, wanted: DVec2, steps: u16) {
+        let change = wanted - self.body.velocity;
+        let most = ACCELERATION * f64::from(steps);
+        let length = change.length();
+        self.body.velocity =
+            if length <= most { wanted } else { self.body.velocity + change * (most / length) };
+        let displacement = self.body.velocity * (STEP * f64::from(steps));
+        if displacement == DVec2::ZERO && self.rising == 0.0 && ground.is_at_rest(self) {
+            return;
+        }
+        if self.rising == 0.0 && ground.is_free(self, displacement) {
+            self.body.position += displacement;
+        } else {
+            self.slide(ground, displacement);
+        }
+    }
+
+    /// The guard after a floor under them has moved: on the floor if it `carries` and they stood on it, unchanged
+    /// if they have room, and else lifted. `None` if they have no room then, either.
+    pub(crate) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
+        let ridden = if carries { self.ridden(ground) } else { None };
+        let has_room = |mover: &Self| ground.has_room_for(mover);
+        ridden.filter(has_room).or_else(|| Some(*self).filter(has_room)).or_else(|| {
+            let place = Place { step: STEP_HEIGHT, ..ground.place(self) };
+            let feet = place.lifted(self.body.position, RADIUS)?;
+            Some(Self { feet, rising: 0.0, ..*self })
+        })
+    }
+
+    /// On the floor, if that has moved by at most a step.
+    fn ridden(&self, ground: &Ground) -> Option<Self> {
+        let feet = ground.highest_floor(self.body.position)?;
+        let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
+        (self.is_on_floor() && is_a_step).then_some(Self { feet, ..*self })
+    }
+
+    fn slide(&mut self, ground: &Ground, displacement: DVec2) {
+        let is_standing = self.rising == 0.0 && self.feet == ground.floor(self);
+        let step = if is_standing { STEP_HEIGHT } else { 0.0 };
+        let place = Place { step, ..ground.place(self) };
+        let mut careful = Careful { place, ground, avoids: true };
+        careful.avoids = is_standing && careful.is_clear(self.body.position);
+        self.body = slide(&mut careful, self.body, displacement, RADIUS);
+        let place = careful.place;
+        let room = place.room(self.body.position, RADIUS);
+        let feet = place.stature.feet;
+        if is_standing && feet - room.floor <= STEP_HEIGHT {
+            (self.feet, self.rising) = (room.floor, 0.0);
+        } else {
+            let Flight { height, speed } =
+                Flight { height: feet, speed: self.rising }.after(STEP, room);
+            (self.feet, self.rising) = (height, speed);
+        }
+    }
+}
+
+/// The world as a guard walks in it.
+pub(crate) struct Ground<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) terrain: &'a Terrain,
+    pub(crate) gait: Gait,
+}
+
+impl Ground<'_> {
+    fn place(&self, mover: &Mover) -> Place<'_> {
+        let stature = Stature { feet: mover.feet, height: self.gait.height };
+        Place {
+            world: self.world,
+            stature,
+            step: 0.0,
+            has_shapes: self.world.has_shapes(),
+            others: &[],
+        }
+    }
+
+    /// The height of the floor under a guard.
+    fn floor(&self, mover: &Mover) -> f64 {
+        self.place(mover).room(mover.body.position, RADIUS).floor
+    }
+
+    /// The highest floor under a guard at `position`.
+    fn highest_floor(&self, position: DVec2) -> Option<f64> {
+        let (low, high) = (position - RADIUS.cells(), position + RADIUS.cells());
+        let cells = (low.y as u32..=high.y as u32)
+            .flat_map(|row| (low.x as u32..=high.x as u32).map(move |column| Cell { column, row }));
+        let footings = cells.filter_map(|cell| self.terrain.footing(self.world, cell));
+        footings.map(|footing| footing.floor).reduce(f64::max)
+    }
+
+    /// Whether the body of a guard overlaps nothing.
+    pub(crate) fn has_room_for(&self, mover: &Mover) -> bool {
+        self.place(mover).is_clear(mover.body.position, RADIUS)
+    }
+
+    /// Whether a guard who does not walk stays where they are: the floor under them has not moved.
+    fn is_at_rest(&self, mover: &Mover) -> bool {
+        self.is_free(mover, DVec2::ZERO) || mover.feet == self.floor(mover)
+    }
+
+    /// Whether a guard stands on level floor and will still do so after `displacement`, with
+    /// nothing in the way.
+    fn is_free(&self, mover: &Mover, displacement: DVec2) -> bool {
+        let radius = RADIUS.cells();
+        let (from, to) = (mover.body.position, mover.body.position + displacement);
+        let low = from.min(to) - radius;
+        let high = from.max(to) + radius;
+        if low.min_element() < 0.0 {
+            return false;
+        }
+        let is_level = |cell| {
+            let footing = self.terrain.way_through(self.world, self.gait, cell);
+            footing.is_some_and(|it| it.floor == mover.feet && it.is_level_with(it))
+        };
+        (low.y as u32..=high.y as u32)
+            .all(|row| (low.x as u32..=high.x as u32).all(|column| is_level(Cell { column, row })))
+    }
+
+    /// Whether a guard who walks straight from `from` to `to` meets nothing, at heights that they
+    /// climb.
+    pub(crate) fn is_straight(&self, from: DVec2, to: DVec2) -> bool {
+        /// The distance of the positions that are tested, in cells, and the room around them.
+        const STRIDE: f64 = 0.25;
+        const ROOM: f64 = 0.3;
+        let way = to - from;
+        let count = (way.length() / STRIDE).ceil().max(1.0);
+        let mut last = Cell::at(from);
+        (0..=count as u32).all(|index| {
+            let at = from + way * (f64::from(index) / count);
+            let middle = Cell::at(at);
+            let is_step = middle == last
+                || self.terrain.leads(self.world, self.gait, last, middle)
+                    && (middle.column == last.column || middle.row == last.row);
+            let is_step = is_step || self.is_level_square(last, middle);
+            last = middle;
+            is_step && self.has_room(at, middle, ROOM)
+        })
+    }
+
+    /// Whether all floors under a circle are at most one step from the floor of its middle.
+    fn has_room(&self, at: DVec2, middle: Cell, radius: f64) -> bool {
+        let Some(floor) = self.terrain.footing(self.world, middle) else { return false };
+        let (low, high) = (at - radius, at + radius);
+        (low.y as u32..=high.y as u32).all(|row| {
+            (low.x as u32..=high.x as u32).all(|column| {
+                let cell = Cell { column, row };
+                let footing = || self.terrain.way_through(self.world, self.gait, cell);
+                let is_near = |it: Footing| (it.floor - floor.floor).abs() <= STEP_HEIGHT;
+                cell == middle || footing().is_some_and(is_near)
+            })
+        })
+    }
+
+    /// Whether two diagonal neighbours and the cells beside both are at one height.
+    fn is_level_square(&self, one: Cell, other: Cell) -> bool {
+        let corners = [
+            other,
+            Cell { column: one.column, row: other.row },
+            Cell { column: other.column, row: one.row },
+        ];
+        let Some(here) = self.terrain.footing(self.world, one) else { return false };
+        corners.into_iter().all(|cell| {
+            let there = self.terrain.footing(self.world, cell);
+            there.is_some_and(|there| here.is_level_with(there))
+        })
+    }
+}
+
+/// The obstacles of a guard: the place, and for a careful guard also everything they avoid.
+struct Careful<'a> {
+    place: Place<'a>,
+    ground: &'a Ground<'a>,
+    avoids: bool,
+}
+
+impl Careful<'_> {
+    fn is_clear(&self, center: DVec2) -> bool {
+        is_clear(self, center, RADIUS)
+    }
+
+    fn is_avoided(&self, cell: Cell) -> bool {
+        let Ground { world, terrain, .. } = *self.ground;
+        let floor = terrain.footing(world, cell).map(|footing| footing.floor);
+        floor.is_some_and(|floor| floor < self.place.stature.feet - DROP)
+            || terrain.is_hazard(world, cell)
+    }
+}
+
+impl Obstacles for Careful<'_> {
+    fn blocks(&self, column: i64, row: i64) -> bool {
+        let cell = (u32::try_from(column), u32::try_from(row));
+        let (Ok(column_on_map), Ok(row_on_map)) = cell else { return true };
+        let cell = Cell { column: column_on_map, row: row_on_map };
+        self.place.blocks(column, row) || self.avoids && self.is_avoided(cell)
+    }
+
+    fn outline(&self, cell: Cell) -> Option<Outline> {
+        self.place.outline(cell)
+    }
+
+    fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
+        let before = self.place.stature;
+        let gives_way = self.place.gives_way(column, row, center, radius);
+        if gives_way && self.avoids && !self.is_clear(center) {
+            self.place.stature = before;
+            return false;
+        }
+        gives_way
+    }
+}

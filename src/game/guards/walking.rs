@@ -1,0 +1,185 @@
+//! Walking to a cell: straight where nothing is in the way, else along the shortest way.
+//!
+//! Guards look a few cells ahead on their way and walk straight to the farthest one that they can,
+//! so that they cut corners as people do. A guard who does not move for some time walks from cell
+//! to cell, exactly through the middles, which always is possible.
+
+use glam::DVec2;
+
+use super::context::{Act, Context};
+use super::guard::{Guard, Route, STUCK};
+use super::ways::Way;
+use crate::world::{Cell, TileKind};
+
+/// Nearer than this to the middle of a cell, a guard is there, in cells.
+const ARRIVED: f64 = 0.3;
+/// Nearer than this to a point on the way, a guard goes on to the next, in cells.
+const PASSED: f64 = 0.35;
+/// The farthest goal that is tried on a straight line, in cells.
+const STRAIGHT: f64 = 8.0;
+/// The number of cells on a way that are tried on a straight line.
+const AHEAD: usize = 4;
+/// A point is found again after so many steps at the latest.
+const FRESH: u16 = 24;
+/// A guard who is stuck walks with care for so many steps.
+const CARE: u16 = 120;
+/// Guards wait for others who are nearer than this before them, in cells.
+const APART: f64 = 0.6;
+
+/// How a walk goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Progress {
+    There,
+    OnTheWay,
+    Impossible,
+}
+
+impl Guard {
+    /// Wants to walk to the middle of `cell`.
+    pub(crate) fn go_to(&mut self, context: &mut Context, cell: Cell, speed: f64) -> Progress {
+        self.go(context, cell, cell.center(), speed)
+    }
+
+    /// Wants to walk to `place`, which is in the cell `goal`.
+    pub(crate) fn go(
+        &mut self,
+        context: &mut Context,
+        goal: Cell,
+        place: DVec2,
+        speed: f64,
+    ) -> Progress {
+        let position = self.mover.position();
+        if position.distance_squared(place) < ARRIVED * ARRIVED {
+            self.route = Route::default();
+            return Progress::There;
+        }
+        let cell = self.mover.cell();
+        let is_passed =
+            |point: DVec2| point != place && point.distance_squared(position) < PASSED * PASSED;
+        if self.route.point.is_some_and(is_passed) {
+            self.route.fresh = 0;
+        }
+        let is_stale = self.route.fresh == 0 || self.route.from != Some(cell);
+        let is_unknown = is_stale || self.route.goal != Some(goal);
+        if is_unknown && !self.find_point(context, cell, goal, place) {
+            return Progress::Impossible;
+        }
+        self.route.fresh = self.route.fresh.saturating_sub(context.stride);
+        if let Some(point) = self.route.point {
+            self.walk_to(context, point, speed);
+        }
+        Progress::OnTheWay
+    }
+
+    /// Finds the point to walk to. Returns whether there may be a way.
+    fn find_point(&mut self, context: &mut Context, cell: Cell, goal: Cell, place: DVec2) -> bool {
+        let gait = self.gait();
+        let position = self.mover.position();
+        let ground = context.ground(gait);
+        let is_careful = self.route.care > 0;
+        let is_near = position.distance_squared(place) < STRAIGHT * STRAIGHT;
+        self.route.from = Some(cell);
+        if is_near && !is_careful && ground.is_straight(position, place) {
+            (self.route.goal, self.route.point, self.route.fresh) =
+                (Some(goal), Some(place), FRESH);
+            return true;
+        }
+        match context.ways.towards(context.world, context.terrain, gait, cell, goal) {
+            Way::Here => self.route.point = Some(place),
+            Way::Next(next) => {
+                self.route.point = Some(self.farthest_straight(context, cell, next, goal));
+            }
+            // The search goes on; until it ends, the old point is as good as any.
+            Way::Unknown => {
+                self.route.fresh = 0;
+                return true;
+            }
+            Way::Impossible => {
+                self.route = Route { fresh: 0, ..Route::default() };
+                return false;
+            }
+        }
+        (self.route.goal, self.route.fresh) = (Some(goal), FRESH);
+        true
+    }
+
+    /// The farthest of the next cells to which the guard may walk straight.
+    fn farthest_straight(&self, context: &Context, from: Cell, first: Cell, goal: Cell) -> DVec2 {
+        let gait = self.gait();
+        let position = self.mover.position();
+        let ground = context.ground(gait);
+        if self.route.care > 0 {
+            return self.middle_first(from, first);
+        }
+        let mut point = None;
+        let mut next = Some(first);
+        for _ in 0..AHEAD {
+            let Some(cell) = next.filter(|cell| ground.is_straight(position, cell.center())) else {
+                break;
+            };
+            point = Some(cell.center());
+            next = context.ways.after(context.world, context.terrain, gait, cell, goal);
+        }
+        point.unwrap_or_else(|| self.middle_first(from, first))
+    }
+
+    /// The centre of the next cell, or of the guard's own cell first if the guard has strayed from the line.
+    fn middle_first(&self, from: Cell, next: Cell) -> DVec2 {
+        let (middle, position) = (from.center(), self.mover.position());
+        let way = next.center() - middle;
+        let off = (position - middle).perp_dot(way).abs() / way.length();
+        let is_behind = (position - middle).dot(way) < 0.0;
+        if off > 0.08 && !is_behind || off > 0.2 { middle } else { next.center() }
+    }
+
+    /// Walks to `point`, and waits for doors and others who are in the way.
+    pub(crate) fn walk_to(&mut self, context: &mut Context, point: DVec2, speed: f64) {
+        let way = point - self.mover.position();
+        let Some(direction) = way.try_normalize() else { return };
+        let closed = self.closed_door_ahead(context, direction);
+        if let Some(door) = closed {
+            self.look = Some(door.center() - self.mover.position());
+            if self.gait().opens_doors {
+                context.acts.push(Act::Open(door));
+            }
+            self.route.fresh = 0;
+            return;
+        }
+        let is_moving = self.mover.body.velocity.length_squared() > 0.01;
+        let still = if is_moving { 0 } else { self.route.still + context.stride };
+        self.route.still = still;
+        self.route.care = self.route.care.saturating_sub(context.stride);
+        if still > STUCK {
+            (self.route.still, self.route.care, self.route.fresh) = (0, CARE, 0);
+        }
+        if self.route.care == 0 && self.is_in_the_way(context, direction) {
+            return;
+        }
+        // They slow down where they would go too far in this step.
+        let most = way.length() * 60.0 / f64::from(context.stride.max(1));
+        self.wanted = direction * speed.min(most.max(0.3));
+    }
+
+    /// The closed door that the guard is about to walk into.
+    fn closed_door_ahead(&self, context: &Context, direction: DVec2) -> Option<Cell> {
+        let ahead = self.mover.position() + direction * 0.7;
+        let cell = Cell::at(ahead);
+        let kind = context.world.tile_in(cell)?.kind;
+        matches!(kind, TileKind::Door(_)).then_some(cell)
+    }
+
+    /// Whether another guard is close before this one. Of two who meet, the one with the lower
+    /// index goes on.
+    fn is_in_the_way(&self, context: &Context, direction: DVec2) -> bool {
+        let position = self.mover.position();
+        context.others.iter().enumerate().any(|(index, other)| {
+            let way = other.position - position;
+            way.length_squared() < APART * APART
+                && index != context.index
+                && !other.is_down
+                && (other.feet - self.mover.feet).abs() < 1.0
+                && way.dot(direction) > 0.3 * way.length()
+                && index < context.index
+        })
+    }
+}

@@ -1,0 +1,193 @@
+//! The keys of a map with a grid: of the map itself, and of the tables that define characters.
+
+use crate::fault::Fault;
+use crate::fault::document::Entry;
+
+/// The keys of a map.
+pub(crate) const MAP: &[&str] = &[
+    "title",
+    "goal",
+    "par",
+    "treasure_needed",
+    "ceiling",
+    "ceiling_height",
+    "floor",
+    "riser",
+    "lintel",
+    "light",
+    "sky",
+    "fog",
+    "grid",
+    "tiles",
+    "things",
+];
+
+/// The keys of a tile. Each goes with one of the keys in its list, or makes a tile alone where the list
+/// is empty.
+const TILES: &[(&str, &[&str])] = &[
+    ("wall", &[]),
+    ("door", &[]),
+    ("mask", &[]),
+    ("glass", &[]),
+    ("mirror", &[]),
+    ("pillar", &[]),
+    ("diagonal", &[]),
+    ("thin", &[]),
+    ("floor", &[]),
+    ("ceiling", &[]),
+    ("light", &[]),
+    ("floor_height", &[]),
+    ("ceiling_height", &[]),
+    ("roof_height", &[]),
+    ("riser", &[]),
+    ("lintel", &[]),
+    ("secret", &[]),
+    ("water", &[]),
+    ("plate", &[]),
+    ("moves_to", &[]),
+    ("crumbles", &[]),
+    ("key", &["door"]),
+    ("opacity", &["glass", "mirror"]),
+    ("height", &["wall", "mirror", "pillar", "diagonal", "thin", "secret"]),
+    ("radius", &["pillar"]),
+    ("from", &["diagonal"]),
+    ("at", &["thin"]),
+    ("switch", &["door", "wall", "moves_to"]),
+];
+
+/// The keys of a thing, as in [`TILES`].
+const THINGS: &[(&str, &[&str])] = &[
+    ("start", &[]),
+    ("exit", &[]),
+    ("key", &[]),
+    ("sprite", &[]),
+    ("guard", &[]),
+    ("waypoint", &[]),
+    ("treasure", &[]),
+    ("healing", &[]),
+    ("pebbles", &[]),
+    ("darts", &[]),
+    ("flasks", &[]),
+    ("note", &[]),
+    ("checkpoint", &[]),
+    ("lever", &[]),
+    ("spikes", &[]),
+    ("anchor", &["sprite"]),
+    ("blocks", &["sprite"]),
+    ("douse", &["sprite"]),
+    ("facings", &["sprite"]),
+    ("frame_time", &["sprite"]),
+    ("frames", &["sprite"]),
+    ("heading", &["sprite", "guard"]),
+    ("height", &["sprite"]),
+    ("light", &["sprite"]),
+    ("reach", &["sprite"]),
+    (
+        "on",
+        &[
+            "start",
+            "exit",
+            "key",
+            "sprite",
+            "guard",
+            "waypoint",
+            "treasure",
+            "healing",
+            "pebbles",
+            "darts",
+            "flasks",
+            "note",
+            "checkpoint",
+            "lever",
+            "spikes",
+        ],
+    ),
+    ("delay", &["spikes"]),
+    ("patrol", &["guard"]),
+    ("wander", &["guard"]),
+    ("asleep", &["guard"]),
+    ("difficulty", &["guard"]),
+];
+/// Common features of other raycasters that do not exist here.
+const NOT_YET: &[(&str, &str)] = &[("pushwall", "moving walls"), ("window", "windows")];
+
+/// One of the two tables that define characters.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Section {
+    Tiles,
+    Things,
+}
+
+impl Section {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Tiles => "[tiles]",
+            Self::Things => "[things]",
+        }
+    }
+
+    pub(crate) fn noun(self) -> &'static str {
+        match self {
+            Self::Tiles => "a tile",
+            Self::Things => "a thing",
+        }
+    }
+
+    pub(crate) fn example(self) -> &'static str {
+        match self {
+            Self::Tiles => r##""#" = { wall = "brick" }"##,
+            Self::Things => r#""@" = { start = 0 }"#,
+        }
+    }
+
+    fn keys(self) -> &'static [(&'static str, &'static [&'static str])] {
+        match self {
+            Self::Tiles => TILES,
+            Self::Things => THINGS,
+        }
+    }
+
+    /// The keys that make a tile or a thing alone.
+    fn makers(self) -> Vec<&'static str> {
+        let alone = self.keys().iter().filter(|(_, owners)| owners.is_empty());
+        alone.map(|&(key, _)| key).collect()
+    }
+
+    /// The keys one of which `key` must go with; none for another key.
+    pub(crate) fn owners(self, key: &str) -> &'static [&'static str] {
+        self.keys().iter().find(|(known, _)| *known == key).map_or(&[], |&(_, owners)| owners)
+    }
+
+    /// The fault of a key that a tile or a thing does not have.
+    pub(crate) fn unknown_property(self, entry: &Entry<'_, '_>) -> Fault {
+        let key = entry.key;
+        let fault = |message: String| Fault::new(entry.key_place.clone(), message);
+        if let Some((_, plural)) = NOT_YET.iter().find(|(name, _)| *name == key) {
+            let known = self.makers().join(", ");
+            return fault(format!("{plural} are not supported yet"))
+                .help(format!("known keys: {known}"));
+        }
+        let owners = self.owners(key);
+        if let Some((last, others)) = owners.split_last() {
+            let to = match others {
+                [] => format!("{last:?}"),
+                _ => format!("\"{}\" or {last:?}", others.join("\", \"")),
+            };
+            let help = match owners.len() {
+                1 | 2 => format!("name a {} in the same braces", owners.join(" or a ")),
+                _ => "name one of them in the same braces".to_owned(),
+            };
+            return fault(format!("\"{key}\" goes with {to}, and there is none")).help(help);
+        }
+        let other = match self {
+            Self::Tiles => Self::Things,
+            Self::Things => Self::Tiles,
+        };
+        if other.makers().contains(&key) {
+            return fault(format!("\"{key}\" makes {}, not {}", other.noun(), self.noun()))
+                .help(format!("move it to {}", other.name()));
+        }
+        let known: Vec<&str> = self.keys().iter().map(|&(key, _)| key).collect();
+        entry.unknown_key(self.noun(), &known)
+    }
+}

@@ -1,0 +1,296 @@
+//! Blocks: cells of two colours, and the characters that show them.
+//!
+//! A mosaic and its inverse with swapped colours look the same. Of the two, a shape is the one without the last dot,
+//! so that cells that look the same are equal. The first colour of a cell is the colour of the shape's dots, the
+//! second the colour of the rest. A half block is the shape of the upper half.
+//!
+//! Two cells of different shapes are compared by the parts of a cell that their colours have in common. An edge
+//! that moves by a dot within one wall then leaves the cells whose colours are near.
+
+use super::style::{Shade, Style};
+use crate::tui::canvas::Mosaic;
+
+/// A mosaic without the last dot. There are fewer than [`Shape::COUNT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shape(u8);
+
+/// The number of shapes of octants; those of sextants follow.
+const OCTANTS: u8 = 128;
+
+/// The parts that the dots and the rest of a cell have in common with the dots and the rest of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Overlap {
+    /// Of dots and dots, and of rest and rest.
+    straight: [u8; 2],
+    /// Of the first cell's dots and the other's rest, and the reverse.
+    crossed: [u8; 2],
+}
+
+impl Overlap {
+    /// For each pair of colours, the index of the first cell's and of the other's, and the number of parts.
+    #[inline]
+    pub(crate) fn pairs(self) -> [([usize; 2], u8); 4] {
+        let Self { straight, crossed } = self;
+        [([0, 0], straight[0]), ([0, 1], crossed[0]), ([1, 0], crossed[1]), ([1, 1], straight[1])]
+    }
+}
+
+impl Shape {
+    /// The upper half, in cells of two pixels.
+    pub(crate) const HALF: Self = Self(0);
+    /// No dot: a cell has another shape.
+    pub(crate) const NONE: Self = Self(Self::HALF_MASK);
+    pub(crate) const COUNT: u8 = OCTANTS + 32;
+    /// The numbers of octant shapes are counted from that of the upper half.
+    const HALF_MASK: u8 = 0x0F;
+
+    /// The shape of a mosaic, and whether its colours change places.
+    #[inline]
+    pub(crate) const fn of(mosaic: Mosaic) -> (Self, bool) {
+        match mosaic.mask() {
+            Ok(mask) => {
+                let is_inverse = mask & 0x80 != 0;
+                let mask = if is_inverse { !mask } else { mask };
+                (Self(mask ^ Self::HALF_MASK), is_inverse)
+            }
+            Err(mask) => {
+                let is_inverse = mask & 0x20 != 0;
+                let mask = if is_inverse { mask ^ 0x3F } else { mask };
+                (Self(OCTANTS + mask), is_inverse)
+            }
+        }
+    }
+
+    pub(crate) const fn mosaic(self) -> Mosaic {
+        match self.0.checked_sub(OCTANTS) {
+            None => Mosaic::octants(self.0 ^ Self::HALF_MASK),
+            Some(mask) => Mosaic::sextants(mask),
+        }
+    }
+
+    /// The number of the shape, less than [`Shape::COUNT`].
+    #[inline]
+    pub(crate) const fn get(self) -> u8 {
+        self.0
+    }
+
+    /// The shape with this number, which must be from [`Shape::get`].
+    #[inline]
+    pub(crate) const fn new(number: u8) -> Self {
+        Self(number)
+    }
+
+    /// The character that shows the shape as `element` does a half block, in UTF-8, and the number of its bytes.
+    #[inline]
+    pub(crate) fn encoded(self, element: BlockElement) -> ([u8; 4], usize) {
+        let inverse = match element {
+            BlockElement::Upper => 0,
+            BlockElement::Lower => 1,
+            BlockElement::Full | BlockElement::Space => return element.encoded(),
+        };
+        let encoded = ENCODED[usize::from(self.0)][inverse];
+        (encoded, if encoded[3] == 0 { 3 } else { 4 })
+    }
+
+    /// The bytes of its character.
+    #[inline]
+    pub(crate) fn bytes(self) -> f32 {
+        if ENCODED[usize::from(self.0)][0][3] == 0 { 3.0 } else { 4.0 }
+    }
+
+    /// The parts of a cell, in twenty-fourths, with the colour of the dots and with the other.
+    #[inline]
+    pub(crate) fn parts(self) -> [u8; 2] {
+        let dots = PARTS[usize::from(self.0)].count_ones() as u8;
+        [dots, Self::PARTS - dots]
+    }
+
+    /// The number of parts of a cell.
+    pub(crate) const PARTS: u8 = 24;
+
+    /// The parts of a cell of this shape that another shape colours alike, and otherwise.
+    #[inline]
+    pub(crate) fn overlap(self, other: Self) -> Overlap {
+        let [one, other] = [self, other].map(|shape| PARTS[usize::from(shape.0)]);
+        let count = |parts: u32| parts.count_ones() as u8;
+        let both = count(one & other);
+        let (only_one, only_other) = (count(one) - both, count(other) - both);
+        Overlap {
+            straight: [both, Self::PARTS - both - only_one - only_other],
+            crossed: [only_one, only_other],
+        }
+    }
+}
+
+/// The characters of each shape and of its inverse in UTF-8. The last byte is zero if there are three.
+static ENCODED: [[[u8; 4]; 2]; Shape::COUNT as usize] = {
+    let mut table = [[[0; 4]; 2]; Shape::COUNT as usize];
+    let mut number = 0;
+    while number < Shape::COUNT {
+        let mosaic = Shape::new(number).mosaic();
+        table[number as usize] = [encoded(mosaic), encoded(mosaic.inverse())];
+        number += 1;
+    }
+    table
+};
+
+const fn encoded(mosaic: Mosaic) -> [u8; 4] {
+    let mut bytes = [0; 4];
+    mosaic.character().encode_utf8(&mut bytes);
+    bytes
+}
+
+/// The twenty-fourths of a cell, two by twelve, in which each shape has dots.
+static PARTS: [u32; Shape::COUNT as usize] = {
+    let mut table = [0; Shape::COUNT as usize];
+    let mut number = 0;
+    while number < Shape::COUNT {
+        let mut part = 0;
+        while part < Shape::PARTS as u32 {
+            let is_dot = Shape::new(number).mosaic().has(part % 2, part / 2);
+            table[number as usize] |= (is_dot as u32) << part;
+            part += 1;
+        }
+        number += 1;
+    }
+    table
+};
+
+/// A character that shows at most two colours, each in a whole half of its cell.
+///
+/// A cell of two pixels can be written as an upper half block, or as a lower one with the colours swapped; a cell of
+/// two equal pixels as a space or a full block. They look the same, so the pen uses the one with the fewest bytes
+/// after the terminal's present style. A space has no foreground, so that it keeps that of the cell before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BlockElement {
+    /// The upper half in the text colour, the lower half in the background colour.
+    Upper,
+    /// The upper half in the background colour, the lower half in the text colour.
+    Lower,
+    /// Both halves in the text colour.
+    Full,
+    /// Both halves in the background colour.
+    Space,
+}
+
+impl BlockElement {
+    /// The character in UTF-8, and the number of its bytes.
+    #[inline]
+    pub(crate) const fn encoded(self) -> ([u8; 4], usize) {
+        match self {
+            Self::Upper => ([0xE2, 0x96, 0x80, 0], 3),
+            Self::Lower => ([0xE2, 0x96, 0x84, 0], 3),
+            Self::Full => ([0xE2, 0x96, 0x88, 0], 3),
+            Self::Space => ([b' ', 0, 0, 0], 1),
+        }
+    }
+
+    pub(crate) const fn character(self) -> char {
+        match self {
+            Self::Upper => '▀',
+            Self::Lower => '▄',
+            Self::Full => '█',
+            Self::Space => ' ',
+        }
+    }
+
+    /// Finds the element by its bytes in UTF-8, since this runs for every changed cell.
+    #[inline]
+    pub(crate) fn of(symbol: &str) -> Option<Self> {
+        match *symbol.as_bytes() {
+            [b' '] => Some(Self::Space),
+            [0xE2, 0x96, 0x80] => Some(Self::Upper),
+            [0xE2, 0x96, 0x84] => Some(Self::Lower),
+            [0xE2, 0x96, 0x88] => Some(Self::Full),
+            _ => None,
+        }
+    }
+
+    /// Whether it shows one colour.
+    #[inline]
+    pub(crate) fn is_flat(self) -> bool {
+        matches!(self, Self::Full | Self::Space)
+    }
+
+    /// The colours of the upper and the lower half.
+    #[inline]
+    pub(crate) fn halves<T: Copy>(self, text: T, ground: T) -> [T; 2] {
+        match self {
+            Self::Upper => [text, ground],
+            Self::Lower => [ground, text],
+            Self::Full => [text; 2],
+            Self::Space => [ground; 2],
+        }
+    }
+
+    /// The block element and style with the fewest bytes after `current` that show these two halves.
+    pub(crate) fn cheapest(halves: [Shade; 2], current: Option<Style>) -> (Self, Style) {
+        let [top, bottom] = halves;
+        let plain = |element, [text, ground]: [Shade; 2]| (element, Style::plain(text, ground));
+        let Some(current) = current else { return plain(Self::Upper, halves) };
+        if top == bottom && !current.has_no_modifiers() {
+            let text = current.foreground;
+            let text = if top.bytes() < text.bytes() { top } else { text };
+            return plain(Self::Space, [text, top]);
+        }
+        let (element, colors) = Self::cheapest_after(current.colors(), halves);
+        plain(element, colors)
+    }
+
+    /// The block element and the colours with the fewest bytes after a text colour and a background that show
+    /// these two halves; there must be no modifiers if they are equal.
+    #[inline]
+    pub(crate) fn cheapest_after(
+        [text, ground]: [Shade; 2],
+        [top, bottom]: [Shade; 2],
+    ) -> (Self, [Shade; 2]) {
+        if top == bottom {
+            return if text == top && ground != top {
+                (Self::Full, [text, ground])
+            } else {
+                (Self::Space, [text, top])
+            };
+        }
+        let told =
+            |new_text, new_ground| u8::from(new_text == text) + u8::from(new_ground == ground);
+        if told(bottom, top) > told(top, bottom) {
+            (Self::Lower, [bottom, top])
+        } else {
+            (Self::Upper, [top, bottom])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mosaic_and_its_inverse_have_one_shape() {
+        let all = (0..=u8::MAX).map(Mosaic::octants).chain((0..64).map(Mosaic::sextants));
+        for mosaic in all {
+            let ((shape, is_inverse), (other, is_other_inverse)) =
+                (Shape::of(mosaic), Shape::of(mosaic.inverse()));
+            assert_eq!((shape, is_inverse), (other, !is_other_inverse));
+            assert!(shape.get() < Shape::COUNT);
+            if shape == Shape::NONE {
+                continue;
+            }
+            let element = if is_inverse { BlockElement::Lower } else { BlockElement::Upper };
+            let (encoded, bytes) = shape.encoded(element);
+            assert_eq!(encoded[..bytes], *mosaic.character().to_string().as_bytes());
+        }
+        assert_eq!(Shape::of(Mosaic::UPPER_HALF), (Shape::HALF, false));
+    }
+
+    #[test]
+    fn overlaps_are_those_of_the_dots() {
+        let shape = |mask| Shape::of(Mosaic::octants(mask)).0;
+        let (upper, left) = (shape(0x0F), shape(0x55));
+        assert_eq!(upper.overlap(left), Overlap { straight: [6, 6], crossed: [6, 6] });
+        assert_eq!(upper.overlap(upper), Overlap { straight: [12, 12], crossed: [0, 0] });
+        let third = Shape::of(Mosaic::sextants(0b11)).0;
+        assert_eq!(third.overlap(upper), Overlap { straight: [8, 12], crossed: [0, 4] });
+        assert_eq!(third.parts(), [8, 16]);
+    }
+}

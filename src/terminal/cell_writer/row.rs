@@ -1,0 +1,395 @@
+//! Makes a row look like its targets: exactly, or within a tolerance for fewer bytes.
+//!
+//! Within a tolerance, two cells are compared by the distance of their two colours in L\*a\*b\*, if they are both
+//! blocks or both the same character without modifiers. A shade (░▒▓) is compared as a block of its mean colour. All
+//! other cells are drawn exactly.
+//!
+//! Rejected: another character in place of the wanted one, such as its neighbour on a ramp of brightness. In ascii mode
+//! the character also identifies the surface, and most of the bytes are colours.
+
+use std::cell::Cell;
+
+use ratatui::buffer::CellWidth;
+use ratatui::layout::Position;
+
+use super::block::{BlockElement, Shape};
+use super::ink::{self, Ink, Inks, Price};
+use super::packed_cell::{Form, GlyphId, GlyphTable, PackedCell};
+use super::pen::Pen;
+use super::screen::Row;
+use super::shift::{BYTE, CELL, Loss, Shift, Shifts};
+use super::style::{Notation, Shade, Style};
+use super::trellis::{Action, Store, Terms, Trellis, Wanted};
+use crate::terminal::Fidelity;
+use crate::tui::canvas::SHADES;
+
+/// Makes a row look like its target.
+pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
+    if *row.intricate {
+        draw_intricate_row(pen, &mut row);
+    } else {
+        shift(pen, shifts, &mut row);
+        let cells = row.targets.iter().copied().enumerate().zip(shifts.losses());
+        let wrong = cells.filter(|&(_, &loss)| loss > 0).map(|(cell, _)| cell);
+        pen.draw_pixels(row.y, wrong, |pen, column, target| draw_target(pen, &row, column, target));
+        row.shown.copy_from_slice(row.targets);
+    }
+    *row.exact = true;
+}
+
+/// Draws a row whose characters may cover more than their cells.
+fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
+    let mut covered = 0;
+    for column in 0..row.width() {
+        if covered > 0 {
+            // The second half of a wide character.
+            covered -= 1;
+            row.shown[column] = PackedCell::UNKNOWN;
+            continue;
+        }
+        if !row.shown[column].is(row.targets[column]) {
+            draw_cell(pen, row, column);
+        }
+        if row.targets[column].is_intricate() {
+            covered = row.wanted[column].cell_width().saturating_sub(1);
+        }
+    }
+    *row.intricate = row.shown.iter().chain(row.targets).any(|target| target.is_intricate());
+}
+
+/// Draws one cell of a row.
+#[inline(never)]
+pub(crate) fn draw_cell(pen: &mut Pen, row: &mut Row, column: usize) {
+    let target = row.targets[column];
+    draw_target(pen, row, column, target);
+    row.shown[column] = target;
+}
+
+/// Draws the target of a cell of a row.
+#[inline(never)]
+fn draw_target(pen: &mut Pen, row: &Row, column: usize, target: PackedCell) {
+    let position = Position { x: column as u16, y: row.y };
+    if let Some((shape, colors)) = target.block() {
+        let (element, style) = BlockElement::cheapest(colors, pen.style());
+        pen.draw_block(position, (shape, element), style);
+    } else {
+        draw_text(pen, row, position, target);
+    }
+}
+
+/// Draws a cell that is not a block.
+#[inline(never)]
+fn draw_text(pen: &mut Pen, row: &Row, position: Position, target: PackedCell) {
+    let mut character = [0; 4];
+    let (text, style) = if let Some((text, style)) = target.text(row.glyph_table) {
+        (&*text.encode_utf8(&mut character), style)
+    } else {
+        let cell = &row.wanted[usize::from(position.x)];
+        (cell.symbol(), Style::of(cell))
+    };
+    pen.draw_text(position, text, style);
+}
+
+/// Moves the stretches of a row that have moved sideways.
+fn shift(pen: &mut Pen, shifts: &mut Shifts, row: &mut Row) {
+    let lose = |row: &Row, from: usize, to: usize, losses: &mut Vec<Loss>| {
+        let targets = row.shown[from..].iter().zip(&row.targets[to..]);
+        losses.extend(targets.map(|(shown, target)| if shown == target { 0 } else { CELL }));
+    };
+    shifts.begin(row.targets, row.marks, |from, to, losses| lose(row, from, to, losses));
+    while let Some(shift) = shifts.next(|from, to, losses| lose(row, from, to, losses)) {
+        pen.shift_row(&shift, row.y);
+        shift.apply(row.shown, PackedCell::UNKNOWN);
+    }
+    shifts.end(row.marks);
+}
+
+/// Draws rows inexactly; keeps its memory between rows, one for each thread.
+#[derive(Debug, Default)]
+pub(crate) struct RowEncoder {
+    inks: Inks,
+    /// The colours of the row's targets, and of the cells on the screen.
+    wanted: Colors,
+    shown: Colors,
+    /// The cost of keeping the two colours of each cell.
+    keep: Vec<[f32; 2]>,
+    /// The cost if the cells had moved.
+    moved: Vec<[f32; 2]>,
+    trellis: Trellis,
+}
+
+/// The two colours of each cell in L\*a\*b\*, component by component, so that several distances are
+/// computed at once.
+///
+/// Characters are far from blocks and from other characters. A cell that may only be shown exactly
+/// is far from every colour and from every cell that looks different.
+#[derive(Debug, Default)]
+struct Colors {
+    components: [Vec<[f32; 2]>; 3],
+    /// The shapes of all cells, or nothing if all are halves and characters.
+    shapes: Vec<Shape>,
+}
+
+thread_local! {
+    static ENCODER: Cell<Option<Box<RowEncoder>>> = const { Cell::new(None) };
+}
+
+impl RowEncoder {
+    /// Makes rows look like their targets within `fidelity`.
+    pub(crate) fn draw_rows<'a>(
+        pen: &mut Pen,
+        shifts: &mut Shifts,
+        rows: impl Iterator<Item = Row<'a>>,
+        fidelity: Fidelity,
+    ) {
+        let mut encoder = ENCODER.take().unwrap_or_default();
+        rows.for_each(|row| encoder.draw_row(pen, shifts, row, fidelity));
+        ENCODER.set(Some(encoder));
+    }
+
+    /// Makes a row look like its target within `fidelity`.
+    fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: Row, fidelity: Fidelity) {
+        if *row.intricate {
+            // The extent of an intricate character is unknown.
+            return draw_row(pen, shifts, row);
+        }
+        let notation = notation(row.targets, pen.palette().is_on());
+        let price = Price::at(fidelity, notation);
+        self.wanted.fill(row.targets, row.glyph_table, &mut self.inks);
+        self.shown.fill(row.shown, row.glyph_table, &mut self.inks);
+        self.shift(pen, shifts, &mut row, price);
+        self.shown.costs(&self.wanted, [0, 0], price, &mut self.keep);
+        let terms = Terms { price, style: pen.style(), repeats: pen.repeats() };
+        let mut store = Store { inks: &mut self.inks, palette: pen.palette() };
+        let wanted =
+            |column: usize, inks: &mut Inks| wanted(row.targets[column], row.glyph_table, inks);
+        let actions = self.trellis.search(&self.keep, wanted, terms, &mut store);
+        for &(column, action) in actions {
+            match action {
+                Action::DrawExactly => draw_cell(pen, &mut row, usize::from(column)),
+                Action::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
+            }
+        }
+        *row.exact = row.shown == row.targets;
+    }
+
+    /// Moves the stretches of a row that have moved sideways, at least approximately.
+    fn shift(&mut self, pen: &mut Pen, shifts: &mut Shifts, row: &mut Row, price: Price) {
+        let (wanted, moved) = (&self.wanted, &mut self.moved);
+        let mut lose = |shown: &Colors, places: [usize; 2], losses: &mut Vec<Loss>| {
+            shown.costs(wanted, places, price, moved);
+            losses.extend(moved.iter().map(|[one, other]| loss(one + other)));
+        };
+        let shown = &self.shown;
+        shifts.begin(row.targets, row.marks, |from, to, losses| lose(shown, [from, to], losses));
+        while let Some(shift) =
+            shifts.next(|from, to, losses| lose(&self.shown, [from, to], losses))
+        {
+            pen.shift_row(&shift, row.y);
+            shift.apply(row.shown, PackedCell::UNKNOWN);
+            self.shown.shift(&shift);
+        }
+        shifts.end(row.marks);
+    }
+}
+
+/// The notation of the longest colour in a row of cells, on a terminal with or without a palette that may be defined.
+fn notation(targets: &[PackedCell], has_palette: bool) -> Notation {
+    let all = targets.iter().fold([0; 2], |all, target| {
+        let colors = target.colors().map(Shade::in_bits);
+        [all[0] | colors[0], all[1] | colors[1]]
+    });
+    match Shade::longest_of(all[0] | all[1]) {
+        Notation::Rgb if has_palette => Notation::Entry,
+        notation => notation,
+    }
+}
+
+/// The loss of this number of bytes, at most [`CELL`].
+#[inline]
+fn loss(bytes: f32) -> Loss {
+    /// The sum of this and a small number has the rounded number in its lowest bits.
+    const INTEGER: f32 = 8_388_608.0;
+    let (loss, most) = (bytes * f32::from(BYTE), f32::from(CELL));
+    ((if loss < most { loss } else { most }) + INTEGER).to_bits() as Loss
+}
+
+/// The L*, a* and b* of two colours.
+#[inline]
+fn components([one, other]: [Ink; 2]) -> [[f32; 2]; 3] {
+    [0, 1, 2].map(|index| [one.lab[index], other.lab[index]])
+}
+
+/// The colours of a cell that does not consist of halves.
+#[inline(never)]
+fn of_other(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> [[f32; 2]; 3] {
+    match target.recolorable(glyph_table) {
+        Some((Form::Block(_), colors)) => components(inks.of_both(colors)),
+        Some((Form::Glyph(id), colors)) => {
+            let glyph = glyph_table.glyph(id).character();
+            let inks = inks.of_both(colors);
+            if let Some(share) = share_of_text(glyph)
+                && !colors.contains(&Shade::DEFAULT)
+            {
+                return components([mixed(inks, share); 2]);
+            }
+            let (apart, components) = (apart(id), components(inks));
+            [0, 1, 2].map(|at| components[at].map(|component| component + apart[at]))
+        }
+        // Cells that look different are far from each other.
+        _ => target.hashes().map(|hash| [FAR * (1.0 + f32::from(hash)); 2]),
+    }
+}
+
+/// The share of the text colour in a shade; `None` for any other character.
+fn share_of_text(character: char) -> Option<f32> {
+    let quarters = 1 + SHADES.iter().position(|&shade| shade == character)?;
+    Some(quarters as f32 / 4.0)
+}
+
+/// The colour of a shade, which is compared as a block of one colour.
+fn mixed([text, ground]: [Ink; 2], share: f32) -> Ink {
+    let lab = [0, 1, 2].map(|at| ground.lab[at] + share * (text.lab[at] - ground.lab[at]));
+    Ink { lab, ..text }
+}
+
+/// The target of a cell for the search; `None` if it may only be drawn exactly.
+#[inline]
+fn wanted(target: PackedCell, glyph_table: &GlyphTable, inks: &mut Inks) -> Option<Wanted> {
+    let (form, colors) = target.recolorable(glyph_table)?;
+    let (shape, character) = match form {
+        Form::Block(shape) => (shape, None),
+        Form::Glyph(id) => (Shape::HALF, Some(glyph_table.glyph(id).character().len_utf8() as u8)),
+    };
+    Some(Wanted { inks: inks.of_both(colors), shape, character })
+}
+
+/// Draws a cell in these colours, as a block or as its own character.
+#[inline]
+fn draw_near(pen: &mut Pen, row: &mut Row, column: u16, element: BlockElement, style: Style) {
+    let position = Position { x: column, y: row.y };
+    let column = usize::from(column);
+    let target = row.targets[column];
+    row.shown[column] = match target.text(row.glyph_table) {
+        None => {
+            let shape = target.block().map_or(Shape::HALF, |(shape, _)| shape);
+            let drawn = if element.is_flat() { Shape::HALF } else { shape };
+            pen.draw_block(position, (drawn, element), style);
+            PackedCell::of_block(drawn, element, style)
+        }
+        Some((character, _)) => {
+            pen.draw_text(position, character.encode_utf8(&mut [0; 4]), style);
+            target.recolored([style.foreground, style.background])
+        }
+    };
+}
+
+/// The displacement of a glyph from blocks: a point of its own in a lattice whose points are
+/// farther apart than colours.
+fn apart(id: GlyphId) -> [f32; 3] {
+    const SPACING: f32 = 1000.0;
+    let id = id.get() + 1;
+    [id & 15, id >> 4 & 15, id >> 8].map(|digit| SPACING * f32::from(digit))
+}
+
+/// A distance from every colour that is larger than any tolerance.
+const FAR: f32 = 1e6;
+
+impl Colors {
+    /// Computes the colours of cells.
+    fn fill(&mut self, targets: &[PackedCell], glyph_table: &GlyphTable, inks: &mut Inks) {
+        for components in &mut self.components {
+            components.resize(targets.len(), [0.0; 2]);
+        }
+        self.shapes.clear();
+        let mut has_shapes = false;
+        let [ls, as_, bs] = &mut self.components;
+        let places = ls.iter_mut().zip(as_).zip(bs);
+        let mut last = (PackedCell::UNKNOWN, [[FAR; 2]; 3]);
+        for (&target, ((l, a), b)) in targets.iter().zip(places) {
+            if target != last.0 {
+                last.0 = target;
+                last.1 = if let Some(halves) = target.halves() {
+                    components(inks.of_both(halves))
+                } else {
+                    has_shapes |= target.block().is_some();
+                    of_other(target, glyph_table, inks)
+                };
+            }
+            [*l, *a, *b] = last.1;
+        }
+        if has_shapes {
+            let shape =
+                |target: &PackedCell| target.block().map_or(Shape::HALF, |(shape, _)| shape);
+            self.shapes.extend(targets.iter().map(shape));
+        }
+    }
+
+    /// Moves the cells as the terminal does. The uncovered ones are far from all others.
+    fn shift(&mut self, shift: &Shift) {
+        for components in &mut self.components {
+            shift.apply(components, [-FAR; 2]);
+        }
+        if !self.shapes.is_empty() {
+            shift.apply(&mut self.shapes, Shape::HALF);
+        }
+    }
+
+    /// The cost of showing the cells of this row from `from` on in place of those of `others` from
+    /// `to` on, cell by cell.
+    fn costs(
+        &self,
+        others: &Self,
+        [from, to]: [usize; 2],
+        price: Price,
+        costs: &mut Vec<[f32; 2]>,
+    ) {
+        let count = others.components[0].len() - from.max(to);
+        costs.resize(count, [0.0; 2]);
+        if !self.shapes.is_empty() || !others.shapes.is_empty() {
+            let places = (0..count).map(|place| [from + place, to + place]);
+            for (cost, places) in costs.iter_mut().zip(places) {
+                *cost = self.cost_of_shapes(others, places, price);
+            }
+            return;
+        }
+        let shown = self.components.each_ref();
+        let [ls, as_, bs] = shown.map(|shown| shown[from..][..count].as_flattened());
+        let wanted = others.components.each_ref();
+        let wanted = wanted.map(|wanted| wanted[to..][..count].as_flattened());
+        let shown = ls.iter().zip(as_).zip(bs);
+        let wanted = wanted[0].iter().zip(wanted[1]).zip(wanted[2]);
+        for (cost, (((l, a), b), ((l2, a2), b2))) in
+            costs.as_flattened_mut().iter_mut().zip(shown.zip(wanted))
+        {
+            let [l, a, b] = [l - l2, a - a2, b - b2];
+            *cost = price.of_distance((l * l + a * a + b * b).sqrt());
+        }
+    }
+
+    /// The cost of showing one cell in place of another of any shape: of its dots, and of the rest.
+    #[inline]
+    fn cost_of_shapes(&self, others: &Self, [from, to]: [usize; 2], price: Price) -> [f32; 2] {
+        let lab = |colors: &Self, place: usize, which: usize| {
+            colors.components.each_ref().map(|components| components[place][which])
+        };
+        let cost = |one: usize, other: usize, parts: u8| {
+            if parts == 0 {
+                return 0.0;
+            }
+            let distance = ink::distance(lab(self, from, one), lab(others, to, other));
+            price.of_parts(parts).of_distance(distance)
+        };
+        let (shape, other) = (self.shape(from), others.shape(to));
+        if shape == other {
+            let [dots, rest] = shape.parts();
+            return [cost(0, 0, dots), cost(1, 1, rest)];
+        }
+        let [both, dots, rest, neither] = shape.overlap(other).pairs().map(|(_, parts)| parts);
+        [cost(0, 0, both) + cost(0, 1, dots), cost(1, 0, rest) + cost(1, 1, neither)]
+    }
+
+    fn shape(&self, place: usize) -> Shape {
+        self.shapes.get(place).copied().unwrap_or(Shape::HALF)
+    }
+}
