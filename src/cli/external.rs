@@ -87,7 +87,7 @@ impl External {
         #[cfg(not(unix))]
         match command.status().map_err(cannot_start)? {
             status if status.success() => Ok(()),
-            status => Err(Error::exited(status.code().unwrap_or(1))),
+            _ => Err(Error::failed()),
         }
     }
 }
