@@ -15,11 +15,9 @@ mod keys;
 mod levels;
 mod map_panel;
 mod menu;
-mod menus;
 mod mouse;
 mod page;
 mod panels;
-pub mod parts;
 mod picture;
 mod played;
 mod recording;
@@ -38,6 +36,29 @@ pub mod store;
 pub(crate) mod time;
 mod title;
 
+/// The parts of the program that the sessions of a server use, too.
+pub mod parts {
+    pub use crate::app::banner::draw as draw_banner;
+    pub use crate::app::bindings::{Action, Preset};
+    pub use crate::app::controls::Clock;
+    pub use crate::app::controls::{Controls, KeyContext};
+    pub use crate::app::detection::Detection;
+    pub use crate::app::help::HelpScroll;
+    pub use crate::app::map_panel::MapPanel;
+    pub use crate::app::menu::Menu;
+    pub use crate::app::mouse::Pointer;
+    pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
+    pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
+    pub use crate::app::picture::{DrawOptions, Overlay, widened};
+    pub use crate::app::setting::{At, Choice, Field, Setting, Value, toml_string};
+    pub use crate::app::settings_page::{Choices, settings_menu};
+    pub use crate::app::stats::{Meter, Stats};
+    pub use crate::app::status::HealthSigns;
+    pub use crate::app::status::{Part, StatusLine, hint};
+    pub use crate::app::steps::Watch;
+    pub use crate::app::time::{of_steps, tenths, whole_seconds};
+}
+
 use std::time::Duration;
 
 pub use bindings::Bindings;
@@ -46,7 +67,6 @@ use detection::Detection;
 pub use levels::Levels;
 use levels::{Course, LevelNumber, Reload, Stage};
 use map_panel::MapPanel;
-use menus::Choice;
 use mouse::Pointer;
 use page::Pages;
 use played::{Goal, Played, Viewpoint, Views};
@@ -55,7 +75,7 @@ use recording::{Ghost, RunLog, ScriptRecorder};
 pub use replay::Replay;
 use results::LevelResult;
 pub use run::{Farewell, Opening, play};
-use screen::Screen;
+use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 use stats::Stats;
 use status::StatusLine;

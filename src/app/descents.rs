@@ -7,8 +7,8 @@
 
 use super::levels::Course;
 use super::menu::Menu;
-use super::menus::Choice;
 use super::played::Goal;
+use super::screen::Choice;
 use super::time::whole_seconds;
 use super::{App, Levels, Screen};
 use crate::app::store::{Descent, Reached, Save};

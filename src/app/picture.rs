@@ -100,6 +100,12 @@ impl DrawOptions {
     }
 }
 
+/// `view` after a key that widens or narrows it, in degrees by 6 from 30 to 120.
+pub fn widened(view: FieldOfView, widens: bool) -> FieldOfView {
+    let by = if widens { 6.0 } else { -6.0 };
+    FieldOfView::from_degrees((view.degrees() + by).clamp(30.0, 120.0)).unwrap_or(view)
+}
+
 /// A player of a game, and how their picture is drawn.
 pub struct Overlay<'a> {
     game: &'a Game,

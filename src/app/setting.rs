@@ -51,7 +51,7 @@ pub trait Field<C>: Sync {
 
 /// The field of `C` that a function returns. Reading a value goes by a copy of `C`, so that a row needs one
 /// function only.
-pub(crate) struct At<C, T>(pub(crate) fn(&mut C) -> &mut T);
+pub struct At<C, T>(pub fn(&mut C) -> &mut T);
 
 impl<C: Clone, T: Value> At<C, T> {
     fn get(&self, of: &C) -> T {
@@ -123,6 +123,12 @@ pub trait Choice: Copy + PartialEq + 'static {
         Self::ALL.iter().find(|(value, ..)| *value == self).map_or("", |(_, name, _)| name)
     }
 
+    /// The next value on a settings page, or the one before.
+    #[must_use]
+    fn neighbour(self, forward: bool) -> Self {
+        next(Self::ALL, |(value, ..)| *value == self, forward).0
+    }
+
     /// The value with that name.
     fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known, _)| *known == name).map(|&(value, ..)| value)
@@ -184,7 +190,7 @@ impl<T: Choice> Value for T {
     }
 
     fn after(self, forward: bool) -> Self {
-        next(T::ALL, |(value, ..)| *value == self, forward).0
+        self.neighbour(forward)
     }
 
     fn label(self) -> String {
@@ -370,7 +376,7 @@ fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
 }
 
 /// `text` as a TOML string.
-pub(crate) fn toml_string(text: &str) -> String {
+pub fn toml_string(text: &str) -> String {
     let mut string = String::from("\"");
     for character in text.chars() {
         match character {

@@ -9,10 +9,6 @@ use cellcaster::terminal::Protocol;
 use cellcaster::tui::{CellAspect, Correction, GlyphSet};
 use cellcaster::world::FieldOfView;
 
-/// How far a key widens or narrows the view, and its limits, in degrees.
-const NARROWEST_VIEW: f64 = 30.0;
-const WIDEST_VIEW: f64 = 120.0;
-
 /// How pictures are drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Look {
@@ -20,7 +16,7 @@ pub(crate) struct Look {
     pub(crate) depth: ColorDepth,
     pub(crate) field_of_view: FieldOfView,
     cell_aspect: CellAspect,
-    /// What the terminal shows best.
+    /// The best that the terminal can show.
     terminal_depth: ColorDepth,
     terminal_glyphs: GlyphSet,
     shade_ink: ShadeInk,
@@ -63,12 +59,6 @@ impl Look {
         self.marks_middle = preferences.crosshair;
         self.correction = preferences.correction;
         self.shows_ghosts = preferences.ghost;
-    }
-
-    /// Widens the field of view.
-    pub(crate) fn widen(&mut self, degrees: f64) {
-        let view = (self.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
-        self.field_of_view = FieldOfView::from_degrees(view).unwrap_or(self.field_of_view);
     }
 
     /// The options of a picture without a flash.

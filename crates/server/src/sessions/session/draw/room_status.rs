@@ -6,12 +6,12 @@ use ratatui::layout::Rect;
 
 use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};
-use crate::sessions::session::visit::Visit;
+use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
 use cellcaster::game::{Outcome, PlayerView};
 use cellcaster::tui::canvas::Canvas;
 
-impl Visit {
+impl Ui {
     /// Draws the mode, the time, what the player is and has, and who is watched.
     pub(crate) fn draw_room_status(
         &mut self,
