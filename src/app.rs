@@ -50,7 +50,7 @@ pub mod parts {
     pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
     pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
     pub use crate::app::picture::{DrawOptions, Overlay, widened};
-    pub use crate::app::setting::{At, Choice, Field, Setting, Value, toml_string};
+    pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
     pub use crate::app::settings_page::{Choices, settings_menu};
     pub use crate::app::stats::{Meter, Stats};
     pub use crate::app::status::HealthSigns;

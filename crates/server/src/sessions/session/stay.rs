@@ -131,7 +131,11 @@ impl Stay {
     }
 
     /// The figures of the ghosts in the picture.
-    pub(crate) fn ghosts<'r>(&'r self, room: &'r RoomView, look: &Look) -> impl Iterator<Item = Figure> {
+    pub(crate) fn ghosts<'r>(
+        &'r self,
+        room: &'r RoomView,
+        look: &Look,
+    ) -> impl Iterator<Item = Figure> {
         let own = self.own_color(room);
         self.ghosts.seen(room, own, look).map(|seen| seen.figure)
     }
