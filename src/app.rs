@@ -49,7 +49,7 @@ pub mod parts {
     pub use crate::app::mouse::Pointer;
     pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
     pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
-    pub use crate::app::picture::{DrawOptions, Overlay, widened};
+    pub use crate::app::picture::{DrawOptions, Overlay, TerminalLook, widened};
     pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
     pub use crate::app::settings_page::{Choices, settings_menu};
     pub use crate::app::stats::{Meter, Stats};
@@ -69,6 +69,7 @@ use levels::{Course, LevelNumber, Reload, Stage};
 use map_panel::MapPanel;
 use mouse::Pointer;
 use page::Pages;
+use picture::TerminalLook;
 use played::{Goal, Played, Viewpoint, Views};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder};
@@ -84,8 +85,8 @@ use store::{Reached, Store};
 use title::{Demo, TmuxOrder};
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
-use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::tui::{CellAspect, GlyphSet, View};
+use crate::color::palette::ColorDepth;
+use crate::tui::View;
 use crate::world::{Difficulty, Figure};
 
 /// The part of the game's state that a picture depends on.
@@ -95,16 +96,6 @@ struct Shown {
     revision: u64,
     /// The figures in view.
     figures: Vec<Figure>,
-}
-
-/// How the terminal shows pictures, as far as it is known.
-#[derive(Clone, Copy, Debug, Default)]
-struct TerminalLook {
-    aspect: Option<CellAspect>,
-    depth: ColorDepth,
-    shade_ink: ShadeInk,
-    /// The finest blocks that it is known to draw well.
-    glyphs: GlyphSet,
 }
 
 struct App {

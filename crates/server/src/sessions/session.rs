@@ -22,7 +22,6 @@ mod frames;
 mod intent_queue;
 mod keys;
 mod line_entry;
-mod look;
 mod messages;
 mod pages;
 mod settings;
@@ -36,12 +35,11 @@ use std::time::Duration;
 
 pub(crate) use self::endings::IdleLimits;
 use self::frames::{KeyEffect, Pace, Unanswered};
-use self::look::Look;
 pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
 use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::rooms::room::RoomView;
-use cellcaster::app::parts::{Meter, Stats};
+use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
 use cellcaster::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 
@@ -97,11 +95,10 @@ impl Session {
     ) -> Self {
         let mut protocol = Protocol::new(options, size);
         protocol.begin(now);
-        let look = Look::new(options.is_ascii, &identity);
         let pace = Pace::new(host.frame_time);
         let mut session = Self {
             protocol,
-            ui: Ui::new(identity, host, look, now),
+            ui: Ui::new(identity, host, options.is_ascii, now),
             ending: Ending::Not,
             pace,
             keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
@@ -206,7 +203,7 @@ impl Session {
         protocol.draw(|screen| ui.draw(screen, room));
         ui.is_stale = false;
         if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
-            stay.drawn(room, &ui.look);
+            stay.drawn(room, ui.field_of_view, ui.identity.preferences.ghost);
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
@@ -215,12 +212,11 @@ impl Session {
     /// Measures the frames so far.
     fn measure(&mut self, now: Duration) {
         let Self { protocol, ui, meter, .. } = self;
-        if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
-            let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
-            let is_limited = protocol.is_limited_by_network();
-            let wants_compression = is_limited && !ui.host.compresses;
+        if let Some(mut stats) = meter.measure(protocol, now) {
+            let is_limited = stats.wants_compression;
             self.is_limited = ui.stay.is_some().then_some(is_limited).or(self.is_limited);
-            ui.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
+            stats.wants_compression &= !ui.host.compresses;
+            ui.stats = Some(stats);
         }
     }
 
@@ -325,17 +321,15 @@ impl Session {
     fn show_choices(&mut self) {
         let Self { protocol, ui, .. } = self;
         protocol.set_mouse(ui.pointer.is_on());
-        protocol.set_ascii(ui.look.is_ascii());
+        protocol.set_ascii(ui.is_ascii());
     }
 
     /// Takes over what is known of the terminal.
     fn follow_terminal(&mut self) {
         let Self { protocol, ui, .. } = self;
-        ui.look.follow_terminal(protocol, &ui.identity.preferences);
-        ui.detection.depth = ui.look.depth;
+        ui.terminal = TerminalLook::of(protocol);
         let is_chosen = ui.identity.preferences.colors.is_some();
-        ui.detection.is_tmux = protocol.is_tmux();
-        ui.detection.source = (!is_chosen).then(|| protocol.color_source());
+        ui.detection.follow(protocol, ui.depth(), is_chosen);
         ui.pointer.set_columns(protocol.size().columns);
     }
 

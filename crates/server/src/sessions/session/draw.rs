@@ -23,8 +23,9 @@ use cellcaster::app::parts::{
     picture_and_status, too_small, whole_seconds,
 };
 use cellcaster::color::palette::ColorDepth;
-use cellcaster::tui::View;
+use cellcaster::render::Filter;
 use cellcaster::tui::canvas::Canvas;
+use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings do not change.
@@ -68,7 +69,7 @@ impl Ui {
 
     fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
         let below = if picture.height >= LEAST_WITH_BANNER {
-            draw_banner(canvas, picture, self.look.glyphs, self.look.depth)
+            draw_banner(canvas, picture, self.glyphs(), self.depth())
         } else {
             picture
         };
@@ -127,20 +128,21 @@ impl Ui {
     }
 
     fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
-        let (look, page) = (self.look, self.page());
+        let (options, page) = (self.draw_options(), self.page());
+        let depth = options.depth;
         let preferences = self.identity.preferences;
         let Some(stay) = &mut self.stay else { return };
         let seen_through = stay.seen_through(room);
         if seen_through.is_some_and(|(member, _)| member.is_blind) {
-            draw_darkness(canvas, area, room, look.depth);
+            draw_darkness(canvas, area, room, depth);
         } else {
-            let camera = stay.camera(room, look.field_of_view);
+            let camera = stay.camera(room, options.field_of_view);
             let flash = seen_through.and_then(|(_, player)| player.flash());
             let flash = flash.map(|flash| (flash, camera.heading));
-            let options = DrawOptions { flash, ..look.options() };
+            let options = DrawOptions { flash, ..options };
             let (game, seconds) = (&room.game, room.game.elapsed());
             let own = stay.own_color(room);
-            let ghosts: Vec<SeenGhost> = stay.ghosts.seen(room, own, &look).collect();
+            let ghosts: Vec<SeenGhost> = stay.ghosts.seen(room, own, preferences.ghost).collect();
             let world = with_ghosts(game.world(), &ghosts);
             let mut view = VIEW.take().unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
@@ -156,13 +158,45 @@ impl Ui {
             VIEW.set(Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
-            members::draw_standings(canvas, area, room, look.depth);
+            members::draw_standings(canvas, area, room, depth);
         } else if stay.shows_members && page == Page::Room {
-            members::draw_members(canvas, area, room, &self.host.catalog, look.depth);
+            members::draw_members(canvas, area, room, &self.host.catalog, depth);
         }
-        talk::draw(canvas, area, stay.talk.shown(), page == Page::Chat, look.depth);
+        talk::draw(canvas, area, stay.talk.shown(), page == Page::Chat, depth);
         if let Some(draining) = self.draining {
             notice(canvas, area, &draining.sentence(self.now));
+        }
+    }
+}
+
+/// How pictures are drawn: as the visitor has chosen, or as the terminal shows best.
+impl Ui {
+    pub(crate) fn glyphs(&self) -> GlyphSet {
+        let best = if self.has_ascii_only { GlyphSet::Ascii } else { self.terminal.glyphs };
+        self.identity.preferences.glyphs.unwrap_or(best)
+    }
+
+    pub(crate) fn depth(&self) -> ColorDepth {
+        self.identity.preferences.colors.unwrap_or(self.terminal.depth)
+    }
+
+    /// Whether only ASCII is sent: the terminal shows no more, and the visitor has not chosen blocks.
+    pub(crate) fn is_ascii(&self) -> bool {
+        self.has_ascii_only && !self.glyphs().has_blocks()
+    }
+
+    fn draw_options(&self) -> DrawOptions {
+        let preferences = &self.identity.preferences;
+        DrawOptions {
+            glyphs: self.glyphs(),
+            depth: self.depth(),
+            shade_ink: self.terminal.shade_ink,
+            cell_aspect: self.terminal.aspect.unwrap_or_default(),
+            filter: Filter::default(),
+            correction: preferences.correction,
+            field_of_view: self.field_of_view,
+            flash: None,
+            marks_middle: preferences.crosshair,
         }
     }
 }

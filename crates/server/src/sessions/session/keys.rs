@@ -250,7 +250,7 @@ impl Ui {
     }
 
     fn widen_view(&mut self, widens: bool) {
-        self.look.field_of_view = widened(self.look.field_of_view, widens);
+        self.field_of_view = widened(self.field_of_view, widens);
         self.is_stale = true;
     }
 

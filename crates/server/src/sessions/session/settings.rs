@@ -62,13 +62,13 @@ impl Ui {
         let rows = ROWS[..count].iter().enumerate();
         let rows =
             rows.map(|(index, row)| (row.about, row.value.label(&choices), Choice::Change(index)));
-        settings_menu(note, !self.look.is_ascii(), rows)
+        settings_menu(note, !self.is_ascii(), rows)
     }
 
     /// The values in force.
     fn choices(&self) -> SessionChoices {
         let Self { identity, stay, .. } = self;
-        let preferences = Preferences { glyphs: Some(self.look.glyphs), ..identity.preferences };
+        let preferences = Preferences { glyphs: Some(self.glyphs()), ..identity.preferences };
         let stay = stay.as_ref();
         let map = stay.map_or(MapDisplay::Off, |stay| stay.map.display());
         SessionChoices {
@@ -88,9 +88,8 @@ impl Ui {
         let before = self.choices();
         let mut after = before;
         change(&mut after);
-        let Self { identity, look, stay, pointer, bindings, .. } = self;
+        let Self { identity, stay, pointer, bindings, .. } = self;
         identity.preferences.choose(before.common.preferences, after.common.preferences);
-        look.follow(&identity.preferences);
         if after.preset != before.preset {
             identity.configuration.set_preset(after.preset);
             *bindings = bindings_of(&identity.configuration);

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
-use super::look::Look;
 use super::messages::Request;
 use super::talk::Talk;
 use crate::rooms::ghost::Ghost;
@@ -134,10 +133,10 @@ impl Stay {
     pub(crate) fn ghosts<'r>(
         &'r self,
         room: &'r RoomView,
-        look: &Look,
+        is_on: bool,
     ) -> impl Iterator<Item = Figure> {
         let own = self.own_color(room);
-        self.ghosts.seen(room, own, look).map(|seen| seen.figure)
+        self.ghosts.seen(room, own, is_on).map(|seen| seen.figure)
     }
 
     /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
@@ -171,15 +170,20 @@ impl Stay {
     }
 
     /// Whether a picture of `room` would differ from the last one.
-    pub(crate) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
+    pub(crate) fn differs_from(
+        &self,
+        room: &RoomView,
+        view: FieldOfView,
+        shows_ghosts: bool,
+    ) -> bool {
         let Some(shown) = &self.shown else { return true };
         let elapsed = room.game.elapsed();
         shown.revision != room.game.revision()
-            || shown.camera != self.camera(room, look.field_of_view)
+            || shown.camera != self.camera(room, view)
             || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
             || shown.times != times(room)
             || shown.members != room.members
-            || !self.ghosts(room, look).eq(shown.ghosts.iter().copied())
+            || !self.ghosts(room, shows_ghosts).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
             || self.talk.is_behind(&room.said)
             || shown.animates_at.is_some_and(|time| time <= elapsed)
@@ -187,15 +191,15 @@ impl Stay {
     }
 
     /// Records that `room` was drawn.
-    pub(crate) fn drawn(&mut self, room: &RoomView, look: &Look) {
+    pub(crate) fn drawn(&mut self, room: &RoomView, view: FieldOfView, shows_ghosts: bool) {
         self.shown = Some(Shown {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
-            camera: self.camera(room, look.field_of_view),
+            camera: self.camera(room, view),
             phase: room.phase,
             times: times(room),
             members: room.members.clone(),
-            ghosts: self.ghosts(room, look).collect(),
+            ghosts: self.ghosts(room, shows_ghosts).collect(),
             standings: room.standings.len(),
             animates_at: self.next_change,
         });
@@ -237,16 +241,16 @@ impl Ghosts {
         }
     }
 
-    /// The ghosts where they are now; the visitor's own one in their colour. There are some only
-    /// while the round is played.
+    /// The ghosts where they are now, if they are switched on; the visitor's own one in their colour. There are
+    /// some only while the round is played.
     pub(crate) fn seen<'g>(
         &'g self,
         room: &'g RoomView,
         own: Option<PlayerColor>,
-        look: &Look,
+        is_on: bool,
     ) -> impl Iterator<Item = SeenGhost<'g>> {
         let step = room.begun.map(|begun| room.step.saturating_sub(begun));
-        let ghosts = self.ghosts.as_deref().filter(|_| look.shows_ghosts).unwrap_or_default();
+        let ghosts = self.ghosts.as_deref().filter(|_| is_on).unwrap_or_default();
         step.into_iter().flat_map(move |step| {
             ghosts.iter().filter_map(move |ghost| {
                 let color = ghost.color(own);

@@ -42,7 +42,7 @@ impl Session {
         let size = self.protocol.size();
         let size = ratatui::layout::Size::new(size.columns, size.rows);
         let mut writer = CellWriter::new(Vec::new(), size);
-        writer.set_ascii(self.ui.look.is_ascii());
+        writer.set_ascii(self.ui.is_ascii());
         writer.draw_frame(|screen| self.ui.draw(screen, room));
         _ = ratatui::backend::Backend::flush(&mut writer);
         std::mem::take(writer.output_mut())

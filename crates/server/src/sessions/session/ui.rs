@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use super::endings::{Draining, Idle, IdleAction};
 use super::line_entry::LineEntry;
-use super::look::Look;
 use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
@@ -14,11 +13,12 @@ use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::line::Line;
 use cellcaster::app::parts::{
-    Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine,
+    Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine, TerminalLook,
 };
 use cellcaster::app::{Bindings, Configuration};
 use cellcaster::game::Intents;
 use cellcaster::terminal::Key;
+use cellcaster::world::FieldOfView;
 
 /// The most requests that wait for the driver. Further ones are dropped: they come from a paste.
 const MAX_REQUESTS: usize = 64;
@@ -33,7 +33,10 @@ pub(crate) struct Ui {
     pub(crate) controls: Controls,
     pub(crate) pointer: Pointer,
     pub(crate) clock: Clock,
-    pub(crate) look: Look,
+    pub(crate) terminal: TerminalLook,
+    /// Whether the terminal shows only ASCII.
+    pub(crate) has_ascii_only: bool,
+    pub(crate) field_of_view: FieldOfView,
     pub(crate) detection: Detection,
     pub(crate) pages: Pages<Page, Choice>,
     pub(crate) entry: LineEntry,
@@ -74,7 +77,12 @@ pub(crate) struct Board {
 }
 
 impl Ui {
-    pub(crate) fn new(identity: Identity, host: HostFacts, look: Look, now: Duration) -> Self {
+    pub(crate) fn new(
+        identity: Identity,
+        host: HostFacts,
+        has_ascii_only: bool,
+        now: Duration,
+    ) -> Self {
         let mut idle = Idle::default();
         idle.restart(now);
         let mut clock = Clock::default();
@@ -86,7 +94,9 @@ impl Ui {
             controls: Controls::default(),
             pointer: Pointer::new(identity.configuration.mouse),
             clock,
-            look,
+            terminal: TerminalLook::default(),
+            has_ascii_only,
+            field_of_view: identity.configuration.field_of_view,
             detection: Detection {
                 ascii_locale: host.ascii_locale.as_ref().map(ToString::to_string),
                 is_visitor: true,
@@ -127,7 +137,9 @@ impl Ui {
 
     /// Whether a picture would differ from the one that is shown.
     pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
-        let differs = |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, &self.look));
+        let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
+        let differs =
+            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, view, shows_ghosts));
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 

@@ -19,7 +19,8 @@ impl Ui {
         area: Rect,
         room: &RoomView,
     ) {
-        let Self { stay, status, host, controls, pointer, bindings, look, .. } = self;
+        let signs = HealthSigns::for_picture(self.glyphs(), self.depth());
+        let Self { stay, status, host, controls, pointer, bindings, .. } = self;
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
         let Some(stay) = stay else { return };
         let seen = stay.seen_through(room);
@@ -31,7 +32,6 @@ impl Ui {
                 !room.header.mode.has_guards() && health.points == health.most
             };
             if let Some((_, player)) = mission.filter(|(_, player)| !is_safe(player)) {
-                let signs = HealthSigns::for_picture(look.glyphs, look.depth);
                 line.write_vitals(&room.game, &player, signs)?;
             }
             write_round(line, room)?;

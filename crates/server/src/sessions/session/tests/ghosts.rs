@@ -55,7 +55,7 @@ fn a_stored_run_walks_along_where_the_script_was() {
     let view = rig.view();
     let (position, opacity) = rig.session(mara, move |session, _| {
         let ui = &session.ui;
-        let figure = ui.stay.as_ref().unwrap().ghosts(&view, &ui.look).next().unwrap();
+        let figure = ui.stay.as_ref().unwrap().ghosts(&view, true).next().unwrap();
         (figure.position, figure.opacity)
     });
     let at = game.camera(FieldOfView::default()).position();
