@@ -35,6 +35,7 @@ use std::process::ExitCode;
 use arguments::Command;
 pub use error::Error;
 use external::External;
+pub use replay::ROOM_RECORDING;
 
 use crate::render::DynCaster;
 

@@ -1,15 +1,13 @@
-//! What the hosts of a cluster tell each other of a room: messages of its log, broadcasts, records, and the first
-//! line of a checkpoint.
+//! The messages of the hosts of a cluster about a room: messages of its log, broadcasts, records, and the head of a
+//! checkpoint.
 //!
-//! The first byte says where the room comes from: a mode, a record, or a checkpoint; then parts follow, each behind a
-//! byte for its kind and one for a number, and up to the next byte 0. What reads as a message is written as bytes that
-//! read as the same, and no message ends a host.
+//! The first byte says where the room comes from: a mode, a record, or a checkpoint. The record or the head follows, then
+//! parts, each with a byte for its kind and one for a number. All of them begin with a byte for their length, and have no
+//! versions. Bytes that read as a message are written as bytes that read as the same, and no message ends a host.
 
 use allocation_counter::measure;
 use cellcaster_server::fuzzing::SharedRoom;
 
-/// Ends a part.
-const END: u8 = 0;
 const MOST_PARTS: usize = 32;
 /// The most steps of a message, and of all of them.
 const MOST_STEPS: u64 = 60;
@@ -21,7 +19,7 @@ const BYTES_OF_A_BYTE: u64 = 256;
 /// Lets a host hear all parts.
 pub fn run(data: &[u8]) {
     let Some((&from, rest)) = data.split_first() else { return };
-    let mut parts = rest.split(|&byte| byte == END);
+    let mut parts = Parts(rest);
     let first = || parts.next().unwrap_or_default();
     let Some(mut room) = begun(from, first) else { return };
     let mut steps = 0;
@@ -41,6 +39,20 @@ pub fn run(data: &[u8]) {
         let most = 64 * 1024 + BYTES_OF_A_STEP * count + BYTES_OF_A_BYTE * text.len() as u64;
         assert!(used.bytes_total <= most || kind % 4 == 3, "{} bytes", used.bytes_total);
         room = room.put();
+    }
+}
+
+/// Parts of bytes that begin with their length. The last one may be shorter.
+struct Parts<'a>(&'a [u8]);
+
+impl<'a> Iterator for Parts<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let (&length, rest) = self.0.split_first()?;
+        let (part, rest) = rest.split_at(usize::from(length).min(rest.len()));
+        self.0 = rest;
+        Some(part)
     }
 }
 

@@ -23,6 +23,9 @@ use crate::app::Settings;
 use crate::game::Script;
 use crate::terminal::CellWriter;
 
+/// The beginning of the recording of a server's room, which its version follows.
+pub const ROOM_RECORDING: &str = "cellcaster-room ";
+
 /// Writes the recording that `options` request.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     if is_room_recording(&options.script) {
@@ -103,10 +106,9 @@ impl<W: Write> Write for Screen<W> {
 
 /// Whether the file is the recording of a server's room, which has the game's rules and more.
 fn is_room_recording(path: &Path) -> bool {
-    const BEGINNING: &[u8] = b"cellcaster-room ";
-    let mut beginning = [0; BEGINNING.len()];
+    let mut beginning = [0; ROOM_RECORDING.len()];
     // A file that cannot be read is reported where scripts are read.
     path.is_file()
         && File::open(path).is_ok_and(|mut file| file.read_exact(&mut beginning).is_ok())
-        && beginning == BEGINNING
+        && beginning == ROOM_RECORDING.as_bytes()
 }

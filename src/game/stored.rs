@@ -91,8 +91,15 @@ impl serde::de::Error for Unrestorable {
 /// # Panics
 /// If a list of `value` does not know its length, which is so for no type of the game.
 pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
-    let line = first_line(kind).into_bytes();
-    postcard::to_extend(value, line).expect("all lists have a length, and memory takes all bytes")
+    appended(first_line(kind).into_bytes(), value)
+}
+
+/// `bytes`, and `value`.
+///
+/// # Panics
+/// As [`written`].
+pub fn appended(bytes: Vec<u8>, value: &impl Serialize) -> Vec<u8> {
+    postcard::to_extend(value, bytes).expect("all lists have a length, and memory takes all bytes")
 }
 
 /// The hash of the bytes that are stored of `value`.
@@ -235,11 +242,18 @@ impl<'de> Reader<'de> {
     /// # Errors
     /// If the bytes are too many, or of another kind or version.
     pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
-        if bytes.len() > MOST_BYTES {
-            return Err(Unrestorable::TooLong);
-        }
+        let Self { bytes, .. } = Self::of(bytes)?;
         let bytes = bytes.strip_prefix(first_line(kind).as_bytes());
         Ok(Self { bytes: bytes.ok_or(Unrestorable::OtherVersion)?, size })
+    }
+
+    /// Reads bytes without a first line, in which there are no cells.
+    ///
+    /// # Errors
+    /// If the bytes are too many.
+    pub fn of(bytes: &'de [u8]) -> Result<Self, Unrestorable> {
+        let is_short = bytes.len() <= MOST_BYTES;
+        is_short.then_some(Self { bytes, size: (0, 0) }).ok_or(Unrestorable::TooLong)
     }
 
     /// The bytes that are left.

@@ -137,7 +137,9 @@ pub enum Duty {
 }
 
 /// How hard a game is. The rules differ, not numbers only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub enum Difficulty {
     /// A player without health goes back to the last checkpoint and keeps what they have. Guards
     /// do not hear walking, and tell nobody what they see.

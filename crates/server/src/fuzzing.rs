@@ -1,27 +1,29 @@
 //! Parts of the server without connections and tasks, for fuzz targets outside of the crate. It is compiled with
 //! `--cfg fuzzing` only.
 
-mod desk;
-mod resumed;
-
+use std::net::{IpAddr, Ipv4Addr};
+use std::pin::pin;
 use std::sync::{Arc, LazyLock};
+use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-pub use self::desk::Desk;
-pub use self::resumed::{CHECKPOINTS, checkpoint, resume};
-use crate::accounts::AccountSettings;
+use tokio::sync::Notify;
+
+use crate::accounts::{AccountKey, AccountSettings};
 pub use crate::cluster::fuzzing::SharedRoom;
+use crate::ops::admin::{Operator, RoomRow, socket};
+use crate::rooms::replayed::replayed;
 use crate::rooms::room::{
-    CHAT_COLUMNS, Catalog, Command, Entry, Header, Log, MemberId, Mode, NAME_COLUMNS, Queue,
-    Recorded, Room, replayed,
+    CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::line::Line;
 use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
+use crate::sessions::visitors::{Presence, Visitors};
 pub use crate::ssh::fuzzing::serve;
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
-use cellcaster::game::PlayerColor;
+use cellcaster::game::{Intent, Intents, PlayerColor};
 use cellcaster::map::builtin::LEVELS;
 use cellcaster::rng::SplitMix64;
 use cellcaster::terminal::{Options, WindowSize};
@@ -34,11 +36,17 @@ const ROOM: RoomId = RoomId(1);
 /// The duration of a step, in microseconds.
 const STEP: u64 = 1_000_000 / 60;
 
+/// The number of checkpoints to change.
+pub const CHECKPOINTS: usize = 24;
+/// The most steps of a room before its checkpoint.
+const MOST_STEPS: usize = 900;
+
 /// A room and its visitors.
 pub struct Hall {
     catalog: Arc<Catalog>,
     room: Room,
-    log: Recorded<Queue, Vec<u8>>,
+    /// The recording of the round.
+    recording: String,
     visitors: Vec<Visitor>,
     now: Duration,
 }
@@ -72,10 +80,9 @@ impl Hall {
 
     fn of(header: Header) -> Self {
         let catalog = Arc::clone(&CATALOG);
-        let mut log = Recorded::new(Queue::default(), Vec::new());
-        log.begin(&header).expect("it is in memory");
+        let recording = header.to_string();
         let room = Room::new(&catalog, header).expect("the catalog has the level");
-        Self { catalog, room, log, visitors: Vec::new(), now: Duration::ZERO }
+        Self { catalog, room, recording, visitors: Vec::new(), now: Duration::ZERO }
     }
 
     /// A visitor comes, with a terminal of which `options` are known.
@@ -176,8 +183,7 @@ impl Hall {
 
     /// The round as its log has it, and the checksum of the room.
     pub fn recording(&self) -> (String, u64) {
-        let text = String::from_utf8_lossy(self.log.output()).into_owned();
-        (text, self.room.checksum())
+        (self.recording.clone(), self.room.checksum())
     }
 
     /// Plays the last round of a recording, and returns the checksum of the room.
@@ -197,8 +203,7 @@ impl Hall {
     fn step(&mut self) {
         if self.room.is_over() {
             self.room.begin_next();
-            self.log = Recorded::new(Queue::default(), Vec::new());
-            self.log.begin(self.room.header()).expect("it is in memory");
+            self.recording = self.room.header().to_string();
         }
         self.room.advance();
     }
@@ -227,7 +232,7 @@ impl Hall {
                 }
                 Some(SessionEvent::Named(line))
             }
-            Request::Rooms => Some(SessionEvent::Rooms([self.summary()].into())),
+            Request::Rooms => Some(SessionEvent::Rooms([RoomSummary::of(ROOM, &self.room)].into())),
             Request::Enter { watches: true, .. } => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
@@ -284,19 +289,114 @@ impl Hall {
         let entry = Entry { step: self.room.step(), member, command };
         assert_eq!(Entry::parse(&entry.to_string()).as_ref(), Some(&entry), "as it is written");
         self.room.apply(&entry);
-        self.log.append(entry).expect("it is in memory");
+        self.recording += &format!("{entry}\n");
     }
+}
 
-    fn summary(&self) -> RoomSummary {
-        let header = self.room.header();
-        RoomSummary {
-            id: ROOM,
-            level: header.level.clone(),
-            mode: header.mode,
-            difficulty: header.difficulty,
-            phase: self.room.phase(),
-            members: self.room.names().cloned().collect(),
-            watchers: 0,
+/// An operator's host with three visitors.
+pub struct Desk {
+    operator: Operator,
+    _visitors: Vec<Presence>,
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        let all = Visitors::default();
+        let visitors = (0..3).zip(["Ada", "Bo", "字"]).map(|(number, name)| {
+            let address = IpAddr::from(Ipv4Addr::new(10, 0, 0, number));
+            let visitor = all.arrive(address, Some(AccountKey::new([number; 32])));
+            visitor.set_name(name);
+            visitor
+        });
+        let visitors = visitors.collect();
+        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()));
+        Self { operator, _visitors: visitors }
+    }
+}
+
+impl Desk {
+    /// What a connection answers on which `bytes` arrive and then the end.
+    ///
+    /// # Panics
+    /// If the answer fails or waits.
+    pub fn answer(&self, bytes: &[u8]) -> Vec<u8> {
+        let mut stream = tokio::io::join(bytes, Vec::new());
+        let answered = {
+            let answer = pin!(socket::answer(&mut stream, &self.operator));
+            answer.poll(&mut Context::from_waker(Waker::noop()))
+        };
+        assert!(matches!(answered, Poll::Ready(Ok(()))), "{answered:?}");
+        stream.into_inner().1
+    }
+}
+
+static MADE: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| (0..CHECKPOINTS).map(made).collect());
+
+/// The checkpoint of a room that was played, by its number below [`CHECKPOINTS`].
+pub fn checkpoint(number: usize) -> &'static [u8] {
+    &MADE[number]
+}
+
+/// Restores a room from `bytes` and plays it on for that many steps.
+///
+/// # Errors
+/// A sentence, if `bytes` are no checkpoint.
+///
+/// # Panics
+/// If the restored room has another checkpoint than one that is restored from it.
+pub fn resume(bytes: &[u8], seed: u64, steps: usize) -> Result<(), String> {
+    let mut room = Room::restore(&CATALOG, bytes)?;
+    let bytes = room.checkpoint();
+    let again = Room::restore(&CATALOG, &bytes).map(|room| room.checkpoint());
+    assert_eq!(again.as_ref(), Ok(&bytes), "a checkpoint of a restored room");
+    play(&mut room, &mut SplitMix64::new(seed), steps);
+    _ = (room.view().winner(), room.checksum());
+    Ok(())
+}
+
+fn made(number: usize) -> Vec<u8> {
+    let mode = Mode::ALL[number % Mode::ALL.len()];
+    let level = LEVELS[number % LEVELS.len()].name;
+    let seed = number as u64;
+    let header = Header::new(level, mode, Difficulty::ALL[number % 3], seed);
+    let mut room = Room::new(&CATALOG, header).expect("the level is built in");
+    let mut random = SplitMix64::new(seed);
+    let steps = random.below(MOST_STEPS);
+    play(&mut room, &mut random, steps);
+    room.checkpoint()
+}
+
+/// Lets members come, want anything and go.
+fn play(room: &mut Room, random: &mut SplitMix64, steps: usize) {
+    let mut wanted = Intents::new();
+    for _ in 0..steps {
+        let (step, next) = (room.step(), room.next_member());
+        let mut commands = Vec::new();
+        if room.len() < 3 && random.one_in(60) || room.len() == 0 {
+            let name = Line::of("Ada", NAME_COLUMNS).expect("it fits");
+            commands.push((next, Command::Join { color: PlayerColor::ALL[random.below(8)], name }));
+        }
+        if let Some((member, ..)) = room.first_member() {
+            if random.one_in(20) {
+                wanted = [Intent::Forward, Intent::Run].into_iter().collect();
+                (0..random.below(4)).for_each(|_| {
+                    wanted.insert(Intent::ALL[random.below(Intent::ALL.len())]);
+                });
+            }
+            commands
+                .push((member, Command::Intents { seen: room.game().steps(), intents: wanted }));
+            if random.one_in(100) {
+                let token = random.bits();
+                let all = [Command::Leave, Command::Keep, Command::Away, Command::Return { token }];
+                commands.extend(all.into_iter().nth(random.below(4)).map(|it| (member, it)));
+            }
+        }
+        for (member, command) in commands {
+            room.apply(&Entry { step, member, command });
+        }
+        room.advance();
+        if room.is_over() {
+            room.begin_next();
         }
     }
 }

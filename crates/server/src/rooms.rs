@@ -3,7 +3,7 @@
 pub mod directory;
 pub mod ghost;
 pub mod maps;
-pub mod recorded;
+pub mod replayed;
 pub mod room;
 pub mod sequencer;
 pub mod summary;

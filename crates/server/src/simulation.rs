@@ -12,7 +12,6 @@ mod client;
 pub(crate) mod emulator;
 #[path = "../../../tests/support/looks.rs"]
 mod looks;
-mod replay;
 mod seeds;
 mod tapes;
 
@@ -126,7 +125,7 @@ impl Rig {
             live: live.clone(),
             visitors: visitors.clone(),
             catalog: wish.catalog,
-            logs: tapes.logs(),
+            recordings: tapes.recordings(),
             store: Box::new(MemoryStore::default()),
             store_time: wish.store_time,
             worker: wish.worker,

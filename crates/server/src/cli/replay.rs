@@ -3,13 +3,15 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
+use std::sync::Arc;
 
 use cellcaster::app::parts::of_steps;
-use cellcaster::cli::Error;
+use cellcaster::cli::{Error, ROOM_RECORDING};
 
 use super::arguments::Replay;
 use crate::rooms::maps::HostMaps;
-use crate::rooms::recorded::{MOST_RECORDED_BYTES, is_room_recording, replay_room};
+use crate::rooms::replayed::{MOST_RECORDED_BYTES, replayed};
+use crate::rooms::room::Catalog;
 
 /// Writes a line for each round of the recording, and its standings.
 ///
@@ -25,16 +27,19 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
         return Err(cannot(&format!("it is no file of at most {MOST_RECORDED_BYTES} bytes")));
     }
     let text = fs::read_to_string(&options.file).map_err(|error| cannot(&error))?;
-    if !is_room_recording(&text) {
+    if !text.starts_with(ROOM_RECORDING) {
         return Err(cannot(&"it is no recording of a room"));
     }
     let maps = options.maps.as_deref().map(HostMaps::read).transpose();
     let maps = maps.map_err(|error| Error::mistake(error.to_string()))?.unwrap_or_default();
-    let rounds = replay_room(&text, &maps).map_err(|fault| cannot(&fault))?;
+    let catalog = Arc::new(Catalog::with(&maps));
+    let rounds = replayed(&text, &catalog).map_err(|fault| cannot(&fault))?;
     let mut lines = String::new();
     for round in rounds {
         // Memory accepts every byte.
-        _ = writeln!(lines, "round {}: {}, {}", round.number, round.about, of_steps(round.steps));
+        let (mode, level) = (round.mode.title(), catalog.title(&round.level));
+        let time = of_steps(round.steps);
+        _ = writeln!(lines, "round {}: {mode} in {level}, {time}", round.round);
         for (name, points) in round.standings {
             _ = writeln!(lines, "  {name}  {points}");
         }

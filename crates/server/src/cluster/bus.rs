@@ -5,11 +5,11 @@
 //! - **A room has a log.** A message is appended only if the writer names the number of the newest message
 //!   (compare and append). So a sequencer that was replaced cannot write, however late it notices.
 //! - **A broadcast may be lost**, and is not stored. A host that misses one reads the log.
-//! - **A request reaches all hosts that are there**, or some of them; each answers for itself.
-//! - **A value has a key and a revision.** A host replaces only the revision that it has seen last.
+//! - **A request reaches all present hosts**, or some of them; each answers for itself.
+//! - **A value has a key and a revision.** A host replaces only the revision that it saw last.
 //!
-//! `JetStream` consumers for each room and host were refused: they are state in the server, and notice a loss after
-//! seconds. The sequencer broadcasts what it has appended instead, and a host reads the log only where a number is
+//! Rejected: a `JetStream` consumer for each room and host. It is state in the server, and notices a loss after seconds.
+//! Instead, the sequencer broadcasts the messages that it has appended, and a host reads the log only if a number is
 //! missing.
 
 use std::pin::Pin;
@@ -19,7 +19,7 @@ use tokio::sync::{mpsc, oneshot};
 use crate::accounts::AccountKey;
 use crate::rooms::summary::RoomId;
 
-/// What the hosts of a cluster share.
+/// The bus that the hosts of a cluster share.
 pub(crate) trait Bus: Send + Sync {
     /// Appends a message to the log of a room, whose last message is number `last`, 0 for none; returns its
     /// number.
@@ -40,17 +40,17 @@ pub(crate) trait Bus: Send + Sync {
     /// The broadcasts to a room from now on.
     fn subscribe(&self, room: RoomId) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
-    /// Asks all hosts, this one too; what they answer from now on.
+    /// Asks all hosts, this one too; returns their answers.
     fn ask_hosts(&self, request: Vec<u8>) -> Answer<'_, mpsc::Receiver<Vec<u8>>>;
 
-    /// What is asked of all hosts from now on.
+    /// The requests to all hosts from now on.
     fn host_requests(&self) -> Answer<'_, mpsc::Receiver<HostRequest>>;
 
     /// A number that was never returned before, on any host.
     fn next_number(&self) -> Answer<'_, u32>;
 
-    /// Keeps a value in place of the one that this host has got or put last. If another host has put one
-    /// since, it is refused, and the next one is not.
+    /// Replaces the value that this host has last read or put. If another host has put a value since, this is refused,
+    /// and the next call is not.
     fn put(&self, key: Key, value: Vec<u8>) -> Answer<'_, ()>;
 
     /// Keeps a value if there is none.
@@ -62,11 +62,11 @@ pub(crate) trait Bus: Send + Sync {
     /// Removes the value of a key.
     fn remove(&self, key: Key) -> Answer<'_, ()>;
 
-    /// The records of all rooms, then those that change: `None` for a room that is closed.
+    /// The records of all rooms, then their changes: `None` for a room that is closed.
     fn watch(&self) -> Answer<'_, mpsc::Receiver<(RoomId, Option<Vec<u8>>)>>;
 }
 
-/// What is asked of all hosts.
+/// A request to all hosts.
 #[derive(Debug)]
 pub(crate) struct HostRequest {
     pub(crate) bytes: Vec<u8>,
@@ -77,12 +77,12 @@ pub(crate) struct HostRequest {
 /// The answer of a bus, which comes in bounded time.
 pub(crate) type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, BusFault>> + Send + 'a>>;
 
-/// Why a bus has not done something.
+/// The reason why a call failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BusFault {
     /// The log goes on after the message that was named, or the key has a value. Nothing was kept.
     Refused,
-    /// There is no answer. What was to be kept may be kept or not, even later.
+    /// There is no answer. The value may be kept or not, even later.
     Unknown,
 }
 

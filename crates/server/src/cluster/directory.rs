@@ -6,45 +6,47 @@
 //! - Every host knows the record of every room. The number of a room is never used again. A room takes no steps
 //!   until somebody enters it.
 //! - A standing room is made by the first host that has it in its configuration.
-//! - A record that says that the room runs, and that has not changed for [`ABANDONED`], is of a room that has lost
-//!   its host. Any other host then runs the room until it is empty.
-
-mod announcing;
-mod places;
-mod standing;
+//!   A host lists the standing rooms of its own configuration, and others while somebody is in them. Their records stay:
+//!   another host may have them in its configuration.
+//! - If the record of a running room has not changed for [`ABANDONED`], the room has lost its host. Any other host then
+//!   runs the room until it is empty.
+//! - The bus has the room and the member of each player with a key, so that any host finds them again. The entry is put
+//!   when the player joins, and removed when they leave; otherwise the room alone ends a member. So the entry may be out
+//!   of date, and the room decides.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, interval, sleep, timeout};
 
-pub(crate) use self::places::Entrant;
-use super::HostContext;
 use super::bus::{BusFault, Key};
-use super::record::Record;
-use super::replica::{Beginning, JoinRequest, Replica, Wish};
-use super::room_state::RoomState;
+use super::host::HostContext;
+use super::message::{MemberWish, Record, to_bytes, version};
+use super::replica::{Beginning, MemberRequest, Replica};
+use super::visits::{ANNOUNCED, Visits};
+use crate::accounts::AccountKey;
 use crate::lock::locked;
 use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 #[cfg(test)]
 use crate::rooms::room::RoomView;
 use crate::rooms::room::{Header, MemberId, Mode};
-use crate::rooms::sequencer::{Inbox, RoomInterface, Shown};
+use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomWish};
+use crate::sessions::line::Line;
+use cellcaster::rng;
 
 /// The time without a change after which the record of a running room says that its host is gone.
 const ABANDONED: Duration = Duration::from_secs(15);
-/// The time from one round of maintenance to the next.
+/// The time between two rounds of maintenance.
 const MAINTENANCE_PERIOD: Duration = Duration::from_secs(5);
-/// The most join requests that wait in one room.
-const MOST_JOIN_REQUESTS: usize = 64;
+/// The most requests to be a member that wait in one room.
+const MOST_REQUESTS: usize = 64;
 /// The time in which rooms are left to other hosts.
 const ENDING: Duration = Duration::from_secs(2);
-/// How often joining is tried if the replica ends at that moment.
+/// How often a request is tried if the replica ends at that moment.
 const TRIES: usize = 3;
 
 /// The rooms that a host shares. Clones are the same.
@@ -73,8 +75,15 @@ struct Known {
 #[derive(Clone)]
 struct RoomHandle {
     interface: Arc<RoomInterface>,
-    watchers: Arc<AtomicUsize>,
-    join_requests: mpsc::Sender<JoinRequest>,
+    requests: mpsc::Sender<MemberRequest>,
+}
+
+/// A player who joins a room.
+#[derive(Clone, Debug)]
+pub(crate) struct Entrant {
+    pub(crate) name: Line,
+    /// The key of their account, with which they may return; `None` for a guest.
+    pub(crate) key: Option<AccountKey>,
 }
 
 impl SharedRooms {
@@ -110,7 +119,7 @@ impl SharedRooms {
         let context = &self.0.context;
         let header = self.header(wish).ok_or(RoomRefusal::NoLevel)?;
         let id = RoomId(context.bus.next_number().await.map_err(not_now)?);
-        let record = Record::new(header, false).to_bytes();
+        let record = to_bytes(&Record::new(header, false));
         context.bus.create(Key::Room(id), record).await.map_err(not_now)?;
         self.join(id, visitor).await
     }
@@ -127,26 +136,87 @@ impl SharedRooms {
     /// Watches a room.
     pub(crate) async fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
         let handle = self.handle(id).await?;
-        if handle.watchers.fetch_add(1, Ordering::AcqRel) >= self.0.rooms.limits().most_watchers {
-            handle.watchers.fetch_sub(1, Ordering::AcqRel);
-            return Err(RoomRefusal::Full);
-        }
-        Ok(Place::watcher(id, handle.interface, handle.watchers, self.0.rooms.clone()))
+        self.0.rooms.place_to_watch(id, handle.interface)
     }
 
-    /// Replaces what the host allows.
+    pub(crate) fn context(&self) -> &HostContext {
+        &self.0.context
+    }
+
+    /// The visits of this host, which are counted together with the visits of all hosts.
+    pub(crate) fn visits(&self) -> &Visits {
+        &self.0.context.visits
+    }
+
+    /// Announces this host, again and again.
+    async fn announce(self) {
+        let mut periods = interval(ANNOUNCED);
+        while !*self.0.context.ending.borrow() {
+            periods.tick().await;
+            self.visits().announce(self.0.context.visitors.count());
+        }
+    }
+
+    async fn join(&self, id: RoomId, entrant: &Entrant) -> Result<Place, RoomRefusal> {
+        let Entrant { name, key } = entrant;
+        let wish = MemberWish::Join { name: name.clone(), is_kept: key.is_some() };
+        let place = self.be_member(id, wish).await?;
+        if let Some((key, member)) = key.zip(place.member_id()) {
+            self.note_place(key, id, member).await;
+        }
+        Ok(place)
+    }
+
+    /// The room and the member in which a player's last host may have left them.
+    pub(crate) async fn place_of(&self, key: AccountKey) -> Option<(RoomId, MemberId)> {
+        let bytes = self.0.context.bus.get(Key::Place(key)).await.ok()??;
+        let (id, member) = str::from_utf8(&bytes).ok()?.split_once(' ')?;
+        Some((RoomId(id.parse().ok()?), MemberId::parse(member)?))
+    }
+
+    /// Takes a player back to the room and the member.
+    pub(crate) async fn resume(
+        &self,
+        key: AccountKey,
+        (id, member): (RoomId, MemberId),
+    ) -> Result<Place, RoomRefusal> {
+        let place = self.be_member(id, MemberWish::Return(member)).await;
+        if matches!(place, Err(RoomRefusal::Gone | RoomRefusal::NoLevel)) {
+            self.forget_place(key).await;
+        }
+        place
+    }
+
+    /// Forgets the place of a player who has left.
+    pub(crate) async fn forget_place(&self, key: AccountKey) {
+        // Otherwise the room says later that they have left.
+        _ = self.0.context.bus.remove(Key::Place(key)).await;
+    }
+
+    async fn note_place(&self, key: AccountKey, id: RoomId, member: MemberId) {
+        let bus = &self.0.context.bus;
+        let text = format!("{id} {member}");
+        // The first call is refused if another host has put the last entry. Without an entry, they cannot return.
+        for _ in 0..2 {
+            if bus.put(Key::Place(key), text.clone().into_bytes()).await != Err(BusFault::Refused) {
+                return;
+            }
+        }
+    }
+
+    /// Replaces the limits of the host.
     pub(crate) fn set_limits(&self, mut limits: RoomLimits) {
         let standing = std::mem::take(&mut limits.standing);
         locked(&self.0.standing, |it| *it = standing);
         self.0.rooms.set_limits(limits);
     }
 
-    /// Hands all rooms over to the other hosts, of which this one is none any more.
+    /// Hands all rooms over to the other hosts, and leaves the cluster.
     pub(crate) async fn end(&self) {
         self.0.context.ending.send_replace(true);
         let all_ended = async {
             for handle in self.0.replicas.lock().await.values() {
-                handle.join_requests.closed().await;
+                handle.requests.closed().await;
             }
             self.visits().leave().await;
         };
@@ -157,17 +227,17 @@ impl SharedRooms {
     #[cfg(test)]
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
         let replicas = self.0.replicas.try_lock().ok()?;
-        let handle = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed())?;
+        let handle = replicas.get(&id).filter(|handle| !handle.requests.is_closed())?;
         handle.interface.shown.view()
     }
 
-    /// Becomes the member of a room that `wish` says.
-    async fn be_member(&self, id: RoomId, wish: Wish) -> Result<Place, RoomRefusal> {
+    /// Becomes a member of a room.
+    async fn be_member(&self, id: RoomId, wish: MemberWish) -> Result<Place, RoomRefusal> {
         for _ in 0..TRIES {
             let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            let request = JoinRequest { wish: wish.clone(), reply };
-            if handle.join_requests.send(request).await.is_err() {
+            let request = MemberRequest { wish: wish.clone(), reply };
+            if handle.requests.send(request).await.is_err() {
                 continue;
             }
             if let Ok(answer) = answer.await {
@@ -184,36 +254,16 @@ impl SharedRooms {
             return Err(RoomRefusal::NotNow);
         }
         let mut replicas = replicas.lock().await;
-        if let Some(handle) = replicas.get(&id).filter(|handle| !handle.join_requests.is_closed()) {
+        if let Some(handle) = replicas.get(&id).filter(|handle| !handle.requests.is_closed()) {
             return Ok(handle.clone());
         }
         let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
         let (state, record) = context.load_state(id).await?;
-        let (join_requests, receiver) = mpsc::channel(MOST_JOIN_REQUESTS);
-        let (watchers, room) = (Arc::<AtomicUsize>::default(), state.room());
-        let closes_after = match room.header().mode {
-            Mode::Alone => Some(Duration::ZERO),
-            _ => (!record.stands).then(|| self.0.rooms.limits().closes_after),
-        };
-        let interface = Arc::new(RoomInterface {
-            inbox: Inbox::new(room.header().mode, room.next_member()),
-            shown: Shown::new(room.view()),
-            closes_after: watch::Sender::new(closes_after),
-        });
-        let handle = RoomHandle {
-            interface: Arc::clone(&interface),
-            watchers: Arc::clone(&watchers),
-            join_requests,
-        };
-        let beginning = Beginning {
-            id,
-            record,
-            interface,
-            watchers,
-            state,
-            broadcasts,
-            join_requests: receiver,
-        };
+        let (requests, receiver) = mpsc::channel(MOST_REQUESTS);
+        let closes_after = self.0.rooms.limits().closes_after;
+        let interface = RoomInterface::new(state.room(), record.stands, closes_after);
+        let handle = RoomHandle { interface: Arc::clone(&interface), requests };
+        let beginning = Beginning { id, record, interface, state, broadcasts, requests: receiver };
         tokio::spawn(Replica::new(Arc::clone(context), beginning).run());
         replicas.insert(id, handle.clone());
         Ok(handle)
@@ -235,8 +285,8 @@ impl SharedRooms {
     }
 
     fn note(&self, id: RoomId, bytes: Option<&[u8]>) {
-        // A record that cannot be read is of a room of another version, which is none for this host.
-        let record = bytes.and_then(Record::parse);
+        // A record that cannot be read is of a room of another version, which does not exist for this host.
+        let record = bytes.and_then(|bytes| Record::parse(bytes).ok());
         let now = Instant::now();
         locked(&self.0.records, |records| match record {
             Some(record) => _ = records.insert(id, Known { record, since: now }),
@@ -255,12 +305,84 @@ impl SharedRooms {
                 return;
             }
             self.make_standing().await;
-            self.0.replicas.lock().await.retain(|_, handle| !handle.join_requests.is_closed());
+            self.0.replicas.lock().await.retain(|_, handle| !handle.requests.is_closed());
             for id in self.abandoned() {
                 if let Err(refusal) = self.handle(id).await {
                     tracing::warn!(room = %id, "a room has no host: {refusal}");
                 }
             }
+        }
+    }
+
+    /// Makes the standing rooms that are missing, and notes the ones of the configuration.
+    async fn make_standing(&self) {
+        let standing = locked(&self.0.standing, |standing| standing.clone());
+        let (mut own, mut is_known) = (BTreeSet::new(), true);
+        for (index, wish) in standing.iter().enumerate() {
+            let number = standing[..index].iter().filter(|other| *other == wish).count();
+            match self.header(wish) {
+                Some(header) => match self.make_standing_room(number, header).await {
+                    Ok(id) => own.extend(id),
+                    Err(_) => is_known = false,
+                },
+                None => {
+                    tracing::error!(level = wish.level, "no standing room: there is no such level");
+                }
+            }
+        }
+        locked(&self.0.own_standing, |known| {
+            if is_known {
+                known.clear();
+            }
+            known.append(&mut own);
+        });
+        self.show();
+    }
+
+    /// Shows lobbies the rooms.
+    fn show(&self) {
+        // Under the lock, so that an older list never replaces a newer one.
+        locked(&self.0.records, |records| {
+            let own = locked(&self.0.own_standing, |own| own.clone());
+            let summaries = records.iter().filter_map(|(id, known)| {
+                let summary = known.record.summary(*id);
+                let is_listed =
+                    !known.record.stands || own.contains(id) || !summary.members.is_empty();
+                is_listed.then_some(summary)
+            });
+            self.0.rooms.show_shared(summaries.collect());
+        });
+    }
+
+    /// Makes a room, if it is missing; returns its number.
+    async fn make_standing_room(
+        &self,
+        number: usize,
+        header: Header,
+    ) -> Result<Option<RoomId>, BusFault> {
+        let bus = &self.0.context.bus;
+        // Rooms of another version do not exist for this host.
+        let Header { level, mode, difficulty, .. } = &header;
+        let text = format!("{} {level} {} {}", version(), mode.name(), difficulty.name());
+        let hash = rng::hash(number as u64, text.bytes().map(u64::from));
+        let key = Key::Standing(format!("{hash:016x}"));
+        if bus.get(key.clone()).await?.is_none() {
+            let own = bus.next_number().await?;
+            match bus.create(key.clone(), own.to_string().into_bytes()).await {
+                // Another host was faster.
+                Ok(()) | Err(BusFault::Refused) => {}
+                Err(fault) => return Err(fault),
+            }
+        }
+        let kept = bus.get(key).await?.unwrap_or_default();
+        let kept = str::from_utf8(&kept).ok().and_then(|text| text.parse().ok());
+        let Some(id) = kept.map(RoomId) else { return Ok(None) };
+        if locked(&self.0.records, |records| records.contains_key(&id)) {
+            return Ok(Some(id));
+        }
+        match bus.create(Key::Room(id), to_bytes(&Record::new(header, true))).await {
+            Ok(()) | Err(BusFault::Refused) => Ok(Some(id)),
+            Err(fault) => Err(fault),
         }
     }
 
@@ -271,7 +393,7 @@ impl SharedRooms {
         let is_abandoned = |known: &Known| {
             known.record.is_running
                 && now.duration_since(known.since) >= ABANDONED
-                && catalog.world(known.record.level()).is_some()
+                && catalog.world(&known.record.level).is_some()
         };
         locked(&self.0.records, |records| {
             let abandoned = records.iter().filter(|(_, known)| is_abandoned(known));
@@ -283,8 +405,8 @@ impl SharedRooms {
     fn header(&self, wish: &RoomWish) -> Option<Header> {
         let catalog = &self.0.context.catalog;
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
-        let header = Header::new(level, wish.mode, wish.difficulty, self.0.context.chance());
-        RoomState::new(catalog, header.clone()).map(|_| header)
+        catalog.world(level)?;
+        Some(Header::new(level, wish.mode, wish.difficulty, self.0.context.chance()))
     }
 }
 

@@ -5,13 +5,11 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::log_message::LogMessage;
-use super::peer_message::PeerMessage;
-use super::record::Record;
+use super::message::{LogMessage, PeerMessage, Record, reader, to_bytes, version};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::{Leases, MemoryLeases};
-use crate::rooms::room::{Catalog, Header, Mode};
+use crate::rooms::room::{Catalog, Entry, Header, Mode};
 use cellcaster::world::Difficulty;
 
 /// Read once: it takes longer than most inputs.
@@ -40,9 +38,9 @@ impl SharedRoom {
         Self::of(Record::new(header, false)).expect("the level is built in")
     }
 
-    /// The room of a record; `None` if the bytes are none, or of an unknown level.
+    /// The room of a record; `None` if the bytes are no record, or one of an unknown level.
     pub fn of_record(bytes: &[u8]) -> Option<Self> {
-        Self::of(Record::parse(bytes)?)
+        Self::of(Record::parse(&versioned(bytes)).ok()?)
     }
 
     fn of(record: Record) -> Option<Self> {
@@ -55,46 +53,49 @@ impl SharedRoom {
         Self { state, sequencer: None, record, leases, now }
     }
 
-    /// The room of its own checkpoint, of which the first line is another one.
+    /// The room of its own checkpoint, with another head.
     ///
     /// # Errors
     /// Why it is refused.
     ///
     /// # Panics
     /// If the restored room has a checkpoint that is refused.
-    pub fn restored(self, line: &[u8]) -> Result<Self, String> {
+    pub fn restored(self, head: &[u8]) -> Result<Self, String> {
         let bytes = self.state.checkpoint();
-        let end = bytes.iter().position(|&byte| byte == b'\n').expect("it has a first line");
-        let state = RoomState::restore(&CATALOG, &[line, &bytes[end..]].concat())?;
+        let mut input = reader(&bytes).expect("it has the versions");
+        let _numbers: (u64, u64, u64) = input.read().expect("it has a head");
+        let state = RoomState::restore(&CATALOG, &[&versioned(head), input.rest()].concat())?;
         let again = RoomState::restore(&CATALOG, &state.checkpoint());
         assert!(again.is_ok(), "a checkpoint of a restored room");
         Ok(Self::with(state, self.record))
     }
 
-    /// A message of the log, as it is.
+    /// A message of the log, without the versions.
     pub fn read(&mut self, bytes: &[u8]) {
-        let Ok(message) = LogMessage::parse(bytes) else { return };
-        assert_eq!(LogMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        let Ok(message) = LogMessage::parse(&versioned(bytes)) else { return };
+        assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
         self.apply(self.state.number() + 1, &message);
     }
 
     /// A message of another sequencer with these entries, and the numbers that the room expects.
     pub fn follow(&mut self, steps: u64, entries: &str) {
-        let text = LogMessage {
+        let message = LogMessage {
             epoch: self.state.epoch(),
             last: self.state.number(),
             tick: self.state.tick(),
             steps,
             check: None,
-            entries: Vec::new(),
+            entries: entries.lines().filter_map(Entry::parse).collect(),
         };
-        self.read(&[&text.to_bytes()[..], entries.as_bytes()].concat());
+        if LogMessage::parse(&to_bytes(&message)).as_ref() == Ok(&message) {
+            self.apply(self.state.number() + 1, &message);
+        }
     }
 
-    /// A broadcast.
+    /// A broadcast, without the versions.
     pub fn hear(&mut self, bytes: &[u8]) {
-        let Ok(message) = PeerMessage::parse(bytes) else { return };
-        assert_eq!(PeerMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        let Ok(message) = PeerMessage::parse(&versioned(bytes)) else { return };
+        assert_eq!(PeerMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
         let now = self.now;
         let sequencer = self.sequencer.as_mut();
         match message {
@@ -107,16 +108,10 @@ impl SharedRoom {
             PeerMessage::Claim(members) => {
                 sequencer.map(|it| it.claim(&members, now));
             }
-            PeerMessage::Join(token, is_kept, name) => {
-                sequencer.map(|it| it.request_join(token, &name, is_kept, now));
+            PeerMessage::Request(token, wish) => {
+                sequencer.map(|it| it.request(token, &wish, now));
             }
-            PeerMessage::Return(token, member) => {
-                sequencer.map(|it| it.request_return(token, member, now));
-            }
-            PeerMessage::Joined(..)
-            | PeerMessage::Full(_)
-            | PeerMessage::Taken(_)
-            | PeerMessage::Released => {}
+            PeerMessage::Joined(..) | PeerMessage::Refused(..) | PeerMessage::Released => {}
         }
     }
 
@@ -135,11 +130,11 @@ impl SharedRoom {
         let Some(sequencer) = &mut self.sequencer else { return };
         sequencer.set_unclaimed_away(self.now);
         let message = sequencer.next(&self.state, steps);
-        assert_eq!(LogMessage::parse(&message.to_bytes()).as_ref(), Ok(&message));
+        assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
         let number = self.state.number() + 1;
         self.state.apply(Some(number), &message);
         for answer in sequencer.note(&message, &self.state, self.now) {
-            assert_eq!(PeerMessage::parse(&answer.to_bytes()), Ok(answer));
+            assert_eq!(PeerMessage::parse(&to_bytes(&answer)), Ok(answer));
         }
     }
 
@@ -149,7 +144,7 @@ impl SharedRoom {
     /// If it does not.
     pub fn put(self) -> Self {
         let record = self.record.next(self.state.room(), self.sequencer.is_some());
-        assert_eq!(Record::parse(&record.to_bytes()).as_ref(), Some(&record));
+        assert_eq!(Record::parse(&to_bytes(&record)).as_ref(), Ok(&record));
         Self { record, ..self }
     }
 
@@ -161,4 +156,9 @@ impl SharedRoom {
             self.state.apply(Some(number), message);
         }
     }
+}
+
+/// `bytes` after the versions that all messages begin with.
+fn versioned(bytes: &[u8]) -> Vec<u8> {
+    [version().as_bytes(), b"\n", bytes].concat()
 }

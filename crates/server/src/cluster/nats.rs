@@ -3,8 +3,8 @@
 //! | what | where |
 //! |---|---|
 //! | logs | stream `CELLCASTER_LOG`, subject `cellcaster.log.ROOM` |
-//! | what is said in rooms | subject `cellcaster.peers.ROOM`, not kept |
-//! | what is asked of all hosts | subject `cellcaster.operator.1`, not kept; replies to an inbox |
+//! | broadcasts to rooms | subject `cellcaster.peers.ROOM`, not kept |
+//! | requests to all hosts | subject `cellcaster.operator.1`, not kept; replies to an inbox |
 //! | records, checkpoints, places | bucket `cellcaster`, keys `room.ROOM`, `checkpoint.ROOM`, `standing.HASH`, `place.KEY` |
 //! | numbers of rooms | stream `CELLCASTER_NUMBERS`: the number of its newest message |
 //!
@@ -13,10 +13,8 @@
 //! A call ends after [`PATIENCE`]. While there is no connection, it fails at once, so that nothing waits in
 //! memory that would be sent when it is out of date.
 
-mod names;
-mod subscription;
-
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -26,13 +24,11 @@ use async_nats::jetstream::kv::{CreateErrorKind, Operation, Store, UpdateErrorKi
 use async_nats::jetstream::message::PublishMessage;
 use async_nats::jetstream::stream::{self, DiscardPolicy, RawMessageErrorKind, Stream};
 use async_nats::jetstream::{self, Context};
-use async_nats::{Client, ConnectOptions, ServerAddr};
+use async_nats::{Client, ConnectOptions, Message, ServerAddr, Subscriber};
 use futures_util::StreamExt;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, oneshot};
 use tokio::time::timeout;
 
-use self::names::{BUCKET, NUMBERS, OPERATOR, ROOMS, key_name, log_subject, peers_subject};
-use self::subscription::{forward, host_request};
 use super::bus::{Answer, Bus, BusFault, HostRequest, Key};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
@@ -45,8 +41,14 @@ const FIRST_PATIENCE: Duration = Duration::from_secs(5);
 const PINGS: Duration = Duration::from_secs(2);
 /// The most messages of a room's log: some minutes without a checkpoint.
 const MOST_MESSAGES: i64 = 20_000;
-/// The most that was said in a room, or changed in the list of rooms, and waits. The rest is lost.
+/// The most broadcasts of a room, or changes in the list of rooms, that wait. The rest is lost.
 const MOST_QUEUED: usize = 1_024;
+
+const BUCKET: &str = "cellcaster";
+const NUMBERS: &str = "cellcaster.number";
+/// With the version of the format of requests.
+const OPERATOR: &str = "cellcaster.operator.1";
+const ROOMS: &str = "room.";
 
 /// A connection to NATS.
 pub(crate) struct NatsBus {
@@ -144,6 +146,14 @@ impl NatsBus {
         self.note(key, entry.as_ref().map_or(0, |entry| entry.revision));
         let entry = entry.filter(|entry| entry.operation == Operation::Put);
         Ok(entry.map(|entry| entry.value.to_vec()))
+    }
+
+    /// The messages on a subject from now on.
+    async fn subscription(&self, subject: String) -> Result<Subscriber, BusFault> {
+        let subscription = self.client.subscribe(subject).await.map_err(unknown)?;
+        // From now on, nothing is missed.
+        self.client.flush().await.map_err(unknown)?;
+        Ok(subscription)
     }
 }
 
@@ -292,4 +302,68 @@ impl Bus for NatsBus {
 
 fn unknown<E>(_: E) -> BusFault {
     BusFault::Unknown
+}
+
+/// Sends what `make` makes of the messages, as long as somebody receives it.
+fn forward<T: Send + 'static>(
+    mut subscription: Subscriber,
+    client: &Client,
+    make: fn(&Client, Message) -> T,
+) -> mpsc::Receiver<T> {
+    let (messages, receiver) = mpsc::channel(MOST_QUEUED);
+    let client = client.clone();
+    tokio::spawn(async move {
+        loop {
+            tokio::select! {
+                () = messages.closed() => return,
+                message = subscription.next() => match message {
+                    // The server has sent it, such as that nobody was asked.
+                    Some(message) if message.status.is_some() => {}
+                    Some(message) => _ = messages.try_send(make(&client, message)),
+                    None => return,
+                }
+            }
+        }
+    });
+    receiver
+}
+
+/// A request, whose answer is sent back.
+fn host_request(client: &Client, message: Message) -> HostRequest {
+    let (reply, answer) = oneshot::channel::<Vec<u8>>();
+    if let Some(inbox) = message.reply {
+        let client = client.clone();
+        tokio::spawn(async move {
+            if let Ok(answer) = answer.await {
+                _ = client.publish(inbox, answer.into()).await;
+            }
+        });
+    }
+    HostRequest { bytes: message.payload.to_vec(), reply }
+}
+
+fn log_subject(room: RoomId) -> String {
+    format!("cellcaster.log.{room}")
+}
+
+fn peers_subject(room: RoomId) -> String {
+    format!("cellcaster.peers.{room}")
+}
+
+fn key_name(key: &Key) -> String {
+    match key {
+        Key::Room(room) => format!("{ROOMS}{room}"),
+        Key::Checkpoint(room) => format!("checkpoint.{room}"),
+        Key::Standing(hash) => format!("standing.{hash}"),
+        Key::Place(key) => format!("place.{}", hex(key.bytes())),
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
+        // Memory accepts every byte.
+        _ = write!(text, "{byte:02x}");
+    }
+    text
 }

@@ -1,14 +1,14 @@
-//! What an operator asks one host, asked of all hosts of the cluster.
+//! Requests of an operator to one host, which asks all hosts of the cluster.
 //!
 //! # Rules
 //!
-//! - A host asks the others over the bus, and waits until those that are there have answered, for [`PATIENCE`]
-//!   at most. Which ones are there, the database says.
+//! - A host asks the others over the bus, and waits until all present hosts have answered, for [`PATIENCE`] at most. The
+//!   database knows the present hosts.
 //! - A host answers for itself alone, with at most [`MOST_ROWS`] visitors, so that the answer is a message that
 //!   the bus takes.
 //! - Only some requests are asked of others: to end a host, its own operator has to ask.
 //!
-//! A host that every operator asks was refused: it would have to be found, and replaced.
+//! Rejected: one host that every operator asks. It would have to be found, and replaced.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -18,7 +18,7 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep, timeout, timeout_at};
 
 use super::directory::SharedRooms;
-use super::shown_name;
+use super::host::shown_name;
 use crate::accounts::HostRow;
 use crate::ops::admin::{AdminReply, AdminRequest, HostInfo};
 use cellcaster::app::store::name_in_map_key;
@@ -32,27 +32,27 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// The most visitors in the answer of a host. Each is some 250 bytes, and NATS takes a megabyte.
 const MOST_ROWS: usize = 2_000;
 
-/// What other hosts have answered.
+/// The answers of other hosts.
 #[derive(Debug, Default)]
 pub(crate) struct OtherHosts {
     /// The answers, by the names of the hosts.
     pub(crate) replies: BTreeMap<String, AdminReply>,
-    /// The hosts that are there and have not answered, by their names.
+    /// The present hosts that have not answered, by their names.
     pub(crate) silent: BTreeMap<String, HostInfo>,
     /// The seconds since each host has announced itself.
     pub(crate) seconds: BTreeMap<String, u64>,
-    /// What an operator has to know of the answers.
+    /// Remarks about the answers, for the operator.
     pub(crate) remarks: Vec<String>,
 }
 
-/// What a host asks the others.
+/// A host's question to the others.
 #[derive(Serialize, Deserialize)]
 struct Question {
     from: String,
     request: AdminRequest,
 }
 
-/// What a host answers.
+/// A host's answer.
 #[derive(Serialize, Deserialize)]
 struct HostAnswer {
     host: String,
@@ -65,7 +65,7 @@ impl SharedRooms {
         &self.context().notice.name
     }
 
-    /// What this host says of itself.
+    /// This host's information about itself.
     pub(crate) fn own_info(&self) -> HostInfo {
         let context = self.context();
         HostInfo {
@@ -110,8 +110,8 @@ impl SharedRooms {
         others
     }
 
-    /// How the maps of a host differ from those of this one: a sentence. `None` if they do not, or if the host did not
-    /// answer.
+    /// A sentence about the differences between the maps of a host and of this host. `None` if there are none, or if the
+    /// host did not answer.
     pub(crate) fn map_difference(&self, host: &HostInfo) -> Option<String> {
         let own = self.context().catalog.map_keys().collect();
         let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
@@ -120,7 +120,7 @@ impl SharedRooms {
         Some(format!("host {other} has other maps than host {own}: it {difference}"))
     }
 
-    /// Warns once of hosts whose maps differ from those of this one, which has just been started.
+    /// Warns of hosts with other maps, once this host has started.
     pub(crate) async fn compare_maps(self) {
         sleep(PAUSE).await;
         let others = self.ask_others(&AdminRequest::Hosts).await;
@@ -197,7 +197,7 @@ impl OtherHosts {
     }
 }
 
-/// What a host has said of itself, which says nothing of its rooms.
+/// A host's information about itself in the database, which does not tell its rooms.
 fn info(row: &HostRow) -> HostInfo {
     HostInfo {
         host: shown_name(&row.notice.name).to_owned(),
@@ -210,7 +210,8 @@ fn info(row: &HostRow) -> HostInfo {
     }
 }
 
-/// How the maps with the keys `theirs` differ from those with the keys `own`, after "it"; `None` if they do not.
+/// The differences of the maps with the keys `theirs` from the maps with the keys `own`, in words after "it"; `None` if
+/// there are none.
 fn difference(own: &BTreeSet<&str>, theirs: &BTreeSet<&str>) -> Option<String> {
     let names = |keys: &BTreeSet<&str>, others: &BTreeSet<&str>| -> BTreeSet<String> {
         let names = keys.difference(others).map(|key| name_in_map_key(key).unwrap_or(key));

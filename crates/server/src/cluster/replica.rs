@@ -7,50 +7,41 @@
 //! # Rules
 //!
 //! - A replica applies messages of the log, and nothing else.
-//! - A message has the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round
-//!   trip to the log; in a room of one process it waits for up to a step.
+//! - A message has the two steps of a [`MESSAGE_PERIOD`]. So a command waits for up to a period and for the round trip to
+//!   the log; in a room of one process it waits for up to a step.
 //! - A replica that receives nothing for [`SILENCE`] reads the log, and asks for the lease.
-//! - A member is in the room once the log has their joining.
-//! - Members whom no host claims for a while are away. A host that has ended claims nobody.
-//! - A member who was away has returned once the log has it, with the token of the request. A host that has another
-//!   token for a member lets them go.
+//! - A member is in the room once the log has their `join` entry.
+//! - Members who are not claimed for a while are away. A host that has ended claims nobody.
+//! - A member who was away has returned once the log has the token of the request. A host that has another token for a
+//!   member lets them go.
 //! - If the bus does not answer, a room goes on if all its members are on the host that has the lease; otherwise it
 //!   waits, or another host takes it over. Members are told. See [`alone`].
 
 mod alone;
-mod broadcasts;
-mod joining;
-mod progress;
-mod reading;
-mod returning;
+mod requests;
 mod sequencing;
-mod times;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep_until};
 
-use self::alone::Alone;
-use self::joining::PendingJoin;
-pub(crate) use self::joining::{JoinRequest, Wish};
-use self::progress::Progress;
-use self::returning::PendingReturn;
-use self::times::{SECOND, Times, is_due};
-use super::HostContext;
+use super::bus::BusFault;
+use super::host::HostContext;
 use super::lease_worker::Reply;
-use super::peer_message::PeerMessage;
-use super::record::Record;
-use super::room_state::RoomState;
+use super::message::{LogMessage, MemberWish, PeerMessage, Record, Token, to_bytes};
+use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::Lease;
+use crate::ops::logging::events;
 use crate::ops::metrics::RoomFigures;
 use crate::rooms::room::MemberId;
-use crate::rooms::sequencer::{RoomInterface, STEP};
-use crate::rooms::summary::RoomId;
+use crate::rooms::sequencer::{FAULT, RoomInterface, STEP, message as panic_message};
+use crate::rooms::summary::{RoomId, RoomRefusal};
 
 /// The time from one message of a sequencer to the next.
 pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
@@ -58,8 +49,12 @@ pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
 const STEPS: u32 = 2;
 /// The time without messages after which a replica reads the log.
 const SILENCE: Duration = Duration::from_secs(1);
+/// The time without steps after which members are told.
+const STANDSTILL: Duration = Duration::from_millis(1_500);
 /// The least time that a replica exists without members and watchers.
 const LEAST_STAY: Duration = Duration::from_secs(3);
+/// The time between two claims, and between two renewals of the lease.
+const SECOND: Duration = Duration::from_secs(1);
 
 /// A room on one host.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
@@ -68,18 +63,15 @@ pub(crate) struct Replica {
     context: Arc<HostContext>,
     interface: Arc<RoomInterface>,
     figures: Arc<RoomFigures>,
-    /// Who watches on this host.
-    watchers: Arc<AtomicUsize>,
     /// The newest record.
     record: Record,
     state: RoomState,
     sequencer: Option<ClusterSequencer>,
     broadcasts: mpsc::Receiver<Vec<u8>>,
-    join_requests: mpsc::Receiver<JoinRequest>,
-    pending_joins: Vec<PendingJoin>,
-    pending_returns: Vec<PendingReturn>,
+    requests: mpsc::Receiver<MemberRequest>,
+    pending: Vec<PendingRequest>,
     /// The tokens of this host's members who have returned.
-    tokens: BTreeMap<MemberId, u64>,
+    tokens: BTreeMap<MemberId, Token>,
     leasing: Leasing,
     times: Times,
     /// Whether it is unknown if the log has the message that was appended last.
@@ -90,11 +82,66 @@ pub(crate) struct Replica {
     is_diverged: bool,
     /// Whether the bus has answered when the log was last read without a sequencer.
     reaches_bus: bool,
-    /// What members were told last.
+    /// The progress that members were told last.
     told: Progress,
     /// Whether the record of the room is out of date.
     is_changed: bool,
     ending: watch::Receiver<bool>,
+}
+
+/// How the room goes on while the bus may not answer.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Progress {
+    Usual,
+    Waiting,
+    Alone,
+}
+
+impl Progress {
+    /// Shown to members when it begins.
+    const fn sentence(self) -> &'static str {
+        match self {
+            Self::Usual => "The hosts of this room reach each other again.",
+            Self::Waiting => "The hosts of this room do not reach each other; the game waits.",
+            Self::Alone => "Other hosts are out of reach; the game goes on alone.",
+        }
+    }
+}
+
+/// When a replica last did what it does from time to time.
+struct Times {
+    /// The room has taken steps, or was found to rest.
+    moved: Instant,
+    read: Option<Instant>,
+    restored: Option<Instant>,
+    claimed: Option<Instant>,
+    leased: Option<Instant>,
+    /// When the lease ends if it is not renewed, by this host's clock.
+    lease_ends: Option<Instant>,
+    kept: Option<Instant>,
+    published: Option<Instant>,
+    /// Somebody needed the replica.
+    needed: Instant,
+    /// Up to when the sequencer has taken steps.
+    stepped: Instant,
+}
+
+impl Times {
+    /// Nothing was done yet but the start.
+    fn new(now: Instant) -> Self {
+        Self {
+            moved: now,
+            read: None,
+            restored: None,
+            claimed: None,
+            leased: None,
+            lease_ends: None,
+            kept: None,
+            published: None,
+            needed: now,
+            stepped: now,
+        }
+    }
 }
 
 /// The calls to the leases that are not answered yet.
@@ -104,21 +151,48 @@ struct Leasing {
     renewing: Option<Reply<bool>>,
 }
 
+/// A visitor's request to be a member.
+pub(crate) struct MemberRequest {
+    pub(crate) wish: MemberWish,
+    pub(crate) reply: MemberReply,
+}
+
+/// The way of a member's number to the visitor.
+type MemberReply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
+
+/// A request that is neither granted nor refused.
+struct PendingRequest {
+    token: Token,
+    wish: MemberWish,
+    /// `None` for a member of this host, who was away since the host was cut off.
+    reply: Option<MemberReply>,
+    since: Instant,
+    sent: Instant,
+}
+
+/// The messages that the log does not have yet.
+struct Alone {
+    since: Instant,
+    /// The log may have the first one, which is not changed any more.
+    messages: VecDeque<LogMessage>,
+    /// Whether the bus answers again.
+    probe: Option<JoinHandle<bool>>,
+    probed: Instant,
+}
+
 /// The parts of a new replica.
 pub(crate) struct Beginning {
     pub(crate) id: RoomId,
     pub(crate) record: Record,
     pub(crate) interface: Arc<RoomInterface>,
-    pub(crate) watchers: Arc<AtomicUsize>,
     pub(crate) state: RoomState,
     pub(crate) broadcasts: mpsc::Receiver<Vec<u8>>,
-    pub(crate) join_requests: mpsc::Receiver<JoinRequest>,
+    pub(crate) requests: mpsc::Receiver<MemberRequest>,
 }
 
 impl Replica {
     pub(crate) fn new(context: Arc<HostContext>, beginning: Beginning) -> Self {
-        let Beginning { id, record, interface, watchers, state, broadcasts, join_requests } =
-            beginning;
+        let Beginning { id, record, interface, state, broadcasts, requests } = beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
         let figures = context.load.metrics().each_room.add(id.0);
@@ -127,14 +201,12 @@ impl Replica {
             context,
             interface,
             figures,
-            watchers,
             record,
             state,
             sequencer: None,
             broadcasts,
-            join_requests,
-            pending_joins: Vec::new(),
-            pending_returns: Vec::new(),
+            requests,
+            pending: Vec::new(),
             tokens: BTreeMap::new(),
             leasing: Leasing::default(),
             times,
@@ -150,7 +222,7 @@ impl Replica {
 
     /// Runs the room on this host, as long as it is needed here.
     pub(crate) async fn run(mut self) {
-        // What was appended before it subscribed.
+        // Messages that were appended before it subscribed.
         self.reaches_bus = self.read().await.is_ok();
         let mut next = Instant::now();
         loop {
@@ -164,7 +236,7 @@ impl Replica {
                     }
                 }
                 Some(bytes) = self.broadcasts.recv() => self.receive_broadcast(&bytes).await,
-                Some(request) = self.join_requests.recv() => self.receive_join(request).await,
+                Some(request) = self.requests.recv() => self.receive_request(request).await,
             }
         }
     }
@@ -172,8 +244,7 @@ impl Replica {
     async fn run_period(&mut self) {
         let now = Instant::now();
         self.send_commands().await;
-        self.repeat_joins(now).await;
-        self.repeat_returns(now).await;
+        self.repeat_requests(now).await;
         self.claim(now).await;
         self.keep_lease(now).await;
         if self.sequencer.is_some() {
@@ -184,7 +255,7 @@ impl Replica {
         }
         self.tell(now);
         self.figures.members.set(self.state.room().len() as i64);
-        self.figures.watchers.set(self.watchers.load(Ordering::Acquire) as i64);
+        self.figures.watchers.set(self.interface.watchers() as i64);
         self.figures.writes.set(self.sequencer.is_some().into());
     }
 
@@ -222,6 +293,187 @@ impl Replica {
         }
     }
 
+    /// Handles a broadcast.
+    async fn receive_broadcast(&mut self, bytes: &[u8]) {
+        let now = Instant::now();
+        let message = match PeerMessage::parse(bytes) {
+            Ok(message) => message,
+            Err(fault) => {
+                return tracing::warn!(room = %self.id, "a broadcast that cannot be read: {fault}");
+            }
+        };
+        match (message, &mut self.sequencer) {
+            (PeerMessage::Appended(number, message), _) => {
+                if !self.take(number, &message).await {
+                    _ = self.read().await;
+                }
+            }
+            (PeerMessage::Commands(commands), Some(sequencer)) => {
+                for (member, command) in commands {
+                    sequencer.command(member, command, now);
+                }
+            }
+            (PeerMessage::Claim(members), Some(sequencer)) => {
+                let answers = sequencer.claim(&members, now);
+                self.send_answers(answers).await;
+            }
+            (PeerMessage::Request(token, wish), Some(sequencer)) => {
+                if let Some(answer) = sequencer.request(token, &wish, now) {
+                    self.broadcast(&answer).await;
+                }
+            }
+            // Nobody has to wait until the room is silent.
+            (PeerMessage::Released, None) => self.times.leased = None,
+            (answer @ (PeerMessage::Joined(..) | PeerMessage::Refused(..)), _) => {
+                self.answer(&answer);
+            }
+            (PeerMessage::Commands(_) | PeerMessage::Claim(_) | PeerMessage::Request(..), None)
+            | (PeerMessage::Released, Some(_)) => {}
+        }
+    }
+
+    /// Sends a message to the other hosts. A lost message is sent again, or read in the log.
+    async fn broadcast(&mut self, message: &PeerMessage) {
+        _ = self.context.bus.broadcast(self.id, to_bytes(message)).await;
+    }
+
+    /// Passes on answers of the sequencer, on all hosts.
+    async fn send_answers(&mut self, answers: Vec<PeerMessage>) {
+        for answer in answers {
+            self.answer(&answer);
+            self.broadcast(&answer).await;
+        }
+    }
+
+    /// Passes on an answer of the sequencer, if the request was made here.
+    fn answer(&mut self, answer: &PeerMessage) {
+        match *answer {
+            PeerMessage::Joined(token, member, color) => self.admit(token, member, color),
+            PeerMessage::Refused(token, refusal) => self.refuse_request(token, refusal),
+            _ => {}
+        }
+    }
+
+    /// Takes a message of the log, and answers the requests that it fulfils. Returns whether the state had the messages
+    /// before it.
+    async fn take(&mut self, number: u64, message: &LogMessage) -> bool {
+        if self.is_ahead_of(message) {
+            return true;
+        }
+        if self.is_diverged {
+            return false;
+        }
+        match self.state.position(number, message) {
+            Position::Known => return true,
+            Position::Later => return false,
+            Position::Next => {
+                if message.check.is_some() && self.sequencer.is_none() {
+                    self.context.load.metrics().checks_equal.count();
+                    self.figures.checks_equal.count();
+                }
+            }
+            Position::Differs => {
+                let (room, tick) = (self.id, message.tick);
+                tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
+                self.context.load.metrics().checks_different.count();
+                self.figures.checks_different.count();
+                _ = self.restore().await;
+                return false;
+            }
+        }
+        self.apply(Some(number), message);
+        self.times.moved = Instant::now();
+        let sequencer = self.sequencer.take_if(|sequencer| sequencer.epoch() >= message.epoch);
+        let Some(mut sequencer) = sequencer else {
+            // Another host has the room now.
+            self.sequencer = None;
+            return true;
+        };
+        let answers = sequencer.note(message, &self.state, self.times.moved);
+        self.sequencer = Some(sequencer);
+        self.send_answers(answers).await;
+        true
+    }
+
+    /// Applies a message, and shows the room after it. A fault ends the room on this host.
+    fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
+        let Self { state, interface, .. } = self;
+        let apply = || {
+            interface.shown.replace(|| {
+                let changes = state.apply(number, message);
+                (state.room().view(), changes)
+            })
+        };
+        let changes = match catch_unwind(AssertUnwindSafe(apply)) {
+            Ok(changes) => changes,
+            Err(panic) => {
+                events::room_failed(self.id.0, panic_message(&*panic));
+                return self.interface.close(FAULT);
+            }
+        };
+        self.context.load.metrics().entries.add(changes.entries);
+        self.figures.entries.add(changes.entries);
+        self.figures.steps.add(message.steps);
+        if let Some(run) = changes.finished {
+            self.interface.inbox.finish(run);
+        }
+        self.is_changed |= changes.summary;
+    }
+
+    /// Reads the log to its end.
+    async fn read(&mut self) -> Result<(), BusFault> {
+        self.times.read = Some(Instant::now());
+        if self.is_diverged {
+            self.restore().await?;
+        }
+        loop {
+            let next = self.context.bus.read(self.id, self.state.number()).await?;
+            let Some((number, bytes)) = next else { return Ok(()) };
+            let Ok(message) = LogMessage::parse(&bytes) else {
+                tracing::error!(room = %self.id, number, "a message of a room cannot be read");
+                self.interface.close("A host of another version has this room now.");
+                return Err(BusFault::Unknown);
+            };
+            if !self.take(number, &message).await {
+                // The messages before it were dropped, since a checkpoint has their effects.
+                self.restore().await?;
+            }
+        }
+    }
+
+    /// Replaces the state by the newest checkpoint.
+    async fn restore(&mut self) -> Result<(), BusFault> {
+        let now = Instant::now();
+        if !is_due(self.times.restored, now, SECOND) {
+            return Err(BusFault::Unknown);
+        }
+        self.times.restored = Some(now);
+        let loaded = self.context.load_state(self.id).await;
+        let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
+        self.interface.shown.replace(|| (state.room().view(), ()));
+        self.state = state;
+        self.is_diverged = false;
+        // Its lease may have ended long ago.
+        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch());
+        self.is_changed = true;
+        Ok(())
+    }
+
+    /// Tells members when the room begins to wait, goes on alone, or goes on as usual.
+    fn tell(&mut self, now: Instant) {
+        let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
+        let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
+        let progress = match &self.alone {
+            _ if waits => Progress::Waiting,
+            Some(_) => Progress::Alone,
+            None => Progress::Usual,
+        };
+        if progress != self.told {
+            self.told = progress;
+            self.context.visitors.say_in(&self.id.place(), progress.sentence());
+        }
+    }
+
     fn is_silent(&self, now: Instant) -> bool {
         now.duration_since(self.times.moved) >= SILENCE
     }
@@ -234,10 +486,9 @@ impl Replica {
             .as_ref()
             .is_some_and(|sequencer| self.state.room().len() > 0 || !sequencer.is_empty());
         let is_needed = has_work
-            || !self.pending_joins.is_empty()
-            || !self.pending_returns.is_empty()
+            || !self.pending.is_empty()
             || !self.interface.inbox.seated().is_empty()
-            || self.watchers.load(Ordering::Acquire) > 0;
+            || self.interface.watchers() > 0;
         if is_needed {
             self.times.needed = now;
         }
@@ -252,4 +503,9 @@ impl Drop for Replica {
     fn drop(&mut self) {
         self.context.load.metrics().each_room.remove(self.id.0, &self.figures);
     }
+}
+
+/// Whether `pause` has passed since `last`.
+fn is_due(last: Option<Instant>, now: Instant, pause: Duration) -> bool {
+    last.is_none_or(|last| now.duration_since(last) >= pause)
 }

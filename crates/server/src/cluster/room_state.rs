@@ -12,13 +12,13 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
-use super::log_message::{Check, LogMessage, number};
-use crate::rooms::room::{Catalog, Entry, Header, Queue, Room};
+use super::message::{Check, LogMessage, reader, to_bytes};
+use crate::rooms::room::{Catalog, Entry, Header, Room};
 use crate::rooms::sequencer::{Changes, RoundLog};
 use cellcaster::game::STEPS_PER_SECOND;
-use cellcaster::game::stored::MOST_BYTES;
+use cellcaster::game::stored::{MOST_BYTES, Unrestorable};
 
-/// The steps from one checksum to the next.
+/// The steps between two checksums.
 const CHECKED: u64 = STEPS_PER_SECOND as u64;
 /// The checksums that are remembered.
 const MOST_SUMS: usize = 8;
@@ -33,7 +33,7 @@ pub(crate) struct RoomState {
     tick: u64,
     /// The epoch of the newest message.
     epoch: u64,
-    /// The newest last.
+    /// Oldest first.
     sums: VecDeque<Check>,
 }
 
@@ -53,11 +53,11 @@ pub(crate) enum Position {
 impl RoomState {
     /// A room that nobody has entered yet. `None` if the catalog has no such level.
     pub(crate) fn new(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
-        Some(Self::with(Room::new(catalog, header)?, [0; 3]))
+        Some(Self::with(Room::new(catalog, header)?, (0, 0, 0)))
     }
 
-    fn with(room: Room, [number, tick, epoch]: [u64; 3]) -> Self {
-        let log = RoundLog::new(Box::new(Queue::default()), &room);
+    fn with(room: Room, (number, tick, epoch): (u64, u64, u64)) -> Self {
+        let log = RoundLog::new(None, &room);
         Self { room, log, number, tick, epoch, sums: VecDeque::new() }
     }
 
@@ -102,13 +102,13 @@ impl RoomState {
         }
     }
 
-    /// Notes the number that the log has given to what was applied last.
+    /// Notes the number that the log has given to the message that was applied last.
     pub(crate) fn set_number(&mut self, number: u64) {
         self.number = number;
     }
 
-    /// Applies the next message, which has no number as long as the log does not have it. One of an older epoch
-    /// than the last changes nothing.
+    /// Applies the next message, which has no number as long as the log does not have it. A message of an older epoch
+    /// changes nothing.
     pub(crate) fn apply(&mut self, number: Option<u64>, message: &LogMessage) -> Changes {
         let mut all = Changes::default();
         self.number = number.unwrap_or(self.number);
@@ -139,8 +139,8 @@ impl RoomState {
 
     /// The whole state, compressed.
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
-        let head = format!("{} {} {}\n", self.number, self.tick, self.epoch);
-        let mut encoder = ZlibEncoder::new(head.into_bytes(), Compression::fast());
+        let head = to_bytes(&(self.number, self.tick, self.epoch));
+        let mut encoder = ZlibEncoder::new(head, Compression::fast());
         // Memory accepts every byte.
         _ = encoder.write_all(&self.room.checkpoint());
         encoder.finish().unwrap_or_default()
@@ -149,17 +149,15 @@ impl RoomState {
     /// The state of a checkpoint.
     ///
     /// # Errors
-    /// A sentence: the bytes are none, or of another version, or of a level that the catalog does not have.
+    /// A sentence: the bytes are damaged, of another version, or of a level that the catalog does not have.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
-        let damaged = || "the checkpoint is damaged".to_owned();
-        let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
-        let head = str::from_utf8(&bytes[..end]).map_err(|_| damaged())?;
-        let numbers: Option<Vec<u64>> = head.split(' ').map(number).collect();
-        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+        let sentence = |error: Unrestorable| error.to_string();
+        let mut input = reader(bytes).map_err(sentence)?;
+        let numbers = input.read().map_err(sentence)?;
         let mut room = Vec::new();
-        let mut decoder = ZlibDecoder::new(&bytes[end + 1..]).take(MOST_BYTES as u64 + 1);
-        decoder.read_to_end(&mut room).map_err(|_| damaged())?;
-        Ok(Self::with(Room::restore(catalog, &room)?, numbers.ok_or_else(damaged)?))
+        let mut decoder = ZlibDecoder::new(input.rest()).take(MOST_BYTES as u64 + 1);
+        decoder.read_to_end(&mut room).map_err(|_| "the checkpoint is damaged".to_owned())?;
+        Ok(Self::with(Room::restore(catalog, &room)?, numbers))
     }
 }
 
@@ -169,6 +167,7 @@ mod tests {
     use crate::rooms::room::{Command, MemberId, Mode};
     use crate::sessions::line::Line;
     use cellcaster::game::PlayerColor;
+    use cellcaster::game::stored::MOST_COUNT;
     use cellcaster::world::Difficulty;
 
     fn state() -> RoomState {
@@ -226,7 +225,7 @@ mod tests {
         let again = RoomState::restore(&catalog, &bytes).unwrap();
         assert_eq!((again.number(), again.tick(), again.epoch), (4, 2, 3));
         assert_eq!(again.room().checksum(), state.room().checksum());
-        for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", b"1 2\n", b"1 2 x\nabc"] {
+        for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", &to_bytes(&(1_u64, 2_u64))] {
             assert!(RoomState::restore(&catalog, damaged).is_err());
         }
     }
@@ -235,15 +234,17 @@ mod tests {
     fn numbers_that_no_room_reaches_are_refused() {
         let catalog = Arc::new(Catalog::builtin());
         let bytes = state().checkpoint();
-        let end = bytes.iter().position(|byte| *byte == b'\n').unwrap();
-        for (line, is_possible) in [
-            ("9007199254740991 9007199254740991 9007199254740991", true),
-            ("18446744073709551615 2 3", false),
-            ("4 18446744073709551615 3", false),
-            ("4 2 18446744073709551615", false),
+        let mut input = reader(&bytes).unwrap();
+        let _numbers: (u64, u64, u64) = input.read().unwrap();
+        for (numbers, is_possible) in [
+            ((MOST_COUNT - 1, MOST_COUNT - 1, MOST_COUNT - 1), true),
+            ((u64::MAX, 2, 3), false),
+            ((4, u64::MAX, 3), false),
+            ((4, 2, u64::MAX), false),
         ] {
-            let state = RoomState::restore(&catalog, &[line.as_bytes(), &bytes[end..]].concat());
-            assert_eq!(state.is_ok(), is_possible, "{line}");
+            let changed = [&to_bytes(&numbers), input.rest()].concat();
+            let state = RoomState::restore(&catalog, &changed);
+            assert_eq!(state.is_ok(), is_possible, "{numbers:?}");
             if let Ok(mut state) = state {
                 let next = message(&state, state.epoch() + 1, None);
                 state.apply(Some(state.number() + 1), &next);

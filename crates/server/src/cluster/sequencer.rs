@@ -1,31 +1,38 @@
 //! The sequencer of a room of a cluster: it orders the commands of the members on all hosts into messages.
 //!
-//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which
-//! has a seat for each member and the limits of a room in one process. A message that was sent to the log is kept,
-//! unchanged, until it is known whether the log has it: another one in its place could be the second with its
+//! Each [`Replica`](super::replica::Replica) sends the commands of its own members. They wait in an [`Inbox`], which has
+//! a seat for each member and the limits of a room in one process. A message that was sent to the log is kept,
+//! unchanged, until it is known whether the log has it: another message in its place could be the second one with its
 //! number.
-
-mod returning;
+//!
+//! Somebody may ask to return to a member, who may have a host:
+//!
+//! - A member who is away has no host.
+//! - A member who was not claimed for [`UNHEARD`] since the request has no host, almost certainly: the log does not show
+//!   yet that the host is gone. If there is a host nevertheless, it sees that the token is not its own, and lets the
+//!   member go.
+//! - A member who is claimed has a host: nobody takes the place of a member who plays.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
 use tokio::time::Instant;
 
-use self::returning::ReturnRequest;
-use super::log_message::LogMessage;
-use super::peer_message::PeerMessage;
+use super::message::{LogMessage, MemberWish, PeerMessage, Token};
 use super::room_state::RoomState;
 use crate::accounts::Lease;
 use crate::rooms::room::{Command, Entry, MemberId, Room};
 use crate::rooms::sequencer::Inbox;
+use crate::rooms::summary::RoomRefusal;
 use crate::sessions::line::Line;
 use cellcaster::game::PlayerColor;
 
-/// The time after which a member is away whom no host claims.
+/// How long a member may go unclaimed before they are marked away.
 const UNCLAIMED: Duration = Duration::from_secs(4);
-/// The most join requests that are remembered, with their answers.
-const MOST_ANSWERS: usize = 64;
+/// How long a member must go unclaimed before somebody else may return to them.
+const UNHEARD: Duration = Duration::from_millis(2_500);
+/// The most requests of each kind that are remembered, with their answers.
+const MOST_REQUESTS: usize = 64;
 
 /// The commands that wait, the members who are claimed, and the message that is being appended.
 pub(crate) struct ClusterSequencer {
@@ -33,15 +40,15 @@ pub(crate) struct ClusterSequencer {
     inbox: Inbox,
     /// When each member was claimed last.
     claimed: BTreeMap<MemberId, Instant>,
-    /// The members who are away, whom no host has to claim.
+    /// The members who are away, and need no claim.
     away: BTreeSet<MemberId>,
-    /// The requests to join, the newest last.
+    /// The requests to join, oldest first.
     joining: VecDeque<Joining>,
-    /// The requests to return, the newest last.
-    returning: VecDeque<ReturnRequest>,
+    /// The requests to return, oldest first.
+    returning: VecDeque<Returning>,
     /// Whether the log has the first message of the epoch.
     is_begun: bool,
-    /// Whether messages are applied that the log does not have yet. Whoever is let in must be in the log.
+    /// Whether messages are applied that the log does not have yet. A member who is let in must be in the log.
     is_alone: bool,
     /// The message that was sent, as long as it is unknown whether the log has it.
     sending: Option<LogMessage>,
@@ -51,12 +58,27 @@ pub(crate) struct ClusterSequencer {
 
 /// A request to join.
 struct Joining {
-    token: u64,
+    token: Token,
     member: MemberId,
-    /// Set once a message has them.
+    /// Set once a message has the new member.
     color: Option<PlayerColor>,
     /// Whether the log has that message.
     is_in: bool,
+}
+
+/// A request to return.
+struct Returning {
+    token: Token,
+    member: MemberId,
+    since: Instant,
+    decision: Decision,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Decision {
+    Open,
+    Granted,
+    Refused,
 }
 
 impl ClusterSequencer {
@@ -140,7 +162,7 @@ impl ClusterSequencer {
         self.answers()
     }
 
-    /// The answers to those who are in the log now.
+    /// The answers to requests to join that are in the log now.
     fn answers(&mut self) -> Vec<PeerMessage> {
         let mut answers = Vec::new();
         for joining in self.joining.iter_mut().filter(|joining| !joining.is_in) {
@@ -150,10 +172,22 @@ impl ClusterSequencer {
         answers
     }
 
-    /// Handles a request to join; returns the answer if it is known.
-    pub(crate) fn request_join(
+    /// Handles a request to be a member; returns the answer if it is known.
+    pub(crate) fn request(
         &mut self,
-        token: u64,
+        token: Token,
+        wish: &MemberWish,
+        now: Instant,
+    ) -> Option<PeerMessage> {
+        match wish {
+            MemberWish::Join { name, is_kept } => self.request_join(token, name, *is_kept, now),
+            MemberWish::Return(member) => self.request_return(token, *member, now),
+        }
+    }
+
+    fn request_join(
+        &mut self,
+        token: Token,
         name: &Line,
         is_kept: bool,
         now: Instant,
@@ -164,14 +198,46 @@ impl ClusterSequencer {
         if !self.is_begun || self.is_alone {
             return None;
         }
-        let Ok(member) = self.inbox.join(name) else { return Some(PeerMessage::Full(token)) };
+        let Ok(member) = self.inbox.join(name) else {
+            return Some(PeerMessage::Refused(token, RoomRefusal::Full));
+        };
         if is_kept {
             self.inbox.keep(member);
         }
         self.claimed.insert(member, now);
         self.joining.push_back(Joining { token, member, color: None, is_in: false });
-        if self.joining.len() > MOST_ANSWERS {
+        if self.joining.len() > MOST_REQUESTS {
             self.joining.pop_front();
+        }
+        None
+    }
+
+    fn request_return(
+        &mut self,
+        token: Token,
+        member: MemberId,
+        now: Instant,
+    ) -> Option<PeerMessage> {
+        if !self.is_begun || self.is_alone {
+            return None;
+        }
+        if let Some(known) = self.returning.iter().find(|it| it.token == token) {
+            match known.decision {
+                Decision::Refused => return Some(known.refusal()),
+                Decision::Open if now.duration_since(known.since) >= UNHEARD => {
+                    self.take_back(token, member, now);
+                }
+                Decision::Open | Decision::Granted => {}
+            }
+            return None;
+        }
+        let decision = Decision::Open;
+        self.returning.push_back(Returning { token, member, since: now, decision });
+        if self.returning.len() > MOST_REQUESTS {
+            self.returning.pop_front();
+        }
+        if self.away.contains(&member) {
+            self.take_back(token, member, now);
         }
         None
     }
@@ -181,20 +247,26 @@ impl ClusterSequencer {
         match command {
             Command::Leave => self.leave(member),
             Command::Away => self.set_away(member, now),
-            // What comes too often was refused on the member's own host.
+            // Commands that come too often were refused on the member's own host.
             command => _ = self.inbox.act(member, command),
         }
     }
 
-    /// Notes that a host has these members; returns the answers to the requests that are refused for it.
+    /// Notes that a host has these members. Requests to return to them are refused; returns the answers.
     pub(crate) fn claim(&mut self, members: &[MemberId], now: Instant) -> Vec<PeerMessage> {
         for member in members {
             self.claimed.entry(*member).and_modify(|time| *time = now);
         }
-        self.refuse_returns(members)
+        let is_refused =
+            |it: &&mut Returning| it.decision == Decision::Open && members.contains(&it.member);
+        let refused = self.returning.iter_mut().filter(is_refused).map(|request| {
+            request.decision = Decision::Refused;
+            request.refusal()
+        });
+        refused.collect()
     }
 
-    /// Members whom no host claims any more are away.
+    /// Marks members away who are not claimed any more.
     pub(crate) fn set_unclaimed_away(&mut self, now: Instant) {
         let is_lost = |time: &Instant| now.duration_since(*time) >= UNCLAIMED;
         let lost: Vec<MemberId> =
@@ -214,7 +286,7 @@ impl ClusterSequencer {
         self.sending.is_none() && !self.inbox.has_moves()
     }
 
-    /// Begins the epoch with the present members, each of whom is to be claimed within the usual time.
+    /// Begins the epoch with the present members, who must be claimed within the usual time.
     fn begin(&mut self, state: &RoomState, now: Instant) {
         let room = state.room();
         self.is_begun = true;
@@ -237,11 +309,26 @@ impl ClusterSequencer {
         if self.claimed.remove(&member).is_some() {
             self.away.insert(member);
             self.inbox.set_away(member);
-            self.take_back_if_requested(member, now);
+            let is_open = |it: &&Returning| it.decision == Decision::Open && it.member == member;
+            if let Some(token) = self.returning.iter().find(is_open).map(|request| request.token) {
+                self.take_back(token, member, now);
+            }
         }
     }
 
-    /// Forgets the members whom the room has removed itself: guests, and who was away for too long.
+    fn take_back(&mut self, token: Token, member: MemberId, now: Instant) {
+        let is_here = self.away.remove(&member) || self.claimed.contains_key(&member);
+        if !is_here {
+            return;
+        }
+        self.claimed.insert(member, now);
+        self.inbox.take_back(member, token.0);
+        for request in self.returning.iter_mut().filter(|request| request.token == token) {
+            request.decision = Decision::Granted;
+        }
+    }
+
+    /// Forgets the members that the room itself has removed: guests, and members who were away too long.
     fn forget_lost(&mut self, room: &Room) {
         for member in self.inbox.seated().into_iter().filter(|member| room.has_lost(*member)) {
             self.claimed.remove(&member);
@@ -276,5 +363,11 @@ impl Joining {
     fn answer(&self) -> Option<PeerMessage> {
         let color = self.color.filter(|_| self.is_in)?;
         Some(PeerMessage::Joined(self.token, self.member, color))
+    }
+}
+
+impl Returning {
+    fn refusal(&self) -> PeerMessage {
+        PeerMessage::Refused(self.token, RoomRefusal::Taken)
     }
 }

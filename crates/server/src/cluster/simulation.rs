@@ -20,7 +20,6 @@ mod bus;
 mod findings;
 mod operators;
 mod players;
-mod standing;
 mod world;
 
 use std::array;
@@ -34,11 +33,12 @@ use tokio::time::{Instant, sleep};
 
 use self::players::Player;
 use self::world::{Link, World, notice};
-use super::{Cluster, SharedRooms};
+use super::{Cluster, Entrant, SharedRooms};
 use crate::ops::metrics::Metrics;
-use crate::rooms::directory::{Logs, RoomLimits, Rooms};
-use crate::rooms::room::{Catalog, MemberId, Mode, Queue};
+use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
+use crate::rooms::room::{Catalog, MemberId, Mode};
 use crate::rooms::summary::{RoomId, RoomWish};
+use crate::sessions::line::Line;
 use crate::sessions::load::{Load, Worker};
 use crate::sessions::visitors::Visitors;
 use crate::simulation::{HALL, catalog};
@@ -51,6 +51,8 @@ const PLAYERS: usize = 5;
 const FAULTS: u64 = 12_000;
 /// The time without, after which nothing of them is left.
 const CALM: Duration = Duration::from_secs(25);
+/// Long enough for a configuration to be followed, and for a room to end on its host.
+const CONFIGURED: Duration = Duration::from_secs(12);
 /// The seeds of a usual run.
 const SEEDS: u64 = 60;
 
@@ -163,8 +165,8 @@ impl Host {
         };
         let metrics = Arc::<Metrics>::default();
         let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
-        let logs = Logs::new(|_| Box::<Queue>::default());
-        let rooms = Rooms::new(limits, Arc::clone(catalog), logs, Arc::clone(&load), seed);
+        let recordings = Recordings::in_folder(None);
+        let rooms = Rooms::new(limits, Arc::clone(catalog), recordings, Arc::clone(&load), seed);
         let (bus, leases) = (world.bus(index), world.lease_worker(index));
         let (notice, visits) = (notice(index), world.visits(index));
         let cluster = Cluster { bus, leases, visits, notice, seed };
@@ -216,4 +218,29 @@ fn hosts_agree_whatever_breaks() {
     // In some runs, no two hosts are in a room together, no room goes on alone, or no host ends.
     let has_all = figures.iter().all(|figure| *figure > 0);
     assert!(has_all || number("SEED").is_some(), "checksums, steps alone and returns: {figures:?}");
+}
+
+#[test]
+fn a_standing_room_that_is_taken_out_is_listed_while_somebody_is_in_it() {
+    let runtime = Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
+    runtime.block_on(async {
+        let run = Run::new(7);
+        let listed = |host: usize| run.hosts[host].rooms.summaries().borrow().len();
+        sleep(CONFIGURED).await;
+        assert_eq!([0, 1, 2].map(listed), [1; 3]);
+        let [one, other] = [0, 1].map(|host| &run.hosts[host]);
+        let id = one.rooms.summaries().borrow()[0].id;
+        let limits = RoomLimits { standing: Vec::new(), ..one.rooms.limits() };
+        one.shared.set_limits(limits);
+        sleep(CONFIGURED).await;
+        // The other hosts have it in their configurations.
+        assert_eq!([0, 1, 2].map(listed), [0, 1, 1]);
+        let entrant = Entrant { name: Line::of("ada", 16).unwrap(), key: None };
+        let place = other.shared.enter(id, &entrant).await.unwrap();
+        sleep(CONFIGURED).await;
+        assert_eq!([0, 1, 2].map(listed), [1; 3]);
+        drop(place);
+        sleep(CONFIGURED).await;
+        assert_eq!([0, 1, 2].map(listed), [0, 1, 1]);
+    });
 }

@@ -1,59 +1,57 @@
-//! The directory of rooms: which ones there are, and the ways into them.
+//! The directory of rooms: it lists them, and visitors enter them by it.
 //!
-//! Each room is a task, which a [`Sequencer`] runs. The directory gives out [`Place`]s in rooms; a place
-//! that is dropped is left. Lobbies watch a list of [`RoomSummary`], which is replaced when a room
-//! changes for them.
+//! Each room is a task, which a [`Sequencer`] runs. The directory gives out [`Place`]s in rooms; a visitor leaves a room
+//! when their place is dropped. Lobbies watch a list of [`RoomSummary`], which is replaced when a room changes for them.
 //!
-//! A standing room that has ended by a panic is opened anew; its members are in the lobby then.
+//! A standing room that ends by a panic is opened again; its members are in the lobby then.
 
-mod ending;
-mod place;
 mod recording;
-mod refusal;
-mod shared;
-mod standing;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use tokio::sync::watch;
+use tokio::time::timeout;
 
-pub(crate) use self::place::Place;
-pub(crate) use self::recording::Logs;
-pub(crate) use self::refusal::RoomRefusal;
+pub(crate) use self::recording::Recordings;
 use crate::lock::locked;
 use crate::ops::config::Config;
 use crate::ops::logging::events;
-use crate::rooms::room::{Catalog, Header, Mode, Phase, Room};
-use crate::rooms::sequencer::{Inbox, RoomInterface, RoundLog, Sequencer, Shown};
+use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
+use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
+pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use crate::sessions::line::Line;
 use crate::sessions::load::Load;
 use cellcaster::rng::SplitMix64;
 
+/// The time in which rooms end.
+const ENDING: Duration = Duration::from_secs(1);
+/// Shown to a member who was removed.
+const DISMISSED: &str = "This host was cut off from the room for too long; enter it again.";
+
 /// The rooms of a server. Clones are the same rooms.
 #[derive(Clone, Debug)]
 pub(crate) struct Rooms(Arc<Directory>);
 
-/// What a host allows of rooms.
+/// A host's limits of rooms.
 #[derive(Clone, Debug)]
 pub(crate) struct RoomLimits {
     /// The most rooms.
     pub(crate) most: usize,
-    /// The most who watch one room.
+    /// The most watchers of a room.
     pub(crate) most_watchers: usize,
     /// The time without members after which a room is closed.
     pub(crate) closes_after: Duration,
-    /// The rooms that are always there.
+    /// The rooms that are always open.
     pub(crate) standing: Vec<RoomWish>,
 }
 
 impl RoomLimits {
-    /// What a configuration allows.
+    /// The limits in a configuration.
     pub(crate) fn of(config: &Config) -> Self {
         Self {
             most: config.rooms as usize,
@@ -68,7 +66,7 @@ impl RoomLimits {
 struct Directory {
     limits: Mutex<RoomLimits>,
     catalog: Arc<Catalog>,
-    logs: Logs,
+    recordings: Recordings,
     load: Arc<Load>,
     open: Mutex<OpenRooms>,
     summaries: watch::Sender<Arc<[RoomSummary]>>,
@@ -96,34 +94,27 @@ struct OpenRoom {
     interface: Arc<RoomInterface>,
     /// Without the number of watchers.
     summary: RoomSummary,
-    watchers: Arc<AtomicUsize>,
-    /// What it was opened for as a standing room, even if it does not stand any more.
+    /// The standing room that it was opened as, even if it does not stand any more.
     stood_for: Option<RoomWish>,
 }
 
 impl Rooms {
-    /// The standing rooms. Each room takes its steps from one of `logs`, and all chance in rooms comes
-    /// from `seed`.
-    ///
-    /// It is to be called within a runtime, on which the rooms run.
+    /// Opens the standing rooms on the current runtime. All chance in rooms comes from `seed`.
     pub(crate) fn new(
         limits: RoomLimits,
         catalog: Arc<Catalog>,
-        logs: Logs,
+        recordings: Recordings,
         load: Arc<Load>,
         seed: u64,
     ) -> Self {
         let chance = SplitMix64::new(seed);
-        let open = Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() });
-        let summaries = watch::Sender::new(Arc::from([]));
-        let limits = Mutex::new(limits);
         let rooms = Self(Arc::new(Directory {
-            limits,
+            limits: Mutex::new(limits),
             catalog,
-            logs,
+            recordings,
             load,
-            open,
-            summaries,
+            open: Mutex::new(OpenRooms { last: 0, chance, rooms: BTreeMap::new() }),
+            summaries: watch::Sender::new(Arc::from([])),
             shared: Mutex::default(),
         }));
         rooms.open_standing();
@@ -143,8 +134,8 @@ impl Rooms {
     /// Opens a room, and joins it.
     pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
         let room = self.add(wish, false)?;
-        // Before the room runs: one for a single member is closed as soon as nobody is in it.
-        let member = room.interface.inbox.join(name).map_err(RoomRefusal::from)?;
+        // Before the room runs: a room for a single member is closed as soon as nobody is in it.
+        let member = room.interface.inbox.join(name)?;
         let place = Place::member(room.id, member, Arc::clone(&room.interface));
         self.spawn(room);
         Ok(place)
@@ -159,35 +150,94 @@ impl Rooms {
                 _ => Ok(Arc::clone(&room.interface)),
             }
         })?;
-        let member = interface.inbox.join(name).map_err(RoomRefusal::from)?;
+        let member = interface.inbox.join(name)?;
         Ok(Place::member(id, member, interface))
     }
 
     /// Watches a room.
     pub(crate) fn watch(&self, id: RoomId) -> Result<Place, RoomRefusal> {
-        let most = locked(&self.0.limits, |limits| limits.most_watchers);
-        let (interface, watchers) = locked(&self.0.open, |open| {
-            let room = open.rooms.get(&id).ok_or(RoomRefusal::Gone)?;
-            if room.watchers.fetch_add(1, Ordering::AcqRel) >= most {
-                room.watchers.fetch_sub(1, Ordering::AcqRel);
-                return Err(RoomRefusal::Full);
-            }
-            Ok((Arc::clone(&room.interface), Arc::clone(&room.watchers)))
+        let interface = locked(&self.0.open, |open| {
+            open.rooms.get(&id).map(|room| Arc::clone(&room.interface)).ok_or(RoomRefusal::Gone)
         })?;
-        let place = Place::watcher(id, interface, watchers, self.clone());
+        let place = self.place_to_watch(id, interface)?;
         self.publish();
         Ok(place)
+    }
+
+    /// A watcher's place, if the room has fewer watchers than the host allows.
+    pub(crate) fn place_to_watch(
+        &self,
+        id: RoomId,
+        interface: Arc<RoomInterface>,
+    ) -> Result<Place, RoomRefusal> {
+        if interface.add_watcher(self.limits().most_watchers) {
+            Ok(Place::new(id, Role::Watcher(self.clone()), interface))
+        } else {
+            Err(RoomRefusal::Full)
+        }
+    }
+
+    /// The limits of the host.
+    pub(crate) fn limits(&self) -> RoomLimits {
+        locked(&self.0.limits, |limits| limits.clone())
+    }
+
+    /// Replaces the limits of the host. New standing rooms open. Rooms that do not stand any more close when nobody is
+    /// in them, as other rooms do. The other limits apply from now on.
+    pub(crate) fn set_limits(&self, limits: RoomLimits) {
+        locked(&self.0.limits, |it| *it = limits);
+        self.open_standing();
+        self.publish();
+    }
+
+    /// Shows lobbies the rooms that this host shares with others, too.
+    pub(crate) fn show_shared(&self, rooms: Vec<RoomSummary>) {
+        locked(&self.0.shared, |shared| *shared = rooms);
+        self.publish();
+    }
+
+    /// Closes all rooms, and waits until their recordings are written, for [`ENDING`] at most.
+    pub(crate) async fn end(&self) {
+        let interfaces: Vec<Arc<RoomInterface>> = locked(&self.0.open, |open| {
+            open.rooms.values().map(|room| Arc::clone(&room.interface)).collect()
+        });
+        for interface in &interfaces {
+            interface.close("The server has ended.");
+        }
+        let mut summaries = self.summaries();
+        let all_closed = async { _ = summaries.wait_for(|rooms| rooms.is_empty()).await };
+        _ = timeout(ENDING, all_closed).await;
+    }
+
+    /// Opens the standing rooms that are missing, and lets the superfluous ones close.
+    fn open_standing(&self) {
+        let (mut missing, closes_after) =
+            locked(&self.0.limits, |limits| (limits.standing.clone(), limits.closes_after));
+        locked(&self.0.open, |open| {
+            for room in open.rooms.values() {
+                let Some(wish) = &room.stood_for else { continue };
+                let wanted = missing.iter().position(|missing| missing == wish);
+                match wanted.filter(|_| !room.interface.inbox.is_closed()) {
+                    Some(index) => {
+                        missing.remove(index);
+                        room.interface.closes_after.send_replace(None);
+                    }
+                    None => _ = room.interface.closes_after.send_replace(Some(closes_after)),
+                }
+            }
+        });
+        for wish in missing {
+            match self.add(&wish, true) {
+                Ok(room) => self.spawn(room),
+                Err(refusal) => tracing::error!(level = wish.level, "no standing room: {refusal}"),
+            }
+        }
     }
 
     /// Adds a room, which does not run yet.
     fn add(&self, wish: &RoomWish, stands: bool) -> Result<NewRoom, RoomRefusal> {
         let Directory { limits, catalog, open, .. } = &*self.0;
         let (most, closes_after) = locked(limits, |it| (it.most, it.closes_after));
-        let closes_after = match wish.mode {
-            // Nobody else can go on with what one plays alone.
-            Mode::Alone => Some(Duration::ZERO),
-            _ => (!stands).then_some(closes_after),
-        };
         let (id, seed) = locked(open, |open| {
             open.last += 1;
             (RoomId(open.last), open.chance.bits())
@@ -195,15 +245,10 @@ impl Rooms {
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
         let header = Header::new(level, wish.mode, wish.difficulty, seed);
         let room = Room::new(catalog, header).ok_or(RoomRefusal::NoLevel)?;
-        let interface = Arc::new(RoomInterface {
-            inbox: Inbox::new(wish.mode, room.next_member()),
-            shown: Shown::new(room.view()),
-            closes_after: watch::Sender::new(closes_after),
-        });
+        let interface = RoomInterface::new(&room, stands, closes_after);
         let open_room = OpenRoom {
             interface: Arc::clone(&interface),
-            summary: summary(id, &room),
-            watchers: Arc::default(),
+            summary: RoomSummary::of(id, &room),
             stood_for: stands.then(|| wish.clone()),
         };
         locked(open, |open| {
@@ -221,7 +266,7 @@ impl Rooms {
         let header = room.header();
         events::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
-        let log = RoundLog::new(self.0.logs.open(id), &room);
+        let log = RoundLog::new(self.0.recordings.open(id), &room);
         let load = Arc::clone(&self.0.load);
         let sequencer = Sequencer::new(room, log, interface, load);
         let rooms = self.clone();
@@ -239,10 +284,10 @@ impl Rooms {
         });
     }
 
-    /// Records what is new in a room.
+    /// Records that a room has changed for lobbies.
     fn change(&self, id: RoomId, room: &Room) {
         let is_over = |phase| matches!(phase, Phase::Over { .. });
-        let summary = summary(id, room);
+        let summary = RoomSummary::of(id, room);
         let ends = is_over(summary.phase);
         let before = locked(&self.0.open, |open| {
             let open = open.rooms.get_mut(&id)?;
@@ -259,7 +304,7 @@ impl Rooms {
     /// Shows all lobbies the present rooms.
     fn publish(&self) {
         let summary = |room: &OpenRoom| RoomSummary {
-            watchers: room.watchers.load(Ordering::Acquire),
+            watchers: room.interface.watchers(),
             ..room.summary.clone()
         };
         // Under the lock, so that an older list never replaces a newer one.
@@ -276,16 +321,107 @@ impl Rooms {
     }
 }
 
-/// A room as lobbies show it, without those who watch.
-fn summary(id: RoomId, room: &Room) -> RoomSummary {
-    let header = room.header();
-    RoomSummary {
-        id,
-        level: header.level.clone(),
-        mode: header.mode,
-        difficulty: header.difficulty,
-        phase: room.phase(),
-        members: room.names().cloned().collect(),
-        watchers: 0,
+/// A visitor's place in a room, as a member or to watch. They leave when it is dropped, or are away if their host ends.
+#[derive(Debug)]
+pub(crate) struct Place {
+    room: RoomId,
+    role: Role,
+    interface: Arc<RoomInterface>,
+    /// The number of the member's seat. A member who was removed and has returned by another connection has another
+    /// seat.
+    seat: Option<u64>,
+    /// Whether the member is away, and does not leave, when the place is dropped.
+    is_kept: bool,
+    closed: watch::Receiver<Option<Arc<str>>>,
+}
+
+#[derive(Debug)]
+enum Role {
+    Member(MemberId),
+    Watcher(Rooms),
+}
+
+impl Place {
+    pub(crate) fn member(room: RoomId, member: MemberId, interface: Arc<RoomInterface>) -> Self {
+        Self::new(room, Role::Member(member), interface)
+    }
+
+    fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
+        let closed = interface.shown.closed();
+        let seat = match role {
+            Role::Member(member) => interface.inbox.seat_number(member),
+            Role::Watcher(_) => None,
+        };
+        Self { room, role, interface, seat, is_kept: false, closed }
+    }
+
+    pub(crate) fn room(&self) -> RoomId {
+        self.room
+    }
+
+    /// The number of the member; `None` if the visitor watches.
+    pub(crate) fn member_id(&self) -> Option<MemberId> {
+        match self.role {
+            Role::Member(member) => Some(member),
+            Role::Watcher(_) => None,
+        }
+    }
+
+    /// The newest snapshot; `None` after a fault of the room.
+    pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
+        self.closed.mark_unchanged();
+        self.interface.shown.view()
+    }
+
+    /// Why the room is closed, if it is: a sentence.
+    pub(crate) fn closed(&self) -> Option<Arc<str>> {
+        let closed = self.closed.borrow().clone();
+        closed.or_else(|| self.is_dismissed().then(|| DISMISSED.into()))
+    }
+
+    /// Whether the member was removed from the room, which goes on.
+    fn is_dismissed(&self) -> bool {
+        self.member_id().is_some_and(|member| {
+            self.seat.is_none() || self.interface.inbox.seat_number(member) != self.seat
+        })
+    }
+
+    /// Sets whether the room keeps the place when it is dropped, since the host ends.
+    pub(crate) fn set_kept(&mut self, is_kept: bool) {
+        self.is_kept = is_kept;
+    }
+
+    /// Waits until there is a newer snapshot than the last [`Place::view`], or the room is closed.
+    pub(crate) async fn changed(&mut self) {
+        // The place holds the sender.
+        _ = self.closed.changed().await;
+    }
+
+    /// Gives a command in the room.
+    pub(crate) fn act(&self, command: Command) -> Result<(), CommandRefusal> {
+        let member = self.member_id().ok_or(CommandRefusal::Impossible)?;
+        if self.is_dismissed() {
+            return Err(CommandRefusal::Impossible);
+        }
+        self.interface.inbox.act(member, command)
+    }
+
+    /// The run that the visitor has finished since the last call.
+    pub(crate) fn finished(&self) -> Option<FinishedRun> {
+        self.interface.inbox.finished(self.member_id()?)
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        match &self.role {
+            Role::Member(_) if self.is_dismissed() => {}
+            Role::Member(member) if self.is_kept => self.interface.inbox.part(*member),
+            Role::Member(member) => self.interface.inbox.leave(*member),
+            Role::Watcher(rooms) => {
+                self.interface.remove_watcher();
+                rooms.publish();
+            }
+        }
     }
 }

@@ -1,22 +1,22 @@
 //! Ghosts: the best runs of a level, which walk along as see-through figures.
 //!
-//! A ghost is a picture and no more. It is outside of the room: nobody can touch it, and a room is the
-//! same, bit for bit, whether somebody sees ghosts or not.
+//! A ghost is a picture and no more. It is outside of the room: nobody can touch it, and a room is the same, bit for
+//! bit, whether somebody sees ghosts or not.
 //!
-//! The script of a run is played once, on the thread of the store, into a [`Pose`] for every second
-//! step. A game for each session that plays the script beside the room was refused: a session would
-//! step a second game with its guards 60 times a second, and could not begin in the middle of a round.
+//! The script of a run is played once, on the thread of the store, into a [`Pose`] for every second step. Rejected: a
+//! game for each session that plays the script beside the room. A session would step a second game with its guards 60
+//! times a second, and could not begin in the middle of a round.
 
 mod kept;
-mod pose;
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
 pub(crate) use self::kept::KeptRuns;
-use self::pose::Pose;
 use crate::sessions::line::Line;
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
-use cellcaster::world::{FieldOfView, Figure, SpriteId, World};
+use cellcaster::world::{FieldOfView, Figure, Heading, SpriteId, World};
 
 /// The most steps of a run that are shown: ten minutes, the longest race.
 const MOST_STEPS: usize = 10 * 60 * 60;
@@ -24,13 +24,25 @@ const MOST_STEPS: usize = 10 * 60 * 60;
 const EVERY: usize = 2;
 /// How much of a ghost shows, of 255: as much as at home.
 const OPACITY: u8 = 96;
-/// The colour of the best run. It is the last but one that members get.
+/// The colour of the best run, which is the last but one that members get.
 const BEST: PlayerColor = PlayerColor::Orange;
+/// The headings in a turn.
+const HEADINGS: f64 = 65_536.0;
 
-/// A run, as it looks.
+/// The poses of a run.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Run {
     poses: Box<[Pose]>,
+}
+
+/// The position and the look of a player in a step, in 16 bytes. Coordinates are rounded to single precision, a few millionths of a cell, and headings to
+/// 65,536ths of a turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pose {
+    position: [f32; 2],
+    feet: f32,
+    heading: u16,
+    frame: u8,
 }
 
 /// A run that a visitor sees.
@@ -65,6 +77,35 @@ impl Run {
     #[cfg(test)]
     fn bytes(&self) -> usize {
         size_of_val(&*self.poses)
+    }
+}
+
+impl Pose {
+    /// The pose of the player of `game`, who has walked so many cells.
+    fn of(game: &Game, walked: f64) -> Self {
+        let camera = game.camera(FieldOfView::default());
+        let turns = camera.heading.degrees() / 360.0;
+        Self {
+            position: camera.position().to_array().map(|coordinate| coordinate as f32),
+            feet: game.feet() as f32,
+            // The cast maps a whole turn to 65,535.
+            heading: (turns * HEADINGS).round() as u16,
+            frame: game.frame_of_figure(walked),
+        }
+    }
+
+    /// The figure in this pose.
+    fn figure(self, sprite: SpriteId, opacity: u8) -> Figure {
+        let Self { position, feet, heading, frame } = self;
+        let degrees = f64::from(heading) / HEADINGS * 360.0;
+        Figure {
+            sprite,
+            position: DVec2::from_array(position.map(f64::from)),
+            base: f64::from(feet),
+            heading: Heading::from_degrees(degrees).unwrap_or_default(),
+            frame,
+            opacity,
+        }
     }
 }
 

@@ -1,19 +1,19 @@
 //! The host's own maps: levels beside the built-in ones.
 //!
-//! Every `*.toml` file of a folder is a map, read once, when the server starts. All faults of all
-//! maps are reported in one run, as `cellcaster check` reports them.
+//! Every `*.toml` file of a folder is a map, which is read once, when the server starts. All faults of all maps are
+//! reported in one run, as `cellcaster check` reports them.
 //!
 //! # Rules
 //!
 //! - A map has a grid: nobody else could be met among bodies.
-//! - Its name is that of its file without the ending: 1 to 32 of the characters a to z, 0 to 9, `-` and
+//! - Its name is the file name without the ending: 1 to 32 of the characters a to z, 0 to 9, `-` and
 //!   `_`. It is no name of a built-in level.
 //! - Logs, scripts and boards call it by its [key](map_key), which has a hash of its text: results of a map
 //!   that has changed since do not compare with the new ones.
 //! - There are at most [`MOST_MAPS`] maps, of at most [`MOST_MAP_BYTES`] each and [`MOST_BYTES`] together.
 //!
-//! Maps that are read again while the server runs were refused: the rooms in them, and the boards,
-//! would have two maps of one name.
+//! Rejected: maps that are read again while the server runs. The rooms in them, and the boards, would have two maps of
+//! one name.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -50,7 +50,7 @@ pub(crate) struct HostMap {
 pub enum MapsError {
     /// A sentence.
     Sentence(String),
-    /// Several sentences, or reports like those of `cellcaster check`, in lines.
+    /// Several sentences, or reports as `cellcaster check` writes them, in lines.
     Report(String),
 }
 

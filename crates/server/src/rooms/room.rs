@@ -1,51 +1,48 @@
-//! Rooms: a game that several play, as a deterministic state machine.
+//! A room: a game that several people play, as a deterministic state machine.
 //!
-//! A room changes by entries of its [log](Log) and by steps, and by nothing else: the header of a
-//! round, its entries and the number of steps give the room, bit for bit, on every machine. It has
-//! no clock, no thread and no connection. The [sequencer](crate::rooms::sequencer) decides in which step
-//! an entry takes effect.
+//! A room changes by the entries of its [log](log) and by steps, and by nothing else: the header of a round, its
+//! entries and the number of steps give the room, bit for bit, on every machine. It has no clock, no thread and no
+//! connection. The [sequencer](crate::rooms::sequencer) decides in which step an entry takes effect.
 //!
-//! Sessions draw from a [`RoomView`], which shares the game: a step copies it only if a session
-//! still draws from the step before. A lock around the game was refused: one slow picture would
-//! delay everybody's step.
+//! Sessions draw from a [`RoomView`], which shares the game: a step copies it only if a session still draws from the
+//! step before. Rejected: a lock around the game, since one slow picture would delay everybody's step.
+//!
+//! A member with an account may return from another host, so their place is kept: when their host is gone they stand
+//! still, for [`AWAY`](member::AWAY) at most. Each return has a token, by which hosts know who plays for the member
+//! now: a host that was cut off may still think that it does.
 
 mod catalog;
 mod checkpoint;
-mod entry;
-mod header;
 mod log;
 mod member;
 mod mode;
-mod presence;
-mod replayed;
 mod round;
-mod talk;
 #[cfg(test)]
 mod tests;
-mod view;
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-pub(crate) use self::catalog::Catalog;
-pub(crate) use self::entry::{CHAT_COLUMNS, Command, Emote, Entry, MemberId, NAME_COLUMNS};
-pub(crate) use self::header::{Header, Seat};
-#[cfg(test)]
-pub(crate) use self::log::parse as parse_log;
-pub(crate) use self::log::{Log, Queue, Recorded};
-use self::member::{Member, looking_only};
+use serde::{Deserialize, Serialize};
+
+pub(crate) use self::catalog::{Catalog, no_level};
+pub(crate) use self::log::{
+    CHAT_COLUMNS, Command, Emote, Entry, Header, Seat, is_of_other_version, parse_log,
+};
+use self::member::{AWAY, Member, looking_only};
+pub(crate) use self::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 pub(crate) use self::mode::Mode;
-pub(crate) use self::replayed::replayed;
-use self::round::{Field, Round, SECOND};
+use self::mode::SECOND;
+use self::round::{Field, Round};
 pub(crate) use self::round::{Finish, Phase, Role, Standing};
-pub(crate) use self::view::{MemberView, RoomView, Said};
 use crate::sessions::line::Line;
-use cellcaster::game::PlayerColor;
-use cellcaster::game::{Game, Input, Intents, PlayerId, Rules};
+use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 
 /// How long an emotion is shown, in steps.
 const EMOTE: u64 = 3 * SECOND;
+/// How many chat lines a room remembers.
+const SAID: usize = 8;
 
 /// A room.
 #[derive(Clone, Debug)]
@@ -57,13 +54,67 @@ pub(crate) struct Room {
     members: Vec<Member>,
     next_member: u32,
     step: u64,
-    /// The members who wish to begin the round again.
+    /// The members who want to begin the round again.
     again: BTreeSet<MemberId>,
     emotes: Vec<(MemberId, Emote, u64)>,
     said: VecDeque<Said>,
     said_count: u64,
     inputs: Vec<Input>,
     standings: Arc<[Standing]>,
+}
+
+/// An immutable snapshot of a room. It shares the game with the room, which copies it only if a
+/// snapshot still exists in the next step.
+#[derive(Clone, Debug)]
+pub(crate) struct RoomView {
+    /// The game of the present round.
+    pub(crate) game: Arc<Game>,
+    /// The state at the start of the round: the level, the mode, and its number.
+    pub(crate) header: Arc<Header>,
+    /// The step of the round.
+    pub(crate) step: u64,
+    /// The phase of the round.
+    pub(crate) phase: Phase,
+    /// The step in which the play began, while it goes on in a mode that ends at the exit.
+    pub(crate) begun: Option<u64>,
+    /// The members, in the order in which they joined.
+    pub(crate) members: Vec<MemberView>,
+    /// The members' intents in the last step, in the same order.
+    pub(crate) acted: Vec<Intents>,
+    /// The standings of the round, the winner first; empty before its end.
+    pub(crate) standings: Arc<[Standing]>,
+    /// The latest chat lines, oldest first.
+    pub(crate) said: Arc<[Said]>,
+}
+
+/// The public part of a member's state.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MemberView {
+    pub(crate) id: MemberId,
+    pub(crate) name: Line,
+    pub(crate) color: PlayerColor,
+    /// The player in the game; `None` if there was no place for one.
+    pub(crate) player: Option<PlayerId>,
+    pub(crate) role: Role,
+    /// The finish, if the member has reached the exit.
+    pub(crate) finish: Option<Finish>,
+    pub(crate) points: u32,
+    /// Whether the member sees nothing at present, since the others hide.
+    pub(crate) is_blind: bool,
+    /// The latest emotion, for as long as it is shown.
+    pub(crate) emote: Option<Emote>,
+    /// Whether their host is gone, so that they stand still.
+    pub(crate) is_away: bool,
+}
+
+/// A line of chat, or a remark of the room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Said {
+    /// The number in the room, from 1, so that a session knows what is new.
+    pub(crate) number: u64,
+    /// The member's name and colour; `None` for a remark of the room.
+    pub(crate) by: Option<(Line, PlayerColor)>,
+    pub(crate) text: String,
 }
 
 impl Room {
@@ -76,7 +127,7 @@ impl Room {
         Some(room)
     }
 
-    /// The room before anybody is in it.
+    /// The room before its first member.
     fn without_members(catalog: &Arc<Catalog>, header: Header) -> Option<Self> {
         let world = catalog.world(&header.level)?.as_ref().clone();
         let rules =
@@ -187,13 +238,12 @@ impl Room {
     }
 
     fn all_wish_again(&self) -> bool {
-        // One who is away wishes for nothing.
-        let mut here = self.members.iter().map(|member| member.id).filter(|id| !self.is_away(*id));
-        !self.again.is_empty() && here.all(|id| self.again.contains(&id))
+        let mut here = self.members.iter().filter(|member| !member.is_away());
+        !self.again.is_empty() && here.all(|member| self.again.contains(&member.id))
     }
 
-    /// Applies an entry. One of a member who is not there has no effect, and what a host sends late for one who is
-    /// away has none.
+    /// Applies an entry. An entry of a member who is not in the room has no effect, nor has one that a host sends late
+    /// for a member who is away.
     pub(crate) fn apply(&mut self, entry: &Entry) {
         let id = entry.member;
         match &entry.command {
@@ -261,7 +311,7 @@ impl Room {
             points: member.points,
             is_blind: self.round.is_blind(member.id),
             emote: emote(member.id),
-            is_away: self.is_away(member.id),
+            is_away: member.is_away(),
         };
         RoomView {
             game: Arc::clone(&self.game),
@@ -274,5 +324,160 @@ impl Room {
             standings: Arc::clone(&self.standings),
             said: self.said.iter().cloned().collect(),
         }
+    }
+
+    /// Whether a member is away.
+    pub(crate) fn is_away(&self, id: MemberId) -> bool {
+        self.member(id).is_some_and(Member::is_away)
+    }
+
+    /// The place that is kept for a member; `None` for a guest.
+    pub(crate) fn kept_place(&self, id: MemberId) -> Option<KeptPlace> {
+        self.member(id)?.kept
+    }
+
+    /// Whether a member has left the room.
+    pub(crate) fn has_lost(&self, id: MemberId) -> bool {
+        id < self.next_member() && self.member(id).is_none()
+    }
+
+    fn join(&mut self, id: MemberId, color: PlayerColor, name: &Line) {
+        if self.is_full() || self.member(id).is_some() {
+            return;
+        }
+        self.next_member = self.next_member.max(id.0.saturating_add(1));
+        self.seat(&Seat { id, color, points: 0, name: name.clone(), kept: None });
+        self.announce(format!("{name} comes in."));
+    }
+
+    fn seat(&mut self, seat: &Seat) {
+        let game = Arc::make_mut(&mut self.game);
+        let player = game.join(seat.color);
+        self.members.push(Member {
+            id: seat.id,
+            name: seat.name.clone(),
+            color: seat.color,
+            player,
+            points: seat.points,
+            kept: seat.kept,
+            intents: Intents::new(),
+            acted: Intents::new(),
+            seen: game.steps(),
+        });
+    }
+
+    fn leave(&mut self, id: MemberId) {
+        let Some(index) = self.members.iter().position(|member| member.id == id) else { return };
+        let member = self.members.remove(index);
+        self.again.remove(&id);
+        if let Some(player) = member.player {
+            Arc::make_mut(&mut self.game).leave(player);
+        }
+        self.announce(format!("{} leaves.", member.name));
+    }
+
+    /// Keeps a member's place from now on.
+    fn keep(&mut self, id: MemberId) {
+        if let Some(member) = self.member_mut(id) {
+            member.kept.get_or_insert_default();
+        }
+    }
+
+    /// Marks a member away, whose host is gone. They leave if their place is not kept.
+    fn go_away(&mut self, id: MemberId) {
+        let Some(member) = self.member_mut(id) else { return };
+        let Some(kept) = &mut member.kept else { return self.leave(id) };
+        if kept.away.is_none() {
+            kept.away = Some(AWAY);
+            member.intents = Intents::new();
+            let line = format!("{} is away.", member.name);
+            self.again.remove(&id);
+            self.announce(line);
+        }
+    }
+
+    /// Has a member go on, on another host.
+    fn take_back(&mut self, id: MemberId, token: u64) {
+        let Some(member) = self.member_mut(id) else { return };
+        let Some(kept) = &mut member.kept else { return };
+        kept.token = token;
+        if kept.away.take().is_some() {
+            let line = format!("{} is back.", member.name);
+            self.announce(line);
+        }
+    }
+
+    /// Counts a step for the members who are away. Those who were away too long leave.
+    fn count_away(&mut self) {
+        let kept = self.members.iter_mut().filter_map(|member| member.kept.as_mut());
+        for left in kept.filter_map(|kept| kept.away.as_mut()) {
+            *left = left.saturating_sub(1);
+        }
+        let is_late = |member: &Member| member.kept.is_some_and(|kept| kept.away == Some(0));
+        while let Some(id) = self.members.iter().find(|it| is_late(it)).map(|member| member.id) {
+            self.leave(id);
+        }
+    }
+
+    fn member(&self, id: MemberId) -> Option<&Member> {
+        self.members.iter().find(|member| member.id == id)
+    }
+
+    fn member_mut(&mut self, id: MemberId) -> Option<&mut Member> {
+        self.members.iter_mut().find(|member| member.id == id)
+    }
+
+    fn say(&mut self, id: MemberId, text: String) {
+        if let Some(by) = self.member(id).map(|member| (member.name.clone(), member.color)) {
+            self.remember(Some(by), text);
+        }
+    }
+
+    fn announce(&mut self, text: String) {
+        self.remember(None, text);
+    }
+
+    /// Tells everybody that a member has reached the exit.
+    fn announce_finish(&mut self, id: MemberId) {
+        let Some((finish, member)) = self.round.finish(id).zip(self.member(id)) else { return };
+        match self.header.mode {
+            Mode::Race => self.announce(format!("{} finished {finish}.", member.name)),
+            Mode::Together => {
+                self.announce(format!("{} is out after {}.", member.name, finish.time()));
+            }
+            Mode::Roam | Mode::Alone | Mode::Tag | Mode::Hide => {}
+        }
+    }
+
+    fn remember(&mut self, by: Option<(Line, PlayerColor)>, text: String) {
+        self.said_count += 1;
+        self.said.push_back(Said { number: self.said_count, by, text });
+        if self.said.len() > SAID {
+            self.said.pop_front();
+        }
+    }
+}
+
+impl RoomView {
+    /// A member.
+    pub(crate) fn member(&self, id: MemberId) -> Option<&MemberView> {
+        self.members.iter().find(|member| member.id == id)
+    }
+
+    /// A member's intents in the last step.
+    pub(crate) fn acted(&self, id: MemberId) -> Option<Intents> {
+        let index = self.members.iter().position(|member| member.id == id)?;
+        self.acted.get(index).copied()
+    }
+
+    /// The winner, if the round has ended and they are still there.
+    pub(crate) fn winner(&self) -> Option<&MemberView> {
+        let first = self.standings.first().filter(|standing| standing.steps.is_some());
+        self.member(first?.member)
+    }
+
+    /// The member with that player.
+    pub(crate) fn member_of(&self, player: PlayerId) -> Option<&MemberView> {
+        self.members.iter().find(|member| member.player == Some(player))
     }
 }

@@ -2,42 +2,39 @@
 //!
 //! # Rules
 //!
-//! - A room takes [`STEPS_PER_SECOND`] steps a second. If a step is late, at most [`MOST_CAUGHT_UP`]
-//!   follow at once; further ones are left out, so that the room's time slips.
-//! - All that changes the room is an entry of its `Log`, which is applied from the log. Commands
-//!   that come too often are refused or delayed before they reach the log, see [`Inbox`].
-//! - A room without members takes no steps and has no timer. After a while it is closed, if it is no
-//!   standing room.
+//! - A room takes a step each [`STEP`]. If a step is late, at most [`MOST_CAUGHT_UP`] follow at once; further ones are
+//!   left out, so that the room's time slips.
+//! - A room is changed by entries of its [log](RoundLog) alone. Commands that come too often are refused or delayed
+//!   before they become entries, see [`Inbox`].
+//! - A room without members takes no steps and has no timer. After a while it is closed, unless it is a standing room.
 //! - A fault in a room, even a panic, ends this room with a sentence to its members, and no other.
 //! - A recording that cannot be written is reported, and the room goes on.
 //!
-//! A thread for each room was refused: rooms sleep most of the time, and their steps take microseconds.
+//! Rejected: a thread for each room. Rooms sleep most of the time, and their steps take microseconds.
 
 mod inbox;
 mod round_log;
-mod shown;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until};
 
-pub(crate) use self::inbox::{CommandRefusal, Inbox, JoinRefusal};
-pub(crate) use self::round_log::Changes;
-pub(crate) use self::round_log::{FinishedRun, RoundLog};
-pub(crate) use self::shown::{Shown, State};
-use crate::rooms::room::Room;
+pub(crate) use self::inbox::{CommandRefusal, Inbox, STEP};
+pub(crate) use self::round_log::{Changes, FinishedRun, Recording, RoundLog};
+use crate::lock::locked;
+use crate::rooms::room::{Mode, Room, RoomView};
 use crate::sessions::load::Load;
 #[cfg(test)]
 use crate::sessions::load::Work;
-use cellcaster::game::STEPS_PER_SECOND;
 
 /// The most steps that follow at once after a delay.
 pub(crate) const MOST_CAUGHT_UP: u32 = 6;
-/// What members read after a fault.
+/// Shown to members after a fault.
 pub(crate) const FAULT: &str = "The room has ended because of a fault of this server.";
 
 /// The interface between a room and its members: commands in, snapshots out.
@@ -47,24 +44,30 @@ pub(crate) struct RoomInterface {
     pub(crate) inbox: Inbox,
     /// The newest snapshot.
     pub(crate) shown: Shown,
-    /// The time without members after which the room is closed; `None` as long as it stands.
+    /// How long the room stays open without members; `None` if it always does.
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
+    /// The number of watchers.
+    watchers: AtomicUsize,
 }
 
-/// A room with its log, of which the sequencer alone is in charge.
+/// The newest snapshot of a room, and news of the next one.
+///
+/// The snapshot before is dropped before a step, so that the step copies the game only if a session draws from it at
+/// that moment. Rejected: a `watch` channel of snapshots, which would keep the snapshot, so that each step would copy
+/// the game.
+#[derive(Debug)]
+pub(crate) struct Shown {
+    view: Mutex<Option<Arc<RoomView>>>,
+    /// Why the room is closed, if it is: a sentence. It is sent again with each snapshot, and so wakes sessions.
+    closed: watch::Sender<Option<Arc<str>>>,
+}
+
+/// A room with its log, which the sequencer alone changes.
 pub(crate) struct Sequencer {
     room: Room,
     log: RoundLog,
     interface: Arc<RoomInterface>,
     load: Arc<Load>,
-}
-
-/// The next thing that a sequencer waits for.
-enum Pause {
-    /// The time of the next step.
-    Until(Instant),
-    /// Somebody who joins.
-    Member,
 }
 
 impl Sequencer {
@@ -77,7 +80,7 @@ impl Sequencer {
         Self { room, log, interface, load }
     }
 
-    /// Runs the room until it is closed. `on_change` is called when a lobby would show it otherwise.
+    /// Runs the room until it is closed. `on_change` is called when a lobby would show the room differently.
     ///
     /// # Errors
     /// The message of a panic, after which the room is closed.
@@ -87,14 +90,12 @@ impl Sequencer {
     ) -> Result<(), String> {
         let mut next = Instant::now();
         loop {
-            match self.pause(next) {
-                Pause::Until(time) => sleep_until(time).await,
-                Pause::Member => {
-                    if !self.somebody_joins().await {
-                        return Ok(());
-                    }
-                    next = Instant::now();
-                }
+            if self.room.len() > 0 || !self.interface.inbox.is_empty() {
+                sleep_until(next).await;
+            } else if self.somebody_joins().await {
+                next = Instant::now();
+            } else {
+                return Ok(());
             }
             let caught =
                 catch_unwind(AssertUnwindSafe(|| self.catch_up(&mut next, &mut on_change)));
@@ -108,15 +109,10 @@ impl Sequencer {
         }
     }
 
-    fn pause(&self, next: Instant) -> Pause {
-        let is_empty = self.room.len() == 0 && self.interface.inbox.is_empty();
-        if is_empty { Pause::Member } else { Pause::Until(next) }
-    }
-
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
         self.log.flush();
-        let RoomInterface { inbox, shown, closes_after } = &*self.interface;
+        let RoomInterface { inbox, shown, closes_after, .. } = &*self.interface;
         let mut patience = closes_after.subscribe();
         loop {
             let wait = *patience.borrow_and_update();
@@ -167,20 +163,86 @@ impl Sequencer {
     }
 }
 
+impl RoomInterface {
+    /// The interface of `room`, which nobody has entered yet. A room that is not `standing` closes after that time
+    /// without members.
+    pub(crate) fn new(room: &Room, is_standing: bool, closes_after: Duration) -> Arc<Self> {
+        let mode = room.header().mode;
+        let closes_after = match mode {
+            // Nobody else can go on with a game that a member plays alone.
+            Mode::Alone => Some(Duration::ZERO),
+            _ => (!is_standing).then_some(closes_after),
+        };
+        Arc::new(Self {
+            inbox: Inbox::new(mode, room.next_member()),
+            shown: Shown::new(room.view()),
+            closes_after: watch::Sender::new(closes_after),
+            watchers: AtomicUsize::new(0),
+        })
+    }
+
+    /// Closes the room for everybody, with a sentence.
+    pub(crate) fn close(&self, sentence: &str) {
+        self.inbox.close();
+        self.shown.close(sentence);
+    }
+
+    /// The number of watchers.
+    pub(crate) fn watchers(&self) -> usize {
+        self.watchers.load(Ordering::Acquire)
+    }
+
+    /// Adds a watcher, if there are fewer than `most`; returns whether it did.
+    pub(crate) fn add_watcher(&self, most: usize) -> bool {
+        let more = |count| (count < most).then_some(count + 1);
+        self.watchers.fetch_update(Ordering::AcqRel, Ordering::Acquire, more).is_ok()
+    }
+
+    /// Removes a watcher.
+    pub(crate) fn remove_watcher(&self) {
+        self.watchers.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+impl Shown {
+    fn new(view: RoomView) -> Self {
+        let view = Mutex::new(Some(Arc::new(view)));
+        Self { view, closed: watch::Sender::default() }
+    }
+
+    /// The newest snapshot. During a step, it waits for the next one. `None` after a fault.
+    pub(crate) fn view(&self) -> Option<Arc<RoomView>> {
+        locked(&self.view, |view| view.clone())
+    }
+
+    /// Changes with the next snapshot, and when the room is closed.
+    pub(crate) fn closed(&self) -> watch::Receiver<Option<Arc<str>>> {
+        self.closed.subscribe()
+    }
+
+    /// Replaces the snapshot by the one after `step`.
+    pub(crate) fn replace<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
+        let result = locked(&self.view, |shown| {
+            *shown = None;
+            let (view, result) = step();
+            *shown = Some(Arc::new(view));
+            result
+        });
+        self.closed.send_modify(|_| {});
+        result
+    }
+
+    /// Tells everybody that the room is closed.
+    fn close(&self, sentence: &str) {
+        self.closed.send_modify(|closed| {
+            closed.get_or_insert_with(|| sentence.into());
+        });
+    }
+}
+
 /// The message of a panic.
 pub(crate) fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref().map(String::as_str));
     text.unwrap_or("a panic without a message").to_owned()
-}
-
-/// The time of a step.
-pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
-
-impl RoomInterface {
-    /// Closes the room for all, with a sentence.
-    pub(crate) fn close(&self, sentence: &str) {
-        self.inbox.close();
-        self.shown.close(sentence);
-    }
 }

@@ -1,9 +1,11 @@
-//! What visitors learn of rooms without being in them.
+//! Rooms as visitors see them from outside.
 
 use std::fmt;
 use std::sync::Arc;
 
-use crate::rooms::room::{Mode, Phase};
+use serde::{Deserialize, Serialize};
+
+use crate::rooms::room::{Mode, Phase, Room};
 use crate::sessions::line::Line;
 use cellcaster::world::Difficulty;
 
@@ -35,22 +37,70 @@ pub(crate) struct RoomSummary {
     pub(crate) phase: Phase,
     /// The names of the members, in the order in which they joined.
     pub(crate) members: Arc<[Line]>,
-    /// The number of those who watch.
+    /// The number of watchers.
     pub(crate) watchers: usize,
 }
 
 impl RoomSummary {
+    /// The summary of a room without watchers.
+    pub(crate) fn of(id: RoomId, room: &Room) -> Self {
+        let header = room.header();
+        Self {
+            id,
+            level: header.level.clone(),
+            mode: header.mode,
+            difficulty: header.difficulty,
+            phase: room.phase(),
+            members: room.names().cloned().collect(),
+            watchers: 0,
+        }
+    }
+
     /// Whether nobody else may join.
     pub(crate) fn is_full(&self) -> bool {
         self.members.len() >= self.mode.most()
     }
 }
 
-/// What room a visitor would like to open.
+/// A room that a visitor would like to open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RoomWish {
     /// The name of the level in the catalog.
     pub(crate) level: String,
     pub(crate) mode: Mode,
     pub(crate) difficulty: Difficulty,
+}
+
+/// The reason why somebody cannot be in a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum RoomRefusal {
+    /// There is no such room any more.
+    Gone,
+    /// It is full.
+    Full,
+    /// One plays alone in it.
+    Alone,
+    /// There are as many rooms as the host allows.
+    TooMany,
+    /// This host does not have the level.
+    NoLevel,
+    /// The member is somewhere else.
+    Taken,
+    /// The hosts cannot agree now.
+    NotNow,
+}
+
+impl fmt::Display for RoomRefusal {
+    /// Writes a sentence for the visitor.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gone => "This room is closed.",
+            Self::Full => "This room is full.",
+            Self::Alone => "Somebody plays alone in this room; you can watch.",
+            Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
+            Self::NoLevel => "This host does not have the map of this room.",
+            Self::Taken => "You are in a room by another connection, and stay there.",
+            Self::NotNow => "The room does not answer now; try again.",
+        })
+    }
 }

@@ -41,7 +41,7 @@ use crate::cluster::{Cluster, SharedRooms};
 use crate::ops::admin::{Operator, RoomRow};
 use crate::ops::config::{Config, LiveConfig};
 use crate::ops::metrics::Metrics;
-use crate::rooms::directory::{Logs, RoomLimits, Rooms};
+use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
 use crate::rooms::ghost::KeptRuns;
 use crate::rooms::maps::HostMaps;
 use crate::rooms::room::Catalog;
@@ -92,7 +92,7 @@ pub struct HostParts {
     pub(crate) metrics: Arc<Metrics>,
     pub(crate) visitors: Visitors,
     pub(crate) catalog: Catalog,
-    pub(crate) logs: Logs,
+    pub(crate) recordings: Recordings,
     pub(crate) load: Load,
     pub(crate) store: StoreWorker,
     pub(crate) waiting: Option<WaitingResults>,
@@ -116,7 +116,7 @@ impl HostParts {
         Ok(Self {
             visitors,
             catalog: Catalog::builtin(),
-            logs: Logs::recorded(live.get().recordings.clone()),
+            recordings: Recordings::in_folder(live.get().recordings.clone()),
             load: Load::new(Arc::clone(&metrics)),
             store: StoreWorker::start(store)?,
             waiting: None,
@@ -154,14 +154,23 @@ impl GameHost {
     pub fn start(parts: HostParts) -> Self {
         let cluster = parts.cluster;
         let HostParts {
-            live, metrics, visitors, catalog, logs, load, store, waiting, seed, ..
+            live,
+            metrics,
+            visitors,
+            catalog,
+            recordings,
+            load,
+            store,
+            waiting,
+            seed,
+            ..
         } = parts;
         let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
         let (limits, standing) = match &cluster {
             Some(_) => (RoomLimits { standing: Vec::new(), ..limits.clone() }, limits.standing),
             None => (limits, Vec::new()),
         };
-        let rooms = Rooms::new(limits, Arc::new(catalog), logs, Arc::clone(&load), seed);
+        let rooms = Rooms::new(limits, Arc::new(catalog), recordings, Arc::clone(&load), seed);
         let shared_rooms = cluster
             .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
         let keeps_places = shared_rooms.is_some();

@@ -1,34 +1,32 @@
-//! Recordings of rooms in memory.
+//! Recordings of rooms in memory, and rooms that are played again from them.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::io;
 use std::sync::{Arc, Mutex};
 
 use crate::lock::locked;
-use crate::rooms::directory::Logs;
-use crate::rooms::room::{Queue, Recorded};
+use crate::rooms::directory::Recordings;
+use crate::rooms::room::{Catalog, Entry, Header, Room, RoomView, parse_log};
+use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
 
 /// The recordings of all rooms of a host. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Tapes(Arc<Mutex<BTreeMap<RoomId, Vec<u8>>>>);
+pub(crate) struct Tapes(Arc<Mutex<BTreeMap<RoomId, String>>>);
 
 impl Tapes {
-    /// Logs of rooms that are recorded here.
-    pub(crate) fn logs(&self) -> Logs {
+    /// Records rooms here.
+    pub(crate) fn recordings(&self) -> Recordings {
         let tapes = self.clone();
-        Logs::new(move |room| {
-            Box::new(Recorded::new(Queue::default(), Tape { room, tapes: tapes.clone() }))
-        })
+        Recordings::new(move |room| Some(Box::new(Tape { room, tapes: tapes.clone() })))
     }
 
-    /// What was recorded of a room.
+    /// The recording of a room.
     pub(crate) fn text(&self, room: RoomId) -> String {
-        let bytes = locked(&self.0, |tapes| tapes.get(&room).cloned()).unwrap_or_default();
-        String::from_utf8(bytes).expect("a recording is text")
+        locked(&self.0, |tapes| tapes.get(&room).cloned()).unwrap_or_default()
     }
 
-    /// The rooms of which there is a recording.
+    /// The recorded rooms.
     pub(crate) fn rooms(&self) -> Vec<RoomId> {
         locked(&self.0, |tapes| tapes.keys().copied().collect())
     }
@@ -40,13 +38,59 @@ struct Tape {
     tapes: Tapes,
 }
 
-impl Write for Tape {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        locked(&self.tapes.0, |tapes| tapes.entry(self.room).or_default().extend(bytes));
-        Ok(bytes.len())
+impl Tape {
+    fn write(&self, text: &str) -> io::Result<()> {
+        locked(&self.tapes.0, |tapes| *tapes.entry(self.room).or_default() += text);
+        Ok(())
+    }
+}
+
+impl Recording for Tape {
+    fn begin(&mut self, header: &Header) -> io::Result<()> {
+        self.write(&header.to_string())
+    }
+
+    fn append(&mut self, entry: &Entry) -> io::Result<()> {
+        self.write(&format!("{entry}\n"))
     }
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
+}
+
+/// Plays a recording again up to a step of its last round. Each round must begin as it did.
+pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>, step: u64) -> Room {
+    let rounds = parse_log(text).expect("a recording");
+    let mut room = Room::new(catalog, rounds[0].0.clone()).expect("a level");
+    for (index, (header, entries)) in rounds.iter().enumerate() {
+        assert_eq!(room.header(), header);
+        let is_last = index + 1 == rounds.len();
+        let mut entries = entries.iter().peekable();
+        loop {
+            if is_last && room.step() == step {
+                break;
+            }
+            if !is_last && room.is_over() {
+                room.begin_next();
+                break;
+            }
+            while let Some(entry) = entries.next_if(|entry| entry.step <= room.step()) {
+                room.apply(entry);
+            }
+            room.advance();
+        }
+        assert!(entries.peek().is_none(), "an entry is of a later step");
+    }
+    room
+}
+
+/// Asserts that two rooms are in the same state, bit for bit.
+pub(crate) fn assert_same(room: &RoomView, again: &Room) {
+    let other = again.view();
+    assert_eq!((room.step, &room.header), (other.step, &other.header));
+    assert_eq!(room.game.checksum(), other.game.checksum());
+    assert!(room.game == other.game, "the games differ");
+    assert_eq!((room.phase, &room.members), (other.phase, &other.members));
+    assert_eq!((&room.standings, &room.said), (&other.standings, &other.said));
 }

@@ -2,43 +2,31 @@
 //!
 //! # Rules
 //!
-//! - **The lease decides who may.** As long as the database renews it, nobody else appends to the log, so that
-//!   the messages can be appended later. Without the lease the room waits.
-//! - **Nobody joins meanwhile**: whoever is told that they are in the room must be in the log.
+//! - **The lease decides.** As long as the database renews it, nobody else appends to the log, so that the messages can be
+//!   appended later. Without the lease the room waits.
+//! - **Nobody joins meanwhile**: a member who is told that they are in the room must be in the log.
 //! - **Messages wait in memory**, up to ten seconds in each, for [`MOST_ALONE`]; then the room waits.
 //! - If members are on other hosts, the sequencer releases the lease instead, and another host goes on.
 //!
-//! A checkpoint in place of the messages was refused: watchers on other hosts would skip what happened, and the
-//! log would not be the whole history of the room any more.
+//! Rejected: a checkpoint in place of the messages. Watchers on other hosts would skip a part of the game, and the log
+//! would not be the whole history of the room any more.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
-use super::Replica;
-use super::progress::STANDSTILL;
-use super::times::{SECOND, steps_due};
+use super::sequencing::steps_due;
+use super::{Alone, Replica, SECOND, STANDSTILL};
 use crate::cluster::bus::BusFault;
-use crate::cluster::log_message::LogMessage;
+use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
 
 /// The longest time in which a room goes on alone.
 const MOST_ALONE: Duration = Duration::from_mins(10);
 
-/// The messages that the log does not have yet.
-pub(crate) struct Alone {
-    since: Instant,
-    /// The first one may be in the log. It is not changed any more.
-    messages: VecDeque<LogMessage>,
-    /// Whether the bus answers again.
-    probe: Option<JoinHandle<bool>>,
-    probed: Instant,
-}
-
 impl Replica {
-    /// Decides what becomes of a room whose log does not answer for a while.
+    /// Goes on alone, or leaves the room to others, if the log does not answer for a while.
     pub(crate) fn lack_bus(&mut self, now: Instant) {
         let is_standing_still = now.duration_since(self.times.moved) >= STANDSTILL;
         if !is_standing_still || !self.has_lease(now) {
@@ -101,7 +89,7 @@ impl Replica {
         while let Some(first) = self.alone.as_mut().and_then(|it| it.messages.front_mut()) {
             first.last = self.state.number();
             let message = first.clone();
-            match self.context.bus.append(self.id, message.last, message.to_bytes()).await {
+            match self.context.bus.append(self.id, message.last, to_bytes(&message)).await {
                 Ok(number) => self.confirm(number).await,
                 Err(BusFault::Refused) => self.confirm_sent().await?,
                 Err(BusFault::Unknown) => return Err(BusFault::Unknown),
@@ -124,7 +112,7 @@ impl Replica {
             self.context.bus.read(self.id, self.state.number()).await?
         {
             let first = self.alone.as_ref().and_then(|it| it.messages.front());
-            if first.is_none_or(|first| first.to_bytes() != bytes) {
+            if first.is_none_or(|first| to_bytes(first) != bytes) {
                 self.diverge();
                 return Ok(());
             }
@@ -138,7 +126,7 @@ impl Replica {
         let first = self.alone.as_mut().and_then(|it| it.messages.pop_front());
         self.state.set_number(number);
         if let Some(message) = first {
-            self.announce(number, message).await;
+            self.broadcast(&PeerMessage::Appended(number, message)).await;
         }
     }
 
@@ -155,7 +143,7 @@ impl Replica {
         is_own
     }
 
-    /// Gives up what the log does not have: another host had the lease, and has written.
+    /// Gives up the messages that the log does not have: another host had the lease, and has written.
     pub(crate) fn diverge(&mut self) {
         if self.alone.take().is_some() {
             tracing::warn!(room = %self.id, "a room was alone while another host had its lease");
@@ -170,7 +158,7 @@ impl Replica {
 
     fn has_only_own_members(&self) -> bool {
         let (own, room) = (self.interface.inbox.seated(), self.state.room());
-        // Those who are away have no host.
+        // Members who are away have no host.
         room.colors().all(|(member, _)| own.contains(&member) || room.is_away(member))
     }
 

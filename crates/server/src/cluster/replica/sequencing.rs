@@ -5,21 +5,21 @@ use std::time::Duration;
 use tokio::sync::oneshot::error::TryRecvError;
 use tokio::time::Instant;
 
-use super::Replica;
-use super::times::{is_due, steps_due};
+use super::{Replica, is_due};
 use crate::accounts::Lease;
 use crate::cluster::bus::{BusFault, Key};
 use crate::cluster::lease_worker::LEASE_TIME;
-use crate::cluster::peer_message::PeerMessage;
+use crate::cluster::message::{PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
+use crate::rooms::sequencer::{MOST_CAUGHT_UP, STEP};
 
 /// The time from one checkpoint to the next.
 const CHECKPOINTS: Duration = Duration::from_secs(5);
 /// The time after which the lease is asked for again.
-const ASKED_AGAIN: Duration = Duration::from_millis(500);
+const RETRY: Duration = Duration::from_millis(500);
 
 impl Replica {
-    /// Renews the lease, or asks for it where nobody seems to have it.
+    /// Renews the lease, or asks for it if nobody seems to have it.
     pub(crate) async fn keep_lease(&mut self, now: Instant) {
         if let Some(reply) = &mut self.leasing.renewing {
             match reply.try_recv() {
@@ -29,7 +29,7 @@ impl Replica {
                     self.note_lease();
                     self.leasing.renewing = None;
                 }
-                // Without the database nobody else gets the lease; and the log refuses who has lost it.
+                // Without the database nobody else gets the lease; and the log refuses a host that has lost it.
                 _ => self.leasing.renewing = None,
             }
         }
@@ -56,8 +56,8 @@ impl Replica {
             None => {
                 let is_first = self.times.leased.is_none();
                 let is_time =
-                    is_first || self.is_silent(now) && is_due(self.times.leased, now, ASKED_AGAIN);
-                // A host that cannot write the log would keep the room from those that can.
+                    is_first || self.is_silent(now) && is_due(self.times.leased, now, RETRY);
+                // A host that cannot write the log would keep the room from hosts that can.
                 if is_time && self.reaches_bus {
                     self.leasing.acquiring =
                         Some(leases.acquire(&self.id.place(), self.state.epoch()));
@@ -123,11 +123,11 @@ impl Replica {
             return;
         }
         let message = sequencer.next(&self.state, steps);
-        match self.context.bus.append(self.id, message.last, message.to_bytes()).await {
+        match self.context.bus.append(self.id, message.last, to_bytes(&message)).await {
             Ok(number) => {
                 self.times.published = Some(now);
                 self.take(number, &message).await;
-                self.announce(number, message).await;
+                self.broadcast(&PeerMessage::Appended(number, message)).await;
             }
             Err(BusFault::Refused) => self.is_append_unknown = self.read().await.is_err(),
             Err(BusFault::Unknown) => self.is_append_unknown = true,
@@ -137,7 +137,7 @@ impl Replica {
     /// Keeps a checkpoint every few seconds, and the record of the room when it changes.
     pub(crate) async fn keep(&mut self, now: Instant) {
         let is_time = is_due(self.times.kept, now, CHECKPOINTS);
-        // Who was replaced without noticing it has appended nothing now, and must not keep what is old.
+        // A host that was replaced and has not noticed has appended nothing now, and must not keep an old state.
         let is_surely_sequencer = self.times.published == Some(now);
         if self.sequencer.is_none() || self.is_append_unknown || !(is_time || self.is_changed) {
             return;
@@ -159,7 +159,7 @@ impl Replica {
 
     async fn keep_record(&mut self, is_running: bool) -> Result<(), BusFault> {
         let record = self.record.clone().next(self.state.room(), is_running);
-        self.context.bus.put(Key::Room(self.id), record.to_bytes()).await?;
+        self.context.bus.put(Key::Room(self.id), to_bytes(&record)).await?;
         self.record = record;
         Ok(())
     }
@@ -167,7 +167,7 @@ impl Replica {
     /// Leaves the room to other hosts, or closes it if nobody needs it.
     pub(crate) async fn end(mut self) {
         if *self.ending.borrow() {
-            self.join_requests.close();
+            self.requests.close();
             self.part_with_members().await;
         }
         let is_broken = self.interface.inbox.is_closed();
@@ -175,11 +175,11 @@ impl Replica {
             let is_empty = self.state.room().len() == 0;
             let (leases, mut is_gone) = (self.context.leases.clone(), false);
             if is_broken || is_empty && !self.record.stands {
-                // A standing room is made again under its number, and others may go on with one that is broken or
-                // not removed.
+                // A standing room is made again under its number, and others may go on with a room that is broken or
+                // was not removed.
                 is_gone = self.close().await.is_ok() && !is_broken && !self.record.stands;
             } else {
-                // The first one is refused if the predecessor has put one last.
+                // The first call is refused if the predecessor has put the last checkpoint.
                 for _ in 0..2 {
                     if self.keep_checkpoint().await.is_ok() {
                         break;
@@ -199,7 +199,7 @@ impl Replica {
         self.interface.close(sentence);
     }
 
-    /// Removes all of the room.
+    /// Removes everything of the room.
     async fn close(&mut self) -> Result<(), BusFault> {
         let bus = &self.context.bus;
         let mut removed = Ok(());
@@ -208,4 +208,12 @@ impl Replica {
         }
         removed.and(bus.drop_log(self.id).await)
     }
+}
+
+/// The steps that are due since `stepped`, which is moved on.
+pub(crate) fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
+    const MOST: u64 = MOST_CAUGHT_UP as u64;
+    let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
+    *stepped = if due > MOST { now } else { *stepped + STEP * due as u32 };
+    due.min(MOST)
 }

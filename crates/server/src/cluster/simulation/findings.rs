@@ -5,8 +5,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::super::log_message::LogMessage;
-use super::super::record::Record;
+use super::super::message::{LogMessage, Record};
 use super::super::room_state::{Position, RoomState};
 use super::Run;
 use crate::rooms::directory::{Place, RoomRefusal};

@@ -3,7 +3,7 @@
 use tokio::task::JoinHandle;
 
 use super::super::Entrant;
-use super::super::log_message::LogMessage;
+use super::super::message::LogMessage;
 use super::world::World;
 use super::{HOSTS, Run, wish};
 use crate::accounts::AccountKey;

@@ -2,16 +2,16 @@
 //!
 //! # Rules
 //!
-//! - The folder holds at most [`Bounds::bytes`], each file counted in whole blocks, and none that is finished for
-//!   longer than [`Bounds::age`]. The oldest finished recordings are removed first, and none that is written.
-//! - Where only those are left, or one has [`MOST_RECORDED_BYTES`], a recording ends with a whole entry. Its room goes
-//!   on, and its next round is recorded again.
-//! - A round begins another file where the last one has [`Bounds::file`], so that long recordings get old, too.
+//! - The folder holds at most [`Bounds::bytes`], each file counted in whole blocks, and no file that was finished longer
+//!   than [`Bounds::age`] ago. The oldest finished recordings are removed first; a file that is written stays.
+//! - If only such files are left, or a file has [`MOST_RECORDED_BYTES`], a recording ends with a whole entry. Its room
+//!   goes on, and its next round is recorded again.
+//! - A round begins another file if the last one has [`Bounds::file`], so that long recordings get old, too.
 //!
 //! Entries are few and short. They wait in memory for a second at most, see
-//! [`RoundLog`](crate::rooms::sequencer::RoundLog), so that a killed server loses no more, and each
-//! write ends with a whole line. So the disk is touched seldom, and a thread for it was refused. The folder is
-//! read once, when the server starts: reading the names of 65,536 files again would delay a step of a room.
+//! [`RoundLog`](crate::rooms::sequencer::RoundLog), so that a killed server loses no more, and each write ends with a
+//! whole line. Rejected: a thread for the disk, which is touched seldom. The folder is read once, when the server starts:
+//! reading the names of 65,536 files again would delay a step of a room.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -24,63 +24,65 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 use crate::lock::locked;
-use crate::rooms::recorded::MOST_RECORDED_BYTES;
-use crate::rooms::room::{Entry, Header, Log, Queue, Recorded};
+use crate::rooms::replayed::MOST_RECORDED_BYTES;
+use crate::rooms::room::{Entry, Header};
+use crate::rooms::sequencer::Recording;
 use crate::rooms::summary::RoomId;
 use cellcaster::app::store::private;
 
-/// Gives each room its log.
-pub(crate) struct Logs(Box<dyn Fn(RoomId) -> Box<dyn Log> + Send + Sync>);
+/// Opens the recordings of rooms.
+pub(crate) struct Recordings(Box<dyn Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync>);
 
-impl Logs {
-    /// Logs as `open` gives them.
-    pub(crate) fn new(open: impl Fn(RoomId) -> Box<dyn Log> + Send + Sync + 'static) -> Self {
+impl Recordings {
+    /// Recordings that `open` opens.
+    pub(crate) fn new(
+        open: impl Fn(RoomId) -> Option<Box<dyn Recording>> + Send + Sync + 'static,
+    ) -> Self {
         Self(Box::new(open))
     }
 
-    /// Queues, which are recorded in `folder` if there is one.
-    pub(crate) fn recorded(folder: Option<PathBuf>) -> Self {
-        let Some(folder) = folder else { return Self::new(|_| Box::new(Queue::default())) };
-        let folder = Arc::new(Folder::open(folder, Bounds::default()));
-        Self::new(move |room| Box::new(RecordedRoom::new(folder.clone(), room)))
+    /// Recordings in a folder; none without one.
+    pub(crate) fn in_folder(folder: Option<PathBuf>) -> Self {
+        let folder = folder.map(|path| Arc::new(Folder::open(path, Bounds::default())));
+        Self::new(move |room| {
+            let folder = Arc::clone(folder.as_ref()?);
+            Some(Box::new(RecordedRoom { folder, room, file: None }))
+        })
     }
 
-    /// The log of a new room.
-    pub(crate) fn open(&self, id: RoomId) -> Box<dyn Log> {
+    /// The recording of a new room, if it is recorded.
+    pub(crate) fn open(&self, id: RoomId) -> Option<Box<dyn Recording>> {
         (self.0)(id)
     }
 }
 
-impl fmt::Debug for Logs {
+impl fmt::Debug for Recordings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Logs").finish_non_exhaustive()
+        f.debug_struct("Recordings").finish_non_exhaustive()
     }
 }
 
-/// The log of a room, with its recording.
+/// A room that is recorded in a folder.
 struct RecordedRoom {
     folder: Arc<Folder>,
     room: RoomId,
-    log: Recorded<Queue, Output>,
+    /// `None` if the recording has ended before its round.
+    file: Option<RecordedFile>,
 }
 
-/// A recording; `None` where it has ended before its round.
-#[derive(Default)]
-struct Output(Option<Recording>);
-
 /// A file that is written.
-struct Recording {
+struct RecordedFile {
     folder: Arc<Folder>,
     path: PathBuf,
-    file: BufWriter<File>,
+    output: BufWriter<File>,
     bytes: u64,
 }
 
-/// What a folder of recordings holds at most.
+/// The bounds of a folder of recordings.
 struct Bounds {
     bytes: u64,
     age: Duration,
-    /// The bytes of a file from which on the next round begins another one.
+    /// The bytes of a file after which the next round begins another one.
     file: u64,
 }
 
@@ -94,13 +96,13 @@ struct Folder {
 /// The recordings in a folder.
 #[derive(Default)]
 struct Held {
-    /// Those that nobody writes, the oldest first, with their bytes.
+    /// The recordings that nobody writes, oldest first, with their bytes.
     finished: BTreeMap<(SystemTime, PathBuf), u64>,
-    /// In blocks: of all recordings.
+    /// The blocks of all recordings.
     blocks: u64,
 }
 
-/// In bytes: what a file takes of a disk at least, with its name.
+/// The bytes that a file takes of a disk at least, with its name.
 const BLOCK: u64 = 4 << 10;
 
 impl Default for Bounds {
@@ -109,73 +111,56 @@ impl Default for Bounds {
     }
 }
 
-impl RecordedRoom {
-    fn new(folder: Arc<Folder>, room: RoomId) -> Self {
-        Self { folder, room, log: Recorded::new(Queue::default(), Output::default()) }
-    }
-}
-
-impl Log for RecordedRoom {
+impl Recording for RecordedRoom {
     fn begin(&mut self, header: &Header) -> io::Result<()> {
         let most = self.folder.bounds.file;
-        if self.log.output().0.as_ref().is_none_or(|recording| recording.bytes >= most) {
+        if self.file.as_ref().is_none_or(|file| file.bytes >= most) {
             // The file of the rounds before is finished first, so that it can make room for this one.
-            self.log = Recorded::new(Queue::default(), Output::default());
-            let opened = Recording::open(self.folder.clone(), self.room);
-            let opened = opened.map_err(|error| {
-                tracing::error!(%error, room = %self.room, "a room cannot be recorded");
-            });
-            self.log = Recorded::new(Queue::default(), Output(opened.ok()));
+            self.file = None;
+            self.file = RecordedFile::create(&self.folder, self.room)
+                .inspect_err(|error| {
+                    tracing::error!(%error, room = %self.room, "a room cannot be recorded");
+                })
+                .ok();
         }
-        self.log.begin(header)
+        self.write(&header.to_string())?;
+        self.flush()
     }
 
-    fn append(&mut self, entry: Entry) -> io::Result<()> {
-        self.log.append(entry)
+    fn append(&mut self, entry: &Entry) -> io::Result<()> {
+        self.write(&format!("{entry}\n"))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.log.flush()
-    }
-
-    fn next(&mut self, step: u64) -> Option<Entry> {
-        self.log.next(step)
+        self.file.as_mut().map_or(Ok(()), |file| file.output.flush())
     }
 }
 
-impl Write for Output {
-    /// Takes all bytes or none. Those of a recording that has ended are lost.
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if let Some(recording) = &mut self.0 {
-            if !recording.has_room_for(bytes.len() as u64) {
-                self.0 = None;
-                let reason = "it ends here, since recordings have all bytes that they may have";
-                return Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason));
-            }
-            recording.file.write_all(bytes)?;
+impl RecordedRoom {
+    /// Writes all of `text` or nothing. The text of a recording that has ended is lost.
+    fn write(&mut self, text: &str) -> io::Result<()> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        if file.has_room_for(text.len() as u64) {
+            file.output.write_all(text.as_bytes())
+        } else {
+            self.file = None;
+            let reason = "it ends here, since recordings have all bytes that they may have";
+            Err(io::Error::new(io::ErrorKind::QuotaExceeded, reason))
         }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.as_mut().map_or(Ok(()), |recording| recording.file.flush())
     }
 }
 
-impl Recording {
+impl RecordedFile {
     /// A file that did not exist before.
-    fn open(folder: Arc<Folder>, room: RoomId) -> io::Result<Self> {
+    fn create(folder: &Arc<Folder>, room: RoomId) -> io::Result<Self> {
         private::create_folder(&folder.path)?;
         if !folder.take(1) {
             return Err(io::ErrorKind::QuotaExceeded.into());
         }
-        match new_file(&folder.path, room) {
-            Ok((path, file)) => Ok(Self { folder, path, file: BufWriter::new(file), bytes: 0 }),
-            Err(error) => {
-                locked(&folder.held, |held| held.blocks -= 1);
-                Err(error)
-            }
-        }
+        let created = new_file(&folder.path, room);
+        let (path, file) =
+            created.inspect_err(|_| locked(&folder.held, |held| held.blocks -= 1))?;
+        Ok(Self { folder: Arc::clone(folder), path, output: BufWriter::new(file), bytes: 0 })
     }
 
     /// Takes room in the folder for more bytes, if there is any.
@@ -190,10 +175,10 @@ impl Recording {
     }
 }
 
-impl Drop for Recording {
+impl Drop for RecordedFile {
     fn drop(&mut self) {
         // A fault was reported when the entries were written.
-        _ = self.file.flush();
+        _ = self.output.flush();
         let key = (SystemTime::now(), mem::take(&mut self.path));
         locked(&self.folder.held, |held| held.finished.insert(key, self.bytes));
     }
@@ -212,8 +197,8 @@ impl Folder {
         folder
     }
 
-    /// Takes so many blocks, after it has removed what is too old and the oldest that is too much; returns whether
-    /// there is room for them.
+    /// Takes so many blocks, after it has removed recordings that are too old or too many; returns whether there is
+    /// room for them.
     fn take(&self, more: u64) -> bool {
         let now = SystemTime::now();
         let most = self.bounds.bytes / BLOCK;
@@ -343,7 +328,7 @@ mod tests {
 
     /// The log of a room in its first round.
     fn begun(folder: &Arc<Folder>, room: u32) -> RecordedRoom {
-        let mut log = RecordedRoom::new(folder.clone(), RoomId(room));
+        let mut log = RecordedRoom { folder: folder.clone(), room: RoomId(room), file: None };
         log.begin(&header()).unwrap();
         log
     }
@@ -352,9 +337,7 @@ mod tests {
         let text = Line::of("They said the tower had no door.", CHAT_COLUMNS).unwrap();
         (0..lines).try_for_each(|step| {
             let said = Entry { step, member: MemberId(1), command: Command::Say(text.clone()) };
-            let written = log.append(said);
-            assert!(log.next(step).is_some(), "a line that is not recorded is in the log");
-            written
+            log.append(&said)
         })
     }
 

@@ -6,7 +6,8 @@ use super::*;
 use crate::ops::logging::LogFormat;
 use crate::ops::logging::tests::logged;
 use crate::ops::metrics::Metrics;
-use crate::rooms::room::{Command, Entry, Log, MemberId, NAME_COLUMNS, Queue, RoomView};
+use crate::rooms::room::{Entry, NAME_COLUMNS};
+use crate::rooms::sequencer::Recording;
 use cellcaster::game::PlayerColor;
 use cellcaster::world::Difficulty;
 
@@ -24,24 +25,20 @@ impl Rooms {
     }
 }
 
-/// A log that panics at the first entry.
+/// A recording that panics at the first entry.
 struct Broken;
 
-impl Log for Broken {
+impl Recording for Broken {
     fn begin(&mut self, _: &Header) -> io::Result<()> {
         Ok(())
     }
 
-    fn append(&mut self, _: Entry) -> io::Result<()> {
+    fn append(&mut self, _: &Entry) -> io::Result<()> {
         panic!("the log is broken")
     }
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
-    }
-
-    fn next(&mut self, _: u64) -> Option<Entry> {
-        None
     }
 }
 
@@ -57,11 +54,11 @@ fn rooms(broken: &'static [u32]) -> Rooms {
         closes_after: Duration::ZERO,
         standing: vec![wish(Mode::Roam)],
     };
-    let logs = Logs::new(|id| -> Box<dyn Log> {
-        if broken.contains(&id.0) { Box::new(Broken) } else { Box::<Queue>::default() }
+    let recordings = Recordings::new(|id| {
+        broken.contains(&id.0).then(|| -> Box<dyn Recording> { Box::new(Broken) })
     });
     let load = Arc::new(Load::new(Arc::<Metrics>::default()));
-    Rooms::new(limits, Arc::new(Catalog::builtin()), logs, load, 7)
+    Rooms::new(limits, Arc::new(Catalog::builtin()), recordings, load, 7)
 }
 
 /// What is logged of rooms while `act` runs.
@@ -169,20 +166,13 @@ fn the_end_of_a_round_is_an_event() {
 
 #[test]
 fn a_member_who_returns_by_another_connection_has_another_place() {
-    use tokio::sync::watch;
-
     use crate::rooms::room::{CHAT_COLUMNS, Room};
-    use crate::rooms::sequencer::{Inbox, RoomInterface, Shown};
     use crate::simulation;
 
     let catalog = Arc::new(simulation::catalog(simulation::HALL));
     let header = Header::new("hall", Mode::Roam, Difficulty::Normal, 7);
     let room = Room::new(&catalog, header).unwrap();
-    let interface = Arc::new(RoomInterface {
-        inbox: Inbox::new(Mode::Roam, room.next_member()),
-        shown: Shown::new(room.view()),
-        closes_after: watch::Sender::new(None),
-    });
+    let interface = RoomInterface::new(&room, true, Duration::ZERO);
     let member = interface.inbox.join(&Line::of("Mara", NAME_COLUMNS).unwrap()).unwrap();
     let place = || Place::member(RoomId(1), member, Arc::clone(&interface));
     let first = place();

@@ -9,8 +9,7 @@ use cellcaster::app::store::name_in_map_key;
 use cellcaster::map::builtin;
 use cellcaster::world::World;
 
-/// Levels by name, in their order. The name of a map of the host is its key, which differs between two
-/// texts of the map.
+/// Levels by name, in their order. The name of a host's map is its key, which differs between two texts of the map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Catalog {
     names: Vec<String>,
@@ -46,7 +45,7 @@ impl Catalog {
         catalog
     }
 
-    /// Adds a level. One with the same name is replaced.
+    /// Adds a level, or replaces the one with the same name.
     pub(crate) fn add(&mut self, name: &str, world: World) {
         self.list(name, name, Arc::new(world));
     }
@@ -67,7 +66,7 @@ impl Catalog {
         self.levels.get(name).map(|level| &level.world)
     }
 
-    /// The name for people of the level `name`: that of its file.
+    /// The name of a level for people, which is the name of its file.
     pub(crate) fn short<'a>(&'a self, name: &'a str) -> &'a str {
         self.levels.get(name).map_or(name, |level| level.short.as_str())
     }
@@ -91,7 +90,7 @@ impl Catalog {
     }
 
     /// The name of the level with an exit after `name`. After the last one comes the first. Maps of the host follow
-    /// its maps only, so that rooms in built-in levels go on alike on hosts with other maps.
+    /// maps of the host only, so that rooms in built-in levels go on alike on hosts with other maps.
     pub(crate) fn after<'a>(&'a self, name: &'a str) -> &'a str {
         let index = self.names.iter().position(|it| it == name).map_or(0, |index| index + 1);
         let (before, after) = self.names.split_at(index);
@@ -109,5 +108,16 @@ impl Catalog {
         if self.levels.insert(name.to_owned(), listed).is_none() {
             self.names.push(name.to_owned());
         }
+    }
+}
+
+/// The reason why a recorded room has no level, and what to do.
+pub(crate) fn no_level(name: &str) -> String {
+    match name_in_map_key(name) {
+        Some(map) => format!(
+            "it was recorded in the map {map}.toml, which is not given or has changed since (it was {name}); \
+             name the map or its folder"
+        ),
+        None => format!("there is no level called {name}"),
     }
 }

@@ -3,20 +3,17 @@
 //! A host that has a checkpoint and the entries of the log from its step on has the room, bit for bit,
 //! and needs nothing of the log before. The level comes from the host's own catalog.
 //!
-//! The first line says who can read the rest, as in a [stored game](cellcaster::game::stored). The header of
-//! the round follows as its text, then the room, and the game. What was true of a room may be restored;
-//! whether it ever was is not checked: hosts believe each other, but no byte makes one of them fail.
+//! The first line says who can read the rest, as in a [stored game](cellcaster::game::stored). The header of the round
+//! follows, then the room, and the game. Reading checks that a room can be in such a state, not that it ever was: hosts
+//! believe each other, but no byte makes one of them fail.
 
 use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::entry::{CHAT_COLUMNS, MemberId, NAME_COLUMNS};
+use super::catalog::no_level;
 use super::member::Member;
-use super::presence::KeptPlace;
-use super::replayed::no_level;
-use super::talk::SAID;
-use super::{Catalog, Header, Room, Said};
+use super::{CHAT_COLUMNS, Catalog, Header, KeptPlace, MemberId, NAME_COLUMNS, Room, SAID, Said};
 use crate::accounts::printable;
 use crate::sessions::line::Line;
 use cellcaster::game::PlayerColor;
@@ -31,30 +28,31 @@ const SAID_COLUMNS: usize = CHAT_COLUMNS + NAME_COLUMNS;
 impl Room {
     /// The whole state.
     pub(crate) fn checkpoint(&self) -> Vec<u8> {
-        let talk = (self.header.to_string(), &self.said, self.said_count);
+        let talk = (&*self.header, &self.said, self.said_count);
         let mut bytes = written(KIND, &(talk, self.play()));
         // A catalog has levels of maps, which all can be stored.
         bytes.extend(self.game.stored().unwrap_or_default());
         bytes
     }
 
-    /// The room of which `bytes` are a checkpoint.
+    /// The room with that checkpoint.
     ///
     /// # Errors
-    /// A sentence: the bytes are of no room, of one of another version, or of one in a level that the
-    /// catalog does not have; or they are damaged.
+    /// A sentence: the bytes are damaged, of another version, or of a room in a level that the catalog does not have.
     pub(crate) fn restore(catalog: &Arc<Catalog>, bytes: &[u8]) -> Result<Self, String> {
         let sentence = |error: Unrestorable| error.to_string();
         let mut input = Reader::new(KIND, bytes, (0, 0)).map_err(sentence)?;
-        let header = read_header(&mut input).map_err(sentence)?;
-        let room = Self::without_members(catalog, header.clone());
-        let mut room = room.ok_or_else(|| no_level(&printable(&header.level, CHAT_COLUMNS)))?;
+        let header: Header = input.read().map_err(sentence)?;
+        check(header.is_possible(), "the header").map_err(sentence)?;
+        let level = printable(&header.level, CHAT_COLUMNS);
+        let room = Self::without_members(catalog, header);
+        let mut room = room.ok_or_else(|| no_level(&level))?;
         room.read(&mut input).map_err(sentence)?;
         Ok(room)
     }
 
-    /// A number that differs, almost certainly, between rooms in different states. What was said is no
-    /// part of it: it goes on from round to round, and changes nothing.
+    /// A number that differs, almost certainly, between rooms in different states. It leaves out what was said, which
+    /// goes on from round to round and changes nothing.
     pub(crate) fn checksum(&self) -> u64 {
         rng::hash(self.step, [checksum(&self.play()), self.game.checksum()])
     }
@@ -91,7 +89,7 @@ impl Room {
         self.check()
     }
 
-    /// Refuses a state in which a step could fail, or that shows what nobody can type.
+    /// Refuses a state in which a step could fail, or with text that nobody can type.
     fn check(&self) -> Result<(), Unrestorable> {
         self.round.check(self.header.mode, self.step)?;
         check(self.next_member <= MemberId::MOST.0 + 1, "the number of the next member")?;
@@ -118,18 +116,11 @@ impl Room {
                 other.id != member.id && (other.player.is_none() || other.player != member.player)
             };
             self.members[..index].iter().all(is_other)
-                && member.name.fits(NAME_COLUMNS)
                 && member.id < self.next_member()
                 && member.kept.is_none_or(KeptPlace::is_possible)
                 && (member.player.is_none() || color(member) == Some(member.color))
         })
     }
-}
-
-fn read_header(input: &mut Reader) -> Result<Header, Unrestorable> {
-    let text: String = input.read()?;
-    let header = Header::parse(text.lines()).filter(|header| header.to_string() == text);
-    header.ok_or(Unrestorable::Damaged("the header"))
 }
 
 #[cfg(test)]

@@ -1,126 +1,441 @@
-//! Logs: the ordered entries of a round.
+//! The log of a room: the header of each round and the entries after it.
 //!
-//! A log with the header of its round is the round: whoever has both has the room, bit for bit. A
-//! room is changed by nothing else. Copies of a room that send each other their states were
-//! refused: a state has a thousand times the bytes of what the members want.
+//! A room is changed by nothing else, so that the header and the entries are the round, bit for bit. Rejected: hosts
+//! that send each other the states of rooms, which have a thousand times the bytes of what members want.
+//!
+//! In a recording, a log is text:
+//!
+//! ```text
+//! cellcaster-room 2
+//! level museum
+//! mode tag
+//! difficulty normal
+//! seed 77
+//! round 3
+//! next 2
+//! member 1 red 250 Mara
+//! kept 1 9f3ac1 1200
+//! 12 want 1 9 forward run turn:1.5
+//! 40 say 1 behind you
+//! 41 emote 1 wave
+//! 41 keep 1
+//! 80 away 1
+//! 85 return 1 9f3ac1
+//! 90 leave 1
+//! 95 join 2 green Jon
+//! ```
+//!
+//! A `member` line holds a member's number, colour, points and name; a `kept` line holds the number of the member, the
+//! token of the last return and, if they are away, the steps that are left to them.
+//!
+//! An entry begins with the step before which it takes effect; after its verb comes the number of the member. The
+//! number after that in `want` is the step of the picture that the member saw. The angles of `want` count in one
+//! step, the rest of it until the member's next `want`: a resting hand turns nobody, however late the client says so.
 
-use std::collections::VecDeque;
-use std::io::{self, Write};
+use std::fmt;
 
-use super::entry::Entry;
-use super::header::Header;
+use serde::{Deserialize, Serialize};
 
-/// An ordered log of a room.
-pub(crate) trait Log: Send {
-    /// Begins the log of a round.
-    ///
-    /// # Errors
-    /// If the log cannot be written.
-    fn begin(&mut self, header: &Header) -> io::Result<()>;
+use super::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
+use super::mode::Mode;
+use crate::sessions::line::Line;
+use cellcaster::cli::ROOM_RECORDING;
+use cellcaster::game::stored::bits;
+use cellcaster::game::{Intents, PlayerColor};
+use cellcaster::world::Difficulty;
 
-    /// Adds an entry after all others. Its step is not before that of the last one.
-    ///
-    /// # Errors
-    /// If the log cannot be written.
-    fn append(&mut self, entry: Entry) -> io::Result<()>;
+/// The widest line of chat, in columns.
+pub(crate) const CHAT_COLUMNS: usize = 60;
+/// The version of the text. It also grows when the same entries do something else.
+const VERSION: &str = "2";
 
-    /// Writes out what waits in memory.
-    ///
-    /// # Errors
-    /// If the log cannot be written.
-    fn flush(&mut self) -> io::Result<()>;
-
-    /// The next entry that takes effect at `step` or before; `None` if there is none.
-    fn next(&mut self, step: u64) -> Option<Entry>;
+/// The state of a room at the start of a round.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Header {
+    /// The name of the level in the catalog.
+    pub(crate) level: String,
+    pub(crate) mode: Mode,
+    pub(crate) difficulty: Difficulty,
+    /// The seed of all chance in the room.
+    #[serde(with = "bits")]
+    pub(crate) seed: u64,
+    /// The number of the round, from 1.
+    pub(crate) round: u32,
+    /// The number of the next member who joins.
+    pub(crate) next_member: u32,
+    /// The members at the start of the round, in the order of their numbers.
+    pub(crate) members: Vec<Seat>,
 }
 
-/// The log of a room in one process: a queue.
-#[derive(Debug, Default)]
-pub(crate) struct Queue {
-    entries: VecDeque<Entry>,
+/// A member at the start of a round.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Seat {
+    pub(crate) id: MemberId,
+    pub(crate) color: PlayerColor,
+    /// The points of the rounds before.
+    pub(crate) points: u32,
+    #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
+    pub(crate) name: Line,
+    /// The place that is kept for the member; `None` for a guest.
+    pub(crate) kept: Option<KeptPlace>,
 }
 
-impl Log for Queue {
-    fn begin(&mut self, _: &Header) -> io::Result<()> {
-        self.entries.clear();
-        Ok(())
+/// An entry of a room's log.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Entry {
+    /// The step of the round before which it takes effect.
+    pub(crate) step: u64,
+    /// Whose entry it is.
+    pub(crate) member: MemberId,
+    /// The member's command.
+    pub(crate) command: Command,
+}
+
+/// A command of a member.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Command {
+    /// Enters the room.
+    Join {
+        color: PlayerColor,
+        #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
+        name: Line,
+    },
+    /// Leaves the room.
+    Leave,
+    /// Has an account, so that their place is kept while they are away.
+    Keep,
+    /// Is away: their host is gone.
+    Away,
+    /// Returns from another host. No other return has the same token.
+    Return {
+        #[serde(with = "bits")]
+        token: u64,
+    },
+    /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in
+    /// the next step only.
+    Intents { seen: u64, intents: Intents },
+    /// Says something to all.
+    Say(#[serde(deserialize_with = "line_within::<CHAT_COLUMNS, _>")] Line),
+    /// Shows all an emotion.
+    Emote(Emote),
+    /// Wishes to begin the round again, which happens when all do.
+    Again,
+}
+
+/// An emotion, or a gesture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Emote {
+    /// Greets, or says goodbye.
+    Wave,
+    /// Agrees.
+    Yes,
+    /// Disagrees.
+    No,
+    /// Laughs.
+    Laugh,
+    /// Calls for help.
+    Help,
+    /// Calls the others here.
+    Here,
+}
+
+impl Header {
+    /// The header of a new room.
+    pub(crate) fn new(level: &str, mode: Mode, difficulty: Difficulty, seed: u64) -> Self {
+        let level = level.to_owned();
+        Self { level, mode, difficulty, seed, round: 1, next_member: 1, members: Vec::new() }
     }
 
-    fn append(&mut self, entry: Entry) -> io::Result<()> {
-        self.entries.push_back(entry);
-        Ok(())
+    /// Reads the lines of a header; `None` if one of them does not belong to a header.
+    fn parse<'t>(lines: impl IntoIterator<Item = &'t str>) -> Option<Self> {
+        let mut lines = lines.into_iter();
+        (lines.next()?.strip_prefix(ROOM_RECORDING)? == VERSION).then_some(())?;
+        let mut value = |name: &str| lines.next()?.strip_prefix(name)?.strip_prefix(' ');
+        let level = value("level")?.to_owned();
+        let mode = Mode::named(value("mode")?)?;
+        let difficulty = Difficulty::named(value("difficulty")?)?;
+        let seed = value("seed")?.parse().ok()?;
+        let round = value("round")?.parse().ok()?;
+        let next_member = value("next")?.parse().ok()?;
+        let mut members: Vec<Seat> = Vec::new();
+        for line in lines {
+            match line.strip_prefix("kept ") {
+                Some(words) => read_kept(&mut members, words)?,
+                None => members.push(Seat::parse(line)?),
+            }
+        }
+        let header = Self { level, mode, difficulty, seed, round, next_member, members };
+        header.is_possible().then_some(header)
     }
 
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn next(&mut self, step: u64) -> Option<Entry> {
-        self.entries.pop_front_if(|entry| entry.step <= step)
+    /// Whether a room can begin like that: each member has their own number below the next one.
+    pub(crate) fn is_possible(&self) -> bool {
+        let is_possible = |(index, seat): (usize, &Seat)| {
+            seat.id.0 < self.next_member
+                && self.members[..index].iter().all(|other| other.id != seat.id)
+                && seat.kept.is_none_or(KeptPlace::is_possible)
+        };
+        self.next_member <= MemberId::MOST.0 + 1
+            && self.members.len() <= self.mode.most()
+            && self.members.iter().enumerate().all(is_possible)
     }
 }
 
-/// A log that is written as text, too, so that the room can be played again.
-#[derive(Debug)]
-pub(crate) struct Recorded<L, W> {
-    log: L,
-    output: W,
-}
-
-impl<L: Log, W: Write> Recorded<L, W> {
-    /// Records `log` in `output`.
-    pub(crate) fn new(log: L, output: W) -> Self {
-        Self { log, output }
-    }
-
-    /// Where it is recorded.
-    pub(crate) fn output(&self) -> &W {
-        &self.output
+impl fmt::Display for Header {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{ROOM_RECORDING}{VERSION}\nlevel {}\nmode {}", self.level, self.mode.name())?;
+        writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
+        writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
+        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))?;
+        self.members.iter().try_for_each(|seat| write_kept(f, seat))
     }
 }
 
-impl<L: Log, W: Write + Send> Log for Recorded<L, W> {
-    fn begin(&mut self, header: &Header) -> io::Result<()> {
-        self.log.begin(header)?;
-        self.output.write_all(header.to_string().as_bytes())?;
-        self.output.flush()
-    }
-
-    /// An entry that cannot be recorded is in the log nevertheless.
-    fn append(&mut self, entry: Entry) -> io::Result<()> {
-        let line = format!("{entry}\n");
-        self.log.append(entry)?;
-        self.output.write_all(line.as_bytes())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.output.flush()
-    }
-
-    fn next(&mut self, step: u64) -> Option<Entry> {
-        self.log.next(step)
+impl Seat {
+    fn parse(line: &str) -> Option<Self> {
+        let mut words = line.strip_prefix("member ")?.splitn(4, ' ');
+        let id = MemberId::parse(words.next()?)?;
+        let color = color_named(words.next()?)?;
+        let points = words.next()?.parse().ok()?;
+        Some(Self { id, color, points, name: Line::of(words.next()?, NAME_COLUMNS)?, kept: None })
     }
 }
 
-/// The rounds of a recorded log: headers, each with its entries. `None` if a line is neither.
-pub(crate) fn parse(text: &str) -> Option<Vec<(Header, Vec<Entry>)>> {
+impl fmt::Display for Seat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { id, color, points, name, kept: _ } = self;
+        write!(f, "member {id} {} {points} {name}", color.name())
+    }
+}
+
+/// Writes the `kept` line of a member with an account.
+fn write_kept(f: &mut fmt::Formatter<'_>, seat: &Seat) -> fmt::Result {
+    match seat.kept {
+        None => Ok(()),
+        Some(KeptPlace { token, away: None }) => writeln!(f, "kept {} {token:x}", seat.id),
+        Some(KeptPlace { token, away: Some(left) }) => {
+            writeln!(f, "kept {} {token:x} {left}", seat.id)
+        }
+    }
+}
+
+/// Reads the words after `kept`.
+fn read_kept(members: &mut [Seat], words: &str) -> Option<()> {
+    let mut words = words.split(' ');
+    let id = MemberId::parse(words.next()?)?;
+    let token = u64::from_str_radix(words.next()?, 16).ok()?;
+    let away = match words.next() {
+        Some(left) => Some(left.parse().ok()?),
+        None => None,
+    };
+    let seat = members.iter_mut().find(|seat| seat.id == id)?;
+    seat.kept = Some(KeptPlace { token, away });
+    words.next().is_none().then_some(())
+}
+
+impl Emote {
+    /// All of them, in the order of their keys.
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Wave, Self::Yes, Self::No, Self::Laugh, Self::Help, Self::Here];
+
+    /// The name in logs.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Wave => "wave",
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::Laugh => "laugh",
+            Self::Help => "help",
+            Self::Here => "here",
+        }
+    }
+
+    /// What others read beside the name.
+    pub(crate) const fn text(self) -> &'static str {
+        match self {
+            Self::Wave => "waves",
+            Self::Yes => "nods",
+            Self::No => "shakes their head",
+            Self::Laugh => "laughs",
+            Self::Help => "calls for help",
+            Self::Here => "calls: over here!",
+        }
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { step, member, command } = self;
+        match command {
+            Command::Join { color, name } => {
+                write!(f, "{step} join {member} {} {name}", color.name())
+            }
+            Command::Leave => write!(f, "{step} leave {member}"),
+            Command::Keep => write!(f, "{step} keep {member}"),
+            Command::Away => write!(f, "{step} away {member}"),
+            Command::Return { token } => write!(f, "{step} return {member} {token:x}"),
+            Command::Intents { seen, intents } => {
+                write!(f, "{step} want {member} {seen} {}", intents.words())
+            }
+            Command::Say(line) => write!(f, "{step} say {member} {line}"),
+            Command::Again => write!(f, "{step} again {member}"),
+            Command::Emote(emote) => write!(f, "{step} emote {member} {}", emote.name()),
+        }
+    }
+}
+
+impl Entry {
+    /// Reads a line; `None` if it is no entry.
+    pub(crate) fn parse(line: &str) -> Option<Self> {
+        let (step, rest) = line.split_once(' ')?;
+        let (verb, rest) = rest.split_once(' ')?;
+        let (member, rest) = rest.split_once(' ').unwrap_or((rest, ""));
+        let command = match verb {
+            "join" => {
+                let (color, name) = rest.split_once(' ')?;
+                Command::Join { color: color_named(color)?, name: Line::of(name, NAME_COLUMNS)? }
+            }
+            "leave" if rest.is_empty() => Command::Leave,
+            "keep" if rest.is_empty() => Command::Keep,
+            "away" if rest.is_empty() => Command::Away,
+            "return" => Command::Return { token: u64::from_str_radix(rest, 16).ok()? },
+            "again" if rest.is_empty() => Command::Again,
+            "want" => {
+                let (seen, words) = rest.split_once(' ')?;
+                Command::Intents { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
+            }
+            "say" => Command::Say(Line::of(rest, CHAT_COLUMNS)?),
+            "emote" => Command::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
+            _ => return None,
+        };
+        Some(Self { step: step.parse().ok()?, member: MemberId::parse(member)?, command })
+    }
+}
+
+/// Whether `text` begins with the header of another version.
+pub(crate) fn is_of_other_version(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.strip_prefix(ROOM_RECORDING).is_some_and(|version| version != VERSION)
+}
+
+/// The rounds of a recording: headers, each with its entries. `None` if a line is neither.
+pub(crate) fn parse_log(text: &str) -> Option<Vec<(Header, Vec<Entry>)>> {
     let mut rounds = Vec::new();
     let mut lines = text.lines().peekable();
     while lines.peek().is_some() {
-        let is_header = |line: &&str| !line.starts_with(|first: char| first.is_ascii_digit());
-        let mut head = Vec::new();
-        while let Some(line) = lines.next_if(is_header) {
-            if line.starts_with("cellcaster-room") && !head.is_empty() {
-                // A round without entries.
-                rounds.push((Header::parse(head.drain(..))?, Vec::new()));
-            }
-            head.push(line);
-        }
-        let mut entries = Vec::new();
-        while let Some(line) = lines.next_if(|line| !is_header(line)) {
-            entries.push(Entry::parse(line)?);
-        }
+        let mut head = vec![lines.next()?];
+        let is_entry = |line: &str| line.starts_with(|first: char| first.is_ascii_digit());
+        let goes_on = |line: &&str| !is_entry(line) && !line.starts_with(ROOM_RECORDING);
+        head.extend(std::iter::from_fn(|| lines.next_if(goes_on)));
+        let entries = std::iter::from_fn(|| lines.next_if(|line| is_entry(line))).map(Entry::parse);
+        let entries = entries.collect::<Option<Vec<Entry>>>()?;
         rounds.push((Header::parse(head)?, entries));
     }
     Some(rounds)
+}
+
+fn color_named(name: &str) -> Option<PlayerColor> {
+    PlayerColor::ALL.into_iter().find(|color| color.name() == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use cellcaster::game::{Intent, Look};
+
+    fn command() -> impl Strategy<Value = Command> {
+        let line =
+            |columns| any::<String>().prop_filter_map("text", move |it| Line::of(&it, columns));
+        let intents = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=5);
+        let intents = (intents, any::<i16>(), any::<i16>()).prop_map(|(intents, turn, tilt)| {
+            let look = Look { turn: turn.max(-i16::MAX), tilt: tilt.max(-i16::MAX) };
+            intents.into_iter().collect::<Intents>().with_look(look)
+        });
+        prop_oneof![
+            (prop::sample::select(&PlayerColor::ALL), line(NAME_COLUMNS))
+                .prop_map(|(color, name)| Command::Join { color, name }),
+            Just(Command::Leave),
+            Just(Command::Keep),
+            Just(Command::Away),
+            any::<u64>().prop_map(|token| Command::Return { token }),
+            Just(Command::Again),
+            (any::<u64>(), intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
+            line(CHAT_COLUMNS).prop_map(Command::Say),
+            prop::sample::select(&Emote::ALL).prop_map(Command::Emote),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn an_entry_reads_as_it_is_written(
+            step: u64,
+            member in 0..=MemberId::MOST.0,
+            command in command(),
+        ) {
+            let entry = Entry { step, member: MemberId(member), command };
+            prop_assert_eq!(Entry::parse(&entry.to_string()), Some(entry));
+        }
+
+        #[test]
+        fn no_line_is_a_fault_of_the_program(line in any::<String>()) {
+            Entry::parse(&line);
+        }
+    }
+
+    #[test]
+    fn other_lines_are_no_entries() {
+        for line in [
+            "",
+            "0",
+            "0 join 1",
+            "0 join 1 plaid Mara",
+            "x leave 1",
+            "0 want 1 2 fly",
+            "0 away 1 x",
+            "0 leave 2147483648",
+        ] {
+            assert_eq!(Entry::parse(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_header_reads_as_it_is_written() {
+        let seat = |id, points, name| {
+            let name = Line::of(name, NAME_COLUMNS).unwrap();
+            Seat {
+                id: MemberId(id),
+                color: PlayerColor::ALL[id as usize % 8],
+                points,
+                name,
+                kept: None,
+            }
+        };
+        let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
+        header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c")];
+        header.members[0].kept = Some(KeptPlace { token: u64::MAX, away: None });
+        header.members[1].kept = Some(KeptPlace { token: 0, away: Some(1_200) });
+        header.next_member = 9;
+        let text = header.to_string();
+        assert_eq!(Header::parse(text.lines()), Some(header));
+        assert_eq!(Header::parse(text.lines().skip(1)), None);
+    }
+
+    #[test]
+    fn what_no_room_reaches_is_no_header() {
+        let read = |next: &str, rest: &str| {
+            let text = format!(
+                "{ROOM_RECORDING}{VERSION}\nlevel museum\nmode tag\ndifficulty hard\nseed 1\nround 1\nnext {next}\n{rest}"
+            );
+            Header::parse(text.lines())
+        };
+        assert!(read("2147483648", "member 2147483647 red 0 Mara").is_some());
+        assert_eq!(read("2147483649", ""), None);
+        assert_eq!(read("7", "member 7 red 0 Mara"), None);
+        assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
+        assert_eq!(read("7", "member 3 red 0 Mara\nkept 3 1 3601"), None);
+        let many: Vec<String> = (1..=99).map(|id| format!("member {id} red 0 Mara")).collect();
+        assert_eq!(read("100", &many.join("\n")), None);
+    }
 }

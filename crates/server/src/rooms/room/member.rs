@@ -1,35 +1,95 @@
 //! Members of a room.
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
 
-use super::entry::MemberId;
-use super::presence::KeptPlace;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::mode::SECOND;
 use crate::sessions::line::Line;
+use cellcaster::game::stored::bits;
 use cellcaster::game::{Intent, Intents, Look, PlayerColor, PlayerId};
+
+/// The widest name, in columns.
+pub(crate) const NAME_COLUMNS: usize = 16;
+/// How long a member may be away, in steps. Then they leave.
+pub(crate) const AWAY: u64 = 60 * SECOND;
+
+/// The number of a member in a room. It is not used again after they leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "u32")]
+pub(crate) struct MemberId(pub(crate) u32);
 
 /// A member of a room.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Member {
     pub(crate) id: MemberId,
+    #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
     pub(crate) name: Line,
     /// The colour of the figure; two members may have the same.
     pub(crate) color: PlayerColor,
-    /// The player in the game; `None` where there was no place.
+    /// The player in the game; `None` if there was no place for one.
     pub(crate) player: Option<PlayerId>,
     /// The points of the rounds before.
     pub(crate) points: u32,
-    /// The place that is kept for the member; `None` if it is not.
+    /// The seat that is kept for the member; `None` for a guest.
     pub(crate) kept: Option<KeptPlace>,
-    /// What the member wants in the next step.
+    /// The intents for the next step.
     pub(crate) intents: Intents,
-    /// What they wanted in the last one.
+    /// The intents of the last step.
     pub(crate) acted: Intents,
     /// The step of the game in the picture that the member saw last.
     pub(crate) seen: u64,
 }
 
+/// The place that is kept for a member with an account.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct KeptPlace {
+    /// The token of the last return; 0 before the first one.
+    #[serde(with = "bits")]
+    pub(crate) token: u64,
+    /// The steps until the member leaves, if they are away.
+    pub(crate) away: Option<u64>,
+}
+
+impl MemberId {
+    /// The greatest number, which a room that somebody joins each second reaches in 68 years.
+    pub(crate) const MOST: Self = Self(i32::MAX as u32);
+
+    /// Reads a number; `None` for one that no room reaches.
+    pub(crate) fn parse(word: &str) -> Option<Self> {
+        Self::try_from(word.parse::<u32>().ok()?).ok()
+    }
+}
+
+impl TryFrom<u32> for MemberId {
+    type Error = &'static str;
+
+    fn try_from(number: u32) -> Result<Self, &'static str> {
+        if number <= Self::MOST.0 { Ok(Self(number)) } else { Err("a member") }
+    }
+}
+
+impl fmt::Display for MemberId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl KeptPlace {
+    /// Returns whether a room can have it: the grace period never exceeds that of a member who has just gone.
+    pub(crate) fn is_possible(self) -> bool {
+        self.away.is_none_or(|left| (1..=AWAY).contains(&left))
+    }
+}
+
 impl Member {
-    /// What the member wants in the step that begins. The angles of it count in no other step.
+    /// Whether the member's host is gone, so that they stand still.
+    pub(crate) fn is_away(&self) -> bool {
+        self.kept.is_some_and(|kept| kept.away.is_some())
+    }
+
+    /// The intents for the step that begins. Their angles count in no other step.
     pub(crate) fn begin_step(&mut self) -> Intents {
         self.acted = self.intents;
         self.intents = self.intents.with_look(Look::NONE);
@@ -37,10 +97,19 @@ impl Member {
     }
 }
 
-/// What of `intents` somebody may do who cannot walk.
+/// The part of `intents` that a player who cannot walk may still carry out.
 pub(crate) fn looking_only(intents: Intents) -> Intents {
     use Intent::{Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight};
     let looks = [Aim, LookAhead, LookDown, LookUp, TurnLeft, TurnRight];
     let kept: Intents = intents.iter().filter(|intent| looks.contains(intent)).collect();
     kept.with_look(intents.look())
+}
+
+/// Reads a line of at most `COLUMNS` columns, for `#[serde(deserialize_with)]`.
+pub(crate) fn line_within<'de, const COLUMNS: usize, D>(from: D) -> Result<Line, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let line = Line::deserialize(from)?;
+    if line.fits(COLUMNS) { Ok(line) } else { Err(D::Error::custom("a line is too wide")) }
 }

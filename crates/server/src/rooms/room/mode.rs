@@ -1,19 +1,21 @@
-//! Modes: what is played in a room, and the rules of each.
+//! Modes: the games that can be played in a room, and their rules.
 
 use serde::{Deserialize, Serialize};
 
-use super::round::SECOND;
-use cellcaster::game::{MultiplayerRules, Sees, Strikes};
+use cellcaster::game::{MultiplayerRules, STEPS_PER_SECOND, Sees, Strikes};
 use cellcaster::world::World;
 
-/// What is played in a room.
+/// Steps of a game in a second.
+pub(crate) const SECOND: u64 = STEPS_PER_SECOND as u64;
+
+/// A game that can be played in a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Mode {
     /// Walking about, without guards and without an end.
     Roam,
     /// A level of the campaign with its guards, for all together.
     Together,
-    /// A level of the campaign for one, as at home: the result counts on the boards.
+    /// A level of the campaign for one member, as at home: the result counts on the boards.
     Alone,
     /// The first at the exit wins.
     Race,
@@ -57,7 +59,7 @@ impl Mode {
         }
     }
 
-    /// What one does, in a line.
+    /// A description, in a line.
     pub(crate) const fn about(self) -> &'static str {
         match self {
             Self::Roam => "Walk about and talk. Nobody is in danger.",
@@ -69,7 +71,7 @@ impl Mode {
         }
     }
 
-    /// The fewest members with whom a round begins.
+    /// The fewest members of a round.
     pub(crate) const fn fewest(self) -> usize {
         match self {
             Self::Roam | Self::Together | Self::Alone | Self::Race => 1,
@@ -108,8 +110,8 @@ impl Mode {
         }
     }
 
-    /// The seed of the game's chance. Alone, it is that of the built-in levels at home, so that the
-    /// same script gives the same result there.
+    /// The seed of the game's chance. Alone, it is the seed of the built-in levels at home, so that the same script
+    /// gives the same result there.
     pub(crate) const fn game_seed(self, of_room: u64) -> u64 {
         if matches!(self, Self::Alone) { 0 } else { of_room }
     }

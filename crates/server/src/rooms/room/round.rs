@@ -4,32 +4,29 @@
 //! one begins. Time is counted in steps, and chance comes from the room's seed, so that the log
 //! alone determines who wins.
 //!
-//! A member gains a point for each other one whom they beat in a round. Points for a place were
-//! refused: with two members, the first of them would be worth as much as with eight.
-
-mod finishes;
-mod hide;
-mod tag;
+//! A member gains a point for each member that they beat in a round. Rejected: points for a place. With two members,
+//! the first place would be worth as much as with eight.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-pub(crate) use self::finishes::Finish;
-use self::finishes::Finishes;
-use self::hide::Hide;
-use self::tag::Tag;
-use super::entry::MemberId;
-use super::member::Member;
-use super::mode::Mode;
+use super::member::{Member, MemberId};
+use super::mode::{Mode, SECOND};
+use cellcaster::app::parts::of_steps;
 use cellcaster::game::stored::{Unrestorable, check};
 use cellcaster::game::{Game, Outcome, PlayerId};
 use cellcaster::rng::SplitMix64;
 
-/// Steps of a game in a second.
-pub(crate) const SECOND: u64 = 60;
 /// How long the standings are shown.
 const STANDINGS: u64 = 10 * SECOND;
+/// Hide and seek: members for each seeker at the start.
+const MEMBERS_A_SEEKER: usize = 4;
+/// Tag: how long a new "it" stands still, so that the others get away.
+const PAUSE: u64 = SECOND + SECOND / 2;
+/// Tag: how long the member who was "it" before cannot be touched by the next one.
+const SPARED: u64 = 4 * SECOND;
 
 /// The phase of a round. Times are steps of the round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,15 +41,14 @@ pub(crate) enum Phase {
     Over { ends: u64 },
 }
 
-/// What a member is in a round.
+/// The part of a member in a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Role {
-    /// One of many.
     #[default]
     Player,
-    /// Who is "it", or seeks.
+    /// The seeker (in tag, the player who is "it").
     Seeker,
-    /// At the exit, or found last.
+    /// A player who has reached the exit.
     Done,
 }
 
@@ -62,12 +58,11 @@ pub(crate) struct Standing {
     pub(crate) member: MemberId,
     /// The points that the round gives.
     pub(crate) points: u32,
-    /// What counts in the mode, in steps: the time to the exit, as "it", or hidden. `None` for a member who did not
-    /// finish.
+    /// The time to the exit, as "it", or hidden, in steps. `None` for a member who did not finish.
     pub(crate) steps: Option<u64>,
 }
 
-/// What a mode sees of its room.
+/// The view of the room that a mode may use.
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
     pub(crate) game: &'a Game,
@@ -111,7 +106,7 @@ pub(crate) struct Round {
     standings: Vec<Standing>,
 }
 
-/// What a mode remembers of a round.
+/// The state of a round that only its mode has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Play {
     Roam,
@@ -132,7 +127,7 @@ impl Round {
         Self { mode, phase: Phase::Waiting, play, chance, standings: Vec::new() }
     }
 
-    /// Refuses a round of another mode, what another mode remembers, and what begins after `step`.
+    /// Checks that the round is one of `mode` and began no later than in `step`.
     pub(crate) fn check(&self, mode: Mode, step: u64) -> Result<(), Unrestorable> {
         check(self.mode == mode, "the mode")?;
         let is_possible = match (&self.play, self.mode) {
@@ -161,7 +156,7 @@ impl Round {
         matches!(self.phase, Phase::Over { ends } if ends <= step)
     }
 
-    /// What a member is.
+    /// A member's part.
     pub(crate) fn role(&self, member: MemberId) -> Role {
         match &self.play {
             Play::Roam => Role::Player,
@@ -277,7 +272,7 @@ impl Round {
     }
 }
 
-/// What counts in a round: the lower rank wins, and the steps are shown.
+/// A member's result: the lower rank wins, and the steps are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Score {
     rank: u64,
@@ -297,6 +292,224 @@ fn standings(scores: &BTreeMap<MemberId, Score>) -> Vec<Standing> {
     standings
 }
 
+/// The finish of a member.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Finish {
+    /// The place, from 1. Members who reach the exit in the same step have the same place.
+    pub(crate) place: usize,
+    /// The steps from the start to the exit.
+    pub(crate) steps: u64,
+}
+
+/// The times at the exit, in modes that end there: races, and the campaign, alone and together.
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+struct Finishes {
+    begun: u64,
+    /// The steps to the exit, also of members who have left since.
+    times: BTreeMap<MemberId, u64>,
+}
+
+impl Finishes {
+    fn begin(&mut self, step: u64) {
+        self.begun = step;
+    }
+
+    /// The step in which the play began.
+    fn begun(&self) -> u64 {
+        self.begun
+    }
+
+    fn role(&self, member: MemberId) -> Role {
+        if self.times.contains_key(&member) { Role::Done } else { Role::Player }
+    }
+
+    fn of(&self, member: MemberId) -> Option<Finish> {
+        let steps = *self.times.get(&member)?;
+        let before = self.times.values().filter(|&&other| other < steps).count();
+        Some(Finish { place: before + 1, steps })
+    }
+
+    /// The members who have finished in `step`.
+    fn in_step(&self, step: u64) -> impl Iterator<Item = MemberId> {
+        let finished = self.times.iter().filter(move |(_, time)| self.begun + **time == step);
+        finished.map(|(&member, _)| member)
+    }
+
+    /// The step in which the first member has finished.
+    fn first(&self) -> Option<u64> {
+        self.times.values().min().map(|time| self.begun + time)
+    }
+
+    /// Records the members at the exit; returns whether all have finished.
+    fn step(&mut self, field: Field) -> bool {
+        let time = field.step - self.begun;
+        for id in field.ids().filter(|&id| field.has_won(id)) {
+            self.times.entry(id).or_insert(time);
+        }
+        field.ids().all(|id| self.times.contains_key(&id))
+    }
+
+    /// The scores. Members who have not finished are last. The shortest time wins a race; in the campaign, all
+    /// members at the exit are equal.
+    fn scores(&self, mode: Mode, field: Field) -> BTreeMap<MemberId, Score> {
+        let rank = |time: u64| if mode == Mode::Together { 0 } else { time };
+        let score = |id| {
+            let steps = self.times.get(&id).copied();
+            Score { rank: steps.map_or(u64::MAX, rank), steps }
+        };
+        field.ids().map(|id| (id, score(id))).collect()
+    }
+}
+
+impl Finish {
+    /// The place as people say it: 1st, 2nd and so on.
+    pub(crate) fn ordinal(self) -> String {
+        let ending = match (self.place % 10, self.place % 100) {
+            (_, 11..=13) => "th",
+            (1, _) => "st",
+            (2, _) => "nd",
+            (3, _) => "rd",
+            _ => "th",
+        };
+        format!("{}{ending}", self.place)
+    }
+
+    /// The time to the exit.
+    pub(crate) fn time(self) -> String {
+        of_steps(self.steps)
+    }
+}
+
+impl fmt::Display for Finish {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {}", self.ordinal(), self.time())
+    }
+}
+
+/// The state of a round of tag: one member is "it" until they touch another one.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+struct Tag {
+    it: Option<MemberId>,
+    /// The step in which "it" last changed.
+    since: u64,
+    /// The member who was "it" before.
+    before: Option<MemberId>,
+    /// How long each member was "it", in steps.
+    times: BTreeMap<MemberId, u64>,
+}
+
+impl Tag {
+    /// Chooses the first "it".
+    fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
+        let ids: Vec<MemberId> = field.ids().collect();
+        self.it = ids.get(chance.below(ids.len())).copied();
+        self.since = field.step;
+    }
+
+    fn begins_until(&self, step: u64) -> bool {
+        self.since <= step
+    }
+
+    fn role(&self, member: MemberId) -> Role {
+        if self.it == Some(member) { Role::Seeker } else { Role::Player }
+    }
+
+    /// Whether a member stands still since they have just been touched.
+    fn holds(&self, member: MemberId, step: u64) -> bool {
+        self.it == Some(member) && step < self.since + PAUSE
+    }
+
+    fn step(&mut self, field: Field) {
+        let Some(it) = self.it.filter(|&it| field.member(it).is_some()) else {
+            // The member who was "it" has left. The one with the longest time follows, so that nobody gains.
+            let longest = field.ids().max_by_key(|id| self.time(*id));
+            return self.become_it(longest, field.step);
+        };
+        *self.times.entry(it).or_default() += 1;
+        if self.holds(it, field.step) {
+            return;
+        }
+        let is_spared = |id| self.before == Some(id) && field.step < self.since + SPARED;
+        let touched = field.ids().find(|&id| id != it && !is_spared(id) && field.touches(it, id));
+        if touched.is_some() {
+            self.become_it(touched, field.step);
+        }
+    }
+
+    /// The scores: the shortest time as "it" wins.
+    fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
+        field
+            .ids()
+            .map(|id| (id, Score { rank: self.time(id), steps: Some(self.time(id)) }))
+            .collect()
+    }
+
+    fn become_it(&mut self, next: Option<MemberId>, step: u64) {
+        self.before = self.it;
+        self.it = next;
+        self.since = step;
+    }
+
+    fn time(&self, id: MemberId) -> u64 {
+        self.times.get(&id).copied().unwrap_or(0)
+    }
+}
+
+/// The state of a round of hide and seek: the seekers seek the others, and found members seek, too.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+struct Hide {
+    /// The seekers, with the steps for which they stayed hidden; `None` for the first seekers.
+    seekers: BTreeMap<MemberId, Option<u64>>,
+    /// The step in which the search began.
+    since: Option<u64>,
+}
+
+impl Hide {
+    /// Chooses the first seekers.
+    fn choose(&mut self, field: Field, chance: &mut SplitMix64) {
+        let mut ids: Vec<MemberId> = field.ids().collect();
+        let count = ids.len().div_ceil(MEMBERS_A_SEEKER).min(ids.len().saturating_sub(1));
+        for _ in 0..count {
+            let chosen = ids.remove(chance.below(ids.len()));
+            self.seekers.insert(chosen, None);
+        }
+    }
+
+    fn begins_until(&self, step: u64) -> bool {
+        self.since.is_none_or(|since| since <= step)
+    }
+
+    fn role(&self, member: MemberId) -> Role {
+        if self.seekers.contains_key(&member) { Role::Seeker } else { Role::Player }
+    }
+
+    /// Finds the members that a seeker touches; returns whether the round is decided, since all are found or nobody
+    /// seeks any more.
+    fn step(&mut self, field: Field) -> bool {
+        let since = *self.since.get_or_insert(field.step);
+        let is_seeker = |id: &MemberId| self.seekers.contains_key(id);
+        let (seekers, hidden): (Vec<MemberId>, Vec<MemberId>) = field.ids().partition(is_seeker);
+        let is_found = |id: &&MemberId| seekers.iter().any(|&seeker| field.touches(seeker, **id));
+        let found: Vec<MemberId> = hidden.iter().filter(is_found).copied().collect();
+        let left = hidden.len() - found.len();
+        self.seekers.extend(found.into_iter().map(|id| (id, Some(field.step - since))));
+        left == 0 || seekers.is_empty()
+    }
+
+    /// The scores: the longest time in hiding wins, and the first seekers are last.
+    fn scores(&self, field: Field) -> BTreeMap<MemberId, Score> {
+        let whole = field.step - self.since.unwrap_or(field.step);
+        let hidden = |id| match self.seekers.get(&id) {
+            None => whole,
+            Some(found) => found.unwrap_or(0),
+        };
+        field
+            .ids()
+            .map(|id| (id, Score { rank: u64::MAX - hidden(id), steps: Some(hidden(id)) }))
+            .collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -309,5 +522,13 @@ mod tests {
             standings(&scores).iter().map(|it| (it.member.0, it.points, it.steps)).collect();
         let expected = [(2, 3, 30), (1, 1, 50), (3, 1, 50), (4, 0, 90)];
         assert_eq!(places, expected.map(|(id, points, steps)| (id, points, Some(steps))));
+    }
+
+    #[test]
+    fn places_are_ordinals() {
+        let finish = |place| Finish { place, steps: 231 }.to_string();
+        let told = [1, 2, 3, 4, 11, 12, 13, 21, 112].map(finish);
+        let expected = ["1st", "2nd", "3rd", "4th", "11th", "12th", "13th", "21st", "112th"];
+        assert_eq!(told, expected.map(|place| format!("{place}, 0:03.8")));
     }
 }

@@ -1,49 +1,50 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::rooms::replayed::replayed;
 use crate::simulation;
 use cellcaster::game::{Intent, Outcome, PlayerColor};
 use cellcaster::world::{Difficulty, FieldOfView};
 
 /// Two levels with a hall in which the exit is straight ahead.
-pub(crate) fn catalog() -> Arc<Catalog> {
+fn catalog() -> Arc<Catalog> {
     let map = simulation::HALL
         .replace("............>#", ".............#")
         .replace("@............#", "@.......>....#");
     Arc::new(simulation::catalog(&map))
 }
 
-pub(crate) fn room(mode: Mode) -> Room {
+fn room(mode: Mode) -> Room {
     Room::new(&catalog(), Header::new("hall", mode, Difficulty::Normal, 7)).unwrap()
 }
 
-pub(crate) fn line(text: &str) -> Line {
+fn line(text: &str) -> Line {
     Line::of(text, CHAT_COLUMNS).unwrap()
 }
 
-pub(crate) fn join(room: &mut Room, name: &str) -> MemberId {
+fn join(room: &mut Room, name: &str) -> MemberId {
     let member = room.next_member();
     let color = PlayerColor::ALL[member.0 as usize % PlayerColor::ALL.len()];
     do_now(room, member, Command::Join { color, name: line(name) });
     member
 }
 
-pub(crate) fn do_now(room: &mut Room, member: MemberId, command: Command) {
+fn do_now(room: &mut Room, member: MemberId, command: Command) {
     let step = room.step();
     room.apply(&Entry { step, member, command });
 }
 
-pub(crate) fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
+fn want(room: &mut Room, member: MemberId, intents: &[Intent]) {
     let seen = room.view().game.steps();
     let intents = intents.iter().copied().collect();
     do_now(room, member, Command::Intents { seen, intents });
 }
 
-pub(crate) fn advance(room: &mut Room, steps: u64) {
+fn advance(room: &mut Room, steps: u64) {
     (0..steps).for_each(|_| room.advance());
 }
 
-pub(crate) fn position(room: &Room, member: MemberId) -> glam::DVec2 {
+fn position(room: &Room, member: MemberId) -> glam::DVec2 {
     let view = room.view();
     let player = view.member(member).unwrap().player.unwrap();
     view.game.seen_by(player).unwrap().camera(FieldOfView::default()).position()
@@ -223,16 +224,23 @@ fn commands() -> impl Strategy<Value = Vec<(u64, u32, Command)>> {
     prop::collection::vec((0_u64..40, 0_u32..10, command), 0..40)
 }
 
-/// Plays a round; entries beyond the step at which it is read are not known yet.
-fn played(log: &mut dyn Log, header: &Header, steps: u64) -> Room {
+/// Plays a round.
+fn played(entries: &[Entry], header: &Header, steps: u64) -> Room {
     let mut room = Room::new(&catalog(), header.clone()).unwrap();
+    let mut entries = entries.iter().peekable();
     while room.step() < steps {
-        while let Some(entry) = log.next(room.step()) {
-            room.apply(&entry);
+        while let Some(entry) = entries.next_if(|entry| entry.step <= room.step()) {
+            room.apply(entry);
         }
         room.advance();
     }
     room
+}
+
+/// A round as it is recorded.
+fn recorded(header: &Header, entries: &[Entry]) -> String {
+    let lines = entries.iter().map(|entry| format!("{entry}\n"));
+    header.to_string() + &lines.collect::<String>()
 }
 
 proptest! {
@@ -246,23 +254,16 @@ proptest! {
     ) {
         let header = Header::new("hall", mode, Difficulty::Normal, seed);
         let mut step = 0;
-        let mut text = Vec::new();
-        let mut recorded = Recorded::new(Queue::default(), &mut text);
-        recorded.begin(&header).unwrap();
+        let mut entries = Vec::new();
         for (wait, member, command) in commands {
             step += wait;
-            recorded.append(Entry { step, member: MemberId(member), command }).unwrap();
+            entries.push(Entry { step, member: MemberId(member), command });
         }
-        let one = played(&mut recorded, &header, step + 60);
-        drop(recorded);
-        let rounds = parse_log(&String::from_utf8(text).unwrap()).unwrap();
+        let one = played(&entries, &header, step + 60);
+        let rounds = parse_log(&recorded(&header, &entries)).unwrap();
         let [(read, entries)] = &rounds[..] else { panic!("one round") };
         prop_assert_eq!(read, &header);
-        let mut queue = Queue::default();
-        for entry in entries {
-            queue.append(entry.clone()).unwrap();
-        }
-        let other = played(&mut queue, read, step + 60);
+        let other = played(entries, read, step + 60);
         prop_assert_eq!(one.checksum(), other.checksum());
         prop_assert_eq!(one.game, other.game);
     }
@@ -271,28 +272,20 @@ proptest! {
 #[test]
 fn a_recording_is_played_again() {
     let header = Header::new("hall", Mode::Race, Difficulty::Normal, 7);
-    let mut text = Vec::new();
-    let mut log = Recorded::new(Queue::default(), &mut text);
     let mut room = Room::new(&catalog(), header.clone()).unwrap();
-    log.begin(&header).unwrap();
     let runs = [Intent::Forward, Intent::Run].into_iter().collect();
     let name = line("Mara");
-    for command in [
+    let commands = [
         Command::Join { color: PlayerColor::ALL[0], name },
         Command::Intents { seen: 0, intents: runs },
-    ] {
-        log.append(Entry { step: 0, member: MemberId(1), command }).unwrap();
-    }
+    ];
+    let entries = commands.map(|command| Entry { step: 0, member: MemberId(1), command });
+    entries.iter().for_each(|entry| room.apply(entry));
     while !room.is_over() {
-        while let Some(entry) = log.next(room.step()) {
-            room.apply(&entry);
-        }
         room.advance();
     }
-    log.begin(&room.next_header()).unwrap();
     let (steps, checksum) = (room.step(), room.checksum());
-    drop(log);
-    let text = String::from_utf8(text).unwrap();
+    let text = recorded(&header, &entries) + &recorded(&room.next_header(), &[]);
     let older = replayed(&text.replace("cellcaster-room 2", "cellcaster-room 1"), &catalog());
     assert!(older.unwrap_err().contains("another version"));
     let reports = replayed(&text, &catalog()).unwrap();
@@ -301,4 +294,89 @@ fn a_recording_is_played_again() {
     assert_eq!(reports[0].standings, [("Mara".to_owned(), 0)]);
     assert_eq!((reports[1].round, reports[1].level.as_str()), (2, "museum"));
     assert!(replayed("nonsense", &catalog()).is_err());
+}
+
+/// A room with two members, of whom the first has an account.
+fn room_of_two(mode: Mode) -> (Room, [MemberId; 2]) {
+    let mut room = room(mode);
+    let members = ["Mara", "Jon"].map(|name| join(&mut room, name));
+    do_now(&mut room, members[0], Command::Keep);
+    (room, members)
+}
+
+fn last_line(room: &Room) -> String {
+    room.view().said.last().map(|said| said.text.clone()).unwrap_or_default()
+}
+
+#[test]
+fn one_who_is_away_stands_still_and_goes_on_from_there() {
+    let (mut room, [mara, _]) = room_of_two(Mode::Roam);
+    want(&mut room, mara, &[Intent::Forward]);
+    advance(&mut room, 20);
+    do_now(&mut room, mara, Command::Away);
+    assert_eq!(last_line(&room), "Mara is away.");
+    advance(&mut room, 60);
+    let place = position(&room, mara);
+    // What their old host sends late has no effect.
+    want(&mut room, mara, &[Intent::Forward]);
+    do_now(&mut room, mara, Command::Again);
+    advance(&mut room, AWAY - 61);
+    assert_eq!(position(&room, mara), place);
+    assert!(room.view().member(mara).unwrap().is_away && room.is_away(mara));
+    do_now(&mut room, mara, Command::Return { token: 7 });
+    assert_eq!((last_line(&room).as_str(), room.is_away(mara)), ("Mara is back.", false));
+    assert_eq!(room.kept_place(mara), Some(KeptPlace { token: 7, away: None }));
+    want(&mut room, mara, &[Intent::Forward]);
+    advance(&mut room, AWAY + 60);
+    assert!(position(&room, mara).x > place.x + 1.0 && room.len() == 2);
+}
+
+#[test]
+fn one_who_is_away_for_too_long_leaves() {
+    let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
+    do_now(&mut room, mara, Command::Away);
+    advance(&mut room, AWAY - 1);
+    // It is counted once.
+    do_now(&mut room, mara, Command::Away);
+    assert_eq!(room.len(), 2);
+    advance(&mut room, 1);
+    assert_eq!((room.len(), last_line(&room).as_str()), (1, "Mara leaves."));
+    do_now(&mut room, mara, Command::Return { token: 7 });
+    assert!(room.has_lost(mara) && !room.has_lost(jon) && !room.has_lost(room.next_member()));
+}
+
+#[test]
+fn a_guest_is_not_away_but_gone() {
+    let (mut room, [_, jon]) = room_of_two(Mode::Roam);
+    do_now(&mut room, jon, Command::Return { token: 7 });
+    assert_eq!(room.kept_place(jon), None);
+    do_now(&mut room, jon, Command::Away);
+    assert_eq!((room.len(), last_line(&room).as_str()), (1, "Jon leaves."));
+}
+
+#[test]
+fn a_round_waits_for_nobody_who_is_away() {
+    let (mut room, [mara, jon]) = room_of_two(Mode::Roam);
+    do_now(&mut room, mara, Command::Again);
+    do_now(&mut room, mara, Command::Away);
+    assert!(!room.is_over());
+    do_now(&mut room, jon, Command::Again);
+    assert!(room.is_over());
+}
+
+#[test]
+fn one_is_away_in_the_next_round_too() {
+    let (mut room, [mara, _]) = room_of_two(Mode::Tag);
+    do_now(&mut room, mara, Command::Return { token: 7 });
+    advance(&mut room, 100);
+    assert!(matches!(room.phase(), Phase::Countdown { .. }));
+    do_now(&mut room, mara, Command::Away);
+    advance(&mut room, 100);
+    room.begin_next();
+    let kept = KeptPlace { token: 7, away: Some(AWAY - 100) };
+    assert_eq!(room.kept_place(mara), Some(kept));
+    advance(&mut room, AWAY - 101);
+    assert_eq!(room.len(), 2);
+    advance(&mut room, 1);
+    assert_eq!(room.len(), 1);
 }

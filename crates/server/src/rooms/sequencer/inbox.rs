@@ -1,28 +1,31 @@
 //! The commands of a room's members, until the sequencer takes them.
 //!
-//! Each member has a bounded place of their own: what one floods it with is refused or replaces what
-//! they wanted before, and never waits in another's way. Of chat and emotions only as many are
-//! accepted as [`Pace`] allows. A queue for all members was refused: one of them could fill it.
+//! Each member has a bounded queue of their own, so that a flood of one member's commands never delays those of
+//! another. Rejected: one queue for all members, since one of them could fill it. A member may say [`CHAT_BURST`]
+//! lines at once and show one emotion, and one of each a second.
 //!
-//! Intents take effect in the order in which they were wanted, one change in [`INTENT_PAUSE`] steps. If
-//! more than [`MOST_INTENTS`] changes wait, the newest replaces the last one.
-
-mod away;
+//! Intents take effect in the order in which they came, one change in a step, so that a tap begins and ends in steps of
+//! its own. If [`MOST_INTENTS`] changes wait, the newest replaces the last one. Sessions limit the rate of changes.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
+use std::time::Duration;
 
 use tokio::sync::Notify;
 
-use super::FinishedRun;
+use super::round_log::FinishedRun;
+use crate::bucket::Bucket;
 use crate::lock::locked;
 use crate::rooms::room::{Command, MemberId, Mode};
+use crate::rooms::summary::RoomRefusal;
 use crate::sessions::line::Line;
 use cellcaster::game::{PlayerColor, STEPS_PER_SECOND};
 
-/// The least number of steps between two changes of a member's intents: 30 changes a second.
-const INTENT_PAUSE: u64 = STEPS_PER_SECOND as u64 / 30;
-/// The most changes that wait.
+/// The time of a step.
+pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
+/// The lines that a member may say at once.
+const CHAT_BURST: f64 = 4.0;
+/// The most changes of intents that wait.
 const MOST_INTENTS: usize = 8;
 /// The most arrivals and departures that wait, each of which takes effect in the next step.
 const MOST_MOVES: usize = 64;
@@ -34,19 +37,12 @@ pub(crate) struct Inbox {
     joined: Notify,
 }
 
-/// Why somebody cannot join.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum JoinRefusal {
-    Closed,
-    Full,
-}
-
 /// Why a command was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CommandRefusal {
     /// The member does such things too often.
     TooOften,
-    /// There is no such member, or the command is none of a member's.
+    /// There is no such member, or members do not give such commands.
     Impossible,
 }
 
@@ -55,37 +51,26 @@ struct Waiting {
     is_closed: bool,
     most: usize,
     next: u32,
-    /// Those who have joined, whether the room knows it or not.
+    /// Members who have joined, whether the room knows it or not.
     seats: Vec<Seat>,
     /// The seats that were ever taken.
     seats_taken: u64,
     moves: VecDeque<(MemberId, Command)>,
-    /// The number of steps so far, over all rounds.
-    steps: u64,
+    /// The time of the steps in all rounds.
+    time: Duration,
     finished: Option<FinishedRun>,
 }
 
 #[derive(Debug)]
 struct Seat {
     id: MemberId,
-    /// Who loses a seat and returns has another one.
+    /// A member who loses their seat and returns has another number.
     number: u64,
     color: PlayerColor,
     intents: VecDeque<Command>,
-    /// The step after which the next change of intents takes effect.
-    next_intents: u64,
     talk: VecDeque<Command>,
-    chat: Pace,
-    emotes: Pace,
-}
-
-/// How often a member may do something: a token bucket, counted in steps.
-#[derive(Debug)]
-struct Pace {
-    most: u64,
-    /// Steps that are not used up; one command uses a second's.
-    credit: u64,
-    counted: u64,
+    chat: Bucket,
+    emotes: Bucket,
 }
 
 impl Inbox {
@@ -98,20 +83,20 @@ impl Inbox {
             seats: Vec::new(),
             seats_taken: 0,
             moves: VecDeque::new(),
-            steps: 0,
+            time: Duration::ZERO,
             finished: None,
         };
         Self { waiting: Mutex::new(waiting), joined: Notify::new() }
     }
 
-    /// Somebody joins.
-    pub(crate) fn join(&self, name: &Line) -> Result<MemberId, JoinRefusal> {
+    /// Adds a member.
+    pub(crate) fn join(&self, name: &Line) -> Result<MemberId, RoomRefusal> {
         let id = locked(&self.waiting, |waiting| waiting.join(name))?;
         self.joined.notify_one();
         Ok(id)
     }
 
-    /// Gives a seat to somebody who has joined elsewhere.
+    /// Gives a seat to a member who has joined elsewhere.
     pub(crate) fn admit(&self, id: MemberId, color: PlayerColor) {
         locked(&self.waiting, |waiting| {
             waiting.next = waiting.next.max(id.0.saturating_add(1));
@@ -119,37 +104,79 @@ impl Inbox {
         });
     }
 
-    /// Takes a seat from somebody who is not in the room any more.
+    /// Takes the seat of a member who is not in the room any more.
     pub(crate) fn dismiss(&self, id: MemberId) {
         locked(&self.waiting, |waiting| waiting.seats.retain(|seat| seat.id != id));
     }
 
-    /// Those who have a seat.
+    /// Members with a seat.
     pub(crate) fn seated(&self) -> Vec<MemberId> {
         locked(&self.waiting, |waiting| waiting.seats.iter().map(|seat| seat.id).collect())
     }
 
-    /// A member leaves. It is always accepted.
+    /// Takes the seat of a member, who leaves.
     pub(crate) fn leave(&self, id: MemberId) {
+        self.unseat(id, Command::Leave);
+    }
+
+    /// Takes the seat of a member whose host ends. The room keeps their place.
+    pub(crate) fn part(&self, id: MemberId) {
+        self.unseat(id, Command::Away);
+    }
+
+    fn unseat(&self, id: MemberId, command: Command) {
         locked(&self.waiting, |waiting| {
             let count = waiting.seats.len();
             waiting.seats.retain(|seat| seat.id != id);
             if waiting.seats.len() < count {
-                waiting.moves.push_back((id, Command::Leave));
+                waiting.moves.push_back((id, command));
             }
         });
     }
 
-    /// A member does something.
+    /// Accepts a command of a member.
     pub(crate) fn act(&self, id: MemberId, command: Command) -> Result<(), CommandRefusal> {
         locked(&self.waiting, |waiting| {
-            let steps = waiting.steps;
+            let time = waiting.time;
             let seat = waiting.seats.iter_mut().find(|seat| seat.id == id);
-            seat.ok_or(CommandRefusal::Impossible)?.act(command, steps)
+            seat.ok_or(CommandRefusal::Impossible)?.act(command, time)
         })
     }
 
-    /// Whether nobody is in the room or on the way to it, and nobody is about to leave it.
+    /// The number of a member's seat, which no other seat ever has; `None` if they have none.
+    pub(crate) fn seat_number(&self, id: MemberId) -> Option<u64> {
+        locked(&self.waiting, |waiting| {
+            waiting.seats.iter().find(|seat| seat.id == id).map(|seat| seat.number)
+        })
+    }
+
+    /// Whether somebody is about to join or leave.
+    pub(crate) fn has_moves(&self) -> bool {
+        locked(&self.waiting, |waiting| !waiting.moves.is_empty())
+    }
+
+    /// Marks a member away. They have their seat until the room removes them.
+    pub(crate) fn set_away(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| {
+            if let Some(seat) = waiting.seats.iter_mut().find(|seat| seat.id == id) {
+                seat.intents.clear();
+                seat.talk.clear();
+            }
+            waiting.moves.push_back((id, Command::Away));
+        });
+    }
+
+    /// Keeps the place of a member who has just joined.
+    pub(crate) fn keep(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Keep)));
+    }
+
+    /// Has a member go on, on another host.
+    pub(crate) fn take_back(&self, id: MemberId, token: u64) {
+        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Return { token })));
+    }
+
+    /// Whether nobody is in the room, and nobody is about to join or leave it.
     pub(crate) fn is_empty(&self) -> bool {
         locked(&self.waiting, |waiting| waiting.seats.is_empty() && waiting.moves.is_empty())
     }
@@ -189,38 +216,32 @@ impl Inbox {
         locked(&self.waiting, |waiting| waiting.finished.take_if(|run| run.member == id))
     }
 
-    /// Passes on what takes effect in the next step, in its order.
+    /// Passes on the commands that take effect in the next step, in their order.
     pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Command)) {
         locked(&self.waiting, |waiting| {
-            let steps = waiting.steps;
             waiting.moves.drain(..).for_each(|(id, command)| pass(id, command));
             for seat in &mut waiting.seats {
-                if seat.next_intents <= steps
-                    && let Some(intents) = seat.intents.pop_front()
-                {
-                    seat.next_intents = steps + INTENT_PAUSE;
-                    pass(seat.id, intents);
-                }
-                seat.talk.drain(..).for_each(|command| pass(seat.id, command));
+                let intents = seat.intents.pop_front();
+                intents.into_iter().chain(seat.talk.drain(..)).for_each(|it| pass(seat.id, it));
             }
-            waiting.steps += 1;
+            waiting.time += STEP;
         });
     }
 }
 
 impl Waiting {
-    fn join(&mut self, name: &Line) -> Result<MemberId, JoinRefusal> {
+    fn join(&mut self, name: &Line) -> Result<MemberId, RoomRefusal> {
         if self.is_closed {
-            return Err(JoinRefusal::Closed);
+            return Err(RoomRefusal::Gone);
         }
         if self.seats.len() >= self.most || self.moves.len() >= MOST_MOVES {
-            return Err(JoinRefusal::Full);
+            return Err(RoomRefusal::Full);
         }
         let worn = |color: &PlayerColor| self.seats.iter().filter(|it| it.color == *color).count();
-        let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(JoinRefusal::Full)?;
+        let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(RoomRefusal::Full)?;
         let id = MemberId(self.next);
         if id > MemberId::MOST {
-            return Err(JoinRefusal::Full);
+            return Err(RoomRefusal::Full);
         }
         self.next += 1;
         self.moves.push_back((id, Command::Join { color, name: name.clone() }));
@@ -229,25 +250,22 @@ impl Waiting {
     }
 
     fn seat(&mut self, id: MemberId, color: PlayerColor) {
-        {
-            self.seats_taken += 1;
-        }
+        self.seats_taken += 1;
         self.seats.push(Seat {
             id,
             number: self.seats_taken,
             color,
             intents: VecDeque::new(),
-            next_intents: 0,
             talk: VecDeque::new(),
-            chat: Pace::new(4, self.steps),
-            emotes: Pace::new(1, self.steps),
+            chat: Bucket::new(1.0, CHAT_BURST, self.time),
+            emotes: Bucket::new(1.0, 1.0, self.time),
         });
     }
 }
 
 impl Seat {
-    fn act(&mut self, command: Command, steps: u64) -> Result<(), CommandRefusal> {
-        let pace = match command {
+    fn act(&mut self, command: Command, time: Duration) -> Result<(), CommandRefusal> {
+        let bucket = match command {
             Command::Intents { .. } => {
                 if self.intents.len() >= MOST_INTENTS {
                     self.intents.pop_back();
@@ -263,27 +281,11 @@ impl Seat {
             | Command::Away
             | Command::Return { .. } => return Err(CommandRefusal::Impossible),
         };
-        if !pace.allows(steps) {
+        if !bucket.takes_one(time) {
             return Err(CommandRefusal::TooOften);
         }
         self.talk.push_back(command);
         Ok(())
-    }
-}
-
-impl Pace {
-    /// One a second, and `burst` at once.
-    fn new(burst: u64, steps: u64) -> Self {
-        let most = burst * u64::from(STEPS_PER_SECOND);
-        Self { most, credit: most, counted: steps }
-    }
-
-    fn allows(&mut self, steps: u64) -> bool {
-        self.credit = (self.credit + steps - self.counted).min(self.most);
-        self.counted = steps;
-        let is_allowed = self.credit >= u64::from(STEPS_PER_SECOND);
-        self.credit -= if is_allowed { u64::from(STEPS_PER_SECOND) } else { 0 };
-        is_allowed
     }
 }
 

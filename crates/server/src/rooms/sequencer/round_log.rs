@@ -1,15 +1,39 @@
-//! Steps of a room from its log, and the script of a run that counts.
+//! The log of a round: a room takes its steps by it, and it may be recorded.
+//!
+//! - All entries of a step are recorded before they change the room.
+//! - A recording that cannot be written is reported once, and the room goes on.
 
 use std::io;
 
-use crate::rooms::room::{Command, Entry, Log, MemberId, Mode, Room};
+use crate::rooms::room::{Command, Entry, Header, MemberId, Mode, Room};
 use cellcaster::game::{
     self, Intents, LevelName, Outcome, Recorder, Rules, STEPS_PER_SECOND, Stretch,
 };
 
-/// The log of a room, from which it takes its steps.
+/// A recording of a room's log.
+pub(crate) trait Recording: Send {
+    /// Begins a round.
+    ///
+    /// # Errors
+    /// If the header cannot be written.
+    fn begin(&mut self, header: &Header) -> io::Result<()>;
+
+    /// Adds an entry, whose step is not before the step of the last entry.
+    ///
+    /// # Errors
+    /// If the entry cannot be written.
+    fn append(&mut self, entry: &Entry) -> io::Result<()>;
+
+    /// Writes out what waits in memory.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    fn flush(&mut self) -> io::Result<()>;
+}
+
+/// The log of a round, by which a room takes its steps.
 pub(crate) struct RoundLog {
-    log: Box<dyn Log>,
+    recording: Option<Box<dyn Recording>>,
     /// Whether a fault was reported, so that a full disk is reported once.
     has_failed: bool,
     run: Run,
@@ -25,17 +49,17 @@ pub(crate) struct FinishedRun {
     pub(crate) script: String,
 }
 
-/// What a step has changed.
+/// The changes of a step.
 #[derive(Debug, Default)]
 pub(crate) struct Changes {
-    /// The entries that the step has.
+    /// The number of entries.
     pub(crate) entries: u64,
     /// Whether a lobby would show the room otherwise.
     pub(crate) summary: bool,
     pub(crate) finished: Option<FinishedRun>,
 }
 
-/// What a member who plays alone has wanted in the round so far.
+/// The intents of a member who plays alone, from the start of the round.
 #[derive(Debug, Default)]
 struct Run {
     stretches: Vec<Stretch>,
@@ -48,13 +72,13 @@ const FLUSHED: u64 = STEPS_PER_SECOND as u64;
 
 impl RoundLog {
     /// Begins the log of the round that `room` is in.
-    pub(crate) fn new(log: Box<dyn Log>, room: &Room) -> Self {
-        let mut log = Self { log, has_failed: false, run: Run::default() };
+    pub(crate) fn new(recording: Option<Box<dyn Recording>>, room: &Room) -> Self {
+        let mut log = Self { recording, has_failed: false, run: Run::default() };
         log.begin(room);
         log
     }
 
-    /// Takes a step: what `take` passes on becomes entries, the entries change the room, and the room
+    /// Takes a step: the commands that `take` passes on become entries, the entries change the room, and the room
     /// advances.
     pub(crate) fn step(
         &mut self,
@@ -68,20 +92,20 @@ impl RoundLog {
             changes.summary = true;
         }
         let step = room.step();
-        take(&mut |member, command| {
-            let result = self.log.append(Entry { step, member, command });
-            self.report(result);
-        });
+        let mut entries = Vec::new();
+        take(&mut |member, command| entries.push(Entry { step, member, command }));
+        for entry in &entries {
+            self.record(|recording| recording.append(entry));
+        }
         if step.is_multiple_of(FLUSHED) {
-            let result = self.log.flush();
-            self.report(result);
+            self.flush();
         }
         let count = room.len();
-        while let Some(entry) = self.log.next(step) {
+        for entry in &entries {
             changes.summary |= matches!(entry.command, Command::Join { .. } | Command::Leave);
-            room.apply(&entry);
-            changes.entries += 1;
+            room.apply(entry);
         }
+        changes.entries = entries.len() as u64;
         let phase = room.phase();
         room.advance();
         changes.summary |= phase != room.phase() || count != room.len();
@@ -91,21 +115,19 @@ impl RoundLog {
         changes
     }
 
-    /// Writes out what waits in memory, since no step follows for a while.
+    /// Writes out what waits in memory.
     pub(crate) fn flush(&mut self) {
-        let result = self.log.flush();
-        self.report(result);
+        self.record(|recording| recording.flush());
     }
 
     fn begin(&mut self, room: &Room) {
         self.run = Run::default();
-        let result = self.log.begin(room.header());
-        self.report(result);
+        self.record(|recording| recording.begin(room.header()));
     }
 
-    /// Reports the first fault of the log: it is one of a recording, without which the room goes on.
-    fn report(&mut self, result: io::Result<()>) {
-        if let Err(error) = result
+    fn record(&mut self, write: impl FnOnce(&mut dyn Recording) -> io::Result<()>) {
+        if let Some(recording) = &mut self.recording
+            && let Err(error) = write(&mut **recording)
             && !self.has_failed
         {
             self.has_failed = true;
@@ -115,7 +137,7 @@ impl RoundLog {
 }
 
 impl Changes {
-    /// Adds what a later step has changed.
+    /// Adds the changes of a later step.
     pub(crate) fn add(&mut self, later: Self) {
         self.entries += later.entries;
         self.summary |= later.summary;

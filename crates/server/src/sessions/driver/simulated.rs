@@ -12,7 +12,7 @@ use super::{GameHost, HostParts, Shared, login, refuse};
 use crate::accounts::HostStore;
 use crate::ops::config::LiveConfig;
 use crate::ops::metrics::Metrics;
-use crate::rooms::directory::{Logs, Place, Rooms};
+use crate::rooms::directory::{Place, Recordings, Rooms};
 use crate::rooms::room::{Catalog, RoomView};
 use crate::sessions::load::{Load, Worker};
 use crate::sessions::session::Session;
@@ -30,7 +30,7 @@ pub(crate) struct Setup {
     pub(crate) live: LiveConfig,
     pub(crate) visitors: Visitors,
     pub(crate) catalog: Catalog,
-    pub(crate) logs: Logs,
+    pub(crate) recordings: Recordings,
     pub(crate) store: Box<dyn HostStore>,
     /// How long the store takes for a call.
     pub(crate) store_time: Duration,
@@ -55,7 +55,7 @@ impl Simulated {
             live: setup.live,
             visitors: setup.visitors,
             catalog: setup.catalog,
-            logs: setup.logs,
+            recordings: setup.recordings,
             load: Load::simulated(Arc::clone(&metrics), setup.worker),
             metrics,
             store: StoreWorker::simulated(setup.store, time),

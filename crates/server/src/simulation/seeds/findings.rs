@@ -9,7 +9,7 @@ use super::{BETWEEN_KEYS, Bystander, Run, STEADY, hall};
 use crate::sessions::session::Session;
 use crate::simulation::emulator::Emulator;
 use crate::simulation::looks::looks;
-use crate::simulation::replay::{assert_same, replayed};
+use crate::simulation::tapes::{assert_same, replayed};
 use crate::simulation::{ROOM, Speaks, catalog};
 
 /// The longest time between two pictures of the steady member: three frames of thirty a second.

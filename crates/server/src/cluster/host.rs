@@ -1,0 +1,66 @@
+//! The state that all rooms of a host share.
+
+use std::sync::{Arc, Mutex};
+
+use tokio::sync::watch;
+use tokio::time::Instant;
+
+use super::bus::{Bus, Key};
+use super::lease_worker::LeaseWorker;
+use super::message::Record;
+use super::room_state::RoomState;
+use super::visits::Visits;
+use crate::accounts::HostNotice;
+use crate::lock::locked;
+use crate::rooms::room::Catalog;
+use crate::rooms::summary::{RoomId, RoomRefusal};
+use crate::sessions::load::Load;
+use crate::sessions::visitors::Visitors;
+use cellcaster::rng::SplitMix64;
+
+/// The state that all rooms of a host share.
+pub(crate) struct HostContext {
+    /// When the host was started.
+    pub(crate) begun: Instant,
+    pub(crate) bus: Box<dyn Bus>,
+    pub(crate) leases: LeaseWorker,
+    pub(crate) visits: Visits,
+    pub(crate) notice: HostNotice,
+    pub(crate) catalog: Arc<Catalog>,
+    pub(crate) load: Arc<Load>,
+    pub(crate) visitors: Visitors,
+    pub(crate) chance: Mutex<SplitMix64>,
+    /// `true` once the host ends.
+    pub(crate) ending: watch::Sender<bool>,
+}
+
+impl HostContext {
+    /// A random number.
+    pub(crate) fn chance(&self) -> u64 {
+        locked(&self.chance, SplitMix64::bits)
+    }
+
+    /// The state of a room in its newest checkpoint, and its record.
+    pub(crate) async fn load_state(&self, id: RoomId) -> Result<(RoomState, Record), RoomRefusal> {
+        let record = self.bus.get(Key::Room(id)).await.map_err(|_| RoomRefusal::NotNow)?;
+        let record =
+            record.and_then(|bytes| Record::parse(&bytes).ok()).ok_or(RoomRefusal::Gone)?;
+        let bytes = self.bus.get(Key::Checkpoint(id)).await.map_err(|_| RoomRefusal::NotNow)?;
+        let state = match bytes {
+            None => RoomState::new(&self.catalog, record.header.clone()),
+            Some(bytes) => match RoomState::restore(&self.catalog, &bytes) {
+                Ok(state) => Some(state),
+                Err(sentence) => {
+                    tracing::error!(room = %id, "a checkpoint of a room: {sentence}");
+                    None
+                }
+            },
+        };
+        Ok((state.ok_or(RoomRefusal::NoLevel)?, record))
+    }
+}
+
+/// The name of a host as operators read it, without the number of its start.
+pub(crate) fn shown_name(name: &str) -> &str {
+    name.split_once(' ').map_or(name, |(shown, _)| shown)
+}

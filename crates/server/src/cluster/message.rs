@@ -1,0 +1,311 @@
+//! Messages and records: the bytes that the hosts of a cluster write for each other.
+//!
+//! They begin with the versions of the format and of the rules, and go on as a
+//! [stored game](cellcaster::game::stored) does: no byte makes a host fail.
+//!
+//! - A [`LogMessage`] is a part of a room's log.
+//! - A [`PeerMessage`] is a broadcast to the replicas of a room. It may be lost, come twice, or come late. Claims and
+//!   requests are repeated; messages that were appended and are missing are read from the log; commands that are lost
+//!   are lost, as keys of a player whose connection stalls.
+//! - A [`Record`] tells hosts without a replica about a room.
+
+use serde::{Deserialize, Serialize};
+
+use crate::rooms::room::{
+    Command, Entry, Header, MemberId, NAME_COLUMNS, Phase, Room, line_within,
+};
+use crate::rooms::summary::{RoomId, RoomRefusal, RoomSummary};
+use crate::sessions::line::Line;
+use cellcaster::game::stored::{Reader, Unrestorable, appended, bits, check};
+use cellcaster::game::{PlayerColor, RULES_VERSION};
+
+/// The version of the format of messages, records and checkpoints.
+const FORMAT: u32 = 3;
+/// The most steps of a message: ten seconds.
+const MOST_STEPS: u64 = 600;
+
+/// A message of a room's log. A message without steps begins an epoch.
+///
+/// Rejected: counting steps from the start of the round, since a sequencer would have to know when the round ends
+/// before it does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LogMessage {
+    /// The epoch of the sequencer.
+    pub(crate) epoch: u64,
+    /// The number of the message before; 0 for none.
+    pub(crate) last: u64,
+    /// The steps that the room has taken before, in all its rounds.
+    pub(crate) tick: u64,
+    /// The steps that it takes.
+    pub(crate) steps: u64,
+    /// A checksum of the room, once a second.
+    pub(crate) check: Option<Check>,
+    /// Their steps are counted from the first one of the message.
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// The checksum of a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Check {
+    /// The steps that the room has taken, in all its rounds.
+    pub(crate) tick: u64,
+    #[serde(with = "bits")]
+    pub(crate) sum: u64,
+}
+
+/// A broadcast to the replicas of a room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum PeerMessage {
+    /// A message that the log has, with its number.
+    Appended(u64, LogMessage),
+    /// Commands of the members on a host that is not the sequencer.
+    Commands(Vec<(MemberId, Command)>),
+    /// The members on the host that sends it.
+    Claim(Vec<MemberId>),
+    /// A request to be a member.
+    Request(Token, MemberWish),
+    /// The answer to a request to join: they are in the log.
+    Joined(Token, MemberId, PlayerColor),
+    /// The answer to a request that is refused. A request to return that is granted is answered by the log.
+    Refused(Token, RoomRefusal),
+    /// The sender has released the lease of the room.
+    Released,
+}
+
+/// The random number of a request to be a member. The log stores it if the member returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Token(#[serde(with = "bits")] pub(crate) u64);
+
+/// The member that somebody wants to be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum MemberWish {
+    /// A new member.
+    Join {
+        #[serde(deserialize_with = "line_within::<NAME_COLUMNS, _>")]
+        name: Line,
+        /// Whether the place is kept.
+        is_kept: bool,
+    },
+    /// A member who is away.
+    Return(MemberId),
+}
+
+/// The record of a room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// Whether the room is always there.
+    pub(crate) stands: bool,
+    /// Whether a host runs it.
+    pub(crate) is_running: bool,
+    /// The number of records before, which grows while a host runs the room.
+    heartbeat: u64,
+    phase: Phase,
+    names: Vec<Line>,
+    /// The level of the present round.
+    pub(crate) level: String,
+    /// The header with which the log begins, as long as there is no checkpoint.
+    pub(crate) header: Header,
+}
+
+impl LogMessage {
+    /// The message of those bytes.
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+        let message: Self = parse(bytes)?;
+        message.check()?;
+        Ok(message)
+    }
+
+    fn check(&self) -> Result<(), Unrestorable> {
+        check(self.steps <= MOST_STEPS, "the steps of a message")?;
+        check(self.entries.iter().all(|entry| entry.step < self.steps), "an entry")
+    }
+
+    /// Whether `next` can follow in this message.
+    pub(crate) fn has_room(&self, next: &Self) -> bool {
+        self.steps + next.steps <= MOST_STEPS
+    }
+
+    /// Appends the steps of the message that follows. Its checksum is left out.
+    pub(crate) fn merge(&mut self, next: Self) {
+        let steps = self.steps;
+        self.entries
+            .extend(next.entries.into_iter().map(|it| Entry { step: it.step + steps, ..it }));
+        self.steps += next.steps;
+    }
+}
+
+impl PeerMessage {
+    /// The message of those bytes.
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+        let message = parse(bytes)?;
+        if let Self::Appended(_, message) = &message {
+            message.check()?;
+        }
+        Ok(message)
+    }
+}
+
+impl Record {
+    /// The record of a room that nobody has entered yet.
+    pub(crate) fn new(header: Header, stands: bool) -> Self {
+        let level = header.level.clone();
+        let (phase, names) = (Phase::Waiting, Vec::new());
+        Self { stands, is_running: !stands, heartbeat: 0, phase, names, level, header }
+    }
+
+    /// The record of those bytes.
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, Unrestorable> {
+        let record: Self = parse(bytes)?;
+        check(record.header.is_possible(), "the header")?;
+        check(record.names.iter().all(|name| name.fits(NAME_COLUMNS)), "a name")?;
+        Ok(record)
+    }
+
+    /// The next record, of the room as it is.
+    pub(crate) fn next(self, room: &Room, is_running: bool) -> Self {
+        let (phase, names) = (room.phase(), room.names().cloned().collect());
+        let level = room.header().level.clone();
+        Self { is_running, heartbeat: self.heartbeat + 1, phase, names, level, ..self }
+    }
+
+    /// The room as lobbies show it, without watchers.
+    pub(crate) fn summary(&self, id: RoomId) -> RoomSummary {
+        RoomSummary {
+            id,
+            level: self.level.clone(),
+            mode: self.header.mode,
+            difficulty: self.header.difficulty,
+            phase: self.phase,
+            members: self.names.as_slice().into(),
+            watchers: 0,
+        }
+    }
+}
+
+/// The versions of the format and of the rules.
+pub(crate) fn version() -> String {
+    format!("{FORMAT}.{RULES_VERSION}")
+}
+
+/// The bytes of a message, a record, or the beginning of a checkpoint.
+pub(crate) fn to_bytes(value: &impl Serialize) -> Vec<u8> {
+    appended((version() + "\n").into_bytes(), value)
+}
+
+/// The rest after the versions.
+pub(crate) fn reader(bytes: &[u8]) -> Result<Reader<'_>, Unrestorable> {
+    let rest = bytes.strip_prefix((version() + "\n").as_bytes());
+    Reader::of(rest.ok_or(Unrestorable::OtherVersion)?)
+}
+
+fn parse<'b, T: Deserialize<'b>>(bytes: &'b [u8]) -> Result<T, Unrestorable> {
+    let mut input = reader(bytes)?;
+    let value = input.read()?;
+    if input.rest().is_empty() { Ok(value) } else { Err(Unrestorable::Longer) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rooms::room::Mode;
+    use cellcaster::game::Intents;
+    use cellcaster::game::stored::MOST_COUNT;
+    use cellcaster::world::Difficulty;
+
+    fn message(check: Option<Check>, entries: Vec<Entry>) -> LogMessage {
+        LogMessage { epoch: 3, last: 18_231, tick: 5_400, steps: 2, check, entries }
+    }
+
+    fn leave(step: u64) -> Entry {
+        Entry { step, member: MemberId(7), command: Command::Leave }
+    }
+
+    #[test]
+    fn a_message_of_the_log_reads_as_it_is_written() {
+        let check = Check { tick: 5_399, sum: u64::MAX };
+        for message in [message(None, Vec::new()), message(Some(check), vec![leave(1)])] {
+            assert_eq!(LogMessage::parse(&to_bytes(&message)), Ok(message));
+        }
+        assert_eq!(to_bytes(&message(None, Vec::new())).len(), 13);
+    }
+
+    #[test]
+    fn a_broadcast_reads_as_it_is_written() {
+        let name = Line::of("a b", NAME_COLUMNS).unwrap();
+        let want = Command::Intents { seen: 3, intents: Intents::new() };
+        let join = |is_kept| MemberWish::Join { name: name.clone(), is_kept };
+        for message in [
+            PeerMessage::Appended(9, message(None, vec![leave(0)])),
+            PeerMessage::Commands(vec![(MemberId(1), want), (MemberId(2), Command::Leave)]),
+            PeerMessage::Claim(vec![MemberId(1), MemberId(7)]),
+            PeerMessage::Claim(Vec::new()),
+            PeerMessage::Request(Token(u64::MAX), join(true)),
+            PeerMessage::Request(Token(3), join(false)),
+            PeerMessage::Request(Token(u64::MAX), MemberWish::Return(MemberId(3))),
+            PeerMessage::Joined(Token(7), MemberId(3), PlayerColor::ALL[2]),
+            PeerMessage::Refused(Token(0), RoomRefusal::Full),
+            PeerMessage::Refused(Token(7), RoomRefusal::Taken),
+            PeerMessage::Released,
+        ] {
+            let bytes = to_bytes(&message);
+            assert_eq!(PeerMessage::parse(&bytes).as_ref(), Ok(&message));
+            for end in 0..bytes.len() {
+                assert!(PeerMessage::parse(&bytes[..end]).is_err(), "{message:?}, {end} bytes");
+            }
+            let longer = [&bytes[..], b"x"].concat();
+            assert_eq!(PeerMessage::parse(&longer), Err(Unrestorable::Longer));
+        }
+    }
+
+    #[test]
+    fn a_record_reads_as_it_is_written() {
+        let header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
+        let new = Record::new(header, true);
+        let names = ["Mara", "a b"].map(|name| Line::of(name, NAME_COLUMNS).unwrap());
+        let used = Record {
+            stands: false,
+            is_running: true,
+            heartbeat: 9,
+            phase: Phase::Playing { ends: 99 },
+            names: names.into(),
+            ..new.clone()
+        };
+        for record in [new, used] {
+            assert_eq!(Record::parse(&to_bytes(&record)).as_ref(), Ok(&record));
+            let wide =
+                Record { names: vec![Line::of(&"x".repeat(17), 17).unwrap()], ..record.clone() };
+            assert!(Record::parse(&to_bytes(&wide)).is_err());
+            let beyond = Record { heartbeat: u64::MAX, ..record };
+            assert!(Record::parse(&to_bytes(&beyond)).is_err());
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_damaged_or_of_another_version_are_refused() {
+        let good = message(None, vec![leave(1)]);
+        let check = Check { tick: MOST_COUNT + 1, sum: 0 };
+        for damaged in [
+            LogMessage { steps: MOST_STEPS + 1, ..good.clone() },
+            LogMessage { steps: 1, ..good.clone() },
+            LogMessage { epoch: u64::MAX, ..good.clone() },
+            LogMessage { last: u64::MAX, ..good.clone() },
+            LogMessage { tick: u64::MAX, ..good.clone() },
+            message(Some(check), Vec::new()),
+        ] {
+            assert!(LogMessage::parse(&to_bytes(&damaged)).is_err(), "{damaged:?}");
+            assert!(PeerMessage::parse(&to_bytes(&PeerMessage::Appended(1, damaged))).is_err());
+        }
+        let wide = Line::of(&"x".repeat(99), 99).unwrap();
+        let color = PlayerColor::ALL[0];
+        for command in [Command::Say(wide.clone()), Command::Join { color, name: wide }] {
+            let entry = Entry { step: 0, member: MemberId(1), command };
+            assert!(LogMessage::parse(&to_bytes(&message(None, vec![entry]))).is_err());
+        }
+        let member = MemberId(MemberId::MOST.0 + 1);
+        assert!(PeerMessage::parse(&to_bytes(&PeerMessage::Claim(vec![member]))).is_err());
+        let bytes = to_bytes(&good);
+        let other = [b"0.1", &bytes[version().len()..]].concat();
+        assert_eq!(LogMessage::parse(&other), Err(Unrestorable::OtherVersion));
+        assert_eq!(LogMessage::parse(b"\xff"), Err(Unrestorable::OtherVersion));
+    }
+}

@@ -1,0 +1,88 @@
+//! Recorded rooms, played again.
+
+use std::sync::Arc;
+
+use crate::rooms::room::{
+    Catalog, Entry, Header, Mode, Room, is_of_other_version, no_level, parse_log,
+};
+
+/// The largest recording of a room that is written, and that is played again.
+pub(crate) const MOST_RECORDED_BYTES: u64 = 64 << 20;
+
+/// The result of a recorded round.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct RoundReport {
+    /// The number of the round, from 1.
+    pub(crate) round: u32,
+    pub(crate) level: String,
+    pub(crate) mode: Mode,
+    /// The length of what was recorded, in steps.
+    pub(crate) steps: u64,
+    /// The names with the points of the round, the winner first; all members, if the round did not end.
+    pub(crate) standings: Vec<(String, u32)>,
+    /// The checksum of the room's last state. It is the same wherever the recording is played.
+    pub(crate) checksum: u64,
+}
+
+/// The most steps of a recorded round: two hours, or 20 seconds in a fuzz target.
+const MOST_STEPS: u64 = if cfg!(fuzzing) { 20 * 60 } else { 2 * 60 * 60 * 60 };
+
+/// Plays the rounds of a recording again. A round lasts until the next one begins, and the last one
+/// until its last entry.
+///
+/// # Errors
+/// A part of a sentence: the text is no recording, or one of another version, or of a level that the catalog does not
+/// have.
+pub(crate) fn replayed(text: &str, catalog: &Arc<Catalog>) -> Result<Vec<RoundReport>, String> {
+    if is_of_other_version(text) {
+        return Err(
+            "it was recorded by another version of Cellcaster, which has to replay it".to_owned()
+        );
+    }
+    let rounds = parse_log(text).ok_or("a line is neither of a header nor an entry")?;
+    let last = rounds.len().saturating_sub(1);
+    let rounds = rounds.iter().enumerate();
+    rounds.map(|(index, (header, entries))| play(catalog, header, entries, index == last)).collect()
+}
+
+fn play(
+    catalog: &Arc<Catalog>,
+    header: &Header,
+    entries: &[Entry],
+    is_last: bool,
+) -> Result<RoundReport, String> {
+    let no_level = || no_level(&header.level);
+    let mut room = Room::new(catalog, header.clone()).ok_or_else(no_level)?;
+    let end = entries.last().map_or(0, |entry| entry.step);
+    let mut entries = entries.iter().peekable();
+    loop {
+        while let Some(entry) = entries.next_if(|entry| entry.step <= room.step()) {
+            room.apply(entry);
+        }
+        let is_over = if is_last { room.step() >= end } else { room.is_over() };
+        if is_over && entries.peek().is_none() {
+            return Ok(report(&room, header));
+        }
+        if room.step() >= MOST_STEPS {
+            return Err(format!("round {} does not end within two hours", header.round));
+        }
+        room.advance();
+    }
+}
+
+fn report(room: &Room, header: &Header) -> RoundReport {
+    let view = room.view();
+    let name = |id| view.member(id).map(|member| member.name.to_string());
+    let ranked = view.standings.iter();
+    let ranked = ranked.filter_map(|standing| Some((name(standing.member)?, standing.points)));
+    let all = view.members.iter().map(|member| (member.name.to_string(), 0));
+    let standings: Vec<_> = ranked.collect();
+    RoundReport {
+        round: header.round,
+        level: header.level.clone(),
+        mode: header.mode,
+        steps: room.step(),
+        standings: if standings.is_empty() { all.collect() } else { standings },
+        checksum: room.checksum(),
+    }
+}
