@@ -10,8 +10,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::arguments::{Admin, AdminAction};
-use super::database::Database;
-use crate::cli::host_store;
+use super::host_store::Database;
 use crate::ops::admin::{
     AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
 };
@@ -25,7 +24,7 @@ pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let database = host_store::named(options.store);
+    let database = Database::named(options.store);
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))

@@ -14,9 +14,8 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::database::Database;
+use super::host_store::{Database, failed};
 use crate::accounts::{HostStore, StoreFailure, WaitingResults};
-use crate::cli::host_store::{self, failed};
 #[cfg(unix)]
 use crate::ops::admin::AdminSocket;
 use crate::ops::config::Config;
@@ -40,7 +39,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         )
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::named(options.store.store.take());
+    let database = Database::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let cluster = cluster::pending(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
@@ -61,7 +60,7 @@ struct Parts<'a> {
     /// For data.
     folder: &'a Path,
     format: LogFormat,
-    store: Box<dyn HostStore>,
+    store: HostStore,
     waiting: WaitingResults,
     /// In a cluster.
     cluster: Option<cluster::PendingCluster>,
@@ -123,12 +122,12 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
 }
 
 /// The store. A damaged one is an error unless the operator accepts that it may be empty.
-fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostStore>, Error> {
+fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
     if !accepts_empty {
-        return host_store::open(database).map_err(refused);
+        return database.open().map_err(refused);
     }
-    let (store, damage) = host_store::open_or_salvage(database).map_err(refused)?;
+    let (store, damage) = database.open_or_salvage().map_err(refused)?;
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }

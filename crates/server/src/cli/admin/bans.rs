@@ -6,8 +6,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use super::table::{table, time as shown_time};
 use super::{Error, RunningHost, sessions};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
-use crate::cli::database::Database;
-use crate::cli::host_store::{self, failed};
+use crate::cli::host_store::{Database, failed};
 use crate::ops::admin::{AdminFailure, AdminReply, AdminRequest, Target};
 
 /// Bans, and ends the sessions to which the ban applies.
@@ -20,7 +19,7 @@ pub(crate) fn ban(
 ) -> Result<String, Error> {
     let mut store = open(database)?;
     let now = now();
-    let targets = targets(&mut *store, target)?;
+    let targets = targets(&mut store, target)?;
     for target in &targets {
         let ban = Ban {
             target: target.clone(),
@@ -46,7 +45,7 @@ pub(crate) fn ban(
 pub(crate) fn unban(database: &Database, target: &Target) -> Result<String, Error> {
     let mut store = open(database)?;
     let mut ended = Vec::new();
-    for target in targets(&mut *store, target)? {
+    for target in targets(&mut store, target)? {
         if store.unban(&target).map_err(failed)? {
             ended.push(shown(&target));
         }
@@ -61,7 +60,7 @@ pub(crate) fn unban(database: &Database, target: &Target) -> Result<String, Erro
 
 /// The bans in force.
 pub(crate) fn list(database: &Database) -> Result<String, Error> {
-    let mut store = host_store::open_to_read(database)?;
+    let mut store = database.open_to_read()?;
     let now = now();
     let bans = store.bans(now).map_err(failed)?;
     if bans.is_empty() {
@@ -82,7 +81,7 @@ pub(crate) fn list(database: &Database) -> Result<String, Error> {
 }
 
 /// The target of a ban; for a name, also the key of the account that has it.
-fn targets(store: &mut dyn HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
+fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
     let target = target.to_ban().map_err(Error::mistake)?;
     let account = match &target {
         BanTarget::Name(name) => store.account_named(name).map_err(failed)?,
@@ -116,9 +115,9 @@ fn remove(
 }
 
 /// The store, which is not made if there is none.
-fn open(database: &Database) -> Result<Box<dyn HostStore>, Error> {
-    host_store::open_to_read(database)?;
-    host_store::open(database).map_err(failed)
+fn open(database: &Database) -> Result<HostStore, Error> {
+    database.open_to_read()?;
+    database.open().map_err(failed)
 }
 
 /// Who bans: the user who calls, also through `sudo`.

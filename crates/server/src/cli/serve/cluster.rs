@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use super::{Database, Error, Serve};
-use crate::accounts::{HostNotice, PostgresStore};
+use crate::accounts::{HostNotice, HostStore};
 use crate::cluster::Cluster;
 use crate::sessions::driver::HostParts;
 
@@ -11,8 +11,8 @@ use crate::sessions::driver::HostParts;
 pub(crate) struct PendingCluster {
     address: String,
     /// Each on a connection of its own, so that they wait for nothing else.
-    leases: PostgresStore,
-    presence: PostgresStore,
+    leases: HostStore,
+    presence: HostStore,
 }
 
 /// The cluster that `options` name. The store is that of all hosts.
@@ -27,7 +27,7 @@ pub(crate) fn pending(options: &Serve, store: &Database) -> Result<Option<Pendin
     if options.record_room.is_some() {
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
-    let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
+    let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
     Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
 }
 
@@ -44,8 +44,7 @@ impl PendingCluster {
             address: address.to_string(),
             load: 0,
         };
-        let (leases, presence) = (Box::new(self.leases), Box::new(self.presence));
-        let cluster = Cluster::join(&self.address, leases, presence, notice).await;
+        let cluster = Cluster::join(&self.address, self.leases, self.presence, notice).await;
         Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
     }
 }

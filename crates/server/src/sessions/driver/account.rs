@@ -89,7 +89,7 @@ impl Shared {
 
 /// The name that a visitor wants, once it is theirs.
 pub(crate) fn choose_name(
-    store: &mut dyn HostStore,
+    store: &mut HostStore,
     origin: &Origin,
     key: Option<AccountKey>,
     account: Option<AccountId>,
@@ -111,7 +111,7 @@ pub(crate) fn choose_name(
     }
 }
 
-fn guest_may_use(store: &mut dyn HostStore, name: &Name) -> Result<bool, StoreFailure> {
+fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
     let is_taken = store.account_named(name)?.is_some();
     let identity = Identity { name: Some(name), ..Identity::default() };
     Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
