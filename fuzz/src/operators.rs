@@ -1,4 +1,4 @@
-//! What operators and visitors write: a configuration, a name, a range of addresses, a day, a script. The first
+//! What operators and visitors write: a configuration, a name, a range of addresses, a script. The first
 //! byte says which one, the others are the text.
 
 use cellcaster_server::ops::config::Config;
