@@ -28,7 +28,7 @@ impl Shared {
                 (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
             }
             VisitRefusal::NotNow(failure) => {
-                self.metrics.store_errors.count();
+                self.metrics.store_errors.inc();
                 events::store_failed(failure);
                 (NOT_KNOWN.to_owned(), Departure::FAILED)
             }
