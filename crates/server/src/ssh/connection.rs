@@ -53,7 +53,7 @@ pub(crate) async fn serve<H: Host>(
     let _open = Counted::new(&gate.metrics.connections);
     let config = gate.config.get();
     let limits =
-        ByteLimits { before_login: config.login_bytes, per_second: config.bytes_per_second };
+        ByteLimits { before_login: config.login_bytes.into(), per_second: config.bytes_per_second };
     let passage = Arc::new(Passage::new(gate.metrics.clone()));
     let line = Arc::new(Line::new(limits, passage));
     let (begin, begun) = oneshot::channel();

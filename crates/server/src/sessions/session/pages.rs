@@ -1,21 +1,214 @@
-//! The menus: their texts and entries.
+//! The pages of a session, their menus, and what choosing an entry does.
+//!
+//! The pages outside of a room lead from the name to the lobby, to the card of a room, and into it.
+//! The selected entry of each is the usual choice, so that Enter alone leads to a first walk. Escape
+//! goes back, and asks before it leaves.
 
-use super::choice::{Choice, Target};
 use super::draw::COMPRESSION;
-use super::page::Page;
-use super::visit::Visit;
+use super::messages::Request;
+use super::ui::Ui;
 use crate::rooms::directory::RoomRefusal;
-use crate::rooms::room::{Emote, Mode};
-use crate::rooms::summary::RoomSummary;
+use crate::rooms::room::{Command, Emote, Mode};
+use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use crate::sessions::line::Line;
-use cellcaster::app::parts::{Menu, of_steps};
+use cellcaster::app::parts::{self, Kind, Menu, of_steps};
+use cellcaster::world::Difficulty;
 
 /// The rooms that the lobby lists itself; the others are on a page of their own.
 const ROOMS_IN_LOBBY: usize = 5;
 /// The level of a first walk.
 const FIRST_LEVEL: &str = "museum";
 
-impl Visit {
+/// A page. The effect of keys depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// The name is typed.
+    Name,
+    Lobby,
+    /// All rooms, to enter or to watch one.
+    Rooms {
+        watches: bool,
+    },
+    /// The mode of a new room.
+    Modes,
+    /// The level of a new room.
+    Levels(Mode),
+    /// The level whose board is wanted.
+    Boards,
+    Board,
+    /// A description of a room, before the visitor enters it.
+    Card(Target),
+    /// The room is asked for.
+    Entering,
+    Settings,
+    Help,
+    /// The question whether to end the session.
+    Leaving,
+    /// In the room, with keys to walk.
+    Room,
+    /// A line of chat is typed.
+    Chat,
+    Emotes,
+    /// Further actions in the room.
+    RoomMenu,
+}
+
+/// What an entry of a menu does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Choice {
+    /// Opens a page.
+    Open(Page),
+    /// Enters the room of the card.
+    Enter { watches: bool },
+    /// Shows the board of the level with that index.
+    Board(usize),
+    /// Changes the setting in that row of the settings page.
+    Change(usize),
+    /// Returns to the page before.
+    Back,
+    /// Shows all an emotion.
+    Emote(Emote),
+    /// Wishes to begin the round again.
+    Again,
+    /// Leaves the room.
+    LeaveRoom,
+    /// Does nothing: the entry is only read.
+    Nothing,
+}
+
+/// A room to enter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A room of the list.
+    Existing(RoomId),
+    /// A new one, in the level of the catalog with that index.
+    New { mode: Mode, level: usize, difficulty: Difficulty },
+}
+
+impl parts::Page for Page {
+    fn kind(self) -> Kind {
+        match self {
+            Self::Name | Self::Room | Self::Chat => Kind::Bare,
+            Self::Help => Kind::Help,
+            Self::Leaving => Kind::Leaving,
+            Self::Settings | Self::Levels(_) | Self::Board => Kind::Menu { has_values: true },
+            _ => Kind::Menu { has_values: false },
+        }
+    }
+}
+
+impl Page {
+    /// Whether a line is typed.
+    pub(crate) fn is_typed_in(self) -> bool {
+        matches!(self, Self::Name | Self::Chat)
+    }
+}
+
+impl Ui {
+    pub(crate) fn page(&self) -> Page {
+        self.pages.page()
+    }
+
+    /// Shows `page`, from which there is no way back.
+    pub(crate) fn show(&mut self, page: Page) {
+        self.leave_page(page);
+        self.pages.show(page, self.menu_of(page), self.now);
+    }
+
+    /// Opens `page` over the one that is shown.
+    pub(crate) fn open(&mut self, page: Page) {
+        self.leave_page(page);
+        self.pages.open(page, self.menu_of(page), self.now);
+    }
+
+    /// Returns to the page from which this one was opened.
+    pub(crate) fn close(&mut self) {
+        let home = if self.stay.is_some() { Page::Room } else { Page::Lobby };
+        self.pages.close(home, self.now);
+        self.renew_menu();
+    }
+
+    /// Makes the menu again, after something that it shows has changed.
+    pub(crate) fn renew_menu(&mut self) {
+        self.pages.renew(self.menu_of(self.page()));
+        self.is_stale = true;
+    }
+
+    fn leave_page(&mut self, next: Page) {
+        if self.page() == Page::Room && next != Page::Room {
+            self.release_keys();
+        }
+        self.is_stale = true;
+    }
+}
+
+impl Ui {
+    /// Does what the selected entry says.
+    pub(crate) fn choose(&mut self) {
+        let Some(choice) = self.pages.menu.choice() else { return };
+        match choice {
+            Choice::Open(page) => self.open(page),
+            Choice::Enter { watches } => self.enter_room(watches),
+            Choice::Board(level) => {
+                self.board.level = level;
+                self.ask_for_board();
+                self.open(Page::Board);
+            }
+            Choice::Change(row) => self.change_setting(row, true),
+            Choice::Back => self.close(),
+            Choice::Emote(emote) => {
+                self.ask(Request::Command(Command::Emote(emote)));
+                self.show(Page::Room);
+            }
+            Choice::Again => {
+                self.ask(Request::Command(Command::Again));
+                self.show(Page::Room);
+            }
+            Choice::LeaveRoom => self.leave_by_request(),
+            Choice::Nothing => {}
+        }
+    }
+
+    fn enter_room(&mut self, watches: bool) {
+        let Page::Card(target) = self.page() else { return };
+        let ask = match target {
+            Target::Existing(room) => Some(Request::Enter { room, watches }),
+            Target::New { mode, level, difficulty } => {
+                let level = self.host.catalog.names().get(level).cloned();
+                level.map(|level| Request::Open(RoomWish { level, mode, difficulty }))
+            }
+        };
+        if let Some(ask) = ask {
+            self.ask(ask);
+            self.open(Page::Entering);
+        }
+    }
+
+    /// Asks for the board of the chosen level.
+    pub(crate) fn ask_for_board(&mut self) {
+        self.board.rows = None;
+        let difficulty = self.identity.preferences.difficulty;
+        if let Some(level) = self.host.catalog.names().get(self.board.level).cloned() {
+            self.ask(Request::Board { level, difficulty });
+        }
+    }
+
+    /// Leaves the room as the visitor wishes.
+    pub(crate) fn leave_by_request(&mut self) {
+        self.ask(Request::Leave);
+        self.leave_room(None);
+    }
+
+    /// Records that the visitor has left the room.
+    pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
+        self.stay = None;
+        self.note = sentence;
+        self.ask(Request::Rooms);
+        self.show(Page::Lobby);
+    }
+}
+
+impl Ui {
     /// The menu of `page`; an empty one if it has none.
     pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
         match page {

@@ -1,31 +1,31 @@
-//! The state of a visitor's session, without their terminal.
+//! The interface of a session, without the terminal: its state, the events of the driver, and what is due at
+//! which time.
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::choice::Choice;
-use super::idle::{Idle, Patience};
+use super::endings::{Draining, Idle, IdleAction};
 use super::line_entry::LineEntry;
-use super::look::Look;
-use super::messages::{BoardRow, HostFacts, Identity, Request};
-use super::page::{Page, Shelved};
+use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
+use super::pages::{Choice, Page};
 use super::stay::Stay;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
+use crate::sessions::line::Line;
 use cellcaster::app::parts::{
-    Clock, Controls, Detection, HelpScroll, KeyContext, Menu, PendingKey, Pointer, Stats,
-    StatusLine,
+    Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine, TerminalLook,
 };
 use cellcaster::app::{Bindings, Configuration};
 use cellcaster::game::Intents;
 use cellcaster::terminal::Key;
+use cellcaster::world::FieldOfView;
 
-/// The most wishes that wait for the driver. Further ones are left out: they come from a paste.
-const MOST_ASKS: usize = 64;
+/// The most requests that wait for the driver. Further ones are dropped: they come from a paste.
+const MAX_REQUESTS: usize = 64;
 
 /// The state of a session.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
-pub(crate) struct Visit {
+pub(crate) struct Ui {
     pub(crate) identity: Identity,
     pub(crate) host: HostFacts,
     pub(crate) requests: Vec<Request>,
@@ -33,17 +33,15 @@ pub(crate) struct Visit {
     pub(crate) controls: Controls,
     pub(crate) pointer: Pointer,
     pub(crate) clock: Clock,
-    pub(crate) look: Look,
+    pub(crate) terminal: TerminalLook,
+    /// Whether the terminal shows only ASCII.
+    pub(crate) has_ascii_only: bool,
+    pub(crate) field_of_view: FieldOfView,
     pub(crate) detection: Detection,
-    pub(crate) page: Page,
-    pub(crate) menu: Menu<Choice>,
-    /// The pages to return to, the next one last.
-    pub(crate) behind: Vec<Shelved>,
+    pub(crate) pages: Pages<Page, Choice>,
     pub(crate) entry: LineEntry,
     /// Whether the driver is asked about the name.
     pub(crate) awaits_name: bool,
-    pub(crate) help: HelpScroll,
-    pub(crate) pending: PendingKey,
     /// A sentence about what happened last.
     pub(crate) note: Option<String>,
     /// When the server ends, if it does.
@@ -78,8 +76,13 @@ pub(crate) struct Board {
     pub(crate) rows: Option<Arc<[BoardRow]>>,
 }
 
-impl Visit {
-    pub(crate) fn new(identity: Identity, host: HostFacts, look: Look, now: Duration) -> Self {
+impl Ui {
+    pub(crate) fn new(
+        identity: Identity,
+        host: HostFacts,
+        has_ascii_only: bool,
+        now: Duration,
+    ) -> Self {
         let mut idle = Idle::default();
         idle.restart(now);
         let mut clock = Clock::default();
@@ -91,18 +94,16 @@ impl Visit {
             controls: Controls::default(),
             pointer: Pointer::new(identity.configuration.mouse),
             clock,
-            look,
+            terminal: TerminalLook::default(),
+            has_ascii_only,
+            field_of_view: identity.configuration.field_of_view,
             detection: Detection {
                 ascii_locale: host.ascii_locale.as_ref().map(ToString::to_string),
                 is_visitor: true,
                 ..Detection::default()
             },
-            page: Page::Name,
-            menu: Menu::new(""),
-            behind: Vec::new(),
+            pages: Pages::new(Page::Name),
             awaits_name: false,
-            help: HelpScroll::default(),
-            pending: PendingKey::default(),
             note: None,
             draining: None,
             rooms: Arc::from([]),
@@ -123,9 +124,9 @@ impl Visit {
     }
 
     /// Requests something of the driver.
-    pub(crate) fn ask(&mut self, ask: Request) {
-        if self.requests.len() < MOST_ASKS {
-            self.requests.push(ask);
+    pub(crate) fn ask(&mut self, request: Request) {
+        if self.requests.len() < MAX_REQUESTS {
+            self.requests.push(request);
         }
     }
 
@@ -136,7 +137,9 @@ impl Visit {
 
     /// Whether a picture would differ from the one that is shown.
     pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
-        let differs = |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, &self.look));
+        let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
+        let differs =
+            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, view, shows_ghosts));
         self.is_stale || self.stay.as_ref().is_some_and(differs)
     }
 
@@ -149,8 +152,8 @@ impl Visit {
         }
         match self.idle.step(&self.host.idle, self.idle_limit(), now) {
             None => {}
-            Some(Patience::Warns) => self.is_stale = true,
-            Some(Patience::Ends) => self.put_out(),
+            Some(IdleAction::Warn) => self.is_stale = true,
+            Some(IdleAction::End) => self.put_out(),
         }
     }
 
@@ -162,7 +165,7 @@ impl Visit {
         let stay = self.stay.as_ref();
         let times = [
             Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
-            self.pending.until(),
+            self.pages.pending_until(),
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
             stay.and_then(|stay| stay.talk.next_end()),
@@ -218,7 +221,7 @@ impl Visit {
 
     /// Whether keys walk.
     pub(crate) fn is_playing(&self) -> bool {
-        self.page == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
+        self.page() == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
     }
 
     pub(crate) fn key_context(&self) -> KeyContext {
@@ -254,33 +257,76 @@ impl Visit {
     }
 }
 
-/// The end of the server, to which visitors see the seconds counted down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Draining {
-    pub(crate) ends_at: Duration,
-    /// Whether the visitor finds the room as it was on another host.
-    pub(crate) can_return: bool,
-}
-
-impl Draining {
-    /// The whole seconds to the end, rounded up.
-    fn seconds(self, now: Duration) -> u64 {
-        let left = self.ends_at.saturating_sub(now).as_millis();
-        u64::try_from(left.div_ceil(1000)).unwrap_or(u64::MAX)
+/// The events of the driver.
+impl Ui {
+    /// Records an event of the driver.
+    pub(crate) fn notify(&mut self, event: SessionEvent) {
+        self.is_stale = true;
+        match event {
+            SessionEvent::Named(answer) => self.named(answer),
+            SessionEvent::Rooms(rooms) => {
+                self.rooms = rooms;
+                if self.stay.is_none() {
+                    self.renew_menu();
+                }
+            }
+            SessionEvent::Entered { member, .. } => {
+                self.note = None;
+                self.stay = Some(Stay::new(member, self.identity.configuration.minimap));
+                self.clock.skip_to(self.now);
+                self.show(Page::Room);
+            }
+            SessionEvent::Refused(sentence) | SessionEvent::Left(sentence) => {
+                self.leave_room(Some(sentence));
+            }
+            SessionEvent::Board { level, difficulty, rows } => {
+                let asked = self.host.catalog.names().get(self.board.level);
+                let is_asked = self.identity.preferences.difficulty == difficulty;
+                if asked == Some(&level) && is_asked {
+                    self.board.rows = Some(rows);
+                    self.renew_menu();
+                }
+            }
+            SessionEvent::Ghosts { level, difficulty, ghosts } => {
+                if let Some(stay) = &mut self.stay {
+                    stay.ghosts.receive(level, difficulty, ghosts);
+                }
+            }
+            SessionEvent::Result(sentence) => self.hear(sentence),
+            SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
+            SessionEvent::Draining { ends_at, can_return } => {
+                self.draining = Some(Draining { ends_at, can_return });
+                self.renew_menu();
+            }
+            SessionEvent::Ended(sentence) => self.farewell = Some(sentence),
+        }
     }
 
-    /// The time at which the number of seconds changes; `None` at the end.
-    fn next_at(self, now: Duration) -> Option<Duration> {
-        let after = Duration::from_secs(self.seconds(now).checked_sub(1)?);
-        Some(self.ends_at.saturating_sub(after))
+    fn named(&mut self, answer: Result<Line, String>) {
+        self.awaits_name = false;
+        match answer {
+            Ok(name) => {
+                self.identity.name = name;
+                self.identity.is_named = true;
+                self.enter_lobby();
+            }
+            Err(sentence) => self.note = Some(sentence),
+        }
     }
 
-    pub(crate) fn sentence(self, now: Duration) -> String {
-        let then = if self.can_return { " Connect again, and you are where you were." } else { "" };
-        match self.seconds(now) {
-            0 => format!("The server ends now.{then}"),
-            1 => format!("The server ends in 1 second.{then}"),
-            seconds => format!("The server ends in {seconds} seconds.{then}"),
+    /// Shows the lobby for the first time.
+    pub(crate) fn enter_lobby(&mut self) {
+        self.note = None;
+        self.ask(Request::Rooms);
+        self.show(Page::Lobby);
+    }
+
+    fn hear(&mut self, sentence: String) {
+        if let Some(stay) = &mut self.stay {
+            stay.talk.hear_host(sentence, self.now);
+        } else {
+            self.note = Some(sentence);
+            self.renew_menu();
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Who visitors are: accounts, guests, bans, and names.
+//! The beginning of a visit: the account, bans, names, limits over all hosts, and the terminal.
 
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
 use super::{Shared, unix_time};
@@ -7,13 +8,15 @@ use crate::accounts::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
     Origin, Refusal, StoreFailure,
 };
+use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::lock::locked;
 use crate::ops::logging::events;
 use crate::rooms::room::NAME_COLUMNS;
 use crate::sessions::line::Line;
 use crate::ssh::{Departure, Visitor};
+use cellcaster::terminal::{Options, locale_without_utf8};
 
-/// What the store knows of a visitor.
+/// A visitor as the store knows them.
 #[derive(Debug)]
 pub(crate) struct Known {
     /// The key; `None` for a guest.
@@ -36,13 +39,13 @@ pub(crate) struct NameInUse {
     names: NamesInUse,
 }
 
-/// What a visitor is told whom the store cannot find now.
-pub(crate) const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
-/// What a visitor is told whose name cannot be kept.
+/// Shown to a visitor while the store cannot be asked.
+const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
+/// Shown to a visitor whose name cannot be kept.
 const NOT_NOW: &str = "The host can't keep this now; try again later.";
 
 impl Shared {
-    /// What the store knows of a visitor, or a sentence why they may not play.
+    /// Looks a visitor up, or returns the reason why they may not play and how they depart.
     pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
         let key = visitor.key;
         let address = visitor.peer.ip();
@@ -83,7 +86,7 @@ impl Shared {
     /// A name for somebody new: that of their user name, if it can be one.
     fn offer(&self, user: &str) -> Name {
         let own = Name::new(user).ok().filter(|name| !self.names.has(name));
-        own.unwrap_or_else(|| Name::of_guest(self.guest_number()))
+        own.unwrap_or_else(|| Name::of_guest(self.next_guest.fetch_add(1, Ordering::Relaxed)))
     }
 }
 
@@ -160,5 +163,126 @@ impl Drop for NameInUse {
                 names.swap_remove(index);
             }
         });
+    }
+}
+
+impl Shared {
+    /// Counts a visitor on all hosts of a cluster, or returns the reason why they may not play and how they depart.
+    pub(crate) async fn begin_visit(
+        &self,
+        visitor: &Visitor,
+        key: Option<AccountKey>,
+    ) -> Result<Option<CountedVisit>, (String, Departure)> {
+        let Some(rooms) = &self.cluster else { return Ok(None) };
+        let limits = self.config.get().admission;
+        let new_visit = NewVisit {
+            key,
+            per_key: limits.per_key,
+            address: visitor.peer.ip(),
+            per_address: limits.per_address,
+        };
+        rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
+            VisitRefusal::TooMany(reason) => {
+                let refusal = Some(reason);
+                (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
+            }
+            VisitRefusal::NotNow(failure) => {
+                self.metrics.store_errors.inc();
+                events::store_failed(failure);
+                (NOT_KNOWN.to_owned(), Departure::FAILED)
+            }
+        })
+    }
+}
+
+/// A visitor's terminal, as their client describes it.
+pub(crate) fn terminal_options(visitor: &Visitor) -> Options {
+    Options {
+        is_remote: true,
+        is_ascii: ascii_locale(visitor).is_some(),
+        ..Options::from_environment(|name| variable(visitor, name))
+    }
+}
+
+/// The setting of the visitor's locale that restricts them to ASCII. `None` for UTF-8, and if their
+/// client sends no locale.
+pub(crate) fn ascii_locale(visitor: &Visitor) -> Option<String> {
+    locale_without_utf8(|name| variable(visitor, name))
+}
+
+/// A sentence for a visitor whose terminal cannot show the game.
+pub(crate) fn terminal_refusal(visitor: &Visitor) -> Option<String> {
+    let term = terminal_options(visitor).teletype?;
+    Some(format!(
+        "TERM is {term}, a terminal that cannot move its cursor, which playing needs. Set it to what \
+         you have, such as TERM=xterm-256color."
+    ))
+}
+
+fn variable(visitor: &Visitor, name: &str) -> Option<String> {
+    match name {
+        "TERM" => Some(visitor.term.clone()),
+        _ => visitor.environment.get(name).cloned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::net::SocketAddr;
+
+    use super::*;
+    use cellcaster::color::palette::ColorDepth;
+    use cellcaster::terminal::WindowSize;
+
+    fn visitor(term: &str, variables: &str) -> Visitor {
+        let pairs = variables.split_whitespace().filter_map(|pair| pair.split_once('='));
+        let environment: BTreeMap<String, String> =
+            pairs.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+        Visitor {
+            peer: SocketAddr::from(([192, 0, 2, 1], 50_000)),
+            key: None,
+            notice: None,
+            user: "ann".to_owned(),
+            term: term.to_owned(),
+            environment,
+            size: WindowSize::of_cells(80, 24),
+            compresses: false,
+        }
+    }
+
+    #[test]
+    fn the_locale_that_a_client_sends_decides_on_ascii() {
+        for (variables, setting) in [
+            ("", None),
+            ("LANG=en_GB.UTF-8 LC_TIME=C", None),
+            ("LANG=C", Some("LANG=C")),
+            ("LANG=en_GB.UTF-8 LC_ALL=C", Some("LC_ALL=C")),
+            ("LANG=C LC_CTYPE=C.UTF-8", None),
+        ] {
+            let visitor = visitor("xterm-256color", variables);
+            assert_eq!(ascii_locale(&visitor).as_deref(), setting, "{variables}");
+            assert_eq!(terminal_options(&visitor).is_ascii, setting.is_some(), "{variables}");
+        }
+    }
+
+    #[test]
+    fn only_terminals_without_cursor_motion_are_refused() {
+        for term in ["dumb", "unknown", "tty33"] {
+            assert!(
+                terminal_refusal(&visitor(term, "")).is_some_and(|it| it.contains(term)),
+                "{term}"
+            );
+        }
+        for term in ["", "linux", "vt100", "no-such", "xterm-256color"] {
+            assert_eq!(terminal_refusal(&visitor(term, "")), None, "{term}");
+        }
+    }
+
+    #[test]
+    fn a_linux_console_is_queried_for_nothing_that_it_prints() {
+        let options = terminal_options(&visitor("linux", ""));
+        assert!(!options.probe_extensions && !options.ask_for_version && !options.is_ascii);
+        assert_eq!(options.color_depth.depth(), ColorDepth::Indexed16);
     }
 }
