@@ -85,6 +85,16 @@ impl BanTarget {
     }
 }
 
+impl fmt::Display for BanTarget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => key.fmt(f),
+            Self::Name(name) => f.write_str(name.as_str()),
+            Self::Addresses(range) => range.fmt(f),
+        }
+    }
+}
+
 impl AddressPrefix {
     /// The addresses that share their first `length` bits with `address`; `None` if it has fewer. An
     /// IPv4 address that is written as IPv6 is an IPv4 address.

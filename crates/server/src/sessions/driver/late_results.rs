@@ -80,7 +80,7 @@ impl Recorder {
                 self.visitors.say_to(&account.key, &line);
             }
             Some(Late::Refuted(result, reason)) => {
-                self.metrics.results_refused.count();
+                self.metrics.results(false).inc();
                 events::result_lost(&result.key, reason);
             }
             Some(Late::GivenUp(result, failure)) => events::result_lost(&result.key, failure),

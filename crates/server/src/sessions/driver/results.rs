@@ -43,12 +43,12 @@ impl Recorder {
         let run = match verify_with(&run.script, |name| self.world(name)) {
             Ok(run) => run,
             Err(reason) => {
-                self.metrics.results_refused.count();
+                self.metrics.results(false).inc();
                 events::result_refused(account.name.as_str(), &run.level, &reason);
                 return format!("The result does not count. {reason}");
             }
         };
-        self.metrics.results_verified.count();
+        self.metrics.results(true).inc();
         let now = unix_time();
         match store.record(account.id, &run, now) {
             Ok(improved) => self.placed(store, account, &run, improved),
@@ -67,7 +67,7 @@ impl Recorder {
     }
 
     pub(crate) fn failed(&self, failure: &StoreFailure) {
-        self.metrics.store_errors.count();
+        self.metrics.store_errors.inc();
         events::store_failed(failure);
     }
 

@@ -4,13 +4,11 @@ use std::fs;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::Command;
-use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use cellcaster_server::accounts::HostStore;
 use cellcaster_server::ops::config::Config;
-use cellcaster_server::ops::metrics::Metrics;
 use cellcaster_server::sessions::driver::{GameHost, HostParts};
 use cellcaster_server::sessions::visitors::Visitors;
 use cellcaster_server::ssh::Server;
@@ -110,7 +108,7 @@ impl Running {
         let (stop, stopped) = oneshot::channel();
         let thread = thread::spawn(move || {
             runtime.block_on(async {
-                let metrics = Arc::<Metrics>::default();
+                let metrics = server.metrics();
                 let visitors = Visitors::default();
                 let host = HostParts::new(server.config(), metrics, visitors, store);
                 server.run(GameHost::start(host.unwrap()), async { _ = stopped.await }).await;
