@@ -51,7 +51,7 @@ use self::nats::NatsBus;
 pub(crate) use self::operators::OtherHosts;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
-use crate::accounts::{HostNotice, Leases, Presence};
+use crate::accounts::{HostNotice, HostStore};
 use crate::rooms::directory::Rooms;
 use crate::rooms::summary::RoomWish;
 use crate::sessions::load::Load;
@@ -76,8 +76,8 @@ impl Cluster {
     /// A sentence, if the server does not answer, or has no `JetStream`.
     pub async fn join(
         address: &str,
-        leases: Box<dyn Leases>,
-        presence: Box<dyn Presence>,
+        leases: HostStore,
+        presence: HostStore,
         notice: HostNotice,
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");

@@ -8,7 +8,7 @@ use tokio::time::Instant;
 use super::message::{LogMessage, PeerMessage, Record, reader, to_bytes, version};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
-use crate::accounts::{Leases, MemoryLeases};
+use crate::accounts::HostStore;
 use crate::rooms::room::{Catalog, Entry, Header, Mode};
 use cellcaster::world::Difficulty;
 
@@ -23,7 +23,7 @@ pub struct SharedRoom {
     state: RoomState,
     sequencer: Option<ClusterSequencer>,
     record: Record,
-    leases: MemoryLeases,
+    leases: HostStore,
     now: Instant,
 }
 
@@ -49,7 +49,7 @@ impl SharedRoom {
     }
 
     fn with(state: RoomState, record: Record) -> Self {
-        let (leases, now) = (MemoryLeases::default(), Instant::now());
+        let (leases, now) = (HostStore::in_memory(), Instant::now());
         Self { state, sequencer: None, record, leases, now }
     }
 

@@ -195,7 +195,7 @@ impl Replica {
         let Beginning { id, record, interface, state, broadcasts, requests } = beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
-        let figures = context.load.metrics().each_room.add(id.0);
+        let figures = context.load.metrics().add_room(id.0);
         Self {
             id,
             context,
@@ -368,15 +368,15 @@ impl Replica {
             Position::Later => return false,
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
-                    self.context.load.metrics().checks_equal.count();
-                    self.figures.checks_equal.count();
+                    self.context.load.metrics().checks(true).inc();
+                    self.figures.checks(true).inc();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
-                self.context.load.metrics().checks_different.count();
-                self.figures.checks_different.count();
+                self.context.load.metrics().checks(false).inc();
+                self.figures.checks(false).inc();
                 _ = self.restore().await;
                 return false;
             }
@@ -411,9 +411,9 @@ impl Replica {
                 return self.interface.close(FAULT);
             }
         };
-        self.context.load.metrics().entries.add(changes.entries);
-        self.figures.entries.add(changes.entries);
-        self.figures.steps.add(message.steps);
+        self.context.load.metrics().entries.inc_by(changes.entries);
+        self.figures.entries.inc_by(changes.entries);
+        self.figures.steps.inc_by(message.steps);
         if let Some(run) = changes.finished {
             self.interface.inbox.finish(run);
         }
@@ -496,12 +496,6 @@ impl Replica {
         let stay = closes_after.filter(|_| self.sequencer.is_some()).unwrap_or_default();
         let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
-    }
-}
-
-impl Drop for Replica {
-    fn drop(&mut self) {
-        self.context.load.metrics().each_room.remove(self.id.0, &self.figures);
     }
 }
 
