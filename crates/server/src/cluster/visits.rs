@@ -3,19 +3,19 @@
 //! # Rules
 //!
 //! - A visit begins in the database when it is known who the visitor is, and ends with their session.
-//! - A host announces itself each second. The visits of one that has not done so for [`THERE`] do not count.
+//! - A host announces itself each second. The visits of a host that was silent for [`THERE`] do not count.
 //! - A visitor may be over a limit because of their own visit on a host that was just killed. So a visitor over a
 //!   limit waits until each host of the earlier visits has announced itself again, or its visits no longer count.
-//! - While the database is away nobody begins a visit, and those that run go on. What has ended meanwhile is
-//!   ended in the database later.
+//! - While the database is away nobody begins a visit, and running visits go on. Visits that end meanwhile are ended in
+//!   the database later.
 //!
-//! A new visit in place of an earlier one was refused: two clients that connect again by themselves would end
-//! each other's visits for ever.
+//! Rejected: a new visit in place of an earlier one. Two clients that connect again by themselves would end each other's
+//! visits for ever.
 
-mod registry;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::io;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
@@ -25,9 +25,11 @@ use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
-pub(crate) use self::registry::VisitRegistry;
-use crate::accounts::{AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitId, Visitor};
+use crate::accounts::{
+    AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitBegin, VisitId, Visitor,
+};
 use crate::lock::locked;
+use crate::ops::logging::events;
 use crate::ssh::admission::Refusal;
 use crate::ssh::admission::counted_address;
 
@@ -100,6 +102,19 @@ pub(crate) struct TooMany {
     ago: Duration,
 }
 
+/// The visits of this host, as its thread knows them.
+pub(crate) struct VisitRegistry {
+    notice: HostNotice,
+    /// The visits that count and have not ended.
+    counting: BTreeSet<VisitId>,
+    ended: Arc<Mutex<Vec<VisitId>>>,
+    /// Whether the database may have visits of this host that nobody here has.
+    is_unsure: bool,
+    /// Whether the last call to the database failed.
+    is_away: bool,
+    has_left: bool,
+}
+
 impl Visits {
     /// A sender, and the receiver of its calls.
     pub(crate) fn new() -> (Self, mpsc::Receiver<Call>) {
@@ -164,7 +179,7 @@ impl Visits {
 }
 
 impl NewVisit {
-    /// As whom they count, with the most visits and the reason of a refusal.
+    /// The key and the address that the visit counts against, each with its limit and the reason of a refusal.
     fn limits(&self) -> impl Iterator<Item = (Visitor, u32, Refusal)> {
         let by_key = self.key.map(|key| (Visitor::Key(key), self.per_key, Refusal::Key));
         let address = Visitor::Addresses(counted_address(self.address));
@@ -176,5 +191,105 @@ impl Drop for CountedVisit {
     fn drop(&mut self) {
         locked(&self.visits.ended, |ended| ended.append(&mut self.ids));
         self.visits.call(Call::End);
+    }
+}
+
+impl VisitRegistry {
+    pub(crate) fn new(notice: HostNotice, visits: &Visits) -> Self {
+        let (counting, ended) = (BTreeSet::new(), Arc::clone(&visits.ended));
+        Self { notice, counting, ended, is_unsure: false, is_away: false, has_left: false }
+    }
+
+    /// Does what a call asks for, and answers.
+    pub(crate) fn run(&mut self, presence: &mut HostStore, call: Call) {
+        self.end(presence);
+        match call {
+            Call::Begin(new_visit, visits, reply) => {
+                let begun = self.begin(presence, &new_visit);
+                let begun = begun.map(|begun| begun.map(|ids| CountedVisit { ids, visits }));
+                // A visit that nobody waits for any more ends when it is dropped.
+                _ = reply.send(begun);
+            }
+            Call::Announce(load) if !self.has_left => self.announce(presence, load),
+            Call::Announce(_) | Call::End => {}
+            Call::Hosts(reply) => _ = reply.send(presence.hosts(THERE)),
+            Call::Leave(reply) => {
+                self.has_left = true;
+                self.counting.clear();
+                self.note(presence.leave(&self.notice.name));
+                _ = reply.send(());
+            }
+        }
+    }
+
+    /// Begins a visit by the key and by the address, or neither.
+    fn begin(
+        &mut self,
+        presence: &mut HostStore,
+        new_visit: &NewVisit,
+    ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
+        let mut ids = Vec::new();
+        for (visitor, most, reason) in new_visit.limits() {
+            match presence.begin_visit(&self.notice.name, &visitor, most, THERE) {
+                Ok(VisitBegin::Begun(id)) => {
+                    self.counting.insert(id);
+                    ids.push(id);
+                }
+                Ok(VisitBegin::TooMany(ago)) => {
+                    self.end_all(presence, ids);
+                    return Ok(Err(TooMany { reason, ago }));
+                }
+                Err(failure) => {
+                    self.is_unsure = true;
+                    self.end_all(presence, ids);
+                    return Err(failure);
+                }
+            }
+        }
+        Ok(Ok(ids))
+    }
+
+    /// Ends the visits whose sessions have ended.
+    fn end(&mut self, presence: &mut HostStore) {
+        let ended = locked(&self.ended, std::mem::take);
+        self.end_all(presence, ended);
+    }
+
+    fn end_all(&mut self, presence: &mut HostStore, ids: Vec<VisitId>) {
+        for id in ids {
+            // One that this host has left has ended with all others.
+            if self.counting.remove(&id) && (self.is_away || presence.end_visit(id).is_err()) {
+                self.is_unsure = true;
+            }
+        }
+    }
+
+    fn announce(&mut self, presence: &mut HostStore, load: u32) {
+        self.notice.load = load;
+        let announced = presence.announce(&self.notice);
+        self.note(announced);
+        if self.is_unsure && !self.is_away {
+            self.is_unsure = self.end_unknown(presence).is_err();
+        }
+    }
+
+    /// Ends the visits of this host that nobody has, since a call has failed.
+    fn end_unknown(&mut self, presence: &mut HostStore) -> Result<(), StoreFailure> {
+        for visit in presence.visits(THERE)? {
+            if visit.host == self.notice.name && !self.counting.contains(&visit.id) {
+                presence.end_visit(visit.id)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes whether the database answers, and logs that it does not any more.
+    fn note(&mut self, answer: Result<(), StoreFailure>) {
+        let was_away = std::mem::replace(&mut self.is_away, answer.is_err());
+        if let Err(failure) = answer
+            && !was_away
+        {
+            events::store_failed(failure);
+        }
     }
 }

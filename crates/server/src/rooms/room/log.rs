@@ -85,9 +85,7 @@ pub(crate) struct Seat {
 pub(crate) struct Entry {
     /// The step of the round before which it takes effect.
     pub(crate) step: u64,
-    /// Whose entry it is.
     pub(crate) member: MemberId,
-    /// The member's command.
     pub(crate) command: Command,
 }
 
@@ -102,7 +100,7 @@ pub(crate) enum Command {
     },
     /// Leaves the room.
     Leave,
-    /// Has an account, so that their place is kept while they are away.
+    /// Keeps the member's place while they are away, since they have an account.
     Keep,
     /// Is away: their host is gone.
     Away,
@@ -111,14 +109,14 @@ pub(crate) enum Command {
         #[serde(with = "bits")]
         token: u64,
     },
-    /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in
-    /// the next step only.
+    /// Sets the intents from now on, after a picture of the step `seen` of the game. The angles count in the next step
+    /// only.
     Intents { seen: u64, intents: Intents },
-    /// Says something to all.
+    /// Says something to everybody.
     Say(#[serde(deserialize_with = "line_within::<CHAT_COLUMNS, _>")] Line),
-    /// Shows all an emotion.
+    /// Shows an emotion to everybody.
     Emote(Emote),
-    /// Wishes to begin the round again, which happens when all do.
+    /// Wants to begin the round again, which happens when all members do.
     Again,
 }
 
@@ -250,7 +248,7 @@ impl Emote {
         }
     }
 
-    /// What others read beside the name.
+    /// The text that others read beside the name.
     pub(crate) const fn text(self) -> &'static str {
         match self {
             Self::Wave => "waves",
