@@ -111,7 +111,7 @@ impl HostParts {
         live: LiveConfig,
         metrics: Arc<Metrics>,
         visitors: Visitors,
-        store: Box<dyn HostStore>,
+        store: HostStore,
     ) -> io::Result<Self> {
         Ok(Self {
             visitors,

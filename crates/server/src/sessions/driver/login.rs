@@ -47,7 +47,7 @@ const NOT_NOW: &str = "The host can't keep this now; try again later.";
 impl Shared {
     /// Looks a visitor up, or returns the reason why they may not play and how they depart.
     pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
-        let key = visitor.key.as_ref().and_then(|key| AccountKey::parse(key.fingerprint()));
+        let key = visitor.key;
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
             let now = unix_time();
@@ -67,7 +67,7 @@ impl Shared {
         let (ban, account, settings) = match answer.await {
             Ok(Ok(known)) => known,
             failed => {
-                self.metrics.store_errors.count();
+                self.metrics.store_errors.inc();
                 events::store_failed(format!("{failed:?}"));
                 return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
             }
@@ -92,7 +92,7 @@ impl Shared {
 
 /// Gives a visitor the name that they want.
 pub(crate) fn choose_name(
-    store: &mut dyn HostStore,
+    store: &mut HostStore,
     origin: &Origin,
     key: Option<AccountKey>,
     account: Option<AccountId>,
@@ -114,7 +114,7 @@ pub(crate) fn choose_name(
     }
 }
 
-fn guest_may_use(store: &mut dyn HostStore, name: &Name) -> Result<bool, StoreFailure> {
+fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
     let is_taken = store.account_named(name)?.is_some();
     let identity = Identity { name: Some(name), ..Identity::default() };
     Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
@@ -187,7 +187,7 @@ impl Shared {
                 (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
             }
             VisitRefusal::NotNow(failure) => {
-                self.metrics.store_errors.count();
+                self.metrics.store_errors.inc();
                 events::store_failed(failure);
                 (NOT_KNOWN.to_owned(), Departure::FAILED)
             }

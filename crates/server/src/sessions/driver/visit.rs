@@ -214,7 +214,7 @@ impl Driver {
                     self.session.written(now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.add(now.saturating_sub(key));
+                        self.shared.metrics.key_time.observe(now.saturating_sub(key).as_secs_f64());
                     }
                 }
                 DriverEvent::RoomsChanged => {
@@ -264,7 +264,8 @@ impl Driver {
             aside(session.is_large(), || session.draw(view.as_deref(), now));
             #[cfg(test)]
             self.shared.load.spend(Work::Frame);
-            self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
+            let time = self.shared.now().saturating_sub(now);
+            self.shared.metrics.frame_time.observe(time.as_secs_f64());
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {
             self.session.look_at(view);

@@ -3,23 +3,21 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use russh::keys::ssh_key::public::{self, Ed25519PublicKey};
-
 use super::*;
+use crate::accounts::AccountKey;
 use crate::rooms::room::{Room, parse_log};
 use crate::rooms::summary::RoomId;
 use crate::sessions::line::Line;
 use crate::sessions::session::pages::Page;
 use crate::simulation::guest;
-use crate::ssh::{KeyData, Visitor};
+use crate::ssh::Visitor;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Outcome;
 use cellcaster::terminal::Fidelity;
 
 /// A key, which makes its owner an account.
-fn key() -> KeyData {
-    let key = Ed25519PublicKey([7; 32]);
-    KeyData::new(&public::KeyData::Ed25519(key)).unwrap()
+fn key() -> AccountKey {
+    AccountKey::new([7; 32])
 }
 
 /// From the name to the first level alone.

@@ -1,14 +1,16 @@
-//! Runs that count: the host plays their scripts again.
+//! Results: the boards that they belong to, and the runs that count. The host plays the scripts of runs again.
 
+use std::cmp::Ordering;
 use std::fmt;
+use std::sync::Arc;
 
-use super::{Day, LevelBoard};
-use cellcaster::app::store::{DescentRun, Reached, replayed};
+use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
 use cellcaster::fault::Faults;
-use cellcaster::game::{Game, Outcome, Rank, Rules, STEPS_PER_SECOND, Script, Tally};
-use cellcaster::generate::descent;
+use cellcaster::game::{Game, Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
+
+use super::{AccountId, Name, UnixTime};
 
 /// The longest script that is verified, in steps: half an hour.
 pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
@@ -16,29 +18,34 @@ pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
 /// hour writes less.
 pub const MOST_SCRIPT_BYTES: usize = 8 << 20;
 
-/// A run that [`verify`] has replayed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum VerifiedRun {
-    /// A level that was won.
-    Level(VerifiedLevel),
-    /// A descent that reached an exit.
-    Descent(VerifiedDescent),
+/// A board: a built-in level or a map of the host, at one difficulty.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct LevelBoard {
+    level: Arc<str>,
+    difficulty: Difficulty,
 }
 
-/// A built-in level or a map of the host that was won.
+/// An entry of a level's board.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct VerifiedLevel {
+pub struct LevelScore {
+    /// The account.
+    pub account: AccountId,
+    /// Its name.
+    pub name: Name,
+    /// The tally of its fastest run.
+    pub tally: Tally,
+    /// The highest rank of all its runs.
+    pub rank: Rank,
+    /// When the fastest run was verified.
+    pub verified_at: UnixTime,
+}
+
+/// A run that [`verify`] has replayed: a built-in level or a map of the host that was won.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VerifiedRun {
     board: LevelBoard,
     tally: Tally,
     rank: Rank,
-    script: String,
-}
-
-/// A descent from the first floor on that reached an exit.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct VerifiedDescent {
-    rules: Rules,
-    reached: Reached,
     script: String,
 }
 
@@ -49,7 +56,7 @@ pub enum Unverified {
     TooLong,
     /// It is no script.
     Faulty(Faults),
-    /// It names no level that is known, and not the first floor of a descent.
+    /// It names no level that has a board.
     OtherLevel,
     /// A level is played with the seed 0, so that all runs of it compare.
     OtherSeed,
@@ -61,7 +68,7 @@ pub enum Unverified {
 
 /// Plays a script again in the level that its header names.
 ///
-/// Only built-in levels and descents are played, so that no file is read. The work is that of
+/// Only built-in levels are played, so that no file is read. The work is that of
 /// [`MOST_SCRIPT_STEPS`] steps at most.
 ///
 /// ```
@@ -93,54 +100,73 @@ pub fn verify_with(
     }
     let rules = script.header().rules();
     let level = script.header().level.as_ref().ok_or(Unverified::OtherLevel)?;
-    match level.floor() {
-        Some(1) => verify_descent(rules, &script).map(VerifiedRun::Descent),
-        Some(_) => Err(Unverified::OtherLevel),
-        None => verify_level(level.as_str(), map, rules, &script).map(VerifiedRun::Level),
-    }
-}
-
-fn verify_level(
-    name: &str,
-    map: impl FnOnce(&str) -> Option<World>,
-    rules: Rules,
-    script: &Script,
-) -> Result<VerifiedLevel, Unverified> {
-    let board = LevelBoard::new(name, rules.difficulty).ok_or(Unverified::OtherLevel)?;
+    let board = LevelBoard::new(level.as_str(), rules.difficulty).ok_or(Unverified::OtherLevel)?;
     if rules.seed != 0 {
         return Err(Unverified::OtherSeed);
     }
-    let world = match builtin::LEVELS.iter().find(|level| level.name == name) {
+    let world = match builtin::LEVELS.iter().find(|level| level.name == board.level()) {
         Some(level) => level.world().ok(),
-        None => map(name),
+        None => map(board.level()),
     };
-    let world = world.ok_or(Unverified::OtherLevel)?;
-    let game = replayed(world, rules, script);
+    let game = replayed(world.ok_or(Unverified::OtherLevel)?, rules, &script);
     if !game.is_finished() {
         return Err(not_won(&game));
     }
     let tally = game.tally();
     let rank = tally.rank(game.world().par());
-    Ok(VerifiedLevel { board, tally, rank, script: script.to_string() })
+    Ok(VerifiedRun { board, tally, rank, script: script.to_string() })
 }
 
-fn verify_descent(rules: Rules, script: &Script) -> Result<VerifiedDescent, Unverified> {
-    let first = descent(rules.seed, 1).map_err(|_| Unverified::OtherLevel)?;
-    let DescentRun { game, reached } = DescentRun::replayed(1, first, rules, script);
-    if reached.floors == 0 {
-        return Err(not_won(&game));
+impl LevelBoard {
+    /// The board of `level`: the name of a built-in level, or the [key](cellcaster::app::store::map_key) of a map.
+    /// `None` if it is neither.
+    pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
+        let is_level = place(level).is_some() || name_in_map_key(level).is_some();
+        is_level.then(|| Self { level: level.into(), difficulty })
     }
-    Ok(VerifiedDescent { rules, reached, script: script.to_string() })
-}
 
-fn not_won(game: &Game) -> Unverified {
-    match game.outcome() {
-        Outcome::Dead { .. } => Unverified::Dead,
-        Outcome::Playing | Outcome::Won => Unverified::NotWon,
+    /// The name of the level, or the key of the map.
+    pub fn level(&self) -> &str {
+        &self.level
+    }
+
+    /// The name of the level, or that of the map without the hash of its text.
+    pub fn name(&self) -> &str {
+        name_in_map_key(&self.level).unwrap_or(&self.level)
+    }
+
+    /// The difficulty.
+    pub fn difficulty(&self) -> Difficulty {
+        self.difficulty
     }
 }
 
-impl VerifiedLevel {
+impl Ord for LevelBoard {
+    /// Built-in levels in their order come before maps by name, and easy before hard.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |board: &Self| {
+            let level = place(&board.level).unwrap_or(usize::MAX);
+            let difficulty = Difficulty::ALL.iter().position(|it| *it == board.difficulty);
+            (level, difficulty)
+        };
+        let [(level, difficulty), (other_level, other_difficulty)] = [rank(self), rank(other)];
+        let by_level = level.cmp(&other_level).then_with(|| self.level.cmp(&other.level));
+        by_level.then(difficulty.cmp(&other_difficulty))
+    }
+}
+
+impl PartialOrd for LevelBoard {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The place of a built-in level among all of them.
+fn place(level: &str) -> Option<usize> {
+    builtin::LEVELS.iter().position(|known| known.name == level)
+}
+
+impl VerifiedRun {
     /// The board that it belongs to.
     pub fn board(&self) -> &LevelBoard {
         &self.board
@@ -154,34 +180,6 @@ impl VerifiedLevel {
     /// Its rank.
     pub fn rank(&self) -> Rank {
         self.rank
-    }
-
-    /// Its script.
-    pub fn script(&self) -> &str {
-        &self.script
-    }
-}
-
-impl VerifiedDescent {
-    /// The day whose daily run it is, if it is one: with the seed of a day, at the usual difficulty.
-    pub fn day(&self) -> Option<Day> {
-        let number = u32::try_from(self.rules.seed).ok()?;
-        Day::from_number(number).filter(|_| self.rules.difficulty == Difficulty::default())
-    }
-
-    /// The seed of the descent.
-    pub fn seed(&self) -> u64 {
-        self.rules.seed
-    }
-
-    /// The difficulty.
-    pub fn difficulty(&self) -> Difficulty {
-        self.rules.difficulty
-    }
-
-    /// How far it came.
-    pub fn reached(&self) -> Reached {
-        self.reached
     }
 
     /// Its script.
@@ -209,7 +207,7 @@ impl fmt::Display for Unverified {
 impl std::error::Error for Unverified {}
 
 #[cfg(any(test, fuzzing))]
-impl VerifiedLevel {
+impl VerifiedRun {
     /// A run that nobody has verified.
     #[doc(hidden)]
     pub fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
@@ -217,12 +215,18 @@ impl VerifiedLevel {
     }
 }
 
-#[cfg(any(test, fuzzing))]
-impl VerifiedDescent {
-    /// A descent that nobody has verified.
-    #[doc(hidden)]
-    pub fn made_up(rules: Rules, reached: Reached, script: &str) -> Self {
-        Self { rules, reached, script: script.to_owned() }
+/// The best of a known result and a run, and what the run improves.
+pub(crate) fn with_run(known: Option<Best>, run: &VerifiedRun) -> (Best, Improved) {
+    let of_run = Best { tally: run.tally(), rank: run.rank() };
+    let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
+    let time = of_run.tally.steps < known.tally.steps;
+    (known.and(of_run), Improved { time, rank: of_run.rank > known.rank })
+}
+
+fn not_won(game: &Game) -> Unverified {
+    match game.outcome() {
+        Outcome::Dead { .. } => Unverified::Dead,
+        Outcome::Playing | Outcome::Won => Unverified::NotWon,
     }
 }
 
@@ -237,19 +241,16 @@ mod tests {
 
     #[test]
     fn a_script_that_wins_is_a_run() {
-        let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
+        let run = verify(WON).unwrap();
         assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
         assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
         // What is kept is a run, too, and the same one.
-        assert_eq!(verify(run.script()).unwrap(), VerifiedRun::Level(run));
+        assert_eq!(verify(run.script()).unwrap(), run);
     }
 
     #[test]
     fn what_comes_after_the_exit_does_not_count() {
         let (run, longer) = (verify(WON).unwrap(), verify(&format!("{WON}9 s back\n")).unwrap());
-        let (VerifiedRun::Level(run), VerifiedRun::Level(longer)) = (run, longer) else {
-            panic!("not a level")
-        };
         assert_eq!((run.tally(), run.rank()), (longer.tally(), longer.rank()));
     }
 
@@ -264,7 +265,7 @@ mod tests {
             ("level tests/maps/way_out.toml\n2 s forward\n", "has no board"),
             ("level /dev/zero\n2 s forward\n", "has no board"),
             ("level floor 2\n2 s forward\n", "has no board"),
-            ("level floor 1\n2 s forward\n", "reaches no exit"),
+            ("level floor 1\n2 s forward\n", "has no board"),
             (&WON.replace("seed 0", "seed 1"), "another seed"),
             (&long, "longer than half an hour"),
             (&"#".repeat(MOST_SCRIPT_BYTES + 1), "longer than half an hour"),
@@ -274,16 +275,5 @@ mod tests {
             let sentence = verify(script).unwrap_err().to_string();
             assert!(sentence.contains(expected), "{sentence}");
         }
-    }
-
-    #[test]
-    fn a_daily_run_has_the_seed_of_a_day_and_the_usual_difficulty() {
-        let day = |seed, difficulty| {
-            VerifiedDescent::made_up(Rules { difficulty, seed }, Reached::default(), "").day()
-        };
-        assert_eq!(day(20_261_122, Difficulty::Normal), Day::parse("2026-11-22"));
-        assert_eq!(day(20_261_122, Difficulty::Easy), None);
-        assert_eq!(day(20_261_322, Difficulty::Normal), None);
-        assert_eq!(day(u64::MAX, Difficulty::Normal), None);
     }
 }
