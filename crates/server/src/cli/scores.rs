@@ -11,7 +11,7 @@ use crate::accounts::{DailyScore, Day, HostStore, LevelBoard, LevelScore, StoreF
 use crate::cli::host_store::{self, failed};
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::Error;
-use cellcaster::cli::data_folder::data_folder;
+use cellcaster::cli::machine::data_folder;
 use cellcaster::game::STEPS_PER_SECOND;
 
 /// The entries of a board that are listed.
