@@ -15,11 +15,9 @@ mod keys;
 mod levels;
 mod map_panel;
 mod menu;
-mod menus;
 mod mouse;
 mod page;
 mod panels;
-pub mod parts;
 mod picture;
 mod played;
 mod recording;
@@ -38,6 +36,29 @@ pub mod store;
 pub(crate) mod time;
 mod title;
 
+/// The parts of the program that the sessions of a server use, too.
+pub mod parts {
+    pub use crate::app::banner::draw as draw_banner;
+    pub use crate::app::bindings::{Action, Preset};
+    pub use crate::app::controls::Clock;
+    pub use crate::app::controls::{Controls, KeyContext};
+    pub use crate::app::detection::Detection;
+    pub use crate::app::help::HelpScroll;
+    pub use crate::app::map_panel::MapPanel;
+    pub use crate::app::menu::Menu;
+    pub use crate::app::mouse::Pointer;
+    pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
+    pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
+    pub use crate::app::picture::{DrawOptions, Overlay, TerminalLook, widened};
+    pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
+    pub use crate::app::settings_page::{Choices, settings_menu};
+    pub use crate::app::stats::{Meter, Stats};
+    pub use crate::app::status::HealthSigns;
+    pub use crate::app::status::{Part, StatusLine, hint};
+    pub use crate::app::steps::Watch;
+    pub use crate::app::time::{of_steps, tenths, whole_seconds};
+}
+
 use std::time::Duration;
 
 pub use bindings::Bindings;
@@ -46,16 +67,16 @@ use detection::Detection;
 pub use levels::Levels;
 use levels::{Course, LevelNumber, Reload, Stage};
 use map_panel::MapPanel;
-use menus::Choice;
 use mouse::Pointer;
 use page::Pages;
+use picture::TerminalLook;
 use played::{Goal, Played, Viewpoint, Views};
 pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder};
 pub use replay::Replay;
 use results::LevelResult;
 pub use run::{Farewell, Opening, play};
-use screen::Screen;
+use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 use stats::Stats;
 use status::StatusLine;
@@ -64,8 +85,8 @@ use store::{Reached, Store};
 use title::{Demo, TmuxOrder};
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
-use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::tui::{CellAspect, GlyphSet, View};
+use crate::color::palette::ColorDepth;
+use crate::tui::View;
 use crate::world::{Difficulty, Figure};
 
 /// The part of the game's state that a picture depends on.
@@ -75,16 +96,6 @@ struct Shown {
     revision: u64,
     /// The figures in view.
     figures: Vec<Figure>,
-}
-
-/// How the terminal shows pictures, as far as it is known.
-#[derive(Clone, Copy, Debug, Default)]
-struct TerminalLook {
-    aspect: Option<CellAspect>,
-    depth: ColorDepth,
-    shade_ink: ShadeInk,
-    /// The finest blocks that it is known to draw well.
-    glyphs: GlyphSet,
 }
 
 struct App {

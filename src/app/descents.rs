@@ -7,8 +7,8 @@
 
 use super::levels::Course;
 use super::menu::Menu;
-use super::menus::Choice;
 use super::played::Goal;
+use super::screen::Choice;
 use super::time::whole_seconds;
 use super::{App, Levels, Screen};
 use crate::app::store::{Descent, Reached, Save};
@@ -36,7 +36,7 @@ impl App {
                 .line("The try that counts is where you left it.")
                 .entry("Continue the try that counts", Choice::Continue(id)),
             Some(tried) => menu
-                .line(format!("The try that counts reached {}.", described(tried.reached)))
+                .line(format!("The try that counts reached {}.", described(tried)))
                 .entry("Practise", Choice::Daily),
         };
         menu.entry("Return to the title", Choice::Back)
@@ -133,7 +133,7 @@ impl App {
         let menu = match offers.today {
             Some(date) => {
                 let tried = self.store.daily(date);
-                let tried = tried.map_or_else(String::new, |tried| short(tried.reached));
+                let tried = tried.map_or_else(String::new, short);
                 menu.entry_with("Daily run", tried, Choice::Open(Screen::Daily))
             }
             None => menu,

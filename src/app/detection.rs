@@ -2,7 +2,7 @@
 //! The help shows these lines, where users look for them.
 
 use crate::color::palette::ColorDepth;
-use crate::terminal::{ColorSource, TmuxClient};
+use crate::terminal::{ColorSource, Protocol, TmuxClient};
 
 /// The known properties of the terminal.
 #[derive(Clone, Debug, Default)]
@@ -11,7 +11,7 @@ pub struct Detection {
     pub depth: ColorDepth,
     /// The source of the colour depth; `None` if it is the command line or the configuration.
     pub source: Option<ColorSource>,
-    /// Whether the terminal is tmux, and its client, if it has said which.
+    /// Whether the terminal is tmux.
     pub is_tmux: bool,
     /// The client of tmux, if it has said which.
     pub tmux: Option<TmuxClient>,
@@ -24,6 +24,14 @@ pub struct Detection {
 }
 
 impl Detection {
+    /// Records what `protocol` knows of the terminal. The colour depth in force may be chosen.
+    pub fn follow(&mut self, protocol: &Protocol, depth: ColorDepth, is_chosen: bool) {
+        self.depth = depth;
+        self.source = (!is_chosen).then(|| protocol.color_source());
+        self.is_tmux = protocol.is_tmux();
+        self.tmux = protocol.tmux_client().cloned();
+    }
+
     /// A line for each limit.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         [self.colors(), self.releases(), self.characters()].into_iter().flatten()

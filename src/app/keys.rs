@@ -3,21 +3,15 @@
 use std::time::Duration;
 
 use super::controls::KeyContext;
-use super::menus::Choice;
 use super::page::Effect;
-use super::settings_page::DIFFICULTY_ROW;
+use super::screen::Choice;
 use super::{App, Screen};
 use crate::app::bindings::Action;
+use crate::app::picture::widened;
 use crate::app::store::Preferences;
 use crate::game::Intents;
 use crate::terminal::{Key, KeyEvent, MouseEvent};
 use crate::tui::Press;
-use crate::world::FieldOfView;
-
-/// The step by which a key widens or narrows the view, and its limits, in degrees.
-const VIEW_STEP: f64 = 6.0;
-const NARROWEST_VIEW: f64 = 30.0;
-const WIDEST_VIEW: f64 = 120.0;
 
 impl App {
     /// Handles a press, a repetition or a release at time `now`.
@@ -82,8 +76,8 @@ impl App {
     /// Handles the keys that do the same on every screen, and those of the game.
     fn press_command(&mut self, key: Key, press: Press) {
         match self.settings.bindings.action(key) {
-            Some(Action::WidenView) => self.widen_view(VIEW_STEP),
-            Some(Action::NarrowView) => self.widen_view(-VIEW_STEP),
+            Some(Action::WidenView) => self.widen_view(true),
+            Some(Action::NarrowView) => self.widen_view(false),
             Some(action) if press != Press::Repeat => self.command(key, action),
             _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
             _ => {}
@@ -92,7 +86,7 @@ impl App {
 
     fn change_value(&mut self, forward: bool) {
         match (self.screen(), self.pages.menu.choice()) {
-            (Screen::Levels | Screen::Maps, _) => self.change_setting(DIFFICULTY_ROW, forward),
+            (Screen::Levels | Screen::Maps, _) => self.change_difficulty(forward),
             (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
             _ => {}
         }
@@ -198,12 +192,8 @@ impl App {
         self.controls.intents(&self.settings.bindings, self.key_context())
     }
 
-    fn widen_view(&mut self, degrees: f64) {
-        let view =
-            (self.settings.field_of_view.degrees() + degrees).clamp(NARROWEST_VIEW, WIDEST_VIEW);
-        if let Some(view) = FieldOfView::from_degrees(view) {
-            self.settings.field_of_view = view;
-        }
+    fn widen_view(&mut self, widens: bool) {
+        self.settings.field_of_view = widened(self.settings.field_of_view, widens);
     }
 }
 

@@ -49,11 +49,7 @@ pub(crate) enum Course {
 }
 
 /// A level before it begins. It can begin any number of times.
-pub(crate) struct Stage {
-    content: Content,
-}
-
-enum Content {
+pub(crate) enum Stage {
     Builtin(&'static builtin::Level),
     Level(Level),
     Own(OwnLevel),
@@ -72,31 +68,31 @@ pub(crate) struct LevelNumber {
 impl Levels {
     /// The levels `first` and `rest`.
     pub fn new(first: Level, rest: impl Iterator<Item = Level> + 'static) -> Self {
-        let stage = |level| Stage { content: Content::Level(level) };
+        let stage = |level| Stage::Level(level);
         Self::staged(stage(first), rest.map(stage))
     }
 
     /// The games `first` and `rest`, which have already begun.
     pub fn of_games(first: Game, rest: impl Iterator<Item = Game> + 'static) -> Self {
-        let stage = |game| Stage { content: Content::Game(Box::new(game)) };
+        let stage = |game| Stage::Game(Box::new(game));
         Self::staged(stage(first), rest.map(stage))
     }
 
     /// A map of the player's own.
     pub fn own(level: OwnLevel) -> Self {
-        Self::staged(Stage { content: Content::Own(level) }, iter::empty())
+        Self::staged(Stage::Own(level), iter::empty())
     }
 
     /// The built-in levels from the one with that index on; `None` if there is none.
     pub fn builtin(index: usize) -> Option<Self> {
-        let mut stages = builtin::LEVELS.get(index..)?.iter().map(Stage::builtin);
+        let mut stages = builtin::LEVELS.get(index..)?.iter().map(Stage::Builtin);
         let first = stages.next()?;
         Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
     /// The floors of the descent with that seed, without an end.
     pub(crate) fn descent(seed: u64, course: Course) -> Self {
-        let stage = move |number| Stage { content: Content::Floor { seed, number } };
+        let stage = move |number| Stage::Floor { seed, number };
         Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
@@ -134,27 +130,22 @@ impl Levels {
 impl Stage {
     /// A level in which there is nothing.
     pub(crate) fn nothing() -> Self {
-        Self { content: Content::Level(Level::Space(Scene::default())) }
-    }
-
-    /// A built-in level.
-    pub(crate) fn builtin(level: &'static builtin::Level) -> Self {
-        Self { content: Content::Builtin(level) }
+        Self::Level(Level::Space(Scene::default()))
     }
 
     /// The name under which results of the level are kept, if they are.
     pub(crate) fn name(&self) -> Option<&str> {
-        match &self.content {
-            Content::Builtin(level) => Some(level.name),
-            Content::Own(own) => Some(&own.key),
-            Content::Level(_) | Content::Game(_) | Content::Floor { .. } => None,
+        match self {
+            Self::Builtin(level) => Some(level.name),
+            Self::Own(own) => Some(&own.key),
+            Self::Level(_) | Self::Game(_) | Self::Floor { .. } => None,
         }
     }
 
     /// The path of the level's map file, if it is known.
     pub(crate) fn file(&self) -> Option<&str> {
-        match &self.content {
-            Content::Own(own) => own.file.as_deref(),
+        match self {
+            Self::Own(own) => own.file.as_deref(),
             _ => None,
         }
     }
@@ -162,13 +153,13 @@ impl Stage {
     /// The level at its start; `None` if a built-in level has faults, which tests exclude.
     pub(crate) fn begin(&self, difficulty: Difficulty) -> Option<Played> {
         let rules = Rules { difficulty, seed: 0 };
-        Some(match &self.content {
-            Content::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
-            Content::Level(level) | Content::Own(OwnLevel { level, .. }) => {
+        Some(match self {
+            Self::Builtin(level) => Played::with_rules(level.world().ok()?.into(), rules),
+            Self::Level(level) | Self::Own(OwnLevel { level, .. }) => {
                 Played::with_rules(level.clone(), rules)
             }
-            Content::Game(game) => Played::Grid(game.clone()),
-            Content::Floor { seed, number } => {
+            Self::Game(game) => Played::Grid(game.clone()),
+            Self::Floor { seed, number } => {
                 let floor = descent(*seed, *number).ok()?;
                 Played::with_rules(floor.into(), Rules { difficulty, seed: *seed })
             }
@@ -177,7 +168,7 @@ impl Stage {
 
     /// Replaces the level by a changed one.
     pub(crate) fn change(&mut self, level: Level) {
-        self.content = Content::Level(level);
+        *self = Self::Level(level);
     }
 }
 

@@ -40,6 +40,15 @@ impl MapPanel {
         }
     }
 
+    /// The content of the map, as the settings page shows it.
+    pub fn display(&self) -> MapDisplay {
+        match (self.is_shown, self.display) {
+            (false, _) => MapDisplay::Off,
+            (true, MapDisplay::All) => MapDisplay::All,
+            (true, _) => MapDisplay::Seen,
+        }
+    }
+
     /// Resets the panel for a new level.
     pub fn begin_level(&mut self) {
         self.explored = Explored::default();

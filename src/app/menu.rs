@@ -40,7 +40,7 @@ struct Entry<C> {
 
 /// A movement of the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Selection {
+pub(crate) enum Selection {
     /// The entry before.
     Previous,
     /// The next entry.
@@ -57,7 +57,7 @@ pub enum Selection {
 
 impl Selection {
     /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
-    pub fn by(key: Key, bindings: &Bindings) -> Option<Self> {
+    pub(crate) fn by(key: Key, bindings: &Bindings) -> Option<Self> {
         Some(match key {
             Key::Up => Self::Previous,
             Key::Down => Self::Next,
@@ -75,7 +75,7 @@ impl Selection {
 }
 
 /// Whether `key` changes a value to the next one, or to the one before; `None` if it does neither.
-pub fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
+pub(crate) fn changes_by(key: Key, bindings: &Bindings) -> Option<bool> {
     match key {
         Key::Right => Some(true),
         Key::Left => Some(false),
@@ -182,7 +182,7 @@ impl<C: Copy> Menu<C> {
     }
 
     /// Moves the selection. From the last entry, the next one is the first.
-    pub fn select(&mut self, selection: Selection) {
+    pub(crate) fn select(&mut self, selection: Selection) {
         let (count, page) = (self.entries.len().max(1), self.page.max(1));
         let last = count - 1;
         self.selected = match selection {

@@ -78,9 +78,9 @@ pub struct Pages<P, C> {
     shown_since: Duration,
 }
 
-impl<P: Page, C: Copy> Pages<P, C> {
+impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
     /// A page without a menu.
-    pub(crate) fn new(page: P) -> Self {
+    pub fn new(page: P) -> Self {
         Self {
             page,
             menu: Menu::new(""),
@@ -92,24 +92,24 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The page that is shown.
-    pub(crate) fn page(&self) -> P {
+    pub fn page(&self) -> P {
         self.page
     }
 
     /// Shows `page`, from which there is no way back.
-    pub(crate) fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub fn show(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.clear();
         self.enter(page, menu, now);
     }
 
     /// Opens `page` over the one that is shown.
-    pub(crate) fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
+    pub fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter(page, menu, now);
     }
 
     /// Returns to the page from which this one was opened, or to `home`.
-    pub(crate) fn close(&mut self, home: P, now: Duration) {
+    pub fn close(&mut self, home: P, now: Duration) {
         let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::new("")));
         self.enter(page, menu, now);
     }
@@ -120,14 +120,18 @@ impl<P: Page, C: Copy> Pages<P, C> {
         self.pending.forget();
     }
 
-    /// Replaces the menu, after something that it shows has changed. The selection stays.
-    pub(crate) fn renew(&mut self, menu: Menu<C>) {
-        let selected = self.menu.selected();
+    /// Replaces the menu, after something that it shows has changed. The selected choice stays selected if it
+    /// still exists. The first entry stays selected whatever it offers now.
+    pub fn renew(&mut self, menu: Menu<C>) {
+        let (selected, choice) = (self.menu.selected(), self.menu.choice());
         self.menu = menu.selecting(selected);
+        if let Some(choice) = choice.filter(|_| selected > 0) {
+            self.menu.select_choice(choice);
+        }
     }
 
     /// Handles a press of `key` while the keys in `held` are down.
-    pub(crate) fn press(
+    pub fn press(
         &mut self,
         (key, press): (Key, Press),
         bindings: &Bindings,
@@ -177,7 +181,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// Answers the question on the page by `key`, now or once it is certain that it does not repeat.
-    pub(crate) fn press_to_answer(
+    pub fn press_to_answer(
         &mut self,
         key: Key,
         press: Press,
@@ -189,7 +193,7 @@ impl<P: Page, C: Copy> Pages<P, C> {
     }
 
     /// The effect of a pending key that did not repeat until `now`.
-    pub(crate) fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
+    pub fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
         self.pending.settle(now).map_or(Effect::None, |key| self.answer(key, bindings))
     }
 
@@ -199,18 +203,18 @@ impl<P: Page, C: Copy> Pages<P, C> {
                 let leaves = bindings.action(key) == Some(Action::Leave) && key != Key::Escape;
                 Effect::Leave(leaves || key == Key::Enter)
             }
-            Kind::Menu { .. } | Kind::Result => {
+            Kind::Menu { .. } | Kind::Result if self.chooses(key) => {
                 if let Key::Char(digit) = key {
                     self.menu.select_number(digit);
                 }
                 Effect::Choose
             }
-            Kind::Help | Kind::Bare => Effect::Answer(key),
+            _ => Effect::Answer(key),
         }
     }
 
     /// The time until which a key is pending.
-    pub(crate) fn pending_until(&self) -> Option<Duration> {
+    pub fn pending_until(&self) -> Option<Duration> {
         self.pending.until()
     }
 }
@@ -232,11 +236,11 @@ const REPETITION: Duration = Duration::from_millis(150);
 
 /// A key that answers the question on the screen if it does not repeat until a certain time.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PendingKey(Option<(Key, Duration)>);
+struct PendingKey(Option<(Key, Duration)>);
 
 impl PendingKey {
     /// Handles a press of `key` at `now`. Returns the key if it answers the question at once.
-    pub fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
+    fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
         match press {
             Press::Fresh => return Some(key),
             Press::Unclear => self.0 = Some((key, now + REPETITION)),
@@ -246,17 +250,17 @@ impl PendingKey {
     }
 
     /// Returns the key if it did not repeat until `now`.
-    pub fn settle(&mut self, now: Duration) -> Option<Key> {
+    fn settle(&mut self, now: Duration) -> Option<Key> {
         self.0.take_if(|(_, until)| *until <= now).map(|(key, _)| key)
     }
 
     /// Forgets the key: another one was pressed, or another question is asked.
-    pub fn forget(&mut self) {
+    fn forget(&mut self) {
         self.0 = None;
     }
 
     /// The time until which the key is pending.
-    pub fn until(self) -> Option<Duration> {
+    fn until(self) -> Option<Duration> {
         self.0.map(|(_, until)| until)
     }
 }

@@ -12,9 +12,35 @@ use crate::app::{hud, panels};
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::{Flash, Game, PlayerId, PlayerView};
 use crate::render::{Filter, Frame, Renderable};
+use crate::terminal::Protocol;
 use crate::tui::canvas::Canvas;
 use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, MapMark, View};
 use crate::world::{FieldOfView, Heading};
+
+/// How the terminal shows pictures, as far as it is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TerminalLook {
+    /// The shape of a cell.
+    pub aspect: Option<CellAspect>,
+    /// The colour depth.
+    pub depth: ColorDepth,
+    /// How the terminal draws shades.
+    pub shade_ink: ShadeInk,
+    /// The finest blocks that the terminal is known to draw well.
+    pub glyphs: GlyphSet,
+}
+
+impl TerminalLook {
+    /// The terminal at the other end of `protocol`.
+    pub fn of(protocol: &Protocol) -> Self {
+        Self {
+            aspect: protocol.size().cell_aspect.and_then(CellAspect::new),
+            depth: protocol.color_depth(),
+            shade_ink: protocol.shade_ink(),
+            glyphs: protocol.glyph_support(),
+        }
+    }
+}
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +124,12 @@ impl DrawOptions {
             hud::mark_middle(frame);
         }
     }
+}
+
+/// `view` after a key that widens or narrows it, in degrees by 6 from 30 to 120.
+pub fn widened(view: FieldOfView, widens: bool) -> FieldOfView {
+    let by = if widens { 6.0 } else { -6.0 };
+    FieldOfView::from_degrees((view.degrees() + by).clamp(30.0, 120.0)).unwrap_or(view)
 }
 
 /// A player of a game, and how their picture is drawn.

@@ -1,13 +1,10 @@
 //! The level that is played: a game in a grid, or a flight among bodies.
 //!
-//! [`Simulation`] is the interface of both, and [`Played::grid`] gives access to the rest of a game
-//! in a grid.
+//! [`Played`] has the interface of both, and [`Played::grid`] gives access to the rest of a game in a grid.
 //!
 //! A [`Goal`] is shown until the player has acted for some time. Rejected: hiding it by the clock. That
 //! would draw a frame while nothing moves, and hide the goal from slow readers. For the same readers,
 //! steps in which only guards move do not count.
-
-use std::ops::{Deref, DerefMut};
 
 use glam::DVec3;
 use ratatui::layout::{Rect, Size};
@@ -27,32 +24,6 @@ use crate::world::{FieldOfView, Heading};
 pub(crate) enum Played {
     Grid(Box<Game>),
     Space(Box<Flight>),
-}
-
-/// A game that advances in steps. It cannot be formatted for debugging: the program would contain that code for
-/// all of a game.
-pub(crate) trait Simulation {
-    /// The level's title, or a substitute if the map gives none.
-    fn title(&self) -> &str;
-
-    /// The player's position and direction of view.
-    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint;
-
-    /// The seconds since the level began, counted in steps.
-    fn elapsed(&self) -> f64;
-
-    /// A number that grows with every visible change other than those of the viewpoint and of figures.
-    fn revision(&self) -> u64;
-
-    fn is_finished(&self) -> bool;
-
-    /// The number of steps with these intents in which only the clock changes.
-    fn quiet_steps(&self, intents: Intents) -> u64;
-
-    fn step(&mut self, intents: Intents);
-
-    /// Advances the clock by `steps` steps in which nothing moves.
-    fn wait(&mut self, steps: u64);
 }
 
 /// The player's position and direction of view, in a grid or among bodies.
@@ -171,110 +142,74 @@ impl Played {
     }
 }
 
-impl Deref for Played {
-    type Target = dyn Simulation;
+/// What both kinds of levels have.
+impl Played {
+    /// The level's title, or a substitute if the map gives none.
+    pub(crate) fn title(&self) -> &str {
+        let title = match self {
+            Self::Grid(game) => game.world().title(),
+            Self::Space(flight) => &flight.scene().title,
+        };
+        if title.is_empty() { "a level without a name" } else { title }
+    }
 
-    fn deref(&self) -> &(dyn Simulation + 'static) {
+    /// The player's position and direction of view.
+    pub(crate) fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint {
+        let (position, heading, upwards) = match self {
+            Self::Grid(game) => {
+                let camera = game.camera(field_of_view);
+                let position = camera.position().extend(camera.eye());
+                (position, camera.heading, camera.pitch.slope())
+            }
+            Self::Space(flight) => {
+                let camera = flight.camera(field_of_view);
+                (camera.position(), camera.heading, camera.elevation.radians())
+            }
+        };
+        Viewpoint { position, heading, upwards, field_of_view }
+    }
+
+    /// The seconds since the level began, counted in steps.
+    pub(crate) fn elapsed(&self) -> f64 {
         match self {
-            Self::Grid(game) => &**game,
-            Self::Space(flight) => &**flight,
+            Self::Grid(game) => game.elapsed(),
+            Self::Space(flight) => flight.elapsed(),
         }
     }
-}
 
-impl DerefMut for Played {
-    fn deref_mut(&mut self) -> &mut (dyn Simulation + 'static) {
+    /// A number that grows with every visible change other than those of the viewpoint and of figures. Bodies do
+    /// not change.
+    pub(crate) fn revision(&self) -> u64 {
+        self.grid().map_or(0, Game::revision_without_figures)
+    }
+
+    /// Whether the exit is reached. A flight has none.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.grid().is_some_and(Game::is_finished)
+    }
+
+    /// The number of steps with these intents in which only the clock changes.
+    pub(crate) fn quiet_steps(&self, intents: Intents) -> u64 {
         match self {
-            Self::Grid(game) => &mut **game,
-            Self::Space(flight) => &mut **flight,
-        }
-    }
-}
-
-impl Simulation for Game {
-    fn title(&self) -> &str {
-        or_untitled(self.world().title())
-    }
-
-    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint {
-        let camera = self.camera(field_of_view);
-        Viewpoint {
-            position: camera.position().extend(camera.eye()),
-            heading: camera.heading,
-            upwards: camera.pitch.slope(),
-            field_of_view,
+            Self::Grid(game) => game.quiet_steps(intents),
+            Self::Space(flight) => flight.quiet_steps(intents),
         }
     }
 
-    fn elapsed(&self) -> f64 {
-        Self::elapsed(self)
-    }
-
-    fn revision(&self) -> u64 {
-        self.revision_without_figures()
-    }
-
-    fn is_finished(&self) -> bool {
-        Self::is_finished(self)
-    }
-
-    fn quiet_steps(&self, intents: Intents) -> u64 {
-        Self::quiet_steps(self, intents)
-    }
-
-    fn step(&mut self, intents: Intents) {
-        Self::step(self, intents);
-    }
-
-    fn wait(&mut self, steps: u64) {
-        Self::wait(self, steps);
-    }
-}
-
-impl Simulation for Flight {
-    fn title(&self) -> &str {
-        or_untitled(&self.scene().title)
-    }
-
-    fn viewpoint(&self, field_of_view: FieldOfView) -> Viewpoint {
-        let camera = self.camera(field_of_view);
-        Viewpoint {
-            position: camera.position(),
-            heading: camera.heading,
-            upwards: camera.elevation.radians(),
-            field_of_view,
+    pub(crate) fn step(&mut self, intents: Intents) {
+        match self {
+            Self::Grid(game) => game.step(intents),
+            Self::Space(flight) => flight.step(intents),
         }
     }
 
-    fn elapsed(&self) -> f64 {
-        Self::elapsed(self)
+    /// Advances the clock by `steps` steps in which nothing moves.
+    pub(crate) fn wait(&mut self, steps: u64) {
+        match self {
+            Self::Grid(game) => game.wait(steps),
+            Self::Space(flight) => flight.wait(steps),
+        }
     }
-
-    /// Bodies do not change.
-    fn revision(&self) -> u64 {
-        0
-    }
-
-    /// A flight has no exit.
-    fn is_finished(&self) -> bool {
-        false
-    }
-
-    fn quiet_steps(&self, intents: Intents) -> u64 {
-        Self::quiet_steps(self, intents)
-    }
-
-    fn step(&mut self, intents: Intents) {
-        Self::step(self, intents);
-    }
-
-    fn wait(&mut self, steps: u64) {
-        Self::wait(self, steps);
-    }
-}
-
-fn or_untitled(title: &str) -> &str {
-    if title.is_empty() { "a level without a name" } else { title }
 }
 
 impl Played {

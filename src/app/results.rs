@@ -4,8 +4,8 @@
 use crate::app::App;
 use crate::app::levels::Stage;
 use crate::app::menu::Menu;
-use crate::app::menus::Choice;
 use crate::app::recording::{RunLog, ScriptCursor};
+use crate::app::screen::Choice;
 use crate::app::store::{Improved, Run};
 use crate::app::time::{tenths, whole_seconds};
 use crate::game::{Game, Header, LevelName, Outcome, Rank, STEP, Script, Share, Tally};

@@ -17,19 +17,20 @@ use std::env;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use crate::app::App;
 use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
+use crate::app::picture::TerminalLook;
 use crate::app::recording::Recording;
 use crate::app::settings::Settings;
-use crate::app::stats::{Meter, Stats};
+use crate::app::stats::Meter;
 use crate::app::store::Store;
 use crate::app::title::Offers;
-use crate::app::{App, TerminalLook};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
+use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
-use crate::tui::{CellAspect, GlyphSet};
 
 /// What the program begins with.
 #[derive(Debug)]
@@ -171,7 +172,7 @@ impl Presenter {
             })?;
             if rendered == Rendered::Complete {
                 app.drawn();
-                self.measure(app, session, now);
+                app.stats = self.meter.measure(session.protocol(), now).or(app.stats);
             }
         } else {
             session.refine()?;
@@ -182,15 +183,6 @@ impl Presenter {
             .filter(|&next| now < next)
             .unwrap_or(now + self.frame_time);
         Ok(())
-    }
-
-    fn measure(&mut self, app: &mut App, session: &Session, now: Duration) {
-        if let Some(rates) = self.meter.frame(now, session.protocol().bytes_drawn()) {
-            let (round_trip, fidelity) =
-                (session.protocol().round_trip(), session.protocol().fidelity());
-            let wants_compression = session.protocol().is_limited_by_network();
-            app.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
-        }
     }
 
     /// The time of the next change without an event; `None` for never.
@@ -218,18 +210,10 @@ fn is_unfinished(app: &App, session: &Session) -> bool {
 /// Passes the properties of the terminal to `app`.
 fn update_terminal(app: &mut App, session: &Session) {
     let offered = app.tmux_remedy();
-    let aspect = session.protocol().size().cell_aspect.and_then(CellAspect::new);
-    app.terminal_changed(TerminalLook {
-        aspect,
-        depth: session.protocol().color_depth(),
-        shade_ink: session.protocol().shade_ink(),
-        glyphs: session.glyph_support(),
-    });
-    app.pointer.set_columns(session.protocol().size().columns);
-    app.detection.depth = app.depth();
-    app.detection.is_tmux = session.protocol().is_tmux();
-    app.detection.tmux = session.protocol().tmux_client().cloned();
-    app.detection.source = app.settings.depth.is_none().then(|| session.protocol().color_source());
+    let (protocol, glyphs) = (session.protocol(), session.glyph_support());
+    app.terminal_changed(TerminalLook { glyphs, ..TerminalLook::of(protocol) });
+    app.pointer.set_columns(protocol.size().columns);
+    app.detection.follow(protocol, app.depth(), app.settings.depth.is_some());
     app.renew_tmux_offer(offered.as_deref());
 }
 

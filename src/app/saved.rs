@@ -11,9 +11,9 @@
 
 use super::descents::{date_of, save_of_descent};
 use super::menu::Menu;
-use super::menus::{Choice, capitalized};
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
+use super::screen::{Choice, capitalized};
 use super::steps::Watch;
 use super::time::whole_seconds;
 use super::{App, Levels, Screen};

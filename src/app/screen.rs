@@ -1,8 +1,16 @@
-//! Screens: the pages of the game at home.
+//! Screens: the pages of the game at home, their menus, and what choosing an entry does.
 
-use crate::app::App;
+use std::fmt::Write;
+
+use crate::app::bindings::Action;
+use crate::app::menu::Menu;
 use crate::app::page::{Kind, Page};
+use crate::app::panels::key_names;
 use crate::app::store::SaveId;
+use crate::app::time::{of_steps, whole_seconds};
+use crate::app::{App, Levels};
+use crate::map::builtin;
+use crate::world::Difficulty;
 
 /// The panel on the picture. The effect of keys depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +46,51 @@ pub(crate) enum Screen {
     /// The player is dead.
     Dead,
     End,
+}
+
+/// What an entry of a menu does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Choice {
+    /// Opens a screen.
+    Open(Screen),
+    /// Begins the campaign.
+    Begin(Difficulty),
+    /// Begins the built-in level with that index.
+    Level(usize),
+    /// Begins the map with that index in the list of own maps.
+    Map(usize),
+    /// Goes on with a saved game.
+    Continue(SaveId),
+    /// Goes on with the saved game of the level that has just begun.
+    Resume(SaveId),
+    /// Plays what has begun in place of a saved game that cannot go on.
+    BeginAnew(SaveId),
+    /// Removes a saved game.
+    Remove(SaveId),
+    /// Removes the oldest saved game to make room.
+    RemoveOldest,
+    /// Returns to the screen before.
+    Back,
+    /// Begins the descent of the day.
+    Daily,
+    /// Begins an endless descent.
+    Endless,
+    /// Changes the setting in that row of the settings page.
+    Change(usize),
+    /// Goes on with the game.
+    GoOn,
+    /// Goes on from the last checkpoint.
+    Retry,
+    /// Begins the level again.
+    Restart,
+    /// Goes on to the next level.
+    NextLevel,
+    /// Returns to the title.
+    ToTitle,
+    /// Tells tmux that its terminal shows 24-bit colours.
+    TellTmux,
+    /// Leaves the program.
+    Leave,
 }
 
 impl Page for Screen {
@@ -87,11 +140,8 @@ impl App {
     /// Returns to the screen from which this one was opened, or to the game.
     pub(crate) fn close(&mut self) {
         self.pages.close(Screen::Playing, self.now);
-        self.shown = None;
-        if self.screen() == Screen::Title {
-            // What it offers may have changed.
-            self.renew_menu();
-        }
+        // What the menu offers may have changed.
+        self.renew_menu();
     }
 
     /// Makes the menu again, after something that it shows has changed.
@@ -107,4 +157,195 @@ impl App {
         self.pages.renew(menu);
         self.shown = None;
     }
+}
+
+impl App {
+    /// The menu of `screen`; an empty one if it has none.
+    pub(crate) fn menu_of(&mut self, screen: Screen) -> Menu<Choice> {
+        match screen {
+            Screen::Title => self.title_menu(),
+            Screen::NewGame => new_game_menu(self.store.preferences().difficulty),
+            Screen::Levels => self.level_menu(),
+            Screen::Maps => self.map_menu(),
+            Screen::Saves => self.saves_menu(),
+            Screen::Remove(id) => self.remove_menu(id),
+            Screen::Daily => self.daily_menu(),
+            Screen::HasSaved => self.has_saved_menu(),
+            Screen::NoRoom => self.no_room_menu(),
+            Screen::Outdated(id) => self.outdated_menu(id),
+            Screen::Paused => self.pause_menu(),
+            Screen::Settings => self.settings_menu(),
+            Screen::Tmux => self.tmux_menu(),
+            Screen::Dead => self.death_menu(),
+            Screen::LevelDone => self.level_done_menu(),
+            Screen::End => self.end_menu(),
+            _ => Menu::new(""),
+        }
+    }
+
+    /// Does what the selected entry says.
+    pub(crate) fn choose(&mut self) {
+        let Some(choice) = self.pages.menu.choice() else { return };
+        match choice {
+            Choice::Open(screen) => self.open(screen),
+            Choice::Begin(difficulty) => {
+                self.difficulty = difficulty;
+                self.prefer(|it| it.difficulty = difficulty);
+                self.begin_builtin(0);
+            }
+            Choice::Level(index) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin_builtin(index);
+            }
+            Choice::Map(index) => self.begin_own_map(index),
+            Choice::Daily => self.begin_daily(),
+            Choice::Endless => self.begin_endless(),
+            Choice::Continue(id) => {
+                if self.screen() != Screen::Daily {
+                    // A recorded script is about what the program began with.
+                    self.script = None;
+                }
+                self.continue_saved(id);
+            }
+            Choice::Resume(id) => self.resume(id),
+            Choice::BeginAnew(id) => self.begin_anew(id),
+            Choice::Remove(id) => self.remove_saved(id),
+            Choice::RemoveOldest => self.remove_oldest(),
+            Choice::Back => self.close(),
+            Choice::Change(setting) => self.change_setting(setting, true),
+            Choice::Retry => self.retry(),
+            Choice::GoOn => self.show(Screen::Playing),
+            Choice::Restart => self.restart_level(),
+            Choice::NextLevel => self.next_level(),
+            Choice::ToTitle => self.return_to_title(),
+            Choice::TellTmux => self.order_tmux(),
+            Choice::Leave => self.leave(),
+        }
+    }
+
+    fn begin_builtin(&mut self, index: usize) {
+        if let Some(levels) = Levels::builtin(index) {
+            self.begin(levels);
+        }
+    }
+
+    fn begin_own_map(&mut self, index: usize) {
+        let Some(map) = self.own_maps.get(index) else { return };
+        match (map.load)() {
+            Ok(level) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin(Levels::own(level));
+            }
+            Err(fault) => {
+                self.say_in_menu(&fault);
+            }
+        }
+    }
+
+    pub(crate) fn title_menu(&self) -> Menu<Choice> {
+        let menu = self
+            .with_continue(Menu::new(""))
+            .entry("New game", Choice::Open(Screen::NewGame))
+            .entry("Levels", Choice::Open(Screen::Levels));
+        let menu = self.with_descents(menu);
+        let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
+        let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
+        let menu = menu
+            .entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help));
+        self.with_tmux_offer(menu).entry("Leave", Choice::Leave)
+    }
+
+    /// The built-in levels, each with the best time and the best rank.
+    fn level_menu(&self) -> Menu<Choice> {
+        let difficulty = self.store.preferences().difficulty;
+        let menu = Menu::new(format!("levels, {}", difficulty.name()))
+            .line("left and right: another difficulty");
+        let levels = builtin::LEVELS.iter().enumerate();
+        levels.fold(menu, |menu, (index, level)| {
+            let best = self.best_of(level.name, difficulty);
+            menu.entry_with(capitalized(level.name), best, Choice::Level(index))
+        })
+    }
+
+    /// The best time and the best rank in the level that the store calls `name`.
+    fn best_of(&self, name: &str, difficulty: Difficulty) -> String {
+        self.store.best(name, difficulty).map_or_else(
+            || "-".to_owned(),
+            |best| format!("{} {:>7}", of_steps(best.tally.steps), best.rank),
+        )
+    }
+
+    /// Looks for the player's own maps now.
+    pub(crate) fn find_own_maps(&mut self) {
+        let find = self.offers.as_mut().and_then(|offers| offers.maps.as_mut());
+        self.own_maps = find.map_or_else(Vec::new, |find| find());
+    }
+
+    /// The menu of own maps, which are looked for now.
+    fn map_menu(&mut self) -> Menu<Choice> {
+        self.find_own_maps();
+        let difficulty = self.store.preferences().difficulty;
+        let menu = Menu::new(format!("my maps, {}", difficulty.name()));
+        if self.own_maps.is_empty() {
+            return menu.line("There is no map file here. docs/maps.md says how to write one.");
+        }
+        let maps = self.own_maps.iter().enumerate();
+        maps.fold(menu, |menu, (index, map)| {
+            let best = self.best_of(&map.key, difficulty);
+            menu.entry_with(map.name.as_str(), best, Choice::Map(index))
+        })
+    }
+
+    fn pause_menu(&self) -> Menu<Choice> {
+        let keys = key_names(&self.settings.bindings, Action::TogglePause);
+        let mut menu = Menu::new("paused").line(format!("{keys} goes on"));
+        menu = menu.line(self.goal.text());
+        menu = self.level_lines().into_iter().fold(menu, Menu::line);
+        menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
+        menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
+        menu = menu.entry("Continue", Choice::GoOn);
+        menu =
+            if self.is_descent() { menu } else { menu.entry("Restart the level", Choice::Restart) };
+        menu = menu
+            .entry("Settings", Choice::Open(Screen::Settings))
+            .entry("Help", Choice::Open(Screen::Help));
+        self.with_leaving(menu)
+    }
+
+    /// Adds the entries that end the game.
+    pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let menu = match &self.offers {
+            Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
+            None => menu,
+        };
+        menu.entry("Leave", Choice::Leave)
+    }
+}
+
+fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
+    let about = |difficulty| match difficulty {
+        Difficulty::Easy => "what you found stays found",
+        Difficulty::Normal => "guards call each other",
+        Difficulty::Hard => "no checkpoints",
+    };
+    let menu = Menu::new("new game");
+    let menu = Difficulty::ALL.into_iter().fold(menu, |menu, difficulty| {
+        menu.entry_with(
+            capitalized(difficulty.name()),
+            about(difficulty),
+            Choice::Begin(difficulty),
+        )
+    });
+    let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
+    menu.selecting(usual.unwrap_or(0))
+}
+
+/// `text` with a capital letter at its start.
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    let mut capitalized: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    // Writing to a string never fails.
+    _ = capitalized.write_str(letters.as_str());
+    capitalized
 }

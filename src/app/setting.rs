@@ -5,15 +5,15 @@
 //!
 //! Rejected: serde. It stops at the first fault of a file, writes no comments, and knows no page.
 
-use std::fmt::Write;
 use std::num::NonZeroU32;
 
 use toml::de::DeValue;
+use toml_writer::{ToTomlValue as _, TomlStringBuilder};
 
 use crate::app::bindings::Preset;
 use crate::color::palette::ColorDepth;
 use crate::fault::document::Entry;
-use crate::fault::{Fault, nearest, quoted};
+use crate::fault::{nearest, quoted};
 use crate::terminal::Fidelity;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::{Difficulty, FieldOfView};
@@ -42,16 +42,19 @@ pub trait Field<C>: Sync {
     /// Copies the value.
     fn copy(&self, from: &C, into: &mut C);
 
-    /// Takes the next value, or the one before if `forward` is false.
-    fn change(&self, of: &mut C, forward: bool);
+    /// Takes the next value on a settings page, or the one before if `forward` is false. A value that no page
+    /// changes stays.
+    fn change(&self, _of: &mut C, _forward: bool) {}
 
     /// The value on a settings page.
-    fn label(&self, of: &C) -> String;
+    fn label(&self, of: &C) -> String {
+        self.write(of)
+    }
 }
 
 /// The field of `C` that a function returns. Reading a value goes by a copy of `C`, so that a row needs one
 /// function only.
-pub(crate) struct At<C, T>(pub(crate) fn(&mut C) -> &mut T);
+pub struct At<C, T>(pub fn(&mut C) -> &mut T);
 
 impl<C: Clone, T: Value> At<C, T> {
     fn get(&self, of: &C) -> T {
@@ -123,6 +126,12 @@ pub trait Choice: Copy + PartialEq + 'static {
         Self::ALL.iter().find(|(value, ..)| *value == self).map_or("", |(_, name, _)| name)
     }
 
+    /// The next value on a settings page, or the one before.
+    #[must_use]
+    fn neighbour(self, forward: bool) -> Self {
+        next(Self::ALL, |(value, ..)| *value == self, forward).0
+    }
+
     /// The value with that name.
     fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known, _)| *known == name).map(|&(value, ..)| value)
@@ -184,7 +193,7 @@ impl<T: Choice> Value for T {
     }
 
     fn after(self, forward: bool) -> Self {
-        next(T::ALL, |(value, ..)| *value == self, forward).0
+        self.neighbour(forward)
     }
 
     fn label(self) -> String {
@@ -249,11 +258,8 @@ impl Value for FieldOfView {
             entry.faults.push(entry.wrong_type("a number of degrees", &example));
             return None;
         };
-        let view = Self::from_degrees(degrees);
-        if view.is_none() {
-            entry.faults.push(out_of_range(entry, "degrees above 0 and below 180", &example));
-        }
-        view
+        Self::from_degrees(degrees)
+            .or_else(|| reject_range(entry, "degrees above 0 and below 180", &example))
     }
 
     fn write(self) -> String {
@@ -276,10 +282,7 @@ impl Value for NonZeroU32 {
         };
         let number = entry.number().filter(|number| (1.0..=240.0).contains(number));
         let frames = number.and_then(|number| Self::new(number as u32));
-        if frames.is_none() {
-            entry.faults.push(out_of_range(entry, "a whole number from 1 to 240", &example));
-        }
-        frames
+        frames.or_else(|| reject_range(entry, "a whole number from 1 to 240", &example))
     }
 
     fn write(self) -> String {
@@ -318,12 +321,8 @@ impl Value for Option<Fidelity> {
         if text == AUTO {
             return Some(None);
         }
-        let fidelity = text.parse().ok();
-        if fidelity.is_none() {
-            let wanted = "\"auto\", \"exact\", \"high\", \"low\" or a whole number from 0 to 255";
-            entry.faults.push(out_of_range(entry, wanted, &example));
-        }
-        fidelity.map(Some)
+        let wanted = "\"auto\", \"exact\", \"high\", \"low\" or a whole number from 0 to 255";
+        text.parse().ok().or_else(|| reject_range(entry, wanted, &example)).map(Some)
     }
 
     fn write(self) -> String {
@@ -343,23 +342,22 @@ fn read_name<'k>(entry: &Entry<'_, '_>, known: &[&'k str]) -> Option<&'k str> {
         return Some(name);
     }
     let text = entry.string(&format!("{} = \"{}\"", entry.key, known[0]))?;
-    let name = known.iter().copied().find(|&name| name == text);
-    if name.is_none() {
-        let help = if let Some(meant) = nearest(text, known) {
-            format!("the nearest is {}", quoted(meant))
-        } else {
-            let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
-            format!("write one of {}", all.join(", "))
-        };
-        let message = format!("{} is no value of {}", quoted(text), quoted(entry.key));
-        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
+    if let Some(name) = known.iter().copied().find(|&name| name == text) {
+        return Some(name);
     }
-    name
+    let help = if let Some(meant) = nearest(text, known) {
+        format!("the nearest is {}", quoted(meant))
+    } else {
+        let all: Vec<String> = known.iter().map(|name| quoted(name)).collect();
+        format!("write one of {}", all.join(", "))
+    };
+    entry.reject(format!("{} is no value of {}", quoted(text), quoted(entry.key)), "", help)
 }
 
-fn out_of_range(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Fault {
+/// Reports that the value of `entry` is not what is `wanted`; `example` is a whole entry.
+pub fn reject_range<T>(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Option<T> {
     let message = format!("{} must be {wanted}", quoted(entry.key));
-    Fault::new(entry.value_place.clone(), message).help(format!("write {example}"))
+    entry.reject(message, "", format!("write {example}"))
 }
 
 /// The value after the one that `is_it`, or before it; from the last, the first.
@@ -370,18 +368,6 @@ fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
 }
 
 /// `text` as a TOML string.
-pub(crate) fn toml_string(text: &str) -> String {
-    let mut string = String::from("\"");
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => string.extend(['\\', character]),
-            character if character.is_control() => {
-                // Writing to a string never fails.
-                _ = write!(string, "\\u{:04x}", u32::from(character));
-            }
-            character => string.push(character),
-        }
-    }
-    string.push('"');
-    string
+pub fn toml_string(text: &str) -> String {
+    TomlStringBuilder::new(text).as_basic().to_toml_value()
 }

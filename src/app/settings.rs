@@ -25,7 +25,7 @@ use std::time::Duration;
 use toml::de::{DeTable, DeValue};
 
 use crate::app::bindings::{Action, Bindings, Preset};
-use crate::app::setting::{At, Choice, FRAME_RATE, Setting, Value, toml_string};
+use crate::app::setting::{At, Choice, FRAME_RATE, Setting, toml_string};
 use crate::app::store::Preferences;
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
@@ -160,6 +160,11 @@ impl Choice for MapDisplay {
         (Self::All, "all", "all"),
         (Self::Off, "off", "off"),
     ];
+
+    /// Shows the map or hides it. The content of a map that is shown again is its panel's affair.
+    fn neighbour(self, _forward: bool) -> Self {
+        if self == Self::Off { Self::Seen } else { Self::Off }
+    }
 }
 
 impl Default for Configuration {
@@ -262,10 +267,10 @@ impl Configuration {
         self.bindings = self.preset.bindings().rebound(&bound.actions, bound.keys);
     }
 
-    /// Takes the bindings of the next preset, or of the one before if `forward` is false.
-    pub fn change_preset(&mut self, forward: bool) {
-        self.preset = self.preset.after(forward);
-        self.bindings = self.preset.bindings();
+    /// Takes the bindings of another preset.
+    pub fn set_preset(&mut self, preset: Preset) {
+        self.preset = preset;
+        self.bindings = preset.bindings();
     }
 }
 

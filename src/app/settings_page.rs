@@ -1,4 +1,7 @@
-//! The settings page.
+//! The settings page, at home and in a session on a server.
+//!
+//! A page is a table of [`Setting`]s. Its owner collects the values in force, has a row change them, and takes over
+//! the difference.
 //!
 //! The store keeps what the player chooses here, except the map and the mouse, which a game begins with
 //! as the configuration file says. A flag or the configuration file wins over what is kept, and the
@@ -9,82 +12,107 @@ use std::time::Duration;
 
 use crate::app::App;
 use crate::app::menu::Menu;
-use crate::app::menus::Choice;
-use crate::app::setting::{Choice as _, Setting, Value};
+use crate::app::screen::Choice;
+use crate::app::setting::{At, Choice as _, Setting};
 use crate::app::settings::{Given, MapDisplay, Origin, Settings};
 use crate::app::store::Preferences;
-use crate::app::store::preferences::{
-    BELL, COLORS, COMPASS, CORRECTION, CROSSHAIR, DIFFICULTY, FRAME_RATE, GHOST, GLYPHS,
-};
 use crate::tui::GlyphSet;
 
-/// A row of the page.
-enum Row {
-    Kept(Setting<Preferences>),
-    Map,
-    Mouse,
+/// The values that every settings page shows and changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choices {
+    /// What is kept from one game to the next.
+    pub preferences: Preferences,
+    /// Whether the mouse turns the player.
+    pub mouse: bool,
+    /// The content of the map.
+    pub map: MapDisplay,
+}
+
+impl AsMut<Self> for Choices {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
+impl AsMut<Preferences> for Choices {
+    fn as_mut(&mut self) -> &mut Preferences {
+        &mut self.preferences
+    }
+}
+
+/// The settings of a game that is played, with their labels.
+impl<C: AsMut<Choices> + Clone> Setting<C> {
+    /// Whether the mouse turns the player.
+    pub const MOUSE: Self = Self {
+        key: "mouse",
+        about: "Mouse turns",
+        value: &At(|it: &mut C| &mut it.as_mut().mouse),
+    };
+    /// The content of the map.
+    pub const MAP: Self =
+        Self { key: "minimap", about: "Map", value: &At(|it: &mut C| &mut it.as_mut().map) };
 }
 
 /// The rows in their order on the page.
-const ROWS: [Row; 11] = [
-    Row::Kept(DIFFICULTY),
-    Row::Kept(CROSSHAIR),
-    Row::Kept(COMPASS),
-    Row::Kept(GHOST),
-    Row::Kept(BELL),
-    Row::Map,
-    Row::Mouse,
-    Row::Kept(GLYPHS),
-    Row::Kept(COLORS),
-    Row::Kept(CORRECTION),
-    Row::Kept(FRAME_RATE),
+const ROWS: [Setting<Choices>; 11] = [
+    Setting::DIFFICULTY,
+    Setting::CROSSHAIR,
+    Setting::COMPASS,
+    Setting::GHOST,
+    Setting::BELL,
+    Setting::MAP,
+    Setting::MOUSE,
+    Setting::GLYPHS,
+    Setting::COLORS,
+    Setting::CORRECTION,
+    Setting::FRAME_RATE,
 ];
-/// The index of the difficulty, which menus of levels change, too.
-pub(crate) const DIFFICULTY_ROW: usize = 0;
 
 impl App {
     pub(crate) fn settings_menu(&self) -> Menu<Choice> {
-        let menu = Menu::new("settings").line("Enter or left and right change a setting.");
-        let menu = if self.detection.ascii_locale.is_some() { menu } else { with_card(menu) };
-        let menu = if self.settings.given == Given::default() {
-            menu
-        } else {
-            menu.line("A flag or the file holds again at the next start.")
-        };
-        let in_force = self.settings.in_force(self.store.preferences());
-        ROWS.iter().enumerate().fold(menu, |menu, (index, row)| {
-            let (label, value) = match row {
-                Row::Kept(setting) => {
-                    let value = setting.value.label(&in_force);
-                    (setting.about, value + origin(self.settings.given, setting.key))
-                }
-                Row::Map => ("Map", self.map_value()),
-                Row::Mouse => ("Mouse turns", self.pointer.is_on().label()),
-            };
-            menu.entry_with(label, value, Choice::Change(index))
-        })
+        let given = self.settings.given;
+        let note = (given != Given::default())
+            .then_some("A flag or the file holds again at the next start.");
+        let choices = self.choices();
+        let rows = ROWS.iter().enumerate().map(|(index, row)| {
+            let value = row.value.label(&choices) + origin(given, row.key);
+            (row.about, value, Choice::Change(index))
+        });
+        settings_menu(note, self.detection.ascii_locale.is_none(), rows)
     }
 
-    fn map_value(&self) -> String {
-        match (self.map.is_shown, self.settings.minimap) {
-            (false, _) => false.label(),
-            (true, MapDisplay::All) => MapDisplay::All.label(),
-            (true, _) => MapDisplay::Seen.label(),
+    /// The values in force.
+    fn choices(&self) -> Choices {
+        Choices {
+            preferences: self.settings.in_force(self.store.preferences()),
+            mouse: self.pointer.is_on(),
+            map: self.map.display(),
         }
     }
 
     /// Changes the setting in that row to its next value, or to the one before if `forward` is false.
     pub(crate) fn change_setting(&mut self, row: usize, forward: bool) {
-        match &ROWS[row] {
-            Row::Map => self.map.is_shown ^= true,
-            Row::Mouse => self.pointer.toggle(),
-            Row::Kept(setting) => {
-                let before = self.settings.in_force(self.store.preferences());
-                let mut after = before;
-                setting.value.change(&mut after, forward);
-                self.settings.follow(&before, &after);
-                self.prefer(|kept| setting.value.copy(&after, kept));
-            }
+        self.change_choices(|choices| ROWS[row].value.change(choices, forward));
+    }
+
+    /// Changes the difficulty of new games.
+    pub(crate) fn change_difficulty(&mut self, forward: bool) {
+        self.change_choices(|choices| {
+            let difficulty = &mut choices.preferences.difficulty;
+            *difficulty = difficulty.neighbour(forward);
+        });
+    }
+
+    fn change_choices(&mut self, change: impl FnOnce(&mut Choices)) {
+        let before = self.choices();
+        let mut after = before;
+        change(&mut after);
+        self.settings.follow(&before.preferences, &after.preferences);
+        self.prefer(|kept| kept.choose(before.preferences, after.preferences));
+        self.map.is_shown = after.map != MapDisplay::Off;
+        if after.mouse != before.mouse {
+            self.pointer.toggle();
         }
         self.renew_menu();
     }
@@ -122,17 +150,33 @@ impl Settings {
 
 /// Says where the setting `key` is given.
 fn origin(given: Given, key: &str) -> &'static str {
-    let given =
-        [(GLYPHS.key, given.glyphs), (COLORS.key, given.depth), (FRAME_RATE.key, given.frame_time)];
-    match given.into_iter().find(|(known, _)| *known == key).and_then(|(_, origin)| origin) {
+    let origin = match key {
+        "glyphs" => given.glyphs,
+        "colors" => given.depth,
+        "fps" => given.frame_time,
+        _ => None,
+    };
+    match origin {
         Some(Origin::Flag) => " (flag)",
         Some(Origin::File) => " (file)",
         None => "",
     }
 }
 
-/// Adds a card that shows which characters the terminal has.
-pub fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
+/// A settings page with a note, perhaps a card that shows which characters the terminal has, and rows with their
+/// labels, values and choices.
+pub fn settings_menu<C: Copy>(
+    note: Option<&str>,
+    has_card: bool,
+    rows: impl Iterator<Item = (&'static str, String, C)>,
+) -> Menu<C> {
+    let menu = Menu::new("settings").line("Enter or left and right change a setting.");
+    let menu = note.into_iter().fold(menu, Menu::line);
+    let menu = if has_card { with_card(menu) } else { menu };
+    rows.fold(menu, |menu, (label, value, choice)| menu.entry_with(label, value, choice))
+}
+
+fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
     let menu = menu.line("Of these, the last smooth wedge is the best for you:");
     let sets = GlyphSet::ALL.iter().filter(|(set, ..)| set.has_blocks());
     sets.fold(menu, |menu, (set, _, name)| menu.line(format!("{name:·<12} {}", set.wedge())))

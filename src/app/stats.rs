@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::terminal::Fidelity;
+use crate::terminal::{Fidelity, Protocol};
 
 /// The current figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,8 +59,16 @@ const PERIOD: Duration = Duration::from_millis(500);
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl Meter {
-    /// Counts a frame; `bytes` is the total so far. Returns new figures when they are due.
-    pub fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
+    /// Counts a frame that `protocol` has drawn. Returns new figures when they are due.
+    pub fn measure(&mut self, protocol: &Protocol, now: Duration) -> Option<Stats> {
+        let rates = self.frame(now, protocol.bytes_drawn())?;
+        let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
+        let wants_compression = protocol.is_limited_by_network();
+        Some(Stats { rates, round_trip, fidelity, wants_compression })
+    }
+
+    /// Counts a frame; `bytes` is the total so far. Returns new rates when they are due.
+    fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
         let pauses = now.saturating_sub(self.last) > PAUSE;
         let elapsed = now.saturating_sub(self.begun);
         self.frames += 1;

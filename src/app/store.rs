@@ -45,7 +45,7 @@ pub use names::map_key;
 pub use names::name_in_map_key;
 pub use preferences::Preferences;
 use progress::{Change, Progress};
-pub use progress::{Daily, Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
+pub use progress::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 pub use results::{Best, Improved, Reached, Run};
 pub use results::{DescentRun, replayed};
 
@@ -181,8 +181,8 @@ impl Store {
         }
     }
 
-    /// The daily run of a date, such as 20261122, if it was tried.
-    pub fn daily(&self, date: u32) -> Option<Daily> {
+    /// How far the daily run of a date, such as 20261122, came, if it was tried.
+    pub fn daily(&self, date: u32) -> Option<Reached> {
         self.progress.dailies.get(&date).copied()
     }
 
@@ -199,7 +199,7 @@ impl Store {
 
     /// Records what the try that counts has reached so far, and its script up to there.
     pub fn record_daily(&mut self, date: u32, reached: Reached, script: String) {
-        if self.daily(date).is_none_or(|daily| daily.reached < reached) {
+        if self.daily(date).is_none_or(|known| known < reached) {
             self.change(Change::Daily { date, reached, script });
         }
     }

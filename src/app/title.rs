@@ -12,9 +12,9 @@ use std::fmt;
 
 use crate::app::App;
 use crate::app::menu::Menu;
-use crate::app::menus::Choice;
 use crate::app::played::Played;
 use crate::app::recording::ScriptCursor;
+use crate::app::screen::Choice;
 use crate::app::screen::Screen;
 use crate::color::palette::ColorDepth;
 use crate::game::{Intents, Script};
@@ -183,7 +183,7 @@ impl App {
         }
     }
 
-    /// Follows a change of what was `offered` before. The selected entry of the title stays selected.
+    /// Follows a change of what was `offered` before.
     pub(crate) fn renew_tmux_offer(&mut self, offered: Option<&str>) {
         let now = self.tmux_remedy();
         if now.as_deref() == offered {
@@ -192,14 +192,7 @@ impl App {
         self.tmux_order = TmuxOrder::None;
         match self.screen() {
             Screen::Tmux if now.is_none() => self.close(),
-            Screen::Tmux => self.renew_menu(),
-            Screen::Title => {
-                let selected = self.pages.menu.choice();
-                self.renew_menu();
-                if let Some(choice) = selected {
-                    self.pages.menu.select_choice(choice);
-                }
-            }
+            Screen::Tmux | Screen::Title => self.renew_menu(),
             _ => {}
         }
     }

@@ -200,7 +200,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// The elements of the value, each as an entry with the same key; `None` if it is no list.
-    pub(crate) fn list(&self) -> Option<Vec<Self>> {
+    pub fn list(&self) -> Option<Vec<Self>> {
         let DeValue::Array(list) = self.value else { return None };
         let entry = |value: &'a Spanned<DeValue<'t>>| Self {
             key: self.key,
@@ -231,7 +231,7 @@ impl<'a, 't> Entry<'a, 't> {
     }
 
     /// Reports a fault of the value. The label and the help may be empty.
-    pub(crate) fn reject<T>(
+    pub fn reject<T>(
         &self,
         message: impl Into<String>,
         label: impl Into<String>,

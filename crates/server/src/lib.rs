@@ -37,10 +37,18 @@ pub mod cluster;
 #[cfg(fuzzing)]
 #[doc(hidden)]
 pub mod fuzzing;
-mod lock;
 pub mod ops;
 pub mod rooms;
 pub mod sessions;
 #[cfg(test)]
 mod simulation;
 pub mod ssh;
+
+mod lock {
+    use std::sync::{Mutex, PoisonError};
+
+    /// Acts on the value behind a lock, which is never held across an await. A panic elsewhere does not close the lock.
+    pub(crate) fn locked<T, R>(mutex: &Mutex<T>, act: impl FnOnce(&mut T) -> R) -> R {
+        act(&mut mutex.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}

@@ -7,13 +7,13 @@
 use std::net::SocketAddr;
 use std::process::{Child, Command};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use std::{env, fs, future};
 
 use cellcaster_server::ops::config::Config;
+use cellcaster_server::ops::metrics::Metrics;
 use cellcaster_server::ssh::host_key::HostKey;
-use cellcaster_server::ssh::{Arrival, Counters, Departure, Host, Link, Server, Visitor};
+use cellcaster_server::ssh::{Arrival, Departure, Host, Link, Server, Visitor};
 use russh::client::{self, Handle, Handler, Session};
 use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelId, ChannelMsg, Error};
@@ -100,7 +100,7 @@ fn clients_that_never_read_need_little_memory() {
     (config.silence, config.stall) = (PATIENCE, PATIENCE);
     let runtime = Runtime::new().unwrap();
     let server = runtime.block_on(Server::bind(config, key)).unwrap();
-    let (address, counters) = (server.address().unwrap(), server.counters());
+    let (address, metrics) = (server.address().unwrap(), server.metrics());
     runtime.spawn(server.run(Frames, future::pending()));
     let (_client, mut channel) = runtime.block_on(connect(address, Awake));
     let alone = runtime.block_on(frames(&mut channel));
@@ -109,7 +109,7 @@ fn clients_that_never_read_need_little_memory() {
         .env(ADDRESS, address.to_string())
         .spawn()
         .unwrap();
-    wait_for_crowd(&counters, &mut crowd);
+    wait_for_crowd(&metrics, &mut crowd);
     let added = memory().zip(before).map(|(after, before)| after - before);
     let among = runtime.block_on(frames(&mut channel));
     crowd.kill().unwrap();
@@ -129,17 +129,17 @@ fn memory() -> Option<usize> {
 }
 
 /// Waits until all clients are there, and nothing moves any more.
-fn wait_for_crowd(counters: &Counters, crowd: &mut Child) {
+fn wait_for_crowd(metrics: &Metrics, crowd: &mut Child) {
     let end = Instant::now() + PATIENCE;
     let mut still_since = Instant::now();
     let mut sent = 0;
     while still_since.elapsed() < Duration::from_secs(2) {
-        assert!(Instant::now() < end, "{} sessions", counters.sessions.load(Ordering::Relaxed));
+        assert!(Instant::now() < end, "{} sessions", metrics.sessions.get());
         assert!(crowd.try_wait().unwrap().is_none(), "the clients have left");
         std::thread::sleep(Duration::from_millis(100));
-        let held = counters.held.load(Ordering::Relaxed);
-        let sessions = counters.sessions.load(Ordering::Relaxed);
-        if sessions <= CLIENTS || held != sent {
+        let held = metrics.held.get();
+        let sessions = metrics.sessions.get();
+        if sessions <= CLIENTS as i64 || held != sent {
             still_since = Instant::now();
         }
         sent = held;

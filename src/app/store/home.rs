@@ -36,11 +36,16 @@ pub(crate) struct Written {
     pub(crate) sentence: Option<String>,
 }
 
-/// The content of the progress file, and what is wrong with it.
-enum Found {
-    Sound(Progress),
-    /// Parts can be read; the bytes are to be kept.
-    Damaged(Progress, Vec<u8>),
+/// The readable content of the progress file, and what is wrong with it.
+struct Found {
+    progress: Progress,
+    damage: Option<Damage>,
+}
+
+enum Damage {
+    /// Parts can't be read. The bytes are kept.
+    Parts(Vec<u8>),
+    /// Nothing is read.
     TooLarge,
 }
 
@@ -64,15 +69,11 @@ impl Home {
     /// The progress in the file, and a sentence if it is damaged or can't be used. A damaged file is
     /// put aside.
     pub(crate) fn open(&mut self) -> (Progress, Option<String>) {
-        match self.find() {
-            Ok(Found::Sound(progress)) => (progress, None),
-            Ok(Found::Damaged(progress, _)) => self.repair(progress),
-            Ok(Found::TooLarge) => self.repair(Progress::default()),
-            Err(sentence) => (Progress::default(), Some(sentence)),
-        }
-    }
-
-    fn repair(&mut self, readable: Progress) -> (Progress, Option<String>) {
+        let readable = match self.find() {
+            Ok(Found { progress, damage: None }) => return (progress, None),
+            Ok(Found { progress, .. }) => progress,
+            Err(sentence) => return (Progress::default(), Some(sentence)),
+        };
         match self.write(&[], &readable) {
             Ok(written) => (written.progress, written.sentence),
             Err(sentence) => (readable, Some(sentence)),
@@ -81,10 +82,7 @@ impl Home {
 
     /// The progress in the file, unless it is missing or damaged.
     pub(crate) fn read_again(&self) -> Option<Progress> {
-        match self.find() {
-            Ok(Found::Sound(progress)) => Some(progress),
-            _ => None,
-        }
+        self.find().ok().filter(|found| found.damage.is_none()).map(|found| found.progress)
     }
 
     /// The text of a script.
@@ -121,10 +119,11 @@ impl Home {
         let content = match self.disk.read(&file, LARGEST_PROGRESS) {
             Ok(content) => content,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Ok(Found::Sound(Progress::default()));
+                return Ok(Found { progress: Progress::default(), damage: None });
             }
             Err(error) if error.kind() == io::ErrorKind::FileTooLarge => {
-                return Ok(Found::TooLarge);
+                let damage = Some(Damage::TooLarge);
+                return Ok(Found { progress: Progress::default(), damage });
             }
             Err(error) => {
                 return Err(format!(
@@ -134,8 +133,10 @@ impl Home {
             }
         };
         match text::read(&content) {
-            Content::Sound(progress) => Ok(Found::Sound(progress)),
-            Content::Damaged(progress) => Ok(Found::Damaged(progress, content)),
+            Content::Sound(progress) => Ok(Found { progress, damage: None }),
+            Content::Damaged(progress) => {
+                Ok(Found { progress, damage: Some(Damage::Parts(content)) })
+            }
             Content::Newer(version) => Err(format!(
                 "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
                  nothing is kept",
@@ -145,18 +146,9 @@ impl Home {
     }
 
     fn replace(&self, found: Found, changes: &[Change], known: &Progress) -> io::Result<Written> {
-        let is_damaged = !matches!(found, Found::Sound(_));
-        let sentence = match &found {
-            Found::Sound(_) => None,
-            Found::Damaged(_, content) => Some(self.put_aside(Some(content))?),
-            Found::TooLarge => Some(self.put_aside(None)?),
-        };
-        let (Found::Sound(mut progress) | Found::Damaged(mut progress, _)) = found else {
-            return self
-                .replace(Found::Sound(known.clone()), changes, known)
-                .map(|written| Written { sentence, ..written });
-        };
-        if is_damaged {
+        let Found { mut progress, damage } = found;
+        let sentence = damage.map(|damage| self.put_aside(damage)).transpose()?;
+        if sentence.is_some() {
             progress.complete(known);
         }
         let before = progress.clone();
@@ -176,9 +168,8 @@ impl Home {
         Ok(Written { before, progress, sentence })
     }
 
-    /// Keeps the damaged file under another name, as a copy of its content if that is known, and
-    /// returns a sentence about it.
-    fn put_aside(&self, content: Option<&[u8]>) -> io::Result<String> {
+    /// Keeps the damaged file under another name, and returns a sentence about it.
+    fn put_aside(&self, damage: Damage) -> io::Result<String> {
         let names = self.disk.names(&self.folder)?;
         let aside = |number: u64| format!("{PROGRESS}.damaged-{number}");
         let number_of = |name: &OsString| {
@@ -189,12 +180,15 @@ impl Home {
         sort::by_key(&mut numbers, |&number| number);
         let number = numbers.last().map_or(1, |last| last.saturating_add(1));
         let name = aside(number);
-        let kept = if let Some(content) = content {
-            self.write_whole(Path::new(&name), content)?;
-            "everything in it that can be read stays in force"
-        } else {
-            self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
-            "it is too large to be read"
+        let kept = match damage {
+            Damage::Parts(content) => {
+                self.write_whole(Path::new(&name), &content)?;
+                "everything in it that can be read stays in force"
+            }
+            Damage::TooLarge => {
+                self.disk.rename(&self.folder.join(PROGRESS), &self.folder.join(&name))?;
+                "it is too large to be read"
+            }
         };
         numbers.retain(|&known| known != number);
         for &old in numbers.iter().rev().skip(MOST_DAMAGED - 1) {

@@ -48,9 +48,15 @@ impl Default for Preferences {
     }
 }
 
+impl AsMut<Self> for Preferences {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
 impl Preferences {
     /// Takes over what differs between `before` and `after`.
-    pub(crate) fn choose(&mut self, before: Self, after: Self) {
+    pub fn choose(&mut self, before: Self, after: Self) {
         for setting in &PREFERENCES {
             if setting.value.differs(&before, &after) {
                 setting.value.copy(&after, self);
@@ -59,49 +65,70 @@ impl Preferences {
     }
 }
 
-/// The preferences in the order of the file, with their labels on the settings page.
-pub(crate) const PREFERENCES: [Setting<Preferences>; 9] =
-    [CROSSHAIR, COMPASS, BELL, GHOST, DIFFICULTY, GLYPHS, COLORS, CORRECTION, FRAME_RATE];
+/// The preferences in the order of the file.
+pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
+    Setting::CROSSHAIR,
+    Setting::COMPASS,
+    Setting::BELL,
+    Setting::GHOST,
+    Setting::DIFFICULTY,
+    Setting::GLYPHS,
+    Setting::COLORS,
+    Setting::CORRECTION,
+    Setting::FRAME_RATE,
+];
 
-pub(crate) const CROSSHAIR: Setting<Preferences> = Setting {
-    key: "crosshair",
-    about: "Crosshair",
-    value: &At(|it: &mut Preferences| &mut it.crosshair),
-};
-pub(crate) const COMPASS: Setting<Preferences> = Setting {
-    key: "compass",
-    about: "Compass",
-    value: &At(|it: &mut Preferences| &mut it.compass),
-};
-pub(crate) const BELL: Setting<Preferences> = Setting {
-    key: "bell",
-    about: "Bell when noticed or hurt",
-    value: &At(|it: &mut Preferences| &mut it.bell),
-};
-pub(crate) const GHOST: Setting<Preferences> = Setting {
-    key: "ghost",
-    about: "Ghost of the best run",
-    value: &At(|it: &mut Preferences| &mut it.ghost),
-};
-pub(crate) const DIFFICULTY: Setting<Preferences> = Setting {
-    key: "difficulty",
-    about: "Difficulty",
-    value: &At(|it: &mut Preferences| &mut it.difficulty),
-};
-pub(crate) const GLYPHS: Setting<Preferences> = Setting {
-    key: "glyphs",
-    about: "Characters",
-    value: &At(|it: &mut Preferences| &mut it.glyphs),
-};
-pub(crate) const COLORS: Setting<Preferences> =
-    Setting { key: "colors", about: "Colours", value: &At(|it: &mut Preferences| &mut it.colors) };
-pub(crate) const CORRECTION: Setting<Preferences> = Setting {
-    key: "correction",
-    about: "Picture",
-    value: &At(|it: &mut Preferences| &mut it.correction),
-};
-pub(crate) const FRAME_RATE: Setting<Preferences> = Setting {
-    key: "fps",
-    about: "Frames a second",
-    value: &At(|it: &mut Preferences| &mut it.frames_per_second),
-};
+/// The preferences in all that contains them, with their labels on a settings page.
+impl<C: AsMut<Preferences> + Clone> Setting<C> {
+    /// Whether a dot marks the middle of the picture.
+    pub const CROSSHAIR: Self = Self {
+        key: "crosshair",
+        about: "Crosshair",
+        value: &At(|it: &mut C| &mut it.as_mut().crosshair),
+    };
+    /// Whether a strip shows the directions.
+    pub const COMPASS: Self = Self {
+        key: "compass",
+        about: "Compass",
+        value: &At(|it: &mut C| &mut it.as_mut().compass),
+    };
+    /// Whether the terminal's bell rings at sounds.
+    pub const BELL: Self = Self {
+        key: "bell",
+        about: "Bell when noticed or hurt",
+        value: &At(|it: &mut C| &mut it.as_mut().bell),
+    };
+    /// Whether the best run walks along.
+    pub const GHOST: Self = Self {
+        key: "ghost",
+        about: "Ghost of the best run",
+        value: &At(|it: &mut C| &mut it.as_mut().ghost),
+    };
+    /// The difficulty of new games.
+    pub const DIFFICULTY: Self = Self {
+        key: "difficulty",
+        about: "Difficulty",
+        value: &At(|it: &mut C| &mut it.as_mut().difficulty),
+    };
+    /// The glyph set.
+    pub const GLYPHS: Self = Self {
+        key: "glyphs",
+        about: "Characters",
+        value: &At(|it: &mut C| &mut it.as_mut().glyphs),
+    };
+    /// The colour depth.
+    pub const COLORS: Self =
+        Self { key: "colors", about: "Colours", value: &At(|it: &mut C| &mut it.as_mut().colors) };
+    /// How pictures are changed for the player's eyes.
+    pub const CORRECTION: Self = Self {
+        key: "correction",
+        about: "Picture",
+        value: &At(|it: &mut C| &mut it.as_mut().correction),
+    };
+    /// The most frames per second.
+    pub const FRAME_RATE: Self = Self {
+        key: "fps",
+        about: "Frames a second",
+        value: &At(|it: &mut C| &mut it.as_mut().frames_per_second),
+    };
+}

@@ -18,7 +18,8 @@ pub(crate) struct Progress {
     /// The saved games, the newest last. No two have the same [`SaveId`].
     pub(crate) saves: Vec<SavedEntry>,
     pub(crate) preferences: Preferences,
-    pub(crate) dailies: BTreeMap<u32, Daily>,
+    /// How far the daily runs of the dates came.
+    pub(crate) dailies: BTreeMap<u32, Reached>,
     pub(crate) descent: Option<Reached>,
 }
 
@@ -87,13 +88,6 @@ pub(crate) struct SavedEntry {
     pub(crate) script: String,
 }
 
-/// A daily run that was tried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Daily {
-    /// How far it came.
-    pub reached: Reached,
-}
-
 impl Progress {
     pub(crate) fn best(&self, level: &str, difficulty: Difficulty) -> Option<&Best> {
         self.bests.get(&(level.to_owned(), difficulty))
@@ -136,7 +130,7 @@ impl Progress {
             .map(|((level, difficulty), best)| names::of_run(level, *difficulty, best.tally.steps));
         let saved = self.saves.iter().map(|entry| entry.script.clone());
         let dailies =
-            self.dailies.iter().filter_map(|(&date, daily)| names::of_daily(date, daily.reached));
+            self.dailies.iter().filter_map(|(&date, reached)| names::of_daily(date, *reached));
         runs.chain(saved).chain(dailies).chain(self.descent.and_then(names::of_descent))
     }
 }
@@ -228,9 +222,7 @@ impl Progress {
             Change::Saved(game) => self.add_save(SavedEntry::of(game)),
             Change::Removed(id) => self.remove_save(*id),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
-            Change::Daily { date, reached, .. } => {
-                self.add_daily(*date, Daily { reached: *reached });
-            }
+            Change::Daily { date, reached, .. } => self.add_daily(*date, *reached),
             Change::Descent { reached, .. } => self.descent = self.descent.max(Some(*reached)),
         }
     }
@@ -238,7 +230,7 @@ impl Progress {
     /// Adds from `known` what a damaged file has lost.
     pub(crate) fn complete(&mut self, known: &Self) {
         known.bests.iter().for_each(|(key, best)| self.add_best(key.clone(), *best));
-        known.dailies.iter().for_each(|(date, daily)| self.add_daily(*date, *daily));
+        known.dailies.iter().for_each(|(date, reached)| self.add_daily(*date, *reached));
         self.descent = self.descent.max(known.descent);
         let readable = mem::replace(&mut self.saves, known.saves.clone());
         for entry in readable {
@@ -253,8 +245,8 @@ impl Progress {
         self.bests.insert(key, best);
     }
 
-    fn add_daily(&mut self, date: u32, daily: Daily) {
-        let known = self.dailies.entry(date).or_insert(daily);
-        known.reached = known.reached.max(daily.reached);
+    fn add_daily(&mut self, date: u32, reached: Reached) {
+        let known = self.dailies.entry(date).or_insert(reached);
+        *known = reached.max(*known);
     }
 }

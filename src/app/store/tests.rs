@@ -221,7 +221,7 @@ fn only_the_first_try_of_a_day_counts() {
     reach(1, 40, 500);
     reach(2, 10, 900);
     reach(1, 99, 500);
-    assert_eq!(sound(&folder.0).daily(20_261_122).unwrap().reached.floors, 2);
+    assert_eq!(sound(&folder.0).daily(20_261_122).unwrap().floors, 2);
     let names = folder.names(".script");
     assert_eq!(names, ["daily.20261122.2-10-900.script", "descent.2-10-900.script"]);
     let text = |name: &str| fs::read_to_string(folder.0.join("runs").join(name)).unwrap();

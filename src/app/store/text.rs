@@ -14,7 +14,7 @@ use std::fmt;
 use toml::de::DeValue;
 
 use super::preferences::{PREFERENCES, Preferences};
-use super::progress::{Daily, Descent, Progress, Save, SavedEntry};
+use super::progress::{Descent, Progress, Save, SavedEntry};
 use super::results::{Best, Reached};
 use crate::app::setting::toml_string;
 use crate::fault::Fault;
@@ -112,7 +112,7 @@ fn read_dailies(section: &Entry<'_, '_>, progress: &mut Progress) {
     for entry in inner(section) {
         let date = checked(&entry, entry.key.parse().ok());
         if let (Some(date), Some(reached)) = (date, reached(&entry)) {
-            progress.dailies.insert(date, Daily { reached });
+            progress.dailies.insert(date, reached);
         }
     }
 }
@@ -241,9 +241,9 @@ impl fmt::Display for Progress {
             writeln!(f, "\n[best.{}.{}]", toml_string(level), difficulty.name())?;
             write_best(f, best)?;
         }
-        for (date, daily) in &self.dailies {
+        for (date, reached) in &self.dailies {
             writeln!(f, "\n[daily.{date}]")?;
-            write_reached(f, daily.reached)?;
+            write_reached(f, *reached)?;
         }
         Ok(())
     }

@@ -7,8 +7,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 
 use super::*;
-use crate::app::TerminalLook;
 use crate::app::draw::Rendered;
+use crate::app::picture::TerminalLook;
 use crate::terminal::{Event, QuitReason};
 
 /// The largest window.

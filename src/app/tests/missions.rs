@@ -256,7 +256,7 @@ fn the_daily_run_counts_once_and_a_descent_has_no_second_try() {
     let practice = "Practice: the first try of the day counts";
     assert_eq!(rig.app.descent_lines(), ["0 floors", practice]);
     rig.app.record_floor();
-    assert_eq!(rig.app.store.daily(20_261_122).unwrap().reached.floors, 0);
+    assert_eq!(rig.app.store.daily(20_261_122).unwrap().floors, 0);
     rig.app.return_to_title();
     rig.choose("Endless");
     rig.app.record_floor();

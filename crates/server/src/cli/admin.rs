@@ -3,29 +3,29 @@
 //! Bans are written to the store, whether a server runs or not. A server that runs then ends the
 //! sessions to which they apply.
 
-mod bans;
-mod table;
-
+use std::env;
 use std::io::{self, Write};
 use std::path::Path;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction};
-use super::database::Database;
-use crate::cli::host_store;
+use super::host_store::{Database, failed};
+use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
 use crate::ops::admin::{
     AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
 };
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
 use cellcaster::rng;
-use table::{table, time};
 
 /// Does the action, and writes what came of it.
 pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let database = host_store::named(options.store);
+    let database = Database::named(options.store);
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
@@ -47,10 +47,10 @@ fn act(folder: &Path, database: &Database, action: AdminAction) -> Result<String
         }
         AdminAction::Kick { player, session, reason } => host.kicks(player.target(session), reason),
         AdminAction::Ban { player, time, reason } => {
-            bans::ban(&mut host, database, &player.target(None), time, &reason)
+            ban(&mut host, database, &player.target(None), time, &reason)
         }
-        AdminAction::Unban { player } => bans::unban(database, &player.target(None)),
-        AdminAction::Bans => bans::list(database),
+        AdminAction::Unban { player } => unban(database, &player.target(None)),
+        AdminAction::Bans => bans(database),
     };
     for remark in host.remarks {
         Error::machine(remark.replace(char::is_control, "?")).warn();
@@ -136,7 +136,7 @@ fn of_visitor(row: &VisitorRow) -> [String; 6] {
     let or = |text: &Option<String>, other: &str| text.clone().unwrap_or(other.to_owned());
     let (name, room) = (or(&row.name, "-"), or(&row.room, "lobby"));
     let address = row.address.clone();
-    [row.session.clone(), name, room, address, time(row.seconds), or(&row.key, "guest")]
+    [row.session.clone(), name, room, address, time_text(row.seconds), or(&row.key, "guest")]
 }
 
 fn of_room(row: &RoomRow) -> [String; 5] {
@@ -162,7 +162,7 @@ fn of_host(row: &HostInfo) -> [String; 7] {
         Some(rooms) if rooms.is_empty() => "none".to_owned(),
         Some(rooms) => rooms.iter().map(u32::to_string).collect::<Vec<_>>().join(", "),
     };
-    let seen = format!("{} ago", time(row.seconds));
+    let seen = format!("{} ago", time_text(row.seconds));
     let (visitors, version) = (row.visitors.to_string(), row.version.clone());
     let maps = row.maps.as_deref().map_or_else(|| "-".to_owned(), summary_of_maps);
     [row.host.clone(), row.address.clone(), version, visitors, seen, maps, rooms]
@@ -174,6 +174,166 @@ fn summary_of_maps(keys: &[String]) -> String {
     match keys.len() {
         0 => "none".to_owned(),
         count => format!("{count} ({:08x})", rng::hash(0, bytes.map(u64::from)) as u32),
+    }
+}
+
+/// Bans, and ends the sessions to which the ban applies.
+fn ban(
+    host: &mut RunningHost<'_>,
+    database: &Database,
+    target: &Target,
+    time: Option<Duration>,
+    reason: &str,
+) -> Result<String, Error> {
+    let mut store = open(database)?;
+    let now = now();
+    let targets = targets(&mut store, target)?;
+    for target in &targets {
+        let ban = Ban {
+            target: target.clone(),
+            until: time.map(|time| now.after(time.as_secs())),
+            reason: reason.to_owned(),
+            by: operator(),
+            made_at: now,
+        };
+        store.ban(&ban).map_err(failed)?;
+    }
+    let removed = remove(host, &targets, reason)?;
+    let whom: Vec<String> = targets.iter().map(BanTarget::to_string).collect();
+    let time =
+        time.map_or("for ever".to_owned(), |time| format!("for {}", time_text(time.as_secs())));
+    let ended = match removed {
+        None => "no server runs".to_owned(),
+        Some(count) => format!("ended {}", sessions(count)),
+    };
+    Ok(format!("banned {} {time}; {ended}\n", whom.join(" and ")))
+}
+
+/// Ends the bans of a target.
+fn unban(database: &Database, target: &Target) -> Result<String, Error> {
+    let mut store = open(database)?;
+    let mut ended = Vec::new();
+    for target in targets(&mut store, target)? {
+        if store.unban(&target).map_err(failed)? {
+            ended.push(target.to_string());
+        }
+    }
+    if ended.is_empty() {
+        return Err(Error::mistake(
+            "there is no such ban; \"cellcaster-server admin bans\" lists them",
+        ));
+    }
+    Ok(format!("{} may come back\n", ended.join(" and ")))
+}
+
+/// The bans in force.
+fn bans(database: &Database) -> Result<String, Error> {
+    let mut store = database.open_to_read()?;
+    let now = now();
+    let bans = store.bans(now).map_err(failed)?;
+    if bans.is_empty() {
+        return Ok("nobody is banned\n".to_owned());
+    }
+    let left = |ban: &Ban| match ban.until {
+        None => "ever".to_owned(),
+        Some(until) => time_text(until.seconds().saturating_sub(now.seconds())),
+    };
+    let ago = |ban: &Ban| time_text(now.seconds().saturating_sub(ban.made_at.seconds()));
+    Ok(table(
+        ["banned", "for", "made", "by", "reason"],
+        bans.iter().map(|ban| {
+            let made = format!("{} ago", ago(ban));
+            [ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
+        }),
+    ))
+}
+
+/// The target of a ban; for a name, also the key of the account that has it.
+fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
+    let target = target.to_ban().map_err(Error::mistake)?;
+    let account = match &target {
+        BanTarget::Name(name) => store.account_named(name).map_err(failed)?,
+        BanTarget::Key(_) | BanTarget::Addresses(_) => None,
+    };
+    Ok([target].into_iter().chain(account.map(|account| BanTarget::Key(account.key))).collect())
+}
+
+/// Ends the sessions of `targets`, and returns their number; `None` if no server runs.
+fn remove(
+    host: &mut RunningHost<'_>,
+    targets: &[BanTarget],
+    reason: &str,
+) -> Result<Option<usize>, Error> {
+    let mut removed = 0;
+    for target in targets {
+        let text = target.to_string();
+        let target = match target {
+            BanTarget::Key(_) => Target::Key(text),
+            BanTarget::Name(_) => Target::Name(text),
+            BanTarget::Addresses(_) => Target::Address(text),
+        };
+        let request = AdminRequest::Remove { target, reason: reason.to_owned(), banned: true };
+        match host.answers(&request) {
+            Ok(AdminReply::Count(count)) => removed = count.max(removed),
+            Err(AdminFailure::NoServer(_)) => return Ok(None),
+            Ok(_) => {}
+            Err(failure) => return Err(failure.into()),
+        }
+    }
+    Ok(Some(removed))
+}
+
+/// The store, which is not made if there is none.
+fn open(database: &Database) -> Result<HostStore, Error> {
+    database.open_to_read()?;
+    database.open().map_err(failed)
+}
+
+/// Who bans: the user who calls, also through `sudo`.
+fn operator() -> String {
+    let names = ["SUDO_USER", "USER", "LOGNAME"].into_iter().filter_map(|name| env::var(name).ok());
+    names.into_iter().find(|name| !name.is_empty()).unwrap_or_else(|| "console".to_owned())
+}
+
+fn now() -> UnixTime {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    UnixTime::new(since.as_secs())
+}
+
+/// Rows below a line of titles, in columns as wide as they need. Characters that a terminal would obey
+/// are replaced.
+fn table<const N: usize>(titles: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let rows: Vec<[String; N]> = [titles.map(str::to_owned)]
+        .into_iter()
+        .chain(rows.map(|row| row.map(|cell| cell.replace(char::is_control, "?"))))
+        .collect();
+    let mut widths = [0; N];
+    for row in &rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = cell.width().max(*width);
+        }
+    }
+    let mut text = String::new();
+    for row in &rows {
+        let mut line = String::new();
+        for (width, cell) in widths.into_iter().zip(row) {
+            line += cell;
+            line.extend(std::iter::repeat_n(' ', width - cell.width() + 2));
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// A time in its two largest units, such as `6d 23h`.
+fn time_text(seconds: u64) -> String {
+    let (minutes, hours, days) = (seconds / 60, seconds / 3600, seconds / 86_400);
+    match (days, hours, minutes) {
+        (0, 0, 0) => format!("{seconds}s"),
+        (0, 0, _) => format!("{minutes}m {}s", seconds % 60),
+        (0, _, _) => format!("{hours}h {}m", minutes % 60),
+        _ => format!("{days}d {}h", hours % 24),
     }
 }
 
@@ -200,6 +360,26 @@ impl From<AdminFailure> for Error {
                 Self::mistake(failure.to_string())
             }
             AdminFailure::Failed(..) => Self::machine(failure.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_as_wide_as_they_need() {
+        let rows = [["漢字", "1"], ["A\u{1b}", "22"]].map(|row| row.map(str::to_owned));
+        assert_eq!(table(["name", "n"], rows.into_iter()), "name  n\n漢字  1\nA?    22\n");
+    }
+
+    #[test]
+    fn a_time_has_two_units() {
+        for (seconds, text) in
+            [(59, "59s"), (61, "1m 1s"), (3661, "1h 1m"), (7 * 86_400 - 1, "6d 23h")]
+        {
+            assert_eq!(time_text(seconds), text);
         }
     }
 }

@@ -1,27 +1,25 @@
 //! `cellcaster-server`: the SSH server.
 
-mod cluster;
 mod configuration;
 mod signals;
 
 use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
-use std::sync::Arc;
 
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::database::Database;
-use crate::accounts::{HostStore, StoreFailure, WaitingResults};
-use crate::cli::host_store::{self, failed};
+use super::host_store::{Database, failed};
+use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
+use crate::cluster::Cluster;
 #[cfg(unix)]
 use crate::ops::admin::AdminSocket;
 use crate::ops::config::Config;
 use crate::ops::logging::{LogFormat, Logging, events};
-use crate::ops::metrics::{Metrics, respond};
+use crate::ops::metrics::respond;
 use crate::sessions::driver::{GameHost, HostParts};
 use crate::sessions::visitors::Visitors;
 use crate::ssh::Server;
@@ -40,9 +38,9 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         )
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::named(options.store.store.take());
+    let database = Database::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
-    let cluster = cluster::pending(&options, &database)?;
+    let cluster = pending_cluster(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
     let waiting = waiting(&folder)?;
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
@@ -61,10 +59,10 @@ struct Parts<'a> {
     /// For data.
     folder: &'a Path,
     format: LogFormat,
-    store: Box<dyn HostStore>,
+    store: HostStore,
     waiting: WaitingResults,
     /// In a cluster.
-    cluster: Option<cluster::PendingCluster>,
+    cluster: Option<PendingCluster>,
 }
 
 async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
@@ -87,8 +85,7 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     let logging = Logging::begin(format, &filter);
     events::listening(address, &fingerprint);
 
-    let metrics = Arc::new(Metrics::default());
-    let host = HostParts::new(server.config(), Arc::clone(&metrics), Visitors::default(), store);
+    let host = HostParts::new(server.config(), server.metrics(), Visitors::default(), store);
     let host = host.map_err(|error| no_thread(&error))?;
     let mut host = host.with_maps(configuration.maps()).with_waiting(waiting);
     if let Some(cluster) = cluster {
@@ -101,8 +98,7 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
         events::metrics_listening(listener.local_addr().map_err(cannot)?);
-        let counters = server.counters();
-        services.spawn(respond(listener, move || metrics.text(&counters)));
+        services.spawn(respond(listener, server.metrics()));
     }
     let operator = host.operator(signals.drain());
     services.spawn(operator.clone().answer_others());
@@ -123,16 +119,64 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
 }
 
 /// The store. A damaged one is an error unless the operator accepts that it may be empty.
-fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostStore>, Error> {
+fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
     if !accepts_empty {
-        return host_store::open(database).map_err(refused);
+        return database.open().map_err(refused);
     }
-    let (store, damage) = host_store::open_or_salvage(database).map_err(refused)?;
+    let (store, damage) = database.open_or_salvage().map_err(refused)?;
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
     Ok(store)
+}
+
+/// A cluster that the host is going to join.
+struct PendingCluster {
+    address: String,
+    /// Each on a connection of its own, so that they wait for nothing else.
+    leases: HostStore,
+    presence: HostStore,
+}
+
+/// The cluster that `options` name. The store is that of all hosts.
+fn pending_cluster(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
+    let Some(address) = options.cluster() else { return Ok(None) };
+    let Database::Address(store) = store else {
+        return Err(Error::mistake(
+            "a cluster needs a database that all hosts share: name it, as in \
+             \"--store postgres://USER@HOST/DATABASE\"",
+        ));
+    };
+    if options.record_room.is_some() {
+        return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
+    }
+    let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
+    Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
+}
+
+impl PendingCluster {
+    /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
+    async fn join(self, host: HostParts, address: SocketAddr) -> Result<HostParts, Error> {
+        let notice = HostNotice {
+            name: unique_name(address),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            address: address.to_string(),
+            load: 0,
+        };
+        let cluster = Cluster::join(&self.address, self.leases, self.presence, notice).await;
+        Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
+    }
+}
+
+/// The name of this machine with the port, which operators know, and a number that no other start of a host has.
+fn unique_name(address: SocketAddr) -> String {
+    #[cfg(unix)]
+    let machine =
+        rustix::system::uname().nodename().to_string_lossy().replace(char::is_whitespace, "-");
+    #[cfg(not(unix))]
+    let machine = address.ip();
+    format!("{machine}:{} {:08x}", address.port(), getrandom::u32().unwrap_or_default())
 }
 
 /// The results that wait in the folder for data.

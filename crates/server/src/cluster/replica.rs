@@ -121,7 +121,7 @@ impl Replica {
             beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
-        let figures = context.load.metrics().each_room.add(id.0);
+        let figures = context.load.metrics().add_room(id.0);
         Self {
             id,
             context,
@@ -245,11 +245,5 @@ impl Replica {
         let stay = closes_after.filter(|_| self.sequencer.is_some()).unwrap_or_default();
         let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
-    }
-}
-
-impl Drop for Replica {
-    fn drop(&mut self) {
-        self.context.load.metrics().each_room.remove(self.id.0, &self.figures);
     }
 }

@@ -7,12 +7,10 @@
 //! socket is asked.
 //!
 //! Bans are no request: the store keeps them, and `cellcaster admin` writes them there, so that they
-//! can be made while no server runs. A request then ends the sessions to which the ban applies. A port
-//! of TCP with a password was refused: every user of the machine could reach it.
+//! can be made while no server runs. A request then ends the sessions to which the ban applies.
+//!
+//! Rejected: a port of TCP with a password. Every user of the machine could reach it.
 
-#[cfg(unix)]
-mod client;
-mod merging;
 mod operator;
 #[cfg(unix)]
 pub(crate) mod socket;
@@ -20,11 +18,9 @@ pub(crate) mod socket;
 use serde::{Deserialize, Serialize};
 
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
-#[cfg(unix)]
-pub use client::{AdminFailure, ask};
 pub use operator::Operator;
 #[cfg(unix)]
-pub use socket::AdminSocket;
+pub use socket::{AdminFailure, AdminSocket, ask};
 
 /// What an operator asks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -185,18 +181,6 @@ impl Target {
             }
         }
     }
-}
-
-/// In bytes: the longest line of a request.
-#[cfg(unix)]
-const MOST_REQUEST: usize = 4096;
-/// In bytes: the longest line of a reply. A hundred thousand visitors are less.
-#[cfg(unix)]
-const MOST_REPLY: u64 = 32 << 20;
-
-#[cfg(unix)]
-fn socket_of(folder: &std::path::Path) -> std::path::PathBuf {
-    folder.join("admin.sock")
 }
 
 #[cfg(test)]

@@ -12,44 +12,38 @@
 //! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
 //!   is away or full, waits in a file or in memory, and is recorded later.
 
-mod account;
-mod counted;
-mod follow;
 mod late_results;
-mod parts;
-mod requests;
+mod login;
 mod results;
 #[cfg(test)]
 mod simulated;
-mod stay;
 mod store_worker;
-mod terminal;
 mod visit;
 
+use std::io;
 use std::num::NonZero;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::AtomicU32;
+use std::sync::{Arc, Mutex, Weak};
 use std::thread::available_parallelism;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use tokio::sync::{Notify, Semaphore};
+use tokio::sync::{Notify, Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
 
-use self::account::NamesInUse;
-use self::follow::follow;
-pub use self::parts::HostParts;
+use self::login::NamesInUse;
 use self::results::Recorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::store_worker::StoreWorker;
-use self::visit::Visit;
-use crate::accounts::UnixTime;
-use crate::cluster::SharedRooms;
+use self::visit::Driver;
+use crate::accounts::{HostStore, UnixTime, WaitingResults};
+use crate::cluster::{Cluster, SharedRooms};
 use crate::ops::admin::{Operator, RoomRow};
-use crate::ops::config::LiveConfig;
+use crate::ops::config::{Config, LiveConfig};
 use crate::ops::metrics::Metrics;
-use crate::rooms::directory::{RoomLimits, Rooms};
+use crate::rooms::directory::{Logs, RoomLimits, Rooms};
 use crate::rooms::ghost::KeptRuns;
+use crate::rooms::maps::HostMaps;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::RoomSummary;
 use crate::sessions::governor::Governor;
@@ -64,7 +58,7 @@ pub struct GameHost {
     shared: Arc<Shared>,
 }
 
-/// What the drivers have in common.
+/// State shared by all drivers.
 #[derive(Debug)]
 struct Shared {
     config: LiveConfig,
@@ -91,6 +85,67 @@ struct Shared {
 const GOVERNED: Duration = Duration::from_millis(250);
 /// The most time that the store has for its end.
 const STORE_END: Duration = Duration::from_secs(10);
+
+/// The parts of a [`GameHost`], before it runs.
+pub struct HostParts {
+    pub(crate) live: LiveConfig,
+    pub(crate) metrics: Arc<Metrics>,
+    pub(crate) visitors: Visitors,
+    pub(crate) catalog: Catalog,
+    pub(crate) logs: Logs,
+    pub(crate) load: Load,
+    pub(crate) store: StoreWorker,
+    pub(crate) waiting: Option<WaitingResults>,
+    /// The seed of all chance in rooms.
+    pub(crate) seed: u64,
+    pub(crate) cluster: Option<Cluster>,
+}
+
+impl HostParts {
+    /// The parts of a host that keeps accounts and results in `store`, with the built-in levels. It adds to
+    /// `metrics`, and its sessions are among `visitors`.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn new(
+        live: LiveConfig,
+        metrics: Arc<Metrics>,
+        visitors: Visitors,
+        store: HostStore,
+    ) -> io::Result<Self> {
+        Ok(Self {
+            visitors,
+            catalog: Catalog::builtin(),
+            logs: Logs::recorded(live.get().recordings.clone()),
+            load: Load::new(Arc::clone(&metrics)),
+            store: StoreWorker::start(store)?,
+            waiting: None,
+            // Without random numbers from the system there would be no keys, either.
+            seed: getrandom::u64().unwrap_or_default(),
+            metrics,
+            live,
+            cluster: None,
+        })
+    }
+
+    /// Adds the maps of the host to the built-in levels.
+    #[must_use]
+    pub fn with_maps(self, maps: &HostMaps) -> Self {
+        Self { catalog: Catalog::with(maps), ..self }
+    }
+
+    /// Adds the results that wait for the store. Those that come while it is away wait there, too.
+    #[must_use]
+    pub fn with_waiting(self, waiting: WaitingResults) -> Self {
+        Self { waiting: Some(waiting), ..self }
+    }
+
+    /// Has the host share the rooms of a cluster.
+    #[must_use]
+    pub fn in_cluster(self, cluster: Cluster) -> Self {
+        Self { cluster: Some(cluster), ..self }
+    }
+}
 
 impl GameHost {
     /// A host of these parts.
@@ -134,7 +189,11 @@ impl GameHost {
             next_guest: AtomicU32::new(1),
         });
         tokio::spawn(govern(Arc::downgrade(&shared)));
-        tokio::spawn(follow(shared.config.subscribe(), shared.limited()));
+        tokio::spawn(follow_limits(
+            shared.config.subscribe(),
+            shared.rooms.clone(),
+            shared.cluster.clone(),
+        ));
         if shared.recorder.waiting.is_some() {
             tokio::spawn(late_results::record_all(Arc::downgrade(&shared)));
         }
@@ -186,7 +245,7 @@ fn room_row(room: &RoomSummary, catalog: &Catalog) -> RoomRow {
 impl Host for GameHost {
     async fn serve(&self, visitor: Visitor, mut link: Link) -> Departure {
         let shared = Arc::clone(&self.shared);
-        if let Some(sentence) = terminal::refusal(&visitor) {
+        if let Some(sentence) = login::terminal_refusal(&visitor) {
             return refuse(link, &sentence, Departure::REFUSED).await;
         }
         let known = match shared.log_in(&visitor).await {
@@ -197,10 +256,10 @@ impl Host for GameHost {
             Ok(counted) => counted,
             Err((sentence, departure)) => return refuse(link, &sentence, departure).await,
         };
-        let options = terminal::options(&visitor);
-        let mut visit = Visit::new(shared, &visitor, known, options);
-        visit.look_for_place();
-        Departure { status: visit.run(&mut link).await, refusal: None }
+        let options = login::terminal_options(&visitor);
+        let mut driver = Driver::new(shared, &visitor, known, options);
+        driver.look_for_place();
+        Departure { status: driver.run(&mut link).await, refusal: None }
     }
 }
 
@@ -208,11 +267,6 @@ impl Shared {
     /// The time since the server began.
     fn now(&self) -> Duration {
         self.begun.elapsed()
-    }
-
-    /// The number of the next guest.
-    fn guest_number(&self) -> u32 {
-        self.next_guest.fetch_add(1, Ordering::Relaxed)
     }
 }
 
@@ -224,8 +278,23 @@ async fn refuse(link: Link, sentence: &str, departure: Departure) -> Departure {
     departure
 }
 
+/// Tells the rooms what the host allows, whenever the configuration is read again.
+async fn follow_limits(
+    mut config: watch::Receiver<Arc<Config>>,
+    rooms: Rooms,
+    cluster: Option<SharedRooms>,
+) {
+    while config.changed().await.is_ok() {
+        let limits = RoomLimits::of(&config.borrow_and_update());
+        match &cluster {
+            Some(cluster) => cluster.set_limits(limits),
+            None => rooms.set_limits(limits),
+        }
+    }
+}
+
 /// Sets the frame rate as long as the host exists.
-async fn govern(shared: std::sync::Weak<Shared>) {
+async fn govern(shared: Weak<Shared>) {
     let mut governor = Governor::new();
     let mut ticks = interval(GOVERNED);
     loop {

@@ -12,7 +12,7 @@ use std::time::Duration;
 #[cfg(test)]
 pub(crate) use self::worker::{Work, Worker};
 use crate::lock::locked;
-use crate::ops::metrics::Metrics;
+use crate::ops::metrics::{Metrics, cpu_time};
 use crate::sessions::governor::Sample;
 
 /// Measurements that all rooms and sessions add to.
@@ -39,7 +39,8 @@ impl Load {
     /// Nothing measured yet; it adds to `metrics`, too.
     pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
         let processors = available_parallelism().map_or(1, NonZero::get) as f64;
-        Self::with(metrics, processors, processor_time)
+        // Where it is not known, late steps are all that lowers the frame rate.
+        Self::with(metrics, processors, || cpu_time().unwrap_or_default())
     }
 
     /// That of a host in simulated time, of which only the steps of rooms are measured.
@@ -80,7 +81,7 @@ impl Load {
     pub(crate) fn note_lateness(&self, lateness: Duration) {
         self.lateness.fetch_add(micros(lateness), Ordering::Relaxed);
         self.steps.fetch_add(1, Ordering::Relaxed);
-        self.metrics.step_lateness.add(lateness);
+        self.metrics.step_lateness.observe(lateness.as_secs_f64());
     }
 
     /// What was measured in the last `time`, since the last call.
@@ -105,19 +106,4 @@ impl Load {
 
 fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
-}
-
-/// The processor time that this process has used.
-#[cfg(unix)]
-fn processor_time() -> Duration {
-    use rustix::time::{ClockId, clock_gettime};
-    let time = clock_gettime(ClockId::ProcessCPUTime);
-    let seconds = u64::try_from(time.tv_sec).unwrap_or_default();
-    Duration::new(seconds, u32::try_from(time.tv_nsec).unwrap_or_default())
-}
-
-/// It is not known: late steps are all that lowers the frame rate.
-#[cfg(not(unix))]
-fn processor_time() -> Duration {
-    Duration::ZERO
 }

@@ -16,39 +16,30 @@
 //! Keys that are pressed faster than anybody types are dropped, since some open a page or change a setting, which
 //! takes a hundred times as long as to decode them.
 
-mod choice;
 mod draw;
-mod events;
-mod ghosts;
-mod idle;
+mod endings;
+mod frames;
 mod intent_queue;
 mod keys;
 mod line_entry;
-mod look;
-mod menus;
 mod messages;
-mod pace;
-mod page;
-mod room_keys;
+mod pages;
 mod settings;
-mod shown_steps;
 mod stay;
 mod talk;
 #[cfg(test)]
 mod tests;
-mod unanswered;
-mod visit;
+mod ui;
 
 use std::time::Duration;
 
-use self::look::Look;
-pub(crate) use self::messages::{BoardRow, HostFacts, Identity, IdleLimits, Request, SessionEvent};
-use self::pace::Pace;
-use self::unanswered::{Effect, Unanswered};
-use self::visit::Visit;
+pub(crate) use self::endings::IdleLimits;
+use self::frames::{KeyEffect, Pace, Unanswered};
+pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
+use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::rooms::room::RoomView;
-use cellcaster::app::parts::{Meter, Stats};
+use cellcaster::app::parts::{Meter, TerminalLook};
 use cellcaster::game::Intents;
 use cellcaster::terminal::{Event, KeyEvent, Options, Phase, Protocol, WindowSize};
 
@@ -64,7 +55,7 @@ const FAR: Duration = Duration::from_millis(3);
 /// The session of a visitor.
 pub(crate) struct Session {
     protocol: Protocol,
-    visit: Visit,
+    ui: Ui,
     ending: Ending,
     pace: Pace,
     /// The keys that the visitor may press now.
@@ -104,11 +95,10 @@ impl Session {
     ) -> Self {
         let mut protocol = Protocol::new(options, size);
         protocol.begin(now);
-        let look = Look::new(options.is_ascii, &identity);
         let pace = Pace::new(host.frame_time);
         let mut session = Self {
             protocol,
-            visit: Visit::new(identity, host, look, now),
+            ui: Ui::new(identity, host, options.is_ascii, now),
             ending: Ending::Not,
             pace,
             keys: Bucket::new(KEYS, KEYS_AT_ONCE, now),
@@ -138,8 +128,8 @@ impl Session {
 
     /// Records what the driver brings.
     pub(crate) fn notify(&mut self, event: SessionEvent, now: Duration) {
-        self.visit.advance(now);
-        self.visit.notify(event);
+        self.ui.advance(now);
+        self.ui.notify(event);
         self.finish(now);
     }
 
@@ -147,7 +137,7 @@ impl Session {
     pub(crate) fn wake(&mut self, now: Duration) {
         self.protocol.wake(now);
         self.handle_events(now);
-        self.visit.wake(now);
+        self.ui.wake(now);
         self.finish(now);
     }
 
@@ -158,18 +148,18 @@ impl Session {
 
     /// Looks at the newest snapshot of the room, so that a key by which nothing has changed there waits for no frame.
     pub(crate) fn look_at(&mut self, room: &RoomView) {
-        if self.has_acted(room) && !self.visit.is_stale(Some(room)) {
+        if self.has_acted(room) && !self.ui.is_stale(Some(room)) {
             self.unanswered.forget_wanted();
         }
     }
 
     fn has_acted(&self, room: &RoomView) -> bool {
-        self.visit.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
+        self.ui.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
     }
 
     /// What the session wants since the last call.
     pub(crate) fn requests(&mut self) -> Vec<Request> {
-        std::mem::take(&mut self.visit.requests)
+        std::mem::take(&mut self.ui.requests)
     }
 
     /// Whether to [`draw`](Self::draw) now, with `room` as the newest snapshot.
@@ -185,13 +175,13 @@ impl Session {
 
     /// Adds a frame to the output.
     pub(crate) fn draw(&mut self, room: Option<&RoomView>, now: Duration) {
-        if self.visit.is_stale(room) {
+        if self.ui.is_stale(room) {
             self.draw_anew(room, now);
         } else {
             self.protocol.refine();
         }
         self.protocol.output(now);
-        if let (Some(stay), Some(room)) = (&mut self.visit.stay, room) {
+        if let (Some(stay), Some(room)) = (&mut self.ui.stay, room) {
             stay.frames.drawn(self.protocol.frames_sent(), room.game.steps());
         }
         self.pace.drawn(now);
@@ -203,17 +193,17 @@ impl Session {
         let has_acted = room.is_none_or(|room| self.has_acted(room));
         let answered = self.unanswered.answer(has_acted);
         self.answered = self.answered.into_iter().chain(answered).min();
-        let Self { protocol, visit, .. } = self;
-        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            visit.requests.extend(stay.look_at(room, now));
-            if stay.watch.take_ring() && visit.identity.preferences.bell {
+        let Self { protocol, ui, .. } = self;
+        if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
+            ui.requests.extend(stay.look_at(room, now));
+            if stay.watch.take_ring() && ui.identity.preferences.bell {
                 protocol.ring_bell();
             }
         }
-        protocol.draw(|screen| visit.draw(screen, room));
-        visit.is_stale = false;
-        if let (Some(stay), Some(room)) = (&mut visit.stay, room) {
-            stay.drawn(room, &visit.look);
+        protocol.draw(|screen| ui.draw(screen, room));
+        ui.is_stale = false;
+        if let (Some(stay), Some(room)) = (&mut ui.stay, room) {
+            stay.drawn(room, ui.field_of_view, ui.identity.preferences.ghost);
             self.drawn_step = room.step;
         }
         self.answers_key = self.answers_key.filter(|&pressed| pressed == self.drawn_step);
@@ -221,13 +211,12 @@ impl Session {
 
     /// Measures the frames so far.
     fn measure(&mut self, now: Duration) {
-        let Self { protocol, visit, meter, .. } = self;
-        if let Some(rates) = meter.frame(now, protocol.bytes_drawn()) {
-            let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
-            let is_limited = protocol.is_limited_by_network();
-            let wants_compression = is_limited && !visit.host.compresses;
-            self.is_limited = visit.stay.is_some().then_some(is_limited).or(self.is_limited);
-            visit.stats = Some(Stats { rates, round_trip, fidelity, wants_compression });
+        let Self { protocol, ui, meter, .. } = self;
+        if let Some(mut stats) = meter.measure(protocol, now) {
+            let is_limited = stats.wants_compression;
+            self.is_limited = ui.stay.is_some().then_some(is_limited).or(self.is_limited);
+            stats.wants_compression &= !ui.host.compresses;
+            ui.stats = Some(stats);
         }
     }
 
@@ -244,8 +233,8 @@ impl Session {
     /// The time at which to [`wake`](Self::wake) the session and to ask again whether a frame
     /// [is due](Self::is_due), if nothing happens before; `None` for never.
     pub(crate) fn wakes_at(&self, room: Option<&RoomView>, now: Duration) -> Option<Duration> {
-        let visit = self.visit.wakes_at().filter(|_| self.ending == Ending::Not);
-        self.due_at(room, now).into_iter().chain(visit).chain(self.protocol.wakes_at()).min()
+        let ui = self.ui.wakes_at().filter(|_| self.ending == Ending::Not);
+        self.due_at(room, now).into_iter().chain(ui).chain(self.protocol.wakes_at()).min()
     }
 
     /// The time from which on a newer snapshot may bring a frame; `None` until the terminal answers or
@@ -270,19 +259,19 @@ impl Session {
         if self.ending != Ending::Not || !self.protocol.is_ready(now) {
             return None;
         }
-        let is_stale = self.visit.is_stale(room);
+        let is_stale = self.ui.is_stale(room);
         if !is_stale && self.protocol.is_settled() {
             return None;
         }
-        let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.visit.is_stale;
+        let answers = |pressed| room.is_none_or(|room| room.step != pressed) || self.ui.is_stale;
         let is_prompt = is_stale && self.answers_key.is_some_and(answers);
         Some(self.pace.next(is_prompt).max(now))
     }
 
     /// Handles the events of the terminal.
     fn handle_events(&mut self, now: Duration) {
-        self.visit.answered = self.protocol.frames_answered();
-        self.visit.wants_compression = self.wants_compression();
+        self.ui.answered = self.protocol.frames_answered();
+        self.ui.wants_compression = self.wants_compression();
         while let Some(event) = self.protocol.next_event() {
             match event {
                 Event::Key(event) if !self.takes_key(event, now) => continue,
@@ -293,7 +282,7 @@ impl Session {
             if let Event::Key(_) = event {
                 self.press(event, now);
             } else {
-                self.visit.event(event, now);
+                self.ui.event(event, now);
             }
         }
         self.show_choices();
@@ -302,18 +291,18 @@ impl Session {
 
     /// Handles a key, and records what it changes.
     fn press(&mut self, key: Event, now: Duration) {
-        self.visit.advance(now);
-        let was_stale = std::mem::take(&mut self.visit.is_stale);
+        self.ui.advance(now);
+        let was_stale = std::mem::take(&mut self.ui.is_stale);
         let wanted = self.wanted();
-        self.visit.event(key, now);
-        let effect = Effect { is_shown: self.visit.is_stale, is_wanted: self.wanted() != wanted };
+        self.ui.event(key, now);
+        let effect = KeyEffect { is_shown: self.ui.is_stale, is_wanted: self.wanted() != wanted };
         self.unanswered.press(effect, now);
-        self.visit.is_stale |= was_stale;
+        self.ui.is_stale |= was_stale;
     }
 
     /// What the visitor wants of the room.
     fn wanted(&self) -> Option<Intents> {
-        self.visit.stay.as_ref().map(|stay| stay.intents.newest())
+        self.ui.stay.as_ref().map(|stay| stay.intents.newest())
     }
 
     /// Whether a key counts. Releases do, whatever was pressed, so that no key is held for ever.
@@ -325,32 +314,30 @@ impl Session {
     /// that, it may on every link that is not local.
     fn wants_compression(&self) -> bool {
         let is_far = self.protocol.round_trip().is_some_and(|time| time >= FAR);
-        !self.visit.host.compresses && self.is_limited.unwrap_or(is_far)
+        !self.ui.host.compresses && self.is_limited.unwrap_or(is_far)
     }
 
     /// Requests what the visitor has chosen from the terminal.
     fn show_choices(&mut self) {
-        let Self { protocol, visit, .. } = self;
-        protocol.set_mouse(visit.pointer.is_on());
-        protocol.set_ascii(visit.look.is_ascii());
+        let Self { protocol, ui, .. } = self;
+        protocol.set_mouse(ui.pointer.is_on());
+        protocol.set_ascii(ui.is_ascii());
     }
 
     /// Takes over what is known of the terminal.
     fn follow_terminal(&mut self) {
-        let Self { protocol, visit, .. } = self;
-        visit.look.follow_terminal(protocol, &visit.identity.preferences);
-        visit.detection.depth = visit.look.depth;
-        let is_chosen = visit.identity.preferences.colors.is_some();
-        visit.detection.is_tmux = protocol.is_tmux();
-        visit.detection.source = (!is_chosen).then(|| protocol.color_source());
-        visit.pointer.set_columns(protocol.size().columns);
+        let Self { protocol, ui, .. } = self;
+        ui.terminal = TerminalLook::of(protocol);
+        let is_chosen = ui.identity.preferences.colors.is_some();
+        ui.detection.follow(protocol, ui.depth(), is_chosen);
+        ui.pointer.set_columns(protocol.size().columns);
     }
 
     /// Ends the session if it should, and gives the screen back once the terminal has answered all
     /// that it was asked.
     fn finish(&mut self, now: Duration) {
         if self.ending == Ending::Not
-            && let Some(sentence) = self.visit.farewell.take()
+            && let Some(sentence) = self.ui.farewell.take()
         {
             self.protocol.end(now);
             self.ending = Ending::Asked(sentence);

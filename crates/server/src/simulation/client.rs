@@ -1,7 +1,6 @@
 //! Clients: a terminal emulator at the far end of a pipe, under conditions that tests change.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -10,9 +9,9 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::emulator::{Emulator, Speaks};
 use crate::lock::locked;
+use crate::ops::metrics::Metrics;
 use crate::sessions::driver::{Simulated, Visiting};
-use crate::ssh::{Counters, Visitor};
-use crate::ssh::{FarEnd, Parts, pipe};
+use crate::ssh::{FarEnd, Parts, Visitor, pipe};
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::terminal::{Detected, WindowSize};
 
@@ -23,7 +22,7 @@ pub(crate) struct Client {
     terminal: Arc<Mutex<Terminal>>,
     conditions_changed: Arc<Notify>,
     sent: mpsc::UnboundedSender<(Instant, Vec<u8>)>,
-    counters: Arc<Counters>,
+    metrics: Arc<Metrics>,
 }
 
 /// How a client and its link behave.
@@ -71,8 +70,8 @@ impl Client {
         depth: ColorDepth,
     ) -> Self {
         let WindowSize { columns, rows, .. } = visitor.size;
-        let counters = Arc::<Counters>::default();
-        let (link, end, parts) = pipe(Arc::clone(&counters));
+        let metrics = Arc::<Metrics>::default();
+        let (link, end, parts) = pipe(Arc::clone(&metrics));
         let visiting = host.serve(visitor, link, |options| {
             options.color_depth = Detected::Certain(depth);
             options.is_ascii = depth == ColorDepth::Mono;
@@ -91,7 +90,7 @@ impl Client {
             sent.clone(),
         ));
         tokio::spawn(deliver(waiting, end.clone()));
-        Self { visiting, end, terminal, conditions_changed, sent, counters }
+        Self { visiting, end, terminal, conditions_changed, sent, metrics }
     }
 
     /// Sends bytes, which arrive after the latency, in a runtime.
@@ -129,12 +128,12 @@ impl Client {
 
     /// The number of bytes that were sent to it, taken or not.
     pub(crate) fn bytes(&self) -> u64 {
-        self.counters.frame_bytes.load(Ordering::Relaxed)
+        self.metrics.frame_bytes.get()
     }
 
     /// The number of frames that were sent to it, taken or not.
     pub(crate) fn frames(&self) -> u64 {
-        self.counters.frames.load(Ordering::Relaxed)
+        self.metrics.frames.get()
     }
 
     /// Whether it has taken all that was sent to it.

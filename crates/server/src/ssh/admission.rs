@@ -19,19 +19,13 @@
 //! well: the busiest /24 or /64 first, and wider networks where these are even. A flood from one /16 that has a /24
 //! for each connection would displace every household of two.
 
-mod limits;
-mod penalties;
-
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::net::IpAddr;
 use std::time::Duration;
 
-use crate::accounts::AddressPrefix;
-use crate::ssh::KeyData;
+use crate::accounts::{AccountKey, AddressPrefix};
 use cellcaster::rng::SplitMix64;
-pub use limits::Limits;
-use penalties::Penalties;
 
 /// The connections of a server, and what is known about where they come from.
 #[derive(Debug)]
@@ -45,8 +39,25 @@ pub struct Admission {
     per_network: BTreeMap<AddressPrefix, u32>,
     /// By [`counted_address`].
     per_address: BTreeMap<AddressPrefix, u32>,
-    per_key: BTreeMap<KeyData, u32>,
+    per_key: BTreeMap<AccountKey, u32>,
     penalties: Penalties,
+}
+
+/// Which connections are admitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The most visitors at a time who have logged in.
+    pub connections: u32,
+    /// The most connections of one address, or of one /64 of IPv6.
+    pub per_address: u32,
+    /// The most connections with one key.
+    pub per_key: u32,
+    /// The most connections at a time that are not authenticated, besides `connections`; 0 counts as 1.
+    pub startups: u32,
+    /// The failures of one network after which nearly all of its connections are refused.
+    pub failures: u32,
+    /// The time after which a failure is forgotten.
+    pub forget: Duration,
 }
 
 /// The networks of an address by which waiting connections are counted, the widest first.
@@ -179,7 +190,20 @@ impl Outcome {
 #[derive(Debug)]
 struct Visit {
     address: IpAddr,
-    key: Option<KeyData>,
+    key: Option<AccountKey>,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            connections: 1200,
+            per_address: 64,
+            per_key: 3,
+            startups: 200,
+            failures: 20,
+            forget: Duration::from_secs(10),
+        }
+    }
 }
 
 impl Admission {
@@ -281,7 +305,7 @@ impl Admission {
     pub fn log_in(
         &mut self,
         id: VisitId,
-        key: Option<KeyData>,
+        key: Option<AccountKey>,
         now: Duration,
     ) -> Result<(), Refusal> {
         let has_waited = self.stop_waiting(id);
@@ -297,7 +321,7 @@ impl Admission {
         if count(&self.per_key, &key) >= self.limits.per_key {
             return Err(Refusal::Key);
         }
-        add(&mut self.per_key, key.clone());
+        add(&mut self.per_key, key);
         visit.key = Some(key);
         Ok(())
     }
@@ -328,6 +352,96 @@ fn remove<K: Ord + Clone>(counts: &mut BTreeMap<K, u32>, key: &K) {
         if *count == 0 {
             counts.remove(key);
         }
+    }
+}
+
+/// The failures of networks that are not forgotten: of /24 of IPv4, of /64 of IPv6.
+#[derive(Debug)]
+struct Penalties {
+    networks: BTreeMap<AddressPrefix, Failures>,
+    /// The same networks in the order of their last failure or login.
+    order: BTreeSet<(Duration, AddressPrefix)>,
+    /// The size of a bucket.
+    most: f64,
+    forget: Duration,
+}
+
+/// The tokens that are missing in a bucket.
+#[derive(Clone, Copy, Debug)]
+struct Failures {
+    count: f64,
+    since: Duration,
+}
+
+/// The most networks that are remembered; that is about two megabytes.
+const MOST_NETWORKS: usize = 1 << 14;
+/// Failures up to this share of the bucket have no effect.
+const FREE_SHARE: f64 = 0.5;
+/// The share of connections that is refused of a network whose bucket is empty. A person who tries
+/// again a few times gets in.
+const REFUSED_SHARE: f64 = 0.9;
+
+impl Penalties {
+    fn new(failures: u32, forget: Duration) -> Self {
+        let (networks, order) = (BTreeMap::new(), BTreeSet::new());
+        Self { networks, order, most: f64::from(failures), forget }
+    }
+
+    fn set_limits(&mut self, failures: u32, forget: Duration) {
+        (self.most, self.forget) = (f64::from(failures), forget);
+    }
+
+    /// The share of a network's connections that is refused.
+    fn refused_share(&self, network: AddressPrefix, now: Duration) -> f64 {
+        let failures = self.networks.get(&network).map_or(0.0, |known| self.left(*known, now));
+        let free = self.most * FREE_SHARE;
+        ((failures - free) / (self.most - free)).clamp(0.0, 1.0) * REFUSED_SHARE
+    }
+
+    /// Counts a connection that has ended.
+    fn charge(&mut self, network: AddressPrefix, outcome: Outcome, now: Duration) {
+        let cost = match outcome {
+            Outcome::Served => return,
+            Outcome::LeftEarly | Outcome::Displaced => 1.0,
+            Outcome::TimedOut => 2.0,
+            Outcome::BrokeProtocol => 3.0,
+        };
+        self.change(network, cost, now);
+    }
+
+    /// Counts a successful login.
+    fn repay(&mut self, network: AddressPrefix, now: Duration) {
+        if self.networks.contains_key(&network) {
+            self.change(network, -1.0, now);
+        }
+    }
+
+    fn change(&mut self, network: AddressPrefix, cost: f64, now: Duration) {
+        let before = self.networks.get(&network).map_or(0.0, |known| self.left(*known, now));
+        let count = (before + cost).min(self.most);
+        self.remove(network);
+        if count <= 0.0 {
+            return;
+        }
+        if self.networks.len() >= MOST_NETWORKS
+            && let Some(&(_, oldest)) = self.order.first()
+        {
+            self.remove(oldest);
+        }
+        self.networks.insert(network, Failures { count, since: now });
+        self.order.insert((now, network));
+    }
+
+    fn remove(&mut self, network: AddressPrefix) {
+        if let Some(failures) = self.networks.remove(&network) {
+            self.order.remove(&(failures.since, network));
+        }
+    }
+
+    /// What is not forgotten of failures.
+    fn left(&self, failures: Failures, now: Duration) -> f64 {
+        let time = now.saturating_sub(failures.since).as_secs_f64();
+        (failures.count - time / self.forget.as_secs_f64()).max(0.0)
     }
 }
 

@@ -1,4 +1,4 @@
-//! A client on its way to a session.
+//! A client on its way to a session: the requests that it makes, and the answers.
 //!
 //! OpenSSH's client asks for the method `none` first, to learn which methods there are, and never
 //! again. Answered with success, it would never show its keys, and everybody would be a guest. So the
@@ -10,17 +10,22 @@ use std::mem;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use russh::server::{Handle, Session};
-use russh::{ChannelId, Error};
+use russh::keys::{Algorithm, Certificate, HashAlg};
+use russh::server::{
+    Auth, ChannelOpenHandle, Handle, Handler, Msg, PublicKeyOffer, Response, Session,
+    VerifiedPublicKey,
+};
+use russh::{Channel, ChannelId, ChannelOpenFailure, Error, Pty};
 use tokio::sync::oneshot;
 
-use super::connection::Shared;
+use super::admission::{Refusal, VisitId};
+use super::gate::Gate;
 use super::inbound::{Inlet, inbound};
-use super::visitor::{self, MOST_VARIABLES};
+use super::outbox::Outbox;
+use super::visitor::{self, Departure, Link, MOST_VARIABLES, Visitor};
 use super::wire::Line;
-use super::{Departure, KeyData, Link, Outbox, Visitor};
-use crate::ops::logging::{ConnectionEvent, events};
-use crate::ssh::admission::{Refusal, VisitId};
+use crate::accounts::AccountKey;
+use crate::ops::logging::events;
 use cellcaster::terminal::WindowSize;
 
 /// A session that begins.
@@ -34,7 +39,7 @@ pub(crate) struct Begun {
 
 /// A client, as far as it has come.
 pub(crate) struct Client {
-    shared: Arc<Shared>,
+    gate: Arc<Gate>,
     line: Arc<Line>,
     visit: VisitId,
     peer: SocketAddr,
@@ -43,7 +48,7 @@ pub(crate) struct Client {
     /// Whether it has asked for the method `none`.
     has_asked: bool,
     user: String,
-    key: Option<KeyData>,
+    key: Option<AccountKey>,
     has_rsa_key: bool,
     refusal: Option<Refusal>,
     channel: Option<ChannelId>,
@@ -61,14 +66,14 @@ const STANDARD_ERROR: u32 = 1;
 
 impl Client {
     pub(crate) fn new(
-        shared: Arc<Shared>,
+        gate: Arc<Gate>,
         line: Arc<Line>,
         visit: VisitId,
         peer: SocketAddr,
         begin: oneshot::Sender<Begun>,
     ) -> Self {
         Self {
-            shared,
+            gate,
             line,
             visit,
             peer,
@@ -85,78 +90,17 @@ impl Client {
         }
     }
 
-    /// Whether the method `none` succeeds.
-    pub(crate) fn is_guest(&mut self, user: &str) -> bool {
-        mem::replace(&mut self.has_asked, true) || user == GUEST
-    }
-
-    /// The client has an RSA key, which is no account.
-    pub(crate) fn offer_rsa(&mut self) {
-        self.has_rsa_key = true;
-    }
-
     /// The client has proved that it has `key`, or that it is a guest.
-    pub(crate) fn accept(&mut self, user: &str, key: Option<KeyData>) {
+    fn accept(&mut self, user: &str, key: Option<AccountKey>) -> Auth {
         self.user = visitor::word(user);
         self.key = key;
-    }
-
-    /// The client is authenticated.
-    pub(crate) fn log_in(&mut self) {
-        self.line.log_in();
-        let key = self.key.clone();
-        let logged_in =
-            self.shared.admission(|admission, now| admission.log_in(self.visit, key, now));
-        events::authenticated(self.peer.ip(), self.key.as_ref().map(KeyData::fingerprint));
-        if let Err(reason) = logged_in {
-            self.shared.counters.refuse(reason);
-            self.shared.log(ConnectionEvent::Refused(reason), self.peer.ip());
-            self.refusal = Some(reason);
-        }
-    }
-
-    /// Takes the first session channel.
-    pub(crate) fn takes(&mut self, channel: ChannelId) -> bool {
-        let is_first = self.channel.is_none();
-        self.channel.get_or_insert(channel);
-        is_first
-    }
-
-    /// Takes the first terminal.
-    pub(crate) fn attach(&mut self, term: &str, size: WindowSize) -> bool {
-        let is_first = self.terminal.is_none() && self.begin.is_some();
-        if is_first {
-            self.terminal = Some((visitor::word(term), size));
-        }
-        is_first
-    }
-
-    pub(crate) fn resize(&mut self, size: WindowSize) {
-        match (&self.inlet, &mut self.terminal) {
-            (Some(inlet), _) => inlet.resize(size),
-            (None, Some((_, first))) => *first = size,
-            (None, None) => {}
-        }
-    }
-
-    pub(crate) fn has_begun(&self) -> bool {
-        self.begin.is_none()
-    }
-
-    pub(crate) fn inlet(&self) -> Option<&Inlet> {
-        self.inlet.as_ref()
-    }
-
-    /// Nothing can be sent any more.
-    pub(crate) fn close(&self) {
-        self.line.passage.close();
+        Auth::Accept
     }
 
     /// Starts the session, or says why not.
-    pub(crate) fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
+    fn begin(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
         if let Some(reason) = self.refusal {
-            let sentence = reason.sentence(&self.shared.config.get().admission);
-            return refuse(channel, &sentence, session);
+            return refuse(channel, &self.gate.sentence(reason), session);
         }
         let Some((term, size)) = self.terminal.take() else {
             return refuse(channel, NO_TERMINAL, session);
@@ -176,7 +120,7 @@ impl Client {
         };
         let handle = session.handle();
         let outbox = Outbox::new(handle.clone(), channel, self.line.passage.clone());
-        let (inlet, inbound) = inbound(self.line.limits());
+        let (inlet, inbound) = inbound(self.line.limits);
         self.inlet = Some(inlet.clone());
         let link = Link { inbound, outbox };
         // The connection may be closing.
@@ -184,20 +128,193 @@ impl Client {
         Ok(())
     }
 
-    pub(crate) fn window(&self, cells: [u32; 2], pixels: [u32; 2]) -> WindowSize {
-        let config = self.shared.config.get();
+    fn window(&self, cells: [u32; 2], pixels: [u32; 2]) -> WindowSize {
+        let config = self.gate.config.get();
         visitor::window_size(cells, pixels, [config.columns, config.rows])
     }
+}
 
-    /// Keeps a variable if it is one that is kept, and returns whether it is.
-    pub(crate) fn keep(&mut self, name: &str, value: &str) -> bool {
-        let is_kept = visitor::is_kept(name)
-            && (self.environment.len() < MOST_VARIABLES || self.environment.contains_key(name));
+impl Handler for Client {
+    type Error = Error;
+
+    async fn auth_none(&mut self, user: &str) -> Result<Auth, Error> {
+        let is_guest = mem::replace(&mut self.has_asked, true) || user == GUEST;
+        Ok(if is_guest { self.accept(user, None) } else { Auth::reject() })
+    }
+
+    async fn auth_keyboard_interactive<'a>(
+        &'a mut self,
+        user: &str,
+        _: &str,
+        _: Option<Response<'a>>,
+    ) -> Result<Auth, Error> {
+        Ok(self.accept(user, None))
+    }
+
+    async fn auth_publickey_offered(
+        &mut self,
+        _: &str,
+        offer: PublicKeyOffer<'_>,
+    ) -> Result<Auth, Error> {
+        let is_rsa = matches!(offer.algorithm, Algorithm::Rsa { .. });
+        self.has_rsa_key |= is_rsa;
+        Ok(if is_rsa { Auth::reject() } else { Auth::Accept })
+    }
+
+    async fn auth_publickey(
+        &mut self,
+        user: &str,
+        key: VerifiedPublicKey<'_>,
+    ) -> Result<Auth, Error> {
+        let fingerprint = key.public_key.fingerprint(HashAlg::Sha256).sha256();
+        let key = fingerprint.map(AccountKey::new);
+        Ok(if key.is_some() { self.accept(user, key) } else { Auth::reject() })
+    }
+
+    async fn auth_openssh_certificate(&mut self, _: &str, _: &Certificate) -> Result<Auth, Error> {
+        Ok(Auth::reject())
+    }
+
+    async fn auth_succeeded(&mut self, _: &mut Session) -> Result<(), Error> {
+        self.line.log_in();
+        events::authenticated(self.peer.ip(), self.key);
+        self.refusal = self.gate.log_in(self.visit, self.key, self.peer.ip()).err();
+        Ok(())
+    }
+
+    async fn channel_open_session(
+        &mut self,
+        channel: Channel<Msg>,
+        reply: ChannelOpenHandle,
+        _: &mut Session,
+    ) -> Result<(), Error> {
+        if self.channel.is_none() {
+            self.channel = Some(channel.id());
+            reply.accept().await;
+        } else {
+            reply.reject(ChannelOpenFailure::ResourceShortage).await;
+        }
+        Ok(())
+    }
+
+    async fn pty_request(
+        &mut self,
+        channel: ChannelId,
+        term: &str,
+        columns: u32,
+        rows: u32,
+        width: u32,
+        height: u32,
+        _: &[(Pty, u32)],
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        let is_first = self.terminal.is_none() && self.begin.is_some();
+        if is_first {
+            let size = self.window([columns, rows], [width, height]);
+            self.terminal = Some((visitor::word(term), size));
+        }
+        answer(is_first, channel, session)
+    }
+
+    async fn env_request(
+        &mut self,
+        channel: ChannelId,
+        name: &str,
+        value: &str,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        let has_room =
+            self.environment.len() < MOST_VARIABLES || self.environment.contains_key(name);
+        let is_kept = visitor::is_kept(name) && has_room;
         if is_kept {
             self.environment.insert(name.to_owned(), visitor::word(value));
         }
-        is_kept
+        answer(is_kept, channel, session)
     }
+
+    async fn shell_request(
+        &mut self,
+        channel: ChannelId,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        let is_first = self.begin.is_some();
+        answer(is_first, channel, session)?;
+        if is_first { self.begin(channel, session) } else { Ok(()) }
+    }
+
+    async fn exec_request(
+        &mut self,
+        channel: ChannelId,
+        _: &[u8],
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        session.channel_failure(channel)
+    }
+
+    async fn subsystem_request(
+        &mut self,
+        channel: ChannelId,
+        _: &str,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        session.channel_failure(channel)
+    }
+
+    async fn x11_request(
+        &mut self,
+        channel: ChannelId,
+        _: bool,
+        _: &str,
+        _: &str,
+        _: u32,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        session.channel_failure(channel)
+    }
+
+    async fn window_change_request(
+        &mut self,
+        _: ChannelId,
+        columns: u32,
+        rows: u32,
+        width: u32,
+        height: u32,
+        _: &mut Session,
+    ) -> Result<(), Error> {
+        let size = self.window([columns, rows], [width, height]);
+        match (&self.inlet, &mut self.terminal) {
+            (Some(inlet), _) => inlet.resize(size),
+            (None, Some((_, first))) => *first = size,
+            (None, None) => {}
+        }
+        Ok(())
+    }
+
+    async fn data(&mut self, _: ChannelId, data: &[u8], _: &mut Session) -> Result<(), Error> {
+        if let Some(inlet) = &self.inlet {
+            inlet.bytes(data).await;
+        }
+        Ok(())
+    }
+
+    async fn channel_eof(&mut self, _: ChannelId, _: &mut Session) -> Result<(), Error> {
+        if let Some(inlet) = &self.inlet {
+            inlet.end();
+        }
+        Ok(())
+    }
+
+    async fn channel_close(&mut self, _: ChannelId, _: &mut Session) -> Result<(), Error> {
+        if let Some(inlet) = &self.inlet {
+            inlet.end();
+        }
+        self.line.passage.close();
+        Ok(())
+    }
+}
+
+fn answer(is_success: bool, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
+    if is_success { session.channel_success(channel) } else { session.channel_failure(channel) }
 }
 
 /// Ends the channel with a sentence.

@@ -2,47 +2,31 @@
 
 use std::borrow::Cow;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
 use std::pin::{Pin, pin};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
+use prometheus_client::metrics::gauge::Gauge;
 use russh::keys::{Algorithm, EcdsaCurve, HashAlg};
 use russh::server::{self, Handle};
 use russh::{
     Disconnect, Error, MethodKind, MethodSet, Preferred, SshId, cipher, compression, kex, mac,
 };
 use tokio::io::{AsyncRead, AsyncWrite};
-use tokio::sync::{oneshot, watch};
+use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
+use super::admission::Outcome;
 use super::client::{Begun, Client};
+use super::explanation;
+use super::gate::{Entry, Gate, Phase};
+use super::hello::Stage;
+use super::host_key::HostKey;
 use super::outbox::Passage;
+use super::visitor::Host;
 use super::wire::{ByteLimits, Line, Wire};
-use super::{Counters, Host, Phase, explanation, locked};
 use crate::ops::config::LiveConfig;
-use crate::ops::logging::{ConnectionEvent, Throttle, events};
-use crate::ssh::admission::{Admission, Outcome, VisitId};
-use crate::ssh::host_key::HostKey;
-
-/// What the connections of a server have in common.
-pub(crate) struct Shared {
-    pub(crate) config: LiveConfig,
-    pub(crate) counters: Arc<Counters>,
-    ssh: Arc<server::Config>,
-    admission: Mutex<Admission>,
-    logged: Mutex<Throttle>,
-    begun: Instant,
-    phases: watch::Receiver<Phase>,
-}
-
-/// A connection that was admitted.
-pub(crate) struct Entry {
-    pub(crate) visit: VisitId,
-    /// That it is displaced, and what its client is told, if anything.
-    pub(crate) displaced: oneshot::Receiver<Option<String>>,
-}
+use crate::ops::logging::{ConnectionEvent, events};
 
 /// The time for the first line of a client, its version, which no client has to think about.
 const VERSION_TIME: Duration = Duration::from_secs(3);
@@ -58,53 +42,23 @@ const MOST_MESSAGES: usize = 32;
 /// In bytes: of what a client sends before russh tells it to go on.
 const WINDOW: u32 = 32 << 10;
 
-impl Shared {
-    pub(crate) fn new(
-        config: LiveConfig,
-        key: &HostKey,
-        counters: Arc<Counters>,
-        phases: watch::Receiver<Phase>,
-    ) -> Self {
-        let ssh = Arc::new(ssh_config(key));
-        let admission = Mutex::new(Admission::new(config.get().admission));
-        let logged = Mutex::default();
-        Self { config, counters, ssh, admission, logged, begun: Instant::now(), phases }
-    }
-
-    /// Logs an event of a client, at once or with the second.
-    pub(crate) fn log(&self, event: ConnectionEvent, address: IpAddr) {
-        locked(&self.logged, |logged| logged.log(event, address));
-    }
-
-    /// Logs the sums of the second that is over.
-    pub(crate) fn end_second(&self) {
-        locked(&self.logged, Throttle::end_second);
-    }
-
-    /// Acts on the admission, with the time since the server began.
-    pub(crate) fn admission<T>(&self, act: impl FnOnce(&mut Admission, Duration) -> T) -> T {
-        locked(&self.admission, |admission| act(admission, self.begun.elapsed()))
-    }
-}
-
 /// Serves a connection until it has ended.
 pub(crate) async fn serve<H: Host>(
-    shared: Arc<Shared>,
+    gate: Arc<Gate>,
+    ssh: Arc<server::Config>,
     host: Arc<H>,
     socket: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    peer: SocketAddr,
-    Entry { visit, displaced }: Entry,
+    Entry { visit, peer, displaced }: Entry,
 ) {
-    let _open = Counted::new(&shared.counters.connections);
-    let config = shared.config.get();
+    let _open = Counted::new(&gate.metrics.connections);
+    let config = gate.config.get();
     let limits =
-        ByteLimits { before_login: config.login_bytes, per_second: config.bytes_per_second };
-    let passage = Arc::new(Passage::new(shared.counters.clone()));
+        ByteLimits { before_login: config.login_bytes.into(), per_second: config.bytes_per_second };
+    let passage = Arc::new(Passage::new(gate.metrics.clone()));
     let line = Arc::new(Line::new(limits, passage));
     let (begin, begun) = oneshot::channel();
-    let client = Client::new(shared.clone(), line.clone(), visit, peer, begin);
+    let client = Client::new(gate.clone(), line.clone(), visit, peer, begin);
     let wire = Wire::new(socket, line.clone());
-    let ssh = shared.ssh.clone();
     let (ready, mut handle) = oneshot::channel();
     let mut transport = pin!(async {
         // Unboxed, the handshake would keep its memory in this task as long as the connection lasts.
@@ -119,22 +73,22 @@ pub(crate) async fn serve<H: Host>(
             }
             Err(Outcome::Displaced)
         }
-        logged_in = log_in(&shared, &line, transport.as_mut(), begun) => logged_in,
+        logged_in = log_in(&gate, &line, transport.as_mut(), begun) => logged_in,
     };
     let outcome = match logged_in {
         Ok(begun) => {
-            converse(&shared, &*host, &line, transport, begun).await;
-            events::disconnected(peer.ip(), line.begun().elapsed().as_secs());
+            converse(&gate, &*host, &line, transport, begun).await;
+            events::disconnected(peer.ip(), line.begun.elapsed().as_secs());
             Outcome::Served
         }
         Err(outcome) => {
             // Its task ends at once, and the stream with it.
             line.cut();
-            shared.log(ConnectionEvent::Ended(outcome), peer.ip());
+            gate.log(ConnectionEvent::Ended(outcome), peer.ip());
             outcome
         }
     };
-    shared.admission(|admission, now| admission.leave(visit, outcome, now));
+    gate.leave(visit, outcome);
 }
 
 /// Tells the client why it has to go, if its key exchange is over, and waits until it has gone.
@@ -149,20 +103,19 @@ async fn disconnect(
 
 /// Waits until the session begins.
 async fn log_in(
-    shared: &Shared,
+    gate: &Gate,
     line: &Line,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
     mut begun: oneshot::Receiver<Begun>,
 ) -> Result<Begun, Outcome> {
-    let mut phases = shared.phases.clone();
     loop {
-        let config = shared.config.get();
-        let time = match () {
-            () if line.has_exchanged() => config.login,
-            () if line.has_version() => config.handshake,
-            () => config.handshake.min(VERSION_TIME),
+        let config = gate.config.get();
+        let time = match line.stage() {
+            Stage::Version => config.handshake.min(VERSION_TIME),
+            Stage::Offer | Stage::Exchange => config.handshake,
+            Stage::Done => config.login,
         };
-        let deadline = line.begun() + time;
+        let deadline = line.begun + time;
         if Instant::now() >= deadline {
             let is_guilty = !line.is_logged_in();
             return Err(if is_guilty { Outcome::TimedOut } else { Outcome::Served });
@@ -176,26 +129,26 @@ async fn log_in(
                 };
             }
             () = sleep_until(deadline) => {}
-            _ = phases.changed() => return Err(Outcome::Served),
+            () = gate.stopped() => return Err(Outcome::Served),
         }
     }
 }
 
 /// Lets the host serve the visitor, until either is done.
 async fn converse<H: Host>(
-    shared: &Shared,
+    gate: &Gate,
     host: &H,
     line: &Line,
     mut transport: Pin<&mut impl Future<Output = Result<(), Error>>>,
     begun: Begun,
 ) {
     let Begun { visitor, link, inlet, handle, channel } = begun;
-    let _session = Counted::new(&shared.counters.sessions);
+    let _session = Counted::new(&gate.metrics.sessions);
     let peer = visitor.peer.ip();
     let mut session = pin!(host.serve(visitor, link));
-    let mut lost = pin!(lost(&shared.config, line, &handle));
+    let mut lost = pin!(lost(&gate.config, line, &handle));
     let mut is_lost = false;
-    let mut phases = shared.phases.clone();
+    let mut phases = gate.phases();
     let departure = loop {
         tokio::select! {
             departure = &mut session => break departure,
@@ -216,8 +169,7 @@ async fn converse<H: Host>(
         }
     };
     if let Some(reason) = departure.refusal {
-        shared.counters.refuse(reason);
-        shared.log(ConnectionEvent::Refused(reason), peer);
+        gate.refuse(reason, peer);
     }
     let farewell = async {
         _ = handle.exit_status_request(channel, u32::from(departure.status)).await;
@@ -283,7 +235,7 @@ fn outcome(ended: &Result<(), Error>, is_logged_in: bool) -> Outcome {
 /// authentication; `none` comes first in no client that is asked to compress. RSA keys are named so
 /// that clients offer them, and their users can be told why they are guests. A fuzz target cannot encrypt, so
 /// there the client may choose the null transport.
-fn ssh_config(key: &HostKey) -> server::Config {
+pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     const KEX: &[kex::Name] = &[
         kex::MLKEM768X25519_SHA256,
         kex::CURVE25519,
@@ -347,17 +299,17 @@ fn ssh_config(key: &HostKey) -> server::Config {
 }
 
 /// Counts one more as long as it lives.
-struct Counted<'a>(&'a AtomicUsize);
+struct Counted<'a>(&'a Gauge);
 
 impl<'a> Counted<'a> {
-    fn new(count: &'a AtomicUsize) -> Self {
-        count.fetch_add(1, Ordering::Relaxed);
+    fn new(count: &'a Gauge) -> Self {
+        count.inc();
         Self(count)
     }
 }
 
 impl Drop for Counted<'_> {
     fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
+        self.0.dec();
     }
 }

@@ -5,6 +5,8 @@
 //! compressed. After the key exchange, a client may wait for its user, who looks at the host key for
 //! the first time or types a passphrase; before it, a client has nothing to wait for.
 
+use russh::keys::ssh_encoding::Decode;
+
 /// Parses the first bytes of a client as they arrive.
 #[derive(Debug, Default)]
 pub(crate) struct Hello {
@@ -15,11 +17,15 @@ pub(crate) struct Hello {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Stage {
+pub(crate) enum Stage {
+    /// Its version is missing.
     #[default]
     Version,
+    /// Its offer of algorithms is missing.
     Offer,
+    /// Its half of the key exchange is missing.
     Exchange,
+    /// It has sent all of these, and may wait for its user now.
     Done,
 }
 
@@ -32,23 +38,21 @@ const OFFER_START: usize = 4 + 1 + 1 + 16;
 const COMPRESSION: usize = 7;
 
 impl Hello {
-    /// Adds bytes that have arrived, and returns whether the client has sent its half of the key
-    /// exchange.
-    pub(crate) fn receive(&mut self, bytes: &[u8]) -> bool {
+    /// Adds bytes that have arrived.
+    pub(crate) fn receive(&mut self, bytes: &[u8]) {
         if self.stage == Stage::Done {
-            return true;
+            return;
         }
         self.bytes.extend_from_slice(bytes);
         while self.step().is_some() {}
         if self.stage == Stage::Done || self.bytes.len() > LONGEST {
             self.bytes = Vec::new();
         }
-        self.stage == Stage::Done
     }
 
-    /// Whether the line of the client's version has arrived.
-    pub(crate) fn has_version(&self) -> bool {
-        self.stage != Stage::Version
+    /// What the client has sent.
+    pub(crate) fn stage(&self) -> Stage {
+        self.stage
     }
 
     /// Whether what the server sends will be compressed: whether the first method in the client's
@@ -84,13 +88,8 @@ fn packet_length(bytes: &[u8]) -> Option<usize> {
 }
 
 fn compresses(mut lists: &[u8]) -> bool {
-    let mut list = || {
-        let length = u32::from_be_bytes(*lists.first_chunk()?) as usize;
-        let list = lists.get(4..4 + length)?;
-        lists = &lists[4 + length..];
-        str::from_utf8(list).ok()
-    };
-    let methods = (0..=COMPRESSION).map_while(|_| list()).nth(COMPRESSION).unwrap_or_default();
+    let mut lists = (0..=COMPRESSION).map_while(|_| String::decode(&mut lists).ok());
+    let methods = lists.nth(COMPRESSION).unwrap_or_default();
     let known = methods.split(',').find(|method| ["none", "zlib@openssh.com"].contains(method));
     known == Some("zlib@openssh.com")
 }
@@ -132,7 +131,8 @@ mod tests {
             ("", false),
         ] {
             let mut hello_of = Hello::default();
-            assert!(hello_of.receive(&hello(methods)), "{methods}");
+            hello_of.receive(&hello(methods));
+            assert_eq!(hello_of.stage(), Stage::Done, "{methods}");
             assert_eq!(hello_of.compresses(), compresses, "{methods}");
         }
     }
@@ -145,7 +145,8 @@ mod tests {
             let (mut rest, mut cuts) = (bytes.as_slice(), cuts.iter().cycle());
             while !rest.is_empty() {
                 let (piece, after) = rest.split_at(rest.len().min(*cuts.next().unwrap()));
-                prop_assert_eq!(parser.receive(piece), after.is_empty());
+                parser.receive(piece);
+                prop_assert_eq!(parser.stage() == Stage::Done, after.is_empty());
                 rest = after;
             }
             prop_assert!(parser.compresses());

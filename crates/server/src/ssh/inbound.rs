@@ -18,9 +18,9 @@ use tokio::sync::Notify;
 use tokio::task::yield_now;
 use tokio::time::{Instant, timeout};
 
-use super::locked;
 use super::wire::{ByteLimits, FEWEST};
 use crate::bucket::Bucket;
+use crate::lock::locked;
 use cellcaster::terminal::WindowSize;
 
 /// What has arrived from a visitor.

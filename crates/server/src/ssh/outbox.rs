@@ -22,7 +22,8 @@ use tokio::sync::Notify;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::task::{unconstrained, yield_now};
 
-use super::{Counters, locked};
+use crate::lock::locked;
+use crate::ops::metrics::Metrics;
 
 /// The place for one frame. The next one has room when the last has drained.
 #[derive(Debug)]
@@ -31,7 +32,7 @@ pub struct Outbox {
 }
 
 /// The state of the frame, which the outbox, the frame and the stream share.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Passage {
     state: AtomicU8,
     /// Nothing can be sent any more.
@@ -41,7 +42,7 @@ pub(crate) struct Passage {
     /// What russh was not given yet.
     rest: Mutex<Option<Frame>>,
     changed: Notify,
-    counters: OnceLock<Arc<Counters>>,
+    metrics: Arc<Metrics>,
     way: OnceLock<Way>,
 }
 
@@ -96,12 +97,10 @@ impl Outbox {
         if frame.is_empty() || self.passage.is_closed.load(Ordering::Acquire) {
             return Ok(());
         }
-        let counters = self.passage.counters.get().cloned();
-        if let Some(counters) = &counters {
-            counters.frames.fetch_add(1, Ordering::Relaxed);
-            counters.frame_bytes.fetch_add(frame.len() as u64, Ordering::Relaxed);
-        }
-        self.passage.send_part(Frame::new(frame, counters));
+        let metrics = self.passage.metrics.clone();
+        metrics.frames.inc();
+        metrics.frame_bytes.inc_by(frame.len() as u64);
+        self.passage.send_part(Frame::new(frame, metrics));
         Ok(())
     }
 
@@ -122,8 +121,16 @@ impl Outbox {
 }
 
 impl Passage {
-    pub(crate) fn new(counters: Arc<Counters>) -> Self {
-        Self { counters: OnceLock::from(counters), ..Self::default() }
+    pub(crate) fn new(metrics: Arc<Metrics>) -> Self {
+        Self {
+            state: AtomicU8::new(EMPTY),
+            is_closed: AtomicBool::new(false),
+            parts: AtomicU64::new(0),
+            rest: Mutex::default(),
+            changed: Notify::new(),
+            metrics,
+            way: OnceLock::new(),
+        }
     }
 
     /// The stream has written all bytes that it was given.
@@ -181,15 +188,13 @@ impl Passage {
 #[derive(Debug)]
 struct Frame {
     bytes: Vec<u8>,
-    counters: Option<Arc<Counters>>,
+    metrics: Arc<Metrics>,
 }
 
 impl Frame {
-    fn new(bytes: Vec<u8>, counters: Option<Arc<Counters>>) -> Self {
-        if let Some(counters) = &counters {
-            counters.held.fetch_add(bytes.capacity(), Ordering::Relaxed);
-        }
-        Self { bytes, counters }
+    fn new(bytes: Vec<u8>, metrics: Arc<Metrics>) -> Self {
+        metrics.held.inc_by(bytes.capacity() as i64);
+        Self { bytes, metrics }
     }
 
     /// Splits off what is behind the first `count` bytes, if anything is. Both have memory of their
@@ -198,21 +203,17 @@ impl Frame {
         if self.bytes.len() <= count {
             return None;
         }
-        let rest = Self::new(self.bytes.split_off(count), self.counters.clone());
+        let rest = Self::new(self.bytes.split_off(count), self.metrics.clone());
         let capacity = self.bytes.capacity();
         self.bytes.shrink_to_fit();
-        if let Some(counters) = &self.counters {
-            counters.held.fetch_sub(capacity - self.bytes.capacity(), Ordering::Relaxed);
-        }
+        self.metrics.held.dec_by((capacity - self.bytes.capacity()) as i64);
         Some(rest)
     }
 }
 
 impl Drop for Frame {
     fn drop(&mut self) {
-        if let Some(counters) = &self.counters {
-            counters.held.fetch_sub(self.bytes.capacity(), Ordering::Relaxed);
-        }
+        self.metrics.held.dec_by(self.bytes.capacity() as i64);
     }
 }
 

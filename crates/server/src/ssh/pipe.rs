@@ -8,10 +8,12 @@ use std::sync::{Arc, Weak};
 use bytes::Bytes;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
+use super::Link;
 use super::inbound::{Inlet, inbound};
 use super::outbox::{Outbox, Passage};
 use super::wire::ByteLimits;
-use super::{Config, Counters, Link};
+use crate::ops::config::Config;
+use crate::ops::metrics::Metrics;
 use cellcaster::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones are the same end.
@@ -28,9 +30,9 @@ pub(crate) struct Parts {
     passage: Weak<Passage>,
 }
 
-/// A link of which `counters` count the frames, and its other end.
-pub(crate) fn pipe(counters: Arc<Counters>) -> (Link, FarEnd, Parts) {
-    let passage = Arc::new(Passage::new(counters));
+/// A link whose frames `metrics` count, and its other end.
+pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
+    let passage = Arc::new(Passage::new(metrics));
     let (sender, parts) = unbounded_channel();
     let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
     let (inlet, inbound) = inbound(limits);

@@ -1,9 +1,13 @@
-//! Visitors, and the bounds of what they say about themselves.
+//! Visitors, the bounds of what they say about themselves, and the host that serves them.
 
 use std::collections::BTreeMap;
+use std::future::Future;
 use std::net::SocketAddr;
 
-use super::KeyData;
+use super::admission::Refusal;
+use super::inbound::Inbound;
+use super::outbox::Outbox;
+use crate::accounts::AccountKey;
 use cellcaster::terminal::WindowSize;
 
 /// A connected client with a terminal.
@@ -12,7 +16,7 @@ pub struct Visitor {
     /// The address that they connect from.
     pub peer: SocketAddr,
     /// The key that they have proved to own; `None` for a guest.
-    pub key: Option<KeyData>,
+    pub key: Option<AccountKey>,
     /// What a guest is to read about their key.
     pub notice: Option<&'static str>,
     /// The user name that their client sent: printable, at most 64 characters. It proves nothing.
@@ -27,10 +31,43 @@ pub struct Visitor {
     pub compresses: bool,
 }
 
+/// What serves visitors: the sessions above the transport.
+pub trait Host: Send + Sync + 'static {
+    /// Serves `visitor` until they leave, or until `link` has ended.
+    ///
+    /// The future is dropped five seconds after the link has ended.
+    fn serve(&self, visitor: Visitor, link: Link) -> impl Future<Output = Departure> + Send;
+}
+
+/// Both directions of a visitor's channel.
+#[derive(Debug)]
+pub struct Link {
+    /// What the visitor sends.
+    pub inbound: Inbound,
+    /// The frame on its way to the visitor.
+    pub outbox: Outbox,
+}
+
+/// The end of a session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Departure {
+    /// The exit status that the visitor's `ssh` ends with.
+    pub status: u8,
+    /// The limit by which the visitor was refused, if they were.
+    pub refusal: Option<Refusal>,
+}
+
 /// In characters: of a user name, of `TERM`, and of the value of a variable.
 pub(crate) const LONGEST_WORD: usize = 64;
 /// The most variables that are kept.
 pub(crate) const MOST_VARIABLES: usize = 16;
+
+impl Departure {
+    /// That of a visitor who is refused: they have to change something, or to come later.
+    pub(crate) const REFUSED: Self = Self { status: 2, refusal: None };
+    /// That of a visitor whom the host cannot serve.
+    pub(crate) const FAILED: Self = Self { status: 1, refusal: None };
+}
 
 /// The printable characters of `text`, at most [`LONGEST_WORD`] of them.
 pub(crate) fn word(text: &str) -> String {

@@ -11,17 +11,18 @@
 use std::pin::Pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
-use std::task::{Context, Poll, Waker, ready};
+use std::task::{Context, Poll, ready};
 use std::time::Duration;
 use std::{io, mem};
 
+use futures_util::task::AtomicWaker;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use super::hello::Hello;
-use super::locked;
+use super::hello::{Hello, Stage};
 use super::outbox::Passage;
 use crate::bucket::Bucket;
+use crate::lock::locked;
 
 /// The limits of a client's bytes.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +45,6 @@ impl ByteLimits {
 pub(crate) struct Wire<S> {
     socket: S,
     line: Arc<Line>,
-    hello: Hello,
     bucket: Bucket,
     pause: Pin<Box<Sleep>>,
     /// Whether the last write has found no room.
@@ -55,18 +55,16 @@ pub(crate) struct Wire<S> {
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) passage: Arc<Passage>,
-    limits: ByteLimits,
-    begun: Instant,
-    has_version: AtomicBool,
-    has_exchanged: AtomicBool,
+    pub(crate) limits: ByteLimits,
+    pub(crate) begun: Instant,
+    hello: Mutex<Hello>,
     is_logged_in: AtomicBool,
-    compresses: AtomicBool,
     read: AtomicU64,
     /// In milliseconds since the begin.
     last_sign: AtomicU64,
     is_cut: AtomicBool,
     /// Of the reader and the writer.
-    wakers: Mutex<[Option<Waker>; 2]>,
+    wakers: [AtomicWaker; 2],
 }
 
 /// The time whose bytes may come at once.
@@ -82,7 +80,7 @@ impl<S> Wire<S> {
     pub(crate) fn new(socket: S, line: Arc<Line>) -> Self {
         let bucket = line.limits.bucket(line.begun.elapsed());
         let pause = Box::pin(sleep_until(Instant::now()));
-        Self { socket, line, hello: Hello::default(), bucket, pause, is_full: false }
+        Self { socket, line, bucket, pause, is_full: false }
     }
 }
 
@@ -92,31 +90,23 @@ impl Line {
             passage,
             limits,
             begun: Instant::now(),
-            has_version: AtomicBool::new(false),
-            has_exchanged: AtomicBool::new(false),
+            hello: Mutex::default(),
             is_logged_in: AtomicBool::new(false),
-            compresses: AtomicBool::new(false),
             read: AtomicU64::new(0),
             last_sign: AtomicU64::new(0),
             is_cut: AtomicBool::new(false),
-            wakers: Mutex::default(),
+            wakers: Default::default(),
         }
     }
 
-    /// Whether the client has sent the line of its version.
-    pub(crate) fn has_version(&self) -> bool {
-        self.has_version.load(Ordering::Acquire)
-    }
-
-    /// Whether the client has sent its half of the key exchange, after which it may wait for its
-    /// user.
-    pub(crate) fn has_exchanged(&self) -> bool {
-        self.has_exchanged.load(Ordering::Acquire)
+    /// What the client has sent of its first packets.
+    pub(crate) fn stage(&self) -> Stage {
+        locked(&self.hello, |hello| hello.stage())
     }
 
     /// Whether what is sent is compressed after authentication.
     pub(crate) fn compresses(&self) -> bool {
-        self.compresses.load(Ordering::Acquire)
+        locked(&self.hello, |hello| hello.compresses())
     }
 
     pub(crate) fn is_logged_in(&self) -> bool {
@@ -128,14 +118,6 @@ impl Line {
         self.is_logged_in.store(true, Ordering::Release);
     }
 
-    pub(crate) fn limits(&self) -> ByteLimits {
-        self.limits
-    }
-
-    pub(crate) fn begun(&self) -> Instant {
-        self.begun
-    }
-
     /// When the client has last sent anything, or made room in a full socket. While a frame does not
     /// fit in the socket, russh reads nothing, and on a slow link that lasts.
     pub(crate) fn last_sign(&self) -> Instant {
@@ -145,23 +127,13 @@ impl Line {
     /// Fails all reading and writing from now on.
     pub(crate) fn cut(&self) {
         self.is_cut.store(true, Ordering::Release);
-        for waker in locked(&self.wakers, mem::take).into_iter().flatten() {
-            waker.wake();
-        }
+        self.wakers.iter().for_each(AtomicWaker::wake);
     }
 
     fn check(&self, side: usize, cx: &Context<'_>) -> io::Result<()> {
-        locked(&self.wakers, |wakers| match &mut wakers[side] {
-            Some(waker) => waker.clone_from(cx.waker()),
-            none => *none = Some(cx.waker().clone()),
-        });
+        self.wakers[side].register(cx.waker());
         let is_cut = self.is_cut.load(Ordering::Acquire);
         if is_cut { Err(io::ErrorKind::ConnectionAborted.into()) } else { Ok(()) }
-    }
-
-    fn count(&self, bytes: usize) {
-        self.read.fetch_add(bytes as u64, Ordering::Relaxed);
-        self.note_sign();
     }
 
     fn note_sign(&self) {
@@ -193,15 +165,10 @@ impl<S> Wire<S> {
     }
 
     fn received(&mut self, bytes: &[u8]) {
-        self.line.count(bytes.len());
+        self.line.read.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        self.line.note_sign();
         self.bucket.take(bytes.len() as f64);
-        if self.line.has_exchanged() {
-            return;
-        }
-        let has_exchanged = self.hello.receive(bytes);
-        self.line.has_version.store(self.hello.has_version(), Ordering::Release);
-        self.line.compresses.store(self.hello.compresses(), Ordering::Release);
-        self.line.has_exchanged.store(has_exchanged, Ordering::Release);
+        locked(&self.line.hello, |hello| hello.receive(bytes));
     }
 }
 

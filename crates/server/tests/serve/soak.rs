@@ -7,18 +7,17 @@ use std::fs;
 use std::future;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::accounts::HostStore;
 use cellcaster_server::ops::admin::RoomRow;
 use cellcaster_server::ops::config::Config;
 use cellcaster_server::ops::metrics::Metrics;
 use cellcaster_server::sessions::driver::{GameHost, HostParts};
 use cellcaster_server::sessions::visitors::Visitors;
+use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
-use cellcaster_server::ssh::{Counters, Server};
 use russh::Error;
 use russh::client::{self, Handler};
 use russh::keys::PublicKeyOrCertificate;
@@ -37,7 +36,6 @@ mod wanderer;
 struct Counted {
     runtime: Runtime,
     address: SocketAddr,
-    counters: Arc<Counters>,
     metrics: Arc<Metrics>,
     visitors: Visitors,
     rooms: Box<dyn Fn() -> Vec<RoomRow>>,
@@ -50,9 +48,9 @@ struct Anyone;
 #[derive(Debug, PartialEq, Eq)]
 struct Held {
     tasks: usize,
-    connections: usize,
-    sessions: usize,
-    frame_bytes: usize,
+    connections: i64,
+    sessions: i64,
+    frame_bytes: i64,
     visitors: usize,
     rooms: usize,
     members: i64,
@@ -75,28 +73,28 @@ impl Counted {
         config.stall = 2 * PATIENCE;
         config.empty_room = Duration::from_secs(1);
         let key = HostKey::open(&folder).unwrap();
-        let store = SqliteStore::open(&folder).unwrap();
+        let store = HostStore::open(&folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
-        let (address, counters) = (server.address().unwrap(), server.counters());
-        let (metrics, visitors) = (Arc::<Metrics>::default(), Visitors::default());
+        let (address, metrics) = (server.address().unwrap(), server.metrics());
+        let visitors = Visitors::default();
         let guard = runtime.enter();
         let (counts, seen) = (Arc::clone(&metrics), visitors.clone());
-        let host = HostParts::new(server.config(), counts, seen, Box::new(store));
+        let host = HostParts::new(server.config(), counts, seen, store);
         let host = GameHost::start(host.unwrap());
         drop(guard);
         let rooms = Box::new(host.room_rows());
         runtime.spawn(server.run(host, future::pending()));
         fs::remove_dir_all(&folder).unwrap();
-        Self { runtime, address, counters, metrics, visitors, rooms }
+        Self { runtime, address, metrics, visitors, rooms }
     }
 
     fn held(&self) -> Held {
         Held {
             tasks: self.runtime.metrics().num_alive_tasks(),
-            connections: self.counters.connections.load(Ordering::Relaxed),
-            sessions: self.counters.sessions.load(Ordering::Relaxed),
-            frame_bytes: self.counters.held.load(Ordering::Relaxed),
+            connections: self.metrics.connections.get(),
+            sessions: self.metrics.sessions.get(),
+            frame_bytes: self.metrics.held.get(),
             visitors: self.visitors.list().len(),
             rooms: (self.rooms)().len(),
             members: self.metrics.members.get(),

@@ -2,13 +2,14 @@
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use tokio::sync::Notify;
+use tokio::sync::{Notify, watch};
 
 /// The signals of this process, caught.
+#[derive(Default)]
 pub(crate) struct Signals {
-    ends: Arc<Ends>,
+    /// How often the server was asked to end.
+    count: watch::Sender<u32>,
     drain: Arc<Notify>,
 }
 
@@ -18,27 +19,12 @@ pub(crate) struct Hangups {
     signal: tokio::signal::unix::Signal,
 }
 
-/// How often the server was asked to end.
-#[derive(Default)]
-struct Ends {
-    is_draining: AtomicBool,
-    first: Notify,
-    second: Notify,
-}
-
-impl Ends {
-    fn ask(&self) {
-        let is_second = self.is_draining.swap(true, Ordering::AcqRel);
-        if is_second { self.second.notify_one() } else { self.first.notify_one() }
-    }
-}
-
 impl Signals {
     /// Catches signals from now on. Call it within a runtime.
     pub(crate) fn catch() -> io::Result<Self> {
-        let ends = Arc::<Ends>::default();
-        listen(&ends)?;
-        Ok(Self { ends, drain: Arc::default() })
+        let signals = Self::default();
+        listen(&signals.count)?;
+        Ok(signals)
     }
 
     /// What an operator notifies to end the server as a signal does.
@@ -48,30 +34,34 @@ impl Signals {
 
     /// Ready when a signal or an operator asks the server to end.
     pub(crate) fn first(&self) -> impl Future<Output = ()> + Send + use<> {
-        let (ends, drain) = (self.ends.clone(), self.drain.clone());
+        let (count, drain, asked) = (self.count.clone(), self.drain.clone(), self.asked(1));
         async move {
             tokio::select! {
-                () = ends.first.notified() => {}
-                () = drain.notified() => ends.is_draining.store(true, Ordering::Release),
+                () = asked => {}
+                () = drain.notified() => count.send_modify(|count| *count = 1.max(*count)),
             }
         }
     }
 
     /// Ready when a signal asks once more.
     pub(crate) fn second(&self) -> impl Future<Output = ()> + Send + use<> {
-        let ends = self.ends.clone();
-        async move { ends.second.notified().await }
+        self.asked(2)
+    }
+
+    fn asked(&self, times: u32) -> impl Future<Output = ()> + Send + use<> {
+        let mut count = self.count.subscribe();
+        async move { _ = count.wait_for(|count| *count >= times).await }
     }
 }
 
 #[cfg(unix)]
-fn listen(ends: &Arc<Ends>) -> io::Result<()> {
+fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     for kind in [SignalKind::terminate(), SignalKind::interrupt()] {
-        let (mut signal, ends) = (signal(kind)?, ends.clone());
+        let (mut signal, count) = (signal(kind)?, count.clone());
         tokio::spawn(async move {
             while signal.recv().await.is_some() {
-                ends.ask();
+                count.send_modify(|count| *count += 1);
             }
         });
     }
@@ -80,11 +70,11 @@ fn listen(ends: &Arc<Ends>) -> io::Result<()> {
 
 /// Ctrl-C alone.
 #[cfg(not(unix))]
-fn listen(ends: &Arc<Ends>) -> io::Result<()> {
-    let ends = ends.clone();
+fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
+    let count = count.clone();
     tokio::spawn(async move {
         while tokio::signal::ctrl_c().await.is_ok() {
-            ends.ask();
+            count.send_modify(|count| *count += 1);
         }
     });
     Ok(())
@@ -122,23 +112,27 @@ mod tests {
         pin!(future).poll(&mut Context::from_waker(Waker::noop())).is_ready()
     }
 
+    fn signal(signals: &Signals) {
+        signals.count.send_modify(|count| *count += 1);
+    }
+
     #[test]
     fn the_second_signal_is_told_from_the_first() {
-        let signals = Signals { ends: Arc::default(), drain: Arc::default() };
+        let signals = Signals::default();
         assert!(!is_ready(signals.first()));
-        signals.ends.ask();
+        signal(&signals);
         assert!(is_ready(signals.first()));
         assert!(!is_ready(signals.second()));
-        signals.ends.ask();
+        signal(&signals);
         assert!(is_ready(signals.second()));
     }
 
     #[test]
     fn a_signal_after_an_operator_is_the_second_one() {
-        let signals = Signals { ends: Arc::default(), drain: Arc::default() };
+        let signals = Signals::default();
         signals.drain().notify_one();
         assert!(is_ready(signals.first()));
-        signals.ends.ask();
+        signal(&signals);
         assert!(is_ready(signals.second()));
     }
 }

@@ -78,7 +78,7 @@ impl Replica {
         let steps = steps_due(&mut self.times.stepped, now);
         if steps > 0 {
             let message = sequencer.message(&self.state, steps);
-            self.context.load.metrics().steps_alone.add(steps);
+            self.context.load.metrics().steps_alone.inc_by(steps);
             self.advance_alone(message);
         }
     }

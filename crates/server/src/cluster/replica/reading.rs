@@ -28,15 +28,15 @@ impl Replica {
             Position::Later => return false,
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
-                    self.context.load.metrics().checks_equal.count();
-                    self.figures.checks_equal.count();
+                    self.context.load.metrics().checks(true).inc();
+                    self.figures.checks(true).inc();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
-                self.context.load.metrics().checks_different.count();
-                self.figures.checks_different.count();
+                self.context.load.metrics().checks(false).inc();
+                self.figures.checks(false).inc();
                 _ = self.restore().await;
                 return false;
             }
@@ -71,9 +71,9 @@ impl Replica {
                 return self.interface.close(FAULT);
             }
         };
-        self.context.load.metrics().entries.add(changes.entries);
-        self.figures.entries.add(changes.entries);
-        self.figures.steps.add(message.steps);
+        self.context.load.metrics().entries.inc_by(changes.entries);
+        self.figures.entries.inc_by(changes.entries);
+        self.figures.steps.inc_by(message.steps);
         if let Some(run) = changes.finished {
             self.interface.inbox.finish(run);
         }

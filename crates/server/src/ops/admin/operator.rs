@@ -1,13 +1,12 @@
-//! What a request does.
+//! What a request does: on this host, and on all hosts of a cluster.
 
 use std::fmt;
 use std::sync::Arc;
 
 use tokio::sync::Notify;
 
-use super::merging;
-use super::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
-use crate::cluster::SharedRooms;
+use super::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
+use crate::cluster::{OtherHosts, SharedRooms};
 use crate::ops::logging::events;
 use crate::sessions::line::Line;
 use crate::sessions::visitors::{Present, SessionId, Visitors};
@@ -54,7 +53,7 @@ impl Operator {
             && request.is_for_all_hosts()
             && !matches!(own, AdminReply::Fault(_))
         {
-            return merging::merged(cluster, own, cluster.ask_others(request).await);
+            return merged(cluster, own, cluster.ask_others(request).await);
         }
         own
     }
@@ -74,7 +73,10 @@ impl Operator {
                 let rows = self.visitors.list().into_iter().map(|it| row(it, host.clone()));
                 AdminReply::Visitors(rows.collect())
             }
-            AdminRequest::Hosts => self.hosts(),
+            AdminRequest::Hosts => match &self.cluster {
+                Some(cluster) => AdminReply::Hosts(vec![cluster.own_info()]),
+                None => AdminReply::Fault(NO_CLUSTER.to_owned()),
+            },
             AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
             AdminRequest::Remove { target, reason, banned } => {
                 match self.remove(target, &farewell(reason, *banned), *banned) {
@@ -112,19 +114,10 @@ impl Operator {
         events::removed(&target, count, is_banned);
         Ok(count)
     }
-}
 
-impl Operator {
     /// The name of this host in a cluster.
     fn host(&self) -> Option<String> {
         self.cluster.as_ref().map(|cluster| cluster.own_info().host)
-    }
-
-    fn hosts(&self) -> AdminReply {
-        match &self.cluster {
-            Some(cluster) => AdminReply::Hosts(vec![cluster.own_info()]),
-            None => AdminReply::Fault(NO_CLUSTER.to_owned()),
-        }
     }
 }
 
@@ -132,6 +125,44 @@ impl fmt::Debug for Operator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Operator").field("visitors", &self.visitors).finish_non_exhaustive()
     }
+}
+
+/// The answer of this host with those of the others.
+fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts) -> AdminReply {
+    let OtherHosts { replies, silent, seconds, mut remarks } = others;
+    let reply = match own {
+        AdminReply::Count(own) => {
+            let others = replies.into_values();
+            AdminReply::Count(others.fold(own, |sum, reply| match reply {
+                AdminReply::Count(count) => sum + count,
+                _ => sum,
+            }))
+        }
+        AdminReply::Visitors(mut rows) => {
+            for reply in replies.into_values() {
+                if let AdminReply::Visitors(others) = reply {
+                    rows.extend(others);
+                }
+            }
+            AdminReply::Visitors(rows)
+        }
+        AdminReply::Hosts(own) => {
+            let mut rows: Vec<HostInfo> = silent.into_values().collect();
+            let own = (cluster.own_name().to_owned(), AdminReply::Hosts(own));
+            for (name, reply) in replies.into_iter().chain([own]) {
+                let seconds = seconds.get(&name).copied().unwrap_or_default();
+                if let AdminReply::Hosts(hosts) = reply {
+                    rows.extend(hosts.into_iter().map(|row| HostInfo { seconds, ..row }));
+                }
+            }
+            rows.sort_by(|one, other| one.host.cmp(&other.host));
+            let differences = rows.iter().filter_map(|row| cluster.map_difference(row));
+            remarks.extend(differences);
+            AdminReply::Hosts(rows)
+        }
+        other => other,
+    };
+    AdminReply::AllHosts { reply: Box::new(reply), remarks }
 }
 
 /// The sentence for those who are sent away.

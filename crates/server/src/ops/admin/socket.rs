@@ -1,19 +1,20 @@
-//! The server's end of the socket.
+//! The socket `admin.sock` of a data folder: the server's end, and the operator's.
 
-use std::io::{self, ErrorKind};
+use std::fmt;
+use std::fs::{self, Permissions};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
+use std::os::unix::net::UnixStream as BlockingStream;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Duration;
-use std::{fs, os};
 
-use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
-use tokio::sync::Semaphore;
-use tokio::task::JoinSet;
-use tokio::time::{sleep, timeout};
 
-use super::{AdminReply, MOST_REQUEST, Operator, socket_of};
+use super::operator::Operator;
+use super::{AdminReply, AdminRequest};
+use crate::ops::serve_each;
+use cellcaster::fault::printable_path;
 
 /// A socket at which an operator can ask. It is removed when this is dropped.
 #[derive(Debug)]
@@ -22,10 +23,24 @@ pub struct AdminSocket {
     path: PathBuf,
 }
 
-const MOST_CONNECTIONS: usize = 8;
-const PATIENCE: Duration = Duration::from_secs(5);
-/// The pause after a failed `accept`.
-const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+/// Why a server has not answered.
+#[derive(Debug)]
+pub enum AdminFailure {
+    /// No server runs with this data folder.
+    NoServer(PathBuf),
+    /// The socket belongs to another user.
+    NotAllowed(PathBuf),
+    /// The connection failed.
+    Failed(PathBuf, io::Error),
+}
+
+/// In bytes: the longest line of a request.
+const MOST_REQUEST: u64 = 4096;
+/// In bytes: the longest line of a reply. A hundred thousand visitors are less.
+const MOST_REPLY: u64 = 32 << 20;
+/// The time in which a server has to answer a request.
+const SERVER_TIMEOUT: Duration = Duration::from_secs(5);
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl AdminSocket {
     /// Listens in a data folder. A socket that a killed server has left there is replaced.
@@ -34,7 +49,7 @@ impl AdminSocket {
     /// [`ErrorKind::AddrInUse`] if a server listens there; otherwise that of the system.
     pub fn bind(folder: &Path) -> io::Result<Self> {
         let path = socket_of(folder);
-        if os::unix::net::UnixStream::connect(&path).is_ok() {
+        if BlockingStream::connect(&path).is_ok() {
             return Err(io::Error::new(ErrorKind::AddrInUse, "another server uses this folder"));
         }
         if fs::symlink_metadata(&path).is_ok_and(|found| found.file_type().is_socket()) {
@@ -42,28 +57,17 @@ impl AdminSocket {
         }
         let listener = UnixListener::bind(&path)?;
         let socket = Self { listener, path };
-        fs::set_permissions(&socket.path, fs::Permissions::from_mode(0o600))?;
+        fs::set_permissions(&socket.path, Permissions::from_mode(0o600))?;
         Ok(socket)
     }
 
     /// Answers requests until the future is dropped.
     pub async fn serve(self, operator: Operator) {
-        let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
-        // Its tasks end with it.
-        let mut tasks = JoinSet::new();
-        loop {
-            while tasks.try_join_next().is_some() {}
-            let Ok(place) = places.clone().acquire_owned().await else { return };
-            let Ok((stream, _)) = self.listener.accept().await else {
-                sleep(ACCEPT_PAUSE).await;
-                continue;
-            };
+        let answer = |stream| {
             let operator = operator.clone();
-            tasks.spawn(async move {
-                _ = timeout(PATIENCE, converse(stream, &operator)).await;
-                drop(place);
-            });
-        }
+            async move { converse(stream, &operator).await }
+        };
+        serve_each(|context| self.listener.poll_accept(context), SERVER_TIMEOUT, answer).await;
     }
 }
 
@@ -87,7 +91,7 @@ pub(crate) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result
 where
     S: AsyncRead + AsyncWrite + Unpin,
 {
-    let reply = match request(stream).await?.as_deref().map(serde_json::from_slice) {
+    let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
         Some(Ok(request)) => operator.answer(&request).await,
         Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
         None => AdminReply::Fault(format!("a request is a line of at most {MOST_REQUEST} bytes")),
@@ -99,18 +103,71 @@ where
 
 /// The first line; `None` if it is too long or has no end.
 async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec<u8>>> {
-    let mut bytes = Vec::new();
-    let mut buffer = [0; 1024];
-    while bytes.len() < MOST_REQUEST {
-        let length = stream.read(&mut buffer).await?;
-        if length == 0 {
-            break;
+    let mut line = Vec::new();
+    let mut stream = tokio::io::BufReader::new(stream.take(MOST_REQUEST));
+    stream.read_until(b'\n', &mut line).await?;
+    Ok((line.pop() == Some(b'\n')).then_some(line))
+}
+
+/// Asks the server of a data folder.
+///
+/// # Errors
+/// [`AdminFailure`], which is one sentence.
+pub fn ask(folder: &Path, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
+    let socket = socket_of(folder);
+    exchange(&socket, request).map_err(|error| match error.kind() {
+        ErrorKind::NotFound | ErrorKind::ConnectionRefused => {
+            AdminFailure::NoServer(folder.to_owned())
         }
-        bytes.extend(&buffer[..length]);
-        if let Some(end) = bytes.iter().position(|&byte| byte == b'\n') {
-            bytes.truncate(end);
-            return Ok(Some(bytes).filter(|line| line.len() < MOST_REQUEST));
+        ErrorKind::PermissionDenied => AdminFailure::NotAllowed(socket),
+        _ => AdminFailure::Failed(socket, error),
+    })
+}
+
+fn exchange(socket: &Path, request: &AdminRequest) -> io::Result<AdminReply> {
+    let mut stream = BlockingStream::connect(socket)?;
+    stream.set_read_timeout(Some(CLIENT_TIMEOUT))?;
+    stream.set_write_timeout(Some(CLIENT_TIMEOUT))?;
+    let mut line = serde_json::to_vec(request)?;
+    line.push(b'\n');
+    stream.write_all(&line)?;
+    let mut reply = Vec::new();
+    BufReader::new(stream.take(MOST_REPLY)).read_until(b'\n', &mut reply)?;
+    Ok(serde_json::from_slice(&reply)?)
+}
+
+impl fmt::Display for AdminFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoServer(folder) => {
+                write!(f, "no server runs with the data in {}", printable_path(folder))
+            }
+            Self::NotAllowed(socket) => {
+                write!(
+                    f,
+                    "{} belongs to another user: ask as that user, or as root",
+                    printable_path(socket)
+                )
+            }
+            Self::Failed(socket, error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
+            {
+                let seconds = CLIENT_TIMEOUT.as_secs();
+                write!(
+                    f,
+                    "the server at {} has not answered for {seconds} s",
+                    printable_path(socket)
+                )
+            }
+            Self::Failed(socket, error) => {
+                write!(f, "the server at {} does not answer: {error}", printable_path(socket))
+            }
         }
     }
-    Ok(None)
+}
+
+impl std::error::Error for AdminFailure {}
+
+fn socket_of(folder: &Path) -> PathBuf {
+    folder.join("admin.sock")
 }

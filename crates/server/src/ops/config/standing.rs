@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::Config;
 use crate::rooms::room::Mode;
 use crate::rooms::summary::RoomWish;
+use cellcaster::app::parts::Value as _;
 use cellcaster::fault::document::{self, Entry, FaultList};
 use cellcaster::fault::{Fault, Faults, nearest, quoted};
 use cellcaster::world::Difficulty;
@@ -85,7 +86,7 @@ fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
 /// The standing rooms of an entry `room`; `None` after a fault of the whole list.
 pub(crate) fn read(entry: &Entry<'_, '_>) -> Option<Vec<StandingRoom>> {
     const EXAMPLE: &str = "[[room]]";
-    let DeValue::Array(list) = entry.value else {
+    let Some(list) = entry.list() else {
         entry.faults.push(entry.wrong_type("a list of tables", EXAMPLE));
         return None;
     };
@@ -94,16 +95,7 @@ pub(crate) fn read(entry: &Entry<'_, '_>) -> Option<Vec<StandingRoom>> {
         entry.faults.push(Fault::new(entry.key_place.clone(), message));
         return None;
     }
-    let rooms = list.iter().filter_map(|value| {
-        let room = Entry {
-            key: entry.key,
-            key_place: entry.key_place.clone(),
-            value: value.get_ref(),
-            value_place: value.span(),
-            faults: entry.faults,
-        };
-        Some(read_room(&room, room.table(EXAMPLE)?))
-    });
+    let rooms = list.iter().filter_map(|room| Some(read_room(room, room.table(EXAMPLE)?)));
     Some(rooms.collect())
 }
 
@@ -118,7 +110,7 @@ fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> StandingRoom {
                 }
             }
             "difficulty" => {
-                wish.difficulty = difficulty(&entry).unwrap_or(wish.difficulty);
+                wish.difficulty = Difficulty::read(&entry).unwrap_or(wish.difficulty);
             }
             _ => {
                 let known = ["mode", "level", "difficulty"];
@@ -130,33 +122,17 @@ fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> StandingRoom {
 }
 
 fn mode(entry: &Entry<'_, '_>) -> Option<Mode> {
+    const ALONE: &str =
+        "a standing room can't be in the mode \"alone\": such a room ends with its player";
     let text = entry.string("mode = \"roam\"")?;
-    let mode = Mode::named(text).filter(|&mode| mode != Mode::Alone);
-    if mode.is_none() {
-        let message = if text == Mode::Alone.name() {
-            const MESSAGE: &str =
-                "a standing room can't be in the mode \"alone\": such a room ends with its player";
-            MESSAGE.to_owned()
-        } else {
-            format!("there is no mode {}", quoted(text))
-        };
-        let all = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Alone);
-        let names: Vec<&str> = all.map(Mode::name).collect();
-        let help = format!("write one of {}", names.join(", "));
-        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
-    }
-    mode
-}
-
-fn difficulty(entry: &Entry<'_, '_>) -> Option<Difficulty> {
-    let text = entry.string("difficulty = \"normal\"")?;
-    let difficulty = Difficulty::named(text);
-    if difficulty.is_none() {
-        let message = format!("there is no difficulty {}", quoted(text));
-        let help = "write easy, normal or hard";
-        entry.faults.push(Fault::new(entry.value_place.clone(), message).help(help));
-    }
-    difficulty
+    let is_possible = |mode: &Mode| *mode != Mode::Alone;
+    Mode::named(text).filter(is_possible).or_else(|| {
+        let is_alone = text == Mode::Alone.name();
+        let unknown = || format!("there is no mode {}", quoted(text));
+        let message = if is_alone { ALONE.to_owned() } else { unknown() };
+        let names: Vec<&str> = Mode::ALL.into_iter().filter(is_possible).map(Mode::name).collect();
+        entry.reject(message, "", format!("write one of {}", names.join(", ")))
+    })
 }
 
 fn in_mode(mode: Mode) -> RoomWish {

@@ -29,19 +29,35 @@ fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
     Ok(())
 }
 
+/// The range of a number, as its fault tells it.
+fn range(key: &str) -> [u64; 2] {
+    let faults = faults(&format!("{key} = 99999999999"));
+    let range = faults.split("a whole number from ").nth(1).and_then(|it| it.lines().next());
+    let (least, most) = range.and_then(|it| it.split_once(" to ")).unwrap();
+    [least, most].map(|end| end.parse().unwrap())
+}
+
 #[test]
-fn every_setting_has_an_effect_of_its_own() -> Result<(), Faults> {
-    for (index, setting) in settings::SETTINGS.iter().enumerate() {
-        for value in [setting.least, setting.most] {
-            let config = Config::parse(&format!("{} = {value}", setting.name), "serve.toml")?;
-            assert_eq!((setting.get)(&config), value, "{}", setting.name);
-            for (other_index, other) in settings::SETTINGS.iter().enumerate() {
-                let kept = (other.get)(&Config::default());
-                assert!(other_index == index || (other.get)(&config) == kept, "{}", other.name);
+fn every_number_has_an_effect_of_its_own() -> Result<(), Faults> {
+    let default = Config::default();
+    for setting in &NUMBERS {
+        for value in range(setting.key) {
+            let config = Config::parse(&format!("{} = {value}", setting.key), "serve.toml")?;
+            assert_eq!(setting.value.write(&config), value.to_string(), "{}", setting.key);
+            for other in NUMBERS.iter().filter(|other| other.key != setting.key) {
+                assert!(!other.value.differs(&config, &default), "{}", other.key);
             }
+            let mut copy = default.clone();
+            setting.value.copy(&config, &mut copy);
+            assert_eq!(copy, config);
         }
     }
     Ok(())
+}
+
+#[test]
+fn the_comment_about_the_log_tells_its_grammar() {
+    assert!(TEXTS.iter().any(|setting| setting.about.ends_with(LogFilter::GRAMMAR)));
 }
 
 #[test]

@@ -10,6 +10,17 @@ use crate::accounts::{AccountKey, AddressPrefix, BanTarget};
 use crate::sessions::visitors::SessionId;
 use crate::ssh::admission::{Outcome, Refusal};
 
+/// What a client brings about without logging in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum ConnectionEvent {
+    /// A connection was accepted.
+    Accepted,
+    /// A connection was refused.
+    Refused(Refusal),
+    /// A connection has ended before its login.
+    Ended(Outcome),
+}
+
 const HOST: &str = "host";
 const CONNECTIONS: &str = "connections";
 const ROOMS: &str = "rooms";
@@ -29,7 +40,7 @@ pub(crate) fn metrics_listening(address: SocketAddr) {
 /// The configuration was read again, from `file` if there is one. Settings that are in `fixed` stay as
 /// they are until the next start.
 pub(crate) fn reloaded(file: Option<&Path>, fixed: &[&str]) {
-    let file = file.map(|file| clean(&file.display().to_string()));
+    let file = file.map(|file| clean(file.display()));
     if fixed.is_empty() {
         info!(target: HOST, file, "configuration reloaded");
     } else {
@@ -55,34 +66,31 @@ pub(crate) fn ended() {
 
 /// Something in the server failed.
 pub(crate) fn fault(what: &str, error: impl Display) {
-    error!(target: HOST, what, error = clean(&error.to_string()), "fault");
+    error!(target: HOST, what, error = clean(error), "fault");
 }
 
 /// A call of the store failed.
 pub(crate) fn store_failed(error: impl Display) {
-    error!(target: HOST, error = clean(&error.to_string()), "store failed");
+    error!(target: HOST, error = clean(error), "store failed");
 }
 
-/// `count` connections of a network were accepted; without one, of several others.
-pub(crate) fn accepted(network: Option<AddressPrefix>, count: u64) {
-    info!(target: CONNECTIONS, network = or_others(network), count, "accepted");
-}
-
-/// `count` connections of a network were refused; without one, of several others.
-pub(crate) fn refused(network: Option<AddressPrefix>, reason: Refusal, count: u64) {
-    let (network, reason) = (or_others(network), reason.name());
-    info!(target: CONNECTIONS, network, reason, count, "refused");
-}
-
-/// `count` connections of a network have ended before their login; without one, of several others.
-pub(crate) fn ended_early(network: Option<AddressPrefix>, outcome: Outcome, count: u64) {
-    let (network, outcome) = (or_others(network), outcome.name());
-    info!(target: CONNECTIONS, network, outcome, count, "disconnected");
+/// `count` clients of a network, or of several other networks, have brought about an event.
+pub(crate) fn connections(network: Option<AddressPrefix>, event: ConnectionEvent, count: u64) {
+    let network = network.map_or_else(|| "others".to_owned(), |network| network.to_string());
+    match event {
+        ConnectionEvent::Accepted => info!(target: CONNECTIONS, network, count, "accepted"),
+        ConnectionEvent::Refused(reason) => {
+            info!(target: CONNECTIONS, network, reason = reason.name(), count, "refused");
+        }
+        ConnectionEvent::Ended(outcome) => {
+            info!(target: CONNECTIONS, network, outcome = outcome.name(), count, "disconnected");
+        }
+    }
 }
 
 /// A client is authenticated; without a key as a guest.
-pub(crate) fn authenticated(address: IpAddr, key: Option<&str>) {
-    let key = key.unwrap_or("guest");
+pub(crate) fn authenticated(address: IpAddr, key: Option<AccountKey>) {
+    let key = or_guest(key);
     info!(target: CONNECTIONS, network = network(address), key, "authenticated");
 }
 
@@ -94,13 +102,13 @@ pub(crate) fn disconnected(address: IpAddr, seconds: u64) {
 
 /// A visitor was sent away because of a ban.
 pub(crate) fn banned_visitor(address: IpAddr, target: &BanTarget) {
-    let (network, target) = (network(address), shown(target));
+    let (network, target) = (network(address), clean(target));
     info!(target: CONNECTIONS, network, ban = target, "banned visitor");
 }
 
 /// A visitor has a name.
 pub(crate) fn named(key: Option<&AccountKey>, name: &str) {
-    let key = key.map_or_else(|| "guest".to_owned(), AccountKey::to_string);
+    let key = or_guest(key.copied());
     info!(target: CONNECTIONS, key, name = clean(name), "named");
 }
 
@@ -121,7 +129,7 @@ pub(crate) fn round_ended(room: u32, steps: u64, winner: Option<&str>) {
 
 /// A room has ended by a defect.
 pub(crate) fn room_failed(room: u32, error: impl Display) {
-    error!(target: ROOMS, room, error = clean(&error.to_string()), "failed");
+    error!(target: ROOMS, room, error = clean(error), "failed");
 }
 
 /// A result was replayed and kept.
@@ -131,7 +139,7 @@ pub(crate) fn result_verified(name: &str, level: &str, steps: u64, rank: &str) {
 
 /// A result was replayed, and is none.
 pub(crate) fn result_refused(name: &str, level: &str, reason: impl Display) {
-    warn!(target: RESULTS, name = clean(name), level = clean(level), reason = clean(&reason.to_string()), "refused");
+    warn!(target: RESULTS, name = clean(name), level = clean(level), reason = clean(reason), "refused");
 }
 
 /// A result was replayed, and waits for the store, which is away or full.
@@ -141,13 +149,13 @@ pub(crate) fn result_waits(name: &str, level: &str) {
 
 /// A result that has waited is lost.
 pub(crate) fn result_lost(key: &AccountKey, reason: impl Display) {
-    let (key, reason) = (key.to_string(), clean(&reason.to_string()));
+    let (key, reason) = (key.to_string(), clean(reason));
     error!(target: RESULTS, key, reason, "lost");
 }
 
 /// An operator has ended the sessions of `count` visitors, and may have banned them.
 pub(crate) fn removed(target: &BanTarget, count: usize, is_banned: bool) {
-    let who = shown(target);
+    let who = clean(target);
     if is_banned {
         info!(target: ADMIN, who, count, "banned");
     } else {
@@ -165,14 +173,16 @@ pub(crate) fn said(count: usize) {
     info!(target: ADMIN, count, "said");
 }
 
-/// The characters of `text`, with escapes for those that a terminal would obey or not show.
-fn clean(text: &str) -> String {
-    let escaped = text.chars().flat_map(|char| {
-        let is_plain = ['"', '\'', '\\'].contains(&char);
-        let escaped = if is_plain { None } else { Some(char.escape_debug()) };
-        is_plain.then_some(char).into_iter().chain(escaped.into_iter().flatten())
-    });
-    escaped.collect()
+/// The text of a value, with escapes for characters that a terminal would obey or not show.
+fn clean(value: impl Display) -> String {
+    let mut escaped = String::new();
+    for char in value.to_string().chars() {
+        match char {
+            '"' | '\'' | '\\' => escaped.push(char),
+            _ => escaped.extend(char.escape_debug()),
+        }
+    }
+    escaped
 }
 
 /// The network of an address, as admission knows it: /24 or /64.
@@ -180,14 +190,6 @@ fn network(address: IpAddr) -> String {
     AddressPrefix::network_of(address).to_string()
 }
 
-fn or_others(network: Option<AddressPrefix>) -> String {
-    network.map_or_else(|| "others".to_owned(), |network| network.to_string())
-}
-
-fn shown(target: &BanTarget) -> String {
-    match target {
-        BanTarget::Key(key) => key.to_string(),
-        BanTarget::Name(name) => clean(name.as_str()),
-        BanTarget::Addresses(prefix) => prefix.to_string(),
-    }
+fn or_guest(key: Option<AccountKey>) -> String {
+    key.map_or_else(|| "guest".to_owned(), |key| key.to_string())
 }

@@ -1,72 +1,48 @@
 //! A server of HTTP/1.1 for one page.
 //!
-//! It reads at most 4 KB of a request within two seconds, answers, and closes the connection. Eight
-//! connections are answered at a time, and further ones wait in the system's queue. A server library
-//! was refused: what Prometheus asks for is one line.
+//! It reads at most 4 KB of a request within two seconds, answers, and closes the connection.
+//!
+//! Rejected: a server library. A request of Prometheus is one line.
 
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use prometheus_client::encoding::prometheus_text::CONTENT_TYPE;
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, copy, sink};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::Semaphore;
-use tokio::task::JoinSet;
-use tokio::time::{sleep, timeout};
 
-const MOST_BYTES: usize = 4096;
-const MOST_CONNECTIONS: usize = 8;
-const PATIENCE: Duration = Duration::from_secs(2);
-/// The pause after a failed `accept`.
-const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+use super::Metrics;
+use crate::ops::serve_each;
 
-/// Answers `GET /metrics` with what `text` returns, until the future is dropped.
-pub async fn respond(listener: TcpListener, text: impl Fn() -> String + Send + Sync + 'static) {
-    let text = Arc::new(text);
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
-    // Its tasks end with it.
-    let mut tasks = JoinSet::new();
-    loop {
-        while tasks.try_join_next().is_some() {}
-        let Ok(place) = places.clone().acquire_owned().await else { return };
-        let Ok((stream, _)) = listener.accept().await else {
-            sleep(ACCEPT_PAUSE).await;
-            continue;
-        };
-        let text = text.clone();
-        tasks.spawn(async move {
-            _ = timeout(PATIENCE, answer(stream, &*text)).await;
-            drop(place);
-        });
-    }
+const MOST_BYTES: u64 = 4096;
+const TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Answers `GET /metrics` with the figures, until the future is dropped.
+pub async fn respond(listener: TcpListener, metrics: Arc<Metrics>) {
+    let answer = |stream| answer(stream, Arc::clone(&metrics));
+    serve_each(|context| listener.poll_accept(context), TIMEOUT, answer).await;
 }
 
-async fn answer(mut stream: TcpStream, text: &impl Fn() -> String) -> io::Result<()> {
+async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> {
     let request = request(&mut stream).await?;
-    stream.write_all(response(&request, text).as_bytes()).await?;
+    stream.write_all(response(&request, || metrics.text()).as_bytes()).await?;
     stream.shutdown().await?;
     // Closed with unread bytes, the connection would be reset, and the client might lose the answer.
-    let mut rest = [0; MOST_BYTES];
-    while stream.read(&mut rest).await? > 0 {}
+    copy(&mut stream, &mut sink()).await?;
     Ok(())
 }
 
 /// The head of a request, or its first [`MOST_BYTES`].
 async fn request(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
+    let mut stream = BufReader::new(stream.take(MOST_BYTES));
     let mut request = Vec::new();
-    let mut buffer = [0; 1024];
-    while !ends(&request) && request.len() < MOST_BYTES {
-        let length = stream.read(&mut buffer).await?;
-        if length == 0 {
-            break;
-        }
-        request.extend(&buffer[..length]);
-    }
+    while !ends(&request) && stream.read_until(b'\n', &mut request).await? > 0 {}
     Ok(request)
 }
 
 fn ends(request: &[u8]) -> bool {
-    request.windows(4).any(|end| end == b"\r\n\r\n")
+    request.ends_with(b"\r\n\r\n")
 }
 
 fn response(request: &[u8], text: impl Fn() -> String) -> String {
@@ -82,7 +58,7 @@ fn response(request: &[u8], text: impl Fn() -> String) -> String {
     };
     let allow = if status.starts_with("405") { "Allow: GET\r\n" } else { "" };
     format!(
-        "HTTP/1.1 {status}\r\nContent-Type: text/plain; version=0.0.4; charset=utf-8\r\n\
+        "HTTP/1.1 {status}\r\nContent-Type: {CONTENT_TYPE}\r\n\
          Content-Length: {}\r\n{allow}Connection: close\r\n\r\n{body}",
         body.len()
     )

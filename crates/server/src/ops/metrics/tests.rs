@@ -1,11 +1,7 @@
 use std::collections::BTreeMap;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use proptest::prelude::*;
-
 use super::*;
-use crate::ssh::Counters;
 use crate::ssh::admission::Refusal;
 
 /// The samples of a text, and a check of its form.
@@ -29,16 +25,13 @@ fn samples(text: &str) -> BTreeMap<String, f64> {
 #[test]
 fn each_figure_has_a_sample() {
     let metrics = Metrics::default();
-    let counters = Counters::default();
     metrics.rooms.set(3);
-    metrics.members.add(7);
-    metrics.members.add(-2);
-    metrics.results_refused.count();
-    metrics.entries.add(4096);
-    counters.accepted.store(9, Ordering::Relaxed);
-    counters.refuse(Refusal::Penalty);
-    counters.refuse(Refusal::Penalty);
-    let samples = samples(&metrics.text(&counters));
+    metrics.members.set(5);
+    metrics.results(false).inc();
+    metrics.entries.inc_by(4096);
+    metrics.accepted.inc_by(9);
+    metrics.refused(Refusal::Penalty).inc_by(2);
+    let samples = samples(&metrics.text());
     for (name, value) in [
         ("cellcaster_rooms", 3.0),
         ("cellcaster_members", 5.0),
@@ -61,15 +54,15 @@ fn each_figure_has_a_sample() {
 fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
     let metrics = Metrics::default();
     metrics.host.set("a \"b\"\\".to_owned()).unwrap();
-    let [old, new] = [0; 2].map(|_| metrics.each_room.add(7));
+    let [old, new] = [0; 2].map(|_| metrics.add_room(7));
     // A room that was replaced takes nothing with it.
-    metrics.each_room.remove(7, &old);
+    drop(old);
     new.members.set(3);
-    new.checks_different.count();
-    let other = metrics.each_room.add(8);
+    new.checks(false).inc();
+    let other = metrics.add_room(8);
     other.writes.set(1);
-    assert_eq!(metrics.each_room.written(), [8]);
-    let text = metrics.text(&Counters::default());
+    assert_eq!(metrics.written_rooms(), [8]);
+    let text = metrics.text();
     let lines = samples(&text);
     let host = "host=\"a \\\"b\\\"\\\\\"";
     assert!(lines.keys().all(|line| line.contains(host)), "{text}");
@@ -84,19 +77,18 @@ fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
     ] {
         assert_eq!(lines.get(&line), Some(&value), "{line}");
     }
-    metrics.each_room.remove(7, &new);
-    metrics.each_room.remove(8, &other);
-    assert!(!metrics.text(&Counters::default()).contains("room=\""));
+    drop((new, other));
+    assert!(!metrics.text().contains("room=\""));
 }
 
 #[test]
 fn a_duration_is_in_the_buckets_from_its_bound_on() {
     let metrics = Metrics::default();
     for microseconds in [0, 100, 16_667, 2_500_001] {
-        metrics.key_time.add(Duration::from_micros(microseconds));
+        metrics.key_time.observe(Duration::from_micros(microseconds).as_secs_f64());
     }
-    metrics.key_time.add(Duration::from_nanos(100_001));
-    let samples = samples(&metrics.text(&Counters::default()));
+    metrics.key_time.observe(Duration::from_nanos(100_001).as_secs_f64());
+    let samples = samples(&metrics.text());
     let sample = |end: &str| samples[&format!("cellcaster_key_seconds_{end}")];
     for (end, count) in [
         ("bucket{le=\"0.0001\"}", 2.0),
@@ -109,17 +101,4 @@ fn a_duration_is_in_the_buckets_from_its_bound_on() {
         assert_eq!(sample(end), count, "{end}");
     }
     assert!((sample("sum") - 2.516_868_001).abs() < 1e-9);
-}
-
-proptest! {
-    #[test]
-    fn buckets_grow_and_end_with_the_count(times in prop::collection::vec(any::<u64>(), 0..40)) {
-        let metrics = Metrics::default();
-        for &time in &times {
-            metrics.frame_time.add(Duration::from_nanos(time >> (time % 64)));
-        }
-        let distribution = metrics.frame_time.distribution();
-        prop_assert!(distribution.up_to.is_sorted());
-        prop_assert_eq!(distribution.up_to[histogram::BOUNDS.len()], times.len() as u64);
-    }
 }

@@ -7,9 +7,8 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 
 use super::store_worker::StoreWorker;
-use super::terminal;
-use super::visit::Visit;
-use super::{GameHost, HostParts, Shared, refuse};
+use super::visit::Driver;
+use super::{GameHost, HostParts, Shared, login, refuse};
 use crate::accounts::HostStore;
 use crate::ops::config::LiveConfig;
 use crate::ops::metrics::Metrics;
@@ -32,7 +31,7 @@ pub(crate) struct Setup {
     pub(crate) visitors: Visitors,
     pub(crate) catalog: Catalog,
     pub(crate) logs: Logs,
-    pub(crate) store: Box<dyn HostStore>,
+    pub(crate) store: HostStore,
     /// How long the store takes for a call.
     pub(crate) store_time: Duration,
     pub(crate) worker: Worker,
@@ -45,7 +44,7 @@ pub(crate) struct Visiting {
     task: JoinHandle<u8>,
 }
 
-type Look = Box<dyn FnOnce(&mut Visit) + Send>;
+type Look = Box<dyn FnOnce(&mut Driver) + Send>;
 
 impl Simulated {
     /// It is to be called within a runtime.
@@ -82,7 +81,7 @@ impl Simulated {
         link: Link,
         change: impl FnOnce(&mut Options),
     ) -> Visiting {
-        let mut options = terminal::options(&visitor);
+        let mut options = login::terminal_options(&visitor);
         change(&mut options);
         let (looks, looked) = mpsc::unbounded_channel();
         let shared = Arc::clone(&self.host.shared);
@@ -102,12 +101,12 @@ async fn serve(
         Ok(known) => known,
         Err((sentence, departure)) => return refuse(link, &sentence, departure).await.status,
     };
-    let mut visit = Visit::new(shared, &visitor, known, options);
+    let mut driver = Driver::new(shared, &visitor, known, options);
     loop {
         tokio::select! {
             biased;
-            Some(look) = looked.recv() => look(&mut visit),
-            status = visit.run(&mut link) => return status,
+            Some(look) = looked.recv() => look(&mut driver),
+            status = driver.run(&mut link) => return status,
         }
     }
 }
@@ -119,10 +118,10 @@ impl Visiting {
         look: impl FnOnce(&mut Session, Option<&RoomView>) -> T + Send + 'static,
     ) -> Option<T> {
         let (answer, answered) = oneshot::channel();
-        let look = move |visit: &mut Visit| {
-            let room = visit.place.as_ref().map(Place::room);
-            let view = room.and_then(|room| visit.shared.rooms.view(room));
-            _ = answer.send(look(&mut visit.session, view.as_deref()));
+        let look = move |driver: &mut Driver| {
+            let room = driver.place.as_ref().map(Place::room);
+            let view = room.and_then(|room| driver.shared.rooms.view(room));
+            _ = answer.send(look(&mut driver.session, view.as_deref()));
         };
         self.looks.send(Box::new(look)).ok()?;
         answered.await.ok()

@@ -1,4 +1,10 @@
-//! The driver of one visitor.
+//! The driver of one visitor: it moves bytes between the link and the session, carries out the session's requests,
+//! and holds the visitor's place in a room.
+//!
+//! - A visitor who leaves, or whose connection ends, has left the room.
+//! - In a cluster, a visitor whose host ends is away. With an account, they are where they were when they connect to
+//!   any host within a minute. While this host looks for the place, the visitor may go elsewhere; then they have
+//!   left.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -9,55 +15,59 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 use tokio::task::block_in_place;
 use tokio::time::sleep_until;
 
-use super::Shared;
-use super::account::{self, Known, NameInUse};
-use super::requests::{Reply, replies};
-use super::terminal;
-use crate::accounts::{Account, AccountKey, Name};
-use crate::rooms::directory::Place;
-use crate::rooms::summary::RoomSummary;
+use super::login::{self, Known, NameInUse};
+use super::{Shared, results};
+use crate::accounts::{Account, AccountKey, AccountSettings, Name, Origin};
+use crate::cluster::Entrant;
+use crate::lock::locked;
+use crate::ops::logging::events;
+use crate::rooms::directory::{Place, RoomRefusal};
+use crate::rooms::room::Command;
+use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
+use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
 use crate::sessions::line::Line;
 #[cfg(test)]
 use crate::sessions::load::Work;
-use crate::sessions::session::{HostFacts, Identity, IdleLimits, Session, SessionEvent};
+use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
 use crate::sessions::visitors::{Notice, Presence};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use cellcaster::app::Configuration;
 use cellcaster::terminal::Options;
+use cellcaster::world::Difficulty;
 
-/// A visitor with everything that concerns them.
+/// A visitor's driver.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
-pub(crate) struct Visit {
+pub(crate) struct Driver {
     pub(crate) shared: Arc<Shared>,
     pub(crate) session: Session,
-    pub(crate) key: Option<AccountKey>,
+    key: Option<AccountKey>,
     /// The address that the visitor connects from.
-    pub(crate) address: IpAddr,
-    pub(crate) account: Option<Account>,
+    address: IpAddr,
+    account: Option<Account>,
     /// The name that a guest may take without asking.
-    pub(crate) offer: Name,
+    offer: Name,
     /// The name, once it is chosen.
-    pub(crate) name: Option<Name>,
-    pub(crate) presence: Presence,
-    pub(crate) guest_name: Option<NameInUse>,
+    name: Option<Name>,
+    presence: Presence,
+    guest_name: Option<NameInUse>,
     pub(crate) place: Option<Place>,
-    pub(crate) rooms: watch::Receiver<Arc<[RoomSummary]>>,
+    rooms: watch::Receiver<Arc<[RoomSummary]>>,
     /// Whether the session is told of the rooms.
-    pub(crate) in_lobby: bool,
-    pub(crate) replies: mpsc::Sender<Reply>,
+    in_lobby: bool,
+    replies: mpsc::Sender<Reply>,
     replied: mpsc::Receiver<Reply>,
     /// When the session was woken last.
     woken_at: Duration,
     /// When the oldest key came that the frame on its way answers.
     answers_key: Option<Duration>,
     /// When the session is ended, since the server ends.
-    pub(crate) ends_at: Option<Duration>,
+    ends_at: Option<Duration>,
     /// Whether a frame is on its way.
     is_sending: bool,
     /// Whether the server ends.
-    pub(crate) is_draining: bool,
+    is_draining: bool,
     /// Whether the visitor waits for the place in which they were before.
-    pub(crate) is_returning: bool,
+    is_returning: bool,
 }
 
 /// What a driver waits for.
@@ -80,7 +90,34 @@ const MOST_WAITING: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 
-impl Visit {
+/// An answer of the store or of the cluster.
+enum Reply {
+    /// A name, with the account that has it now; `None` for a guest.
+    Named(Name, Result<Option<Account>, String>),
+    SessionEvent(SessionEvent),
+    /// A place in a room of the cluster.
+    Place(Result<Place, RoomRefusal>),
+    /// The place in which the visitor was before.
+    Returned(Result<Place, RoomRefusal>),
+}
+
+/// The most answers that wait for a session. Further ones are dropped: they answer a flood of requests.
+const MAX_REPLIES: usize = 16;
+
+/// A way into a room.
+enum Way {
+    Watch(RoomId),
+    Enter(RoomId),
+    Open(RoomWish),
+}
+
+/// Shown while the host looks for the visitor's place.
+const LOOKS: &str = "You were in a room; the host looks for your place.";
+/// Shown after the search.
+const WELCOME: &str = "Welcome back: you are where you were.";
+const GONE: &str = "Your place in the room is gone.";
+
+impl Driver {
     pub(crate) fn new(
         shared: Arc<Shared>,
         visitor: &Visitor,
@@ -90,14 +127,14 @@ impl Visit {
         let Known { key, account, settings, offer } = known;
         let identity = Identity {
             has_account: key.is_some(),
-            name: account::line(&offer),
+            name: login::line(&offer),
             is_named: account.is_some(),
             preferences: settings.preferences,
             // What does not parse was written by another version.
             configuration: Configuration::parse(&settings.configuration, "settings")
                 .unwrap_or_default(),
         };
-        let ascii_locale = terminal::ascii_locale(visitor);
+        let ascii_locale = login::ascii_locale(visitor);
         let config = shared.config.get();
         let presence = shared.visitors.arrive(visitor.peer.ip(), key);
         if let Some(account) = &account {
@@ -115,7 +152,7 @@ impl Visit {
         };
         let now = shared.now();
         let session = Session::new(identity, options, visitor.size, host, now);
-        let (replies, replied) = replies();
+        let (replies, replied) = mpsc::channel(MAX_REPLIES);
         Self {
             session,
             key,
@@ -182,7 +219,7 @@ impl Visit {
                     self.session.written(now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.add(now.saturating_sub(key));
+                        self.shared.metrics.key_time.observe(now.saturating_sub(key).as_secs_f64());
                     }
                 }
                 DriverEvent::RoomsChanged => {
@@ -232,7 +269,8 @@ impl Visit {
             aside(session.is_large(), || session.draw(view.as_deref(), now));
             #[cfg(test)]
             self.shared.load.spend(Work::Frame);
-            self.shared.metrics.frame_time.add(self.shared.now().saturating_sub(now));
+            let time = self.shared.now().saturating_sub(now);
+            self.shared.metrics.frame_time.observe(time.as_secs_f64());
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {
             self.session.look_at(view);
@@ -289,6 +327,305 @@ impl Visit {
         }
         if self.ends_at.take_if(|end| *end <= now).is_some() {
             self.session.notify(SessionEvent::Ended(self.last_sentence().to_owned()), now);
+        }
+    }
+}
+
+/// The requests of the session.
+impl Driver {
+    /// Does what the session requests.
+    fn run_requests(&mut self) {
+        loop {
+            let requests = self.session.requests();
+            if requests.is_empty() {
+                return;
+            }
+            for ask in requests {
+                self.run_request(ask);
+            }
+        }
+    }
+
+    fn run_request(&mut self, ask: Request) {
+        match ask {
+            Request::Name(text) => self.choose_name(&text),
+            Request::Rooms => {
+                self.in_lobby = true;
+                let rooms = self.rooms.borrow_and_update().clone();
+                self.notify(SessionEvent::Rooms(rooms));
+            }
+            Request::Enter { room, watches: true } => self.go(Way::Watch(room)),
+            Request::Enter { room, watches: false } => self.go(Way::Enter(room)),
+            Request::Open(wish) => self.go(Way::Open(wish)),
+            Request::Command(command) => self.act(command),
+            Request::Leave => self.leave(),
+            Request::Board { level, difficulty } => self.show_board(level, difficulty),
+            Request::Ghosts { level, difficulty } => self.show_ghosts(level, difficulty),
+            Request::Save(settings) => self.save(settings),
+        }
+    }
+
+    /// Records an answer of the store.
+    fn hear(&mut self, reply: Reply) {
+        let event = match reply {
+            Reply::SessionEvent(event) => event,
+            Reply::Named(name, Ok(account)) => self.take_name(name, account),
+            Reply::Named(_, Err(sentence)) => SessionEvent::Named(Err(sentence)),
+            Reply::Place(place) => return self.enter(place),
+            Reply::Returned(place) => return self.returned(place),
+        };
+        self.notify(event);
+    }
+
+    /// Has a run verified and recorded.
+    fn submit(&mut self, run: FinishedRun) {
+        let Some(account) = self.account.clone() else {
+            let sentence = "A guest's result does not rank: come with a public key.";
+            return self.notify(SessionEvent::Result(sentence.to_owned()));
+        };
+        let (replies, recorder) = (self.replies.clone(), self.shared.recorder.clone());
+        let is_accepted = self.shared.store.run(move |store| {
+            let sentence = recorder.record(store, &account, &run);
+            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Result(sentence)));
+        });
+        if !is_accepted {
+            self.notify(SessionEvent::Result("The host can't check your result now.".to_owned()));
+        }
+    }
+
+    fn notify(&mut self, event: SessionEvent) {
+        let now = self.shared.now();
+        self.session.notify(event, now);
+    }
+
+    fn choose_name(&mut self, text: &str) {
+        let offered =
+            (self.key.is_none() && text == self.offer.as_str()).then(|| self.offer.clone());
+        let name = match offered.map_or_else(|| Name::new(text), Ok) {
+            Ok(name) => name,
+            Err(fault) => return self.notify(SessionEvent::Named(Err(fault.to_string()))),
+        };
+        if self.name.as_ref() == Some(&name) {
+            return self.notify(SessionEvent::Named(Ok(login::line(&name))));
+        }
+        let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
+        let origin = Origin::new(self.address, self.shared.config.get().accounts);
+        let replies = self.replies.clone();
+        let is_accepted = self.shared.store.run(move |store| {
+            let result = login::choose_name(store, &origin, key, account, &name);
+            _ = replies.try_send(Reply::Named(name, result));
+        });
+        if !is_accepted {
+            self.notify(SessionEvent::Named(Err("The host is busy; try again.".to_owned())));
+        }
+    }
+
+    fn take_name(&mut self, name: Name, account: Option<Account>) -> SessionEvent {
+        if account.is_none() {
+            self.guest_name = None;
+            self.guest_name = self.shared.names.reserve(&name);
+            if self.guest_name.is_none() {
+                return SessionEvent::Named(Err(
+                    "Somebody here has this name; take another.".to_owned()
+                ));
+            }
+        }
+        let line = login::line(&name);
+        self.presence.set_name(name.as_str());
+        events::named(self.key.as_ref(), name.as_str());
+        self.account = account.or(self.account.take());
+        self.name = Some(name);
+        SessionEvent::Named(Ok(line))
+    }
+
+    fn act(&mut self, command: Command) {
+        let Some(place) = &self.place else { return };
+        if place.act(command) == Err(CommandRefusal::TooOften) {
+            self.notify(SessionEvent::Result("Not so fast: wait a second.".to_owned()));
+        }
+    }
+
+    fn show_board(&mut self, level: String, difficulty: Difficulty) {
+        let own = self.account.as_ref().map(|account| account.id);
+        let replies = self.replies.clone();
+        self.shared.store.run(move |store| {
+            let rows = results::board(store, &level, difficulty, own).into();
+            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Board {
+                level,
+                difficulty,
+                rows,
+            }));
+        });
+    }
+
+    /// Has the best runs of a level played, for this visitor alone: who else is in the room may want
+    /// other ones.
+    fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
+        let own = self.account.as_ref().map(|account| account.id);
+        let (replies, runs) = (self.replies.clone(), Arc::clone(&self.shared.runs));
+        let catalog = Arc::clone(self.shared.rooms.catalog());
+        self.shared.store.run(move |store| {
+            let board = (level.as_str(), difficulty);
+            let ghosts = locked(&runs, |runs| runs.ghosts(store, &catalog, board, own));
+            match ghosts {
+                Ok(ghosts) => {
+                    let ghosts = ghosts.into();
+                    _ = replies.try_send(Reply::SessionEvent(SessionEvent::Ghosts {
+                        level,
+                        difficulty,
+                        ghosts,
+                    }));
+                }
+                Err(failure) => events::store_failed(failure),
+            }
+        });
+    }
+
+    fn save(&mut self, settings: AccountSettings) {
+        let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
+        self.shared.store.run(move |store| {
+            if let Err(failure) = store.set_settings(account, &settings) {
+                events::store_failed(failure);
+            }
+        });
+    }
+}
+
+/// The place in a room.
+impl Driver {
+    /// Enters a room. Only a visitor with a name can be a member.
+    fn go(&mut self, way: Way) {
+        if !matches!(way, Way::Watch(_)) {
+            self.leave();
+        }
+        let name = self.name.as_ref().map(login::line);
+        if let Some(rooms) = self.shared.cluster.clone() {
+            self.is_returning = false;
+            let key = self.account.as_ref().map(|account| account.key);
+            let entrant = name.map(|name| Entrant { name, key });
+            let replies = self.replies.clone();
+            tokio::spawn(async move {
+                let place = match (&way, &entrant) {
+                    (Way::Watch(room), _) => rooms.watch(*room).await,
+                    (Way::Enter(room), Some(entrant)) => rooms.enter(*room, entrant).await,
+                    (Way::Open(wish), Some(entrant)) => rooms.open(wish, entrant).await,
+                    (_, None) => Err(RoomRefusal::Gone),
+                };
+                // A visitor who has gone leaves the room when the place is dropped.
+                _ = replies.send(Reply::Place(place)).await;
+            });
+            return;
+        }
+        let rooms = &self.shared.rooms;
+        let place = match (way, &name) {
+            (Way::Watch(room), _) => rooms.watch(room),
+            (Way::Enter(room), Some(name)) => rooms.enter(room, name),
+            (Way::Open(wish), Some(name)) => rooms.open(&wish, name),
+            (_, None) => Err(RoomRefusal::Gone),
+        };
+        self.enter(place);
+    }
+
+    fn enter(&mut self, place: Result<Place, RoomRefusal>) {
+        match place {
+            Ok(place) => {
+                let place = self.kept_while_draining(place);
+                self.in_lobby = false;
+                self.presence.set_room(Some(place.room().place()));
+                let event = SessionEvent::Entered { room: place.room(), member: place.member_id() };
+                self.place = Some(place);
+                self.notify(event);
+            }
+            Err(refusal) => self.notify(SessionEvent::Refused(refusal.to_string())),
+        }
+    }
+
+    /// Leaves the room, and submits what was won in it.
+    fn leave(&mut self) {
+        self.give_place_up();
+        self.part();
+    }
+
+    /// Ends the stay in the room, and submits what was won in it. If the server ends, the room keeps the place.
+    fn part(&mut self) {
+        let Some(place) = self.place.take() else { return };
+        self.presence.set_room(None);
+        if let Some(run) = place.finished() {
+            self.submit(run);
+        }
+    }
+
+    /// The server ends soon.
+    fn drain(&mut self, now: Duration) {
+        let time = self.shared.config.get().drain;
+        self.is_draining = true;
+        if let Some(place) = self.place.take() {
+            self.place = Some(self.kept_while_draining(place));
+        }
+        let ends_at = now + time;
+        let event = SessionEvent::Draining { ends_at, can_return: self.can_return() };
+        self.session.notify(event, now);
+        self.ends_at = Some(ends_at);
+    }
+
+    /// What a visitor reads at the end of the server.
+    fn last_sentence(&self) -> &'static str {
+        if self.can_return() {
+            "This server has ended. Connect again, and you are where you were."
+        } else {
+            "The server has ended. Come again!"
+        }
+    }
+
+    /// Whether a visitor finds the room as it was on another host.
+    fn can_return(&self) -> bool {
+        self.shared.keeps_places && self.account.is_some()
+    }
+
+    /// Takes a visitor with an account back to the room in which their last host has left them.
+    pub(crate) fn look_for_place(&mut self) {
+        let Some(rooms) = self.shared.cluster.clone() else { return };
+        let Some(key) = self.account.as_ref().map(|account| account.key) else { return };
+        self.is_returning = true;
+        let replies = self.replies.clone();
+        tokio::spawn(async move {
+            if let Some(at) = rooms.place_of(key).await {
+                _ = replies.send(Reply::SessionEvent(SessionEvent::Result(LOOKS.to_owned()))).await;
+                _ = replies.send(Reply::Returned(rooms.resume(key, at).await)).await;
+            }
+        });
+    }
+
+    /// Records where a visitor has returned to.
+    fn returned(&mut self, place: Result<Place, RoomRefusal>) {
+        if !std::mem::take(&mut self.is_returning) {
+            return;
+        }
+        let sentence = match place {
+            Ok(place) => {
+                self.enter(Ok(place));
+                WELCOME.to_owned()
+            }
+            Err(RoomRefusal::Gone) => GONE.to_owned(),
+            Err(refusal) => refusal.to_string(),
+        };
+        self.notify(SessionEvent::Result(sentence));
+    }
+
+    fn kept_while_draining(&self, mut place: Place) -> Place {
+        place.set_kept(self.is_draining && self.shared.cluster.is_some());
+        place
+    }
+
+    /// The room does not keep the place any more.
+    fn give_place_up(&mut self) {
+        let Some(place) = &mut self.place else { return };
+        place.set_kept(false);
+        let key = self.account.as_ref().map(|account| account.key);
+        // One who was removed may be somewhere else now.
+        let is_member = place.member_id().is_some() && place.closed().is_none();
+        if let (Some(rooms), Some(key), true) = (self.shared.cluster.clone(), key, is_member) {
+            tokio::spawn(async move { rooms.forget_place(key).await });
         }
     }
 }

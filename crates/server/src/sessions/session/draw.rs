@@ -1,10 +1,8 @@
 //! Drawing: what a visitor sees.
 
-mod ghost;
 mod members;
-mod overhead;
+pub(crate) mod overhead;
 mod room_status;
-mod said;
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -14,10 +12,10 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::Block;
 
-use self::ghost::Ghost;
-use super::page::Page;
-use super::stay::seconds_left;
-use super::visit::Visit;
+use super::pages::Page;
+use super::stay::{SeenGhost, seconds_left};
+use super::talk;
+use super::ui::Ui;
 use crate::rooms::room::{Phase, RoomView};
 use crate::sessions::line;
 use cellcaster::app::parts::{
@@ -25,8 +23,9 @@ use cellcaster::app::parts::{
     picture_and_status, too_small, whole_seconds,
 };
 use cellcaster::color::palette::ColorDepth;
-use cellcaster::tui::View;
+use cellcaster::render::Filter;
 use cellcaster::tui::canvas::Canvas;
+use cellcaster::tui::{GlyphSet, View};
 use cellcaster::world::{Figure, World};
 
 /// The keys in a room that bindings do not change.
@@ -46,7 +45,7 @@ thread_local! {
     static VIEW: Cell<Option<View>> = const { Cell::new(None) };
 }
 
-impl Visit {
+impl Ui {
     /// Draws the page, with `room` as the newest snapshot.
     pub(crate) fn draw(&mut self, canvas: &mut impl Canvas, room: Option<&RoomView>) {
         let area = canvas.bounds();
@@ -70,11 +69,11 @@ impl Visit {
 
     fn draw_lobby(&mut self, canvas: &mut impl Canvas, picture: Rect, status: Rect) {
         let below = if picture.height >= LEAST_WITH_BANNER {
-            draw_banner(canvas, picture, self.look.glyphs, self.look.depth)
+            draw_banner(canvas, picture, self.glyphs(), self.depth())
         } else {
             picture
         };
-        let text = match self.page {
+        let text = match self.page() {
             Page::Name => "type a name, Enter takes it",
             _ => "up and down, Enter, Esc",
         };
@@ -84,16 +83,17 @@ impl Visit {
 
     /// Draws what the page shows over the picture.
     fn draw_panel(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        match self.page {
+        match self.page() {
             Page::Name => self.draw_name(canvas, area),
             Page::Help => {
                 let (room_keys, notes) = (ROOM_KEYS.map(str::to_owned), self.help_notes());
-                self.help.draw(canvas, area, (&room_keys, &self.bindings), notes.into_iter());
+                let keys = (&room_keys[..], &self.bindings);
+                self.pages.help.draw(canvas, area, keys, notes.into_iter());
             }
             Page::Leaving => leaving(canvas, area, &self.bindings, "ends the session"),
             Page::Room => {}
             Page::Chat => self.draw_chat_entry(canvas, area),
-            _ => self.menu.draw(canvas, area),
+            _ => self.pages.menu.draw(canvas, area),
         }
     }
 
@@ -118,21 +118,31 @@ impl Visit {
         compression.into_iter().chain(self.detection.lines()).collect()
     }
 
+    /// Draws the line of chat that is typed.
+    fn draw_chat_entry(&self, canvas: &mut impl Canvas, picture: Rect) {
+        const PROMPT: &str = " say: ";
+        let room = usize::from(picture.width).saturating_sub(PROMPT.len());
+        let line = Line::raw(format!("{PROMPT}{}", self.entry.shown(room)));
+        let area = Rect { y: picture.bottom() - 1, height: 1, ..picture };
+        canvas.draw_widget(line.style(Style::new().add_modifier(Modifier::REVERSED)), area);
+    }
+
     fn draw_room(&mut self, canvas: &mut impl Canvas, area: Rect, room: &RoomView) {
-        let (look, page) = (self.look, self.page);
+        let (options, page) = (self.draw_options(), self.page());
+        let depth = options.depth;
         let preferences = self.identity.preferences;
         let Some(stay) = &mut self.stay else { return };
         let seen_through = stay.seen_through(room);
         if seen_through.is_some_and(|(member, _)| member.is_blind) {
-            draw_darkness(canvas, area, room, look.depth);
+            draw_darkness(canvas, area, room, depth);
         } else {
-            let camera = stay.camera(room, look.field_of_view);
+            let camera = stay.camera(room, options.field_of_view);
             let flash = seen_through.and_then(|(_, player)| player.flash());
             let flash = flash.map(|flash| (flash, camera.heading));
-            let options = DrawOptions { flash, ..look.options() };
+            let options = DrawOptions { flash, ..options };
             let (game, seconds) = (&room.game, room.game.elapsed());
-            let ghosts: Vec<Ghost> =
-                stay.ghosts(room, &look).map(|seen| Ghost::of(&seen)).collect();
+            let own = stay.own_color(room);
+            let ghosts: Vec<SeenGhost> = stay.ghosts.seen(room, own, preferences.ghost).collect();
             let world = with_ghosts(game.world(), &ghosts);
             let mut view = VIEW.take().unwrap_or_default();
             options.draw(&*world, &camera, seconds, canvas, area, &mut view);
@@ -148,20 +158,52 @@ impl Visit {
             VIEW.set(Some(view));
         }
         if matches!(room.phase, Phase::Over { .. }) && matches!(page, Page::Room | Page::Chat) {
-            members::draw_standings(canvas, area, room, look.depth);
+            members::draw_standings(canvas, area, room, depth);
         } else if stay.shows_members && page == Page::Room {
-            members::draw_members(canvas, area, room, &self.host.catalog, look.depth);
+            members::draw_members(canvas, area, room, &self.host.catalog, depth);
         }
-        said::draw(canvas, area, stay.talk.shown(), page == Page::Chat, look.depth);
+        talk::draw(canvas, area, stay.talk.shown(), page == Page::Chat, depth);
         if let Some(draining) = self.draining {
             notice(canvas, area, &draining.sentence(self.now));
         }
     }
 }
 
+/// How pictures are drawn: as the visitor has chosen, or as the terminal shows best.
+impl Ui {
+    pub(crate) fn glyphs(&self) -> GlyphSet {
+        let best = if self.has_ascii_only { GlyphSet::Ascii } else { self.terminal.glyphs };
+        self.identity.preferences.glyphs.unwrap_or(best)
+    }
+
+    pub(crate) fn depth(&self) -> ColorDepth {
+        self.identity.preferences.colors.unwrap_or(self.terminal.depth)
+    }
+
+    /// Whether only ASCII is sent: the terminal shows no more, and the visitor has not chosen blocks.
+    pub(crate) fn is_ascii(&self) -> bool {
+        self.has_ascii_only && !self.glyphs().has_blocks()
+    }
+
+    fn draw_options(&self) -> DrawOptions {
+        let preferences = &self.identity.preferences;
+        DrawOptions {
+            glyphs: self.glyphs(),
+            depth: self.depth(),
+            shade_ink: self.terminal.shade_ink,
+            cell_aspect: self.terminal.aspect.unwrap_or_default(),
+            filter: Filter::default(),
+            correction: preferences.correction,
+            field_of_view: self.field_of_view,
+            flash: None,
+            marks_middle: preferences.crosshair,
+        }
+    }
+}
+
 /// The world with the figures of `ghosts`. Where there are some, it is copied, since the room and other
 /// sessions share it.
-fn with_ghosts<'w>(world: &'w World, ghosts: &[Ghost]) -> Cow<'w, World> {
+fn with_ghosts<'w>(world: &'w World, ghosts: &[SeenGhost]) -> Cow<'w, World> {
     let mut world = Cow::Borrowed(world);
     if !ghosts.is_empty() {
         let figures = world.figures().iter().copied().chain(ghosts.iter().map(|it| it.figure));

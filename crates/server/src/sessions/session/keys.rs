@@ -1,21 +1,19 @@
-//! Events: the effect of each key on each page.
-//!
-//! As in a game at home, a [`PendingKey`](cellcaster::app::parts::PendingKey) decides which presses answer a
-//! question.
+//! The effect of each key on each page, and in a room.
 
 use std::time::Duration;
 
 use super::Request;
-use super::choice::Choice;
-use super::page::Page;
-use super::visit::Visit;
-use crate::rooms::room::Command;
+use super::line_entry::LineEntry;
+use super::pages::{Choice, Page};
+use super::ui::Ui;
+use crate::rooms::room::{CHAT_COLUMNS, Command};
 use crate::sessions::line::Line;
-use cellcaster::app::parts::{Action, Selection, changes_by};
+use cellcaster::app::parts::{Action, Choice as _, Effect, is_answerable, widened};
+use cellcaster::game::Intent;
 use cellcaster::terminal::{Event, Key, KeyEvent, MouseEvent, Phase, QuitReason};
 use cellcaster::tui::Press;
 
-impl Visit {
+impl Ui {
     /// Handles an event of the terminal.
     pub(crate) fn event(&mut self, event: Event, now: Duration) {
         self.advance(now);
@@ -48,7 +46,7 @@ impl Visit {
         if event.phase != Phase::Release {
             self.is_stale |= self.idle.restart(self.now);
         }
-        if self.page.is_typed_in() && event.phase != Phase::Release {
+        if self.page().is_typed_in() && event.phase != Phase::Release {
             return self.press_while_typing(event);
         }
         let event = self.bindings.resolve(event);
@@ -69,26 +67,46 @@ impl Visit {
     }
 
     fn press(&mut self, key: Key, press: Press) {
-        self.pending.forget();
-        match self.page {
-            Page::Help if self.help.scroll(key) => self.is_stale = true,
-            Page::Leaving => self.press_to_answer(key, press),
-            Page::Room => self.press_in_room(key, press),
-            page if page.has_menu() => self.press_in_menu(key, press),
-            _ => self.press_command(key, press),
+        let (bindings, held) = (&self.bindings, &self.controls.held);
+        match self.pages.press((key, press), bindings, held, self.now) {
+            Effect::Other if self.page() == Page::Room => self.press_in_room(key, press),
+            Effect::Other if self.page() == Page::RoomMenu && self.leaves(key) => {
+                self.press_to_answer(key, press);
+            }
+            Effect::Other => self.press_command(key, press),
+            effect => self.carry_out(effect),
         }
     }
 
-    /// Answers the question by a pending key that did not repeat.
+    /// Answers the question on the page by `key`, now or once it is certain that the key does not repeat.
+    fn press_to_answer(&mut self, key: Key, press: Press) {
+        let effect = self.pages.press_to_answer(key, press, &self.bindings, self.now);
+        self.carry_out(effect);
+    }
+
+    /// Answers the question on the page by a pending key that did not repeat.
     pub(crate) fn settle(&mut self) {
-        if let Some(key) = self.pending.settle(self.now) {
-            self.answer(key);
+        let effect = self.pages.settle(&self.bindings, self.now);
+        self.carry_out(effect);
+    }
+
+    fn carry_out(&mut self, effect: Effect) {
+        match effect {
+            Effect::None | Effect::Other => {}
+            Effect::Redraw => self.is_stale = true,
+            Effect::Change { forward } => self.change_value(forward),
+            Effect::Choose => self.choose(),
+            Effect::Leave(true) => self.say_goodbye(),
+            Effect::Leave(false) => self.close(),
+            Effect::Answer(_) if self.page() == Page::RoomMenu => self.leave_by_request(),
+            // After a death.
+            Effect::Answer(_) => self.retry(),
         }
     }
 
     /// Handles Ctrl-C. In a room and elsewhere, the first one asks and the second one leaves.
     fn interrupted(&mut self) {
-        match self.page {
+        match self.page() {
             Page::Leaving | Page::RoomMenu => self.say_goodbye(),
             _ if self.stay.is_some() => self.open(Page::RoomMenu),
             _ => self.open(Page::Leaving),
@@ -99,8 +117,57 @@ impl Visit {
         self.farewell = Some("Goodbye.".to_owned());
     }
 
+    /// Whether `key` leaves, other than Escape, which goes back.
+    fn leaves(&self, key: Key) -> bool {
+        key != Key::Escape && self.bindings.action(key) == Some(Action::Leave)
+    }
+
+    fn change_value(&mut self, forward: bool) {
+        match (self.page(), self.pages.menu.choice()) {
+            (Page::Settings, Some(Choice::Change(row))) => self.change_setting(row, forward),
+            (Page::Levels(mode), _) if !mode.has_guards() => {}
+            (Page::Levels(_) | Page::Board, _) => {
+                self.change_choices(|choices| {
+                    let difficulty = &mut choices.common.preferences.difficulty;
+                    *difficulty = difficulty.neighbour(forward);
+                });
+                if self.page() == Page::Board {
+                    self.ask_for_board();
+                    self.renew_menu();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Handles the keys that do the same on every page with a menu, and on the help.
+    fn press_command(&mut self, key: Key, press: Press) {
+        if press == Press::Repeat {
+            return;
+        }
+        match self.bindings.action(key) {
+            Some(Action::ToggleHelp) if self.page() == Page::Help => self.close(),
+            Some(Action::ToggleHelp) => self.open(Page::Help),
+            _ if matches!(key, Key::Escape | Key::Backspace) => self.go_back(),
+            Some(Action::Leave) if self.stay.is_some() => self.open(Page::RoomMenu),
+            Some(Action::Leave) => self.open(Page::Leaving),
+            _ => {}
+        }
+    }
+
+    fn go_back(&mut self) {
+        match self.page() {
+            Page::Lobby => self.open(Page::Leaving),
+            Page::Entering => {}
+            _ => self.close(),
+        }
+    }
+}
+
+/// Typing: a name, or a line of chat.
+impl Ui {
     fn press_while_typing(&mut self, event: KeyEvent) {
-        match (self.page, event.key) {
+        match (self.page(), event.key) {
             (Page::Name, Key::Escape) => self.open(Page::Leaving),
             (_, Key::Escape) => self.show(Page::Room),
             (_, Key::Enter) if event.phase == Phase::Press => self.submit(),
@@ -110,7 +177,7 @@ impl Visit {
 
     /// Takes the line that was typed.
     fn submit(&mut self) {
-        if self.page == Page::Chat {
+        if self.page() == Page::Chat {
             if let Some(line) = self.entry.line() {
                 self.ask(Request::Command(Command::Say(line)));
             }
@@ -125,98 +192,85 @@ impl Visit {
             self.ask(Request::Name(name));
         }
     }
+}
 
-    fn press_in_menu(&mut self, key: Key, press: Press) {
-        if let Some(selection) = Selection::by(key, &self.bindings) {
-            self.menu.select(selection);
-            self.is_stale = true;
-        } else if let Some(forward) = changes_by(key, &self.bindings) {
-            self.change_value(forward);
-        } else if self.chooses(key) {
-            self.press_to_answer(key, press);
-        } else {
-            self.press_command(key, press);
+/// In a room.
+impl Ui {
+    fn press_in_room(&mut self, key: Key, press: Press) {
+        let action = self.bindings.action(key);
+        match action {
+            Some(Action::WidenView) => return self.widen_view(true),
+            Some(Action::NarrowView) => return self.widen_view(false),
+            _ if press == Press::Repeat => return,
+            _ => {}
         }
-    }
-
-    fn chooses(&self, key: Key) -> bool {
-        let leaves = self.page == Page::RoomMenu && self.leaves(key);
+        let Some(stay) = &mut self.stay else { return };
+        let (is_member, watches) = (stay.member.is_some(), stay.is_watching);
         match key {
-            Key::Enter | Key::Char(' ') => true,
-            Key::Char(digit) => leaves || self.menu.has_number(digit),
-            _ => false,
-        }
-    }
-
-    /// Whether `key` leaves, other than Escape, which goes back.
-    fn leaves(&self, key: Key) -> bool {
-        key != Key::Escape && self.bindings.action(key) == Some(Action::Leave)
-    }
-
-    fn change_value(&mut self, forward: bool) {
-        use super::settings::Preference;
-        match (self.page, self.menu.choice()) {
-            (Page::Settings, Some(Choice::Change(preference))) => {
-                self.change_preference(preference, forward);
+            Key::Enter if stay.dead_since.is_some() => return self.press_to_go_on(press),
+            Key::Enter | Key::Char('/') if is_member => {
+                self.entry = LineEntry::new(CHAT_COLUMNS);
+                return self.open(Page::Chat);
             }
-            (Page::Levels(mode), _) if !mode.has_guards() => {}
-            (Page::Levels(_) | Page::Board, _) => {
-                let selected = self.menu.selected();
-                self.change_preference(Preference::Difficulty, forward);
-                self.menu = self.menu_of(self.page).selecting(selected);
-                if self.page == Page::Board {
-                    self.ask_for_board();
-                    self.renew_menu();
-                }
-            }
-            _ => {}
+            Key::Char('1') if is_member => return self.open(Page::Emotes),
+            Key::Char(';') => stay.talk.toggle(),
+            Key::Tab | Key::Right | Key::Down if watches => stay.watch_another(true),
+            Key::Left | Key::Up if watches => stay.watch_another(false),
+            Key::Tab => stay.shows_members ^= true,
+            _ => return self.act_on(action),
         }
+        self.is_stale = true;
     }
 
-    pub(crate) fn press_to_answer(&mut self, key: Key, press: Press) {
-        if let Some(key) = self.pending.press(key, press, self.now) {
-            self.answer(key);
-        }
-    }
-
-    fn answer(&mut self, key: Key) {
-        match (self.page, key) {
-            (Page::Leaving, _) if key == Key::Enter || self.leaves(key) => self.say_goodbye(),
-            (Page::Leaving, _) => self.close(),
-            (Page::Room, _) => self.retry(),
-            (Page::RoomMenu, _) if self.leaves(key) => {
-                self.menu.select_choice(Choice::LeaveRoom);
-                self.choose();
-            }
-            _ => {
-                if let Key::Char(digit) = key {
-                    self.menu.select_number(digit);
-                }
-                self.choose();
-            }
-        }
-    }
-
-    /// Handles the keys that do the same on every page with a menu, and on the help.
-    fn press_command(&mut self, key: Key, press: Press) {
-        if press == Press::Repeat {
-            return;
-        }
-        match self.bindings.action(key) {
-            Some(Action::ToggleHelp) if self.page == Page::Help => self.close(),
+    fn act_on(&mut self, action: Option<Action>) {
+        let Some(stay) = &mut self.stay else { return };
+        let toggles = &mut self.controls.toggles;
+        match action {
             Some(Action::ToggleHelp) => self.open(Page::Help),
-            _ if matches!(key, Key::Escape | Key::Backspace) => self.go_back(),
-            Some(Action::Leave) if self.stay.is_some() => self.open(Page::RoomMenu),
-            Some(Action::Leave) => self.open(Page::Leaving),
-            _ => {}
+            Some(Action::Leave | Action::TogglePause) => self.open(Page::RoomMenu),
+            Some(Action::ToggleMinimap) => stay.map.is_shown ^= true,
+            Some(Action::ChangeMap(change)) => stay.map.change(change),
+            Some(Action::ToggleDuck) => toggles.ducks ^= true,
+            Some(Action::ToggleRun) => toggles.runs ^= true,
+            Some(Action::ToggleWalkOn) => toggles.keeps_walking ^= true,
+            Some(Action::ToggleCrosshair) => {
+                self.change_choices(|it| it.common.preferences.crosshair ^= true);
+            }
+            Some(Action::ToggleCompass) => {
+                self.change_choices(|it| it.common.preferences.compass ^= true);
+            }
+            Some(Action::ToggleGhost) => {
+                self.change_choices(|it| it.common.preferences.ghost ^= true);
+            }
+            Some(Action::ToggleMouse) => self.change_choices(|it| it.common.mouse ^= true),
+            Some(Action::ToggleStats) => self.shows_stats ^= true,
+            _ => return,
+        }
+        self.is_stale = true;
+    }
+
+    fn widen_view(&mut self, widens: bool) {
+        self.field_of_view = widened(self.field_of_view, widens);
+        self.is_stale = true;
+    }
+
+    /// Goes on after a death by Enter, from the same time on as at home.
+    fn press_to_go_on(&mut self, press: Press) {
+        let Some(dead_since) = self.stay.as_ref().and_then(|stay| stay.dead_since) else { return };
+        if is_answerable(&self.controls.held, dead_since, self.now) {
+            self.press_to_answer(Key::Enter, press);
         }
     }
 
-    fn go_back(&mut self) {
-        match self.page {
-            Page::Lobby => self.open(Page::Leaving),
-            Page::Entering => {}
-            _ => self.close(),
+    /// Goes on after a death: from the last checkpoint, or from the beginning.
+    fn retry(&mut self) {
+        let Some(stay) = self.stay.as_mut().filter(|stay| stay.dead_since.is_some()) else {
+            return;
+        };
+        if stay.dies_for_good {
+            return self.ask(Request::Command(Command::Again));
         }
+        stay.intents.set([Intent::Retry].into_iter().collect());
+        self.want();
     }
 }

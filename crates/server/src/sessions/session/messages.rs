@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::endings::IdleLimits;
 use crate::accounts::AccountSettings;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::room::{Catalog, Command, MemberId};
@@ -50,25 +51,6 @@ impl HostFacts {
     /// Whether rooms in that level can be played here. In a cluster, other hosts may have other maps.
     pub(crate) fn has_level(&self, name: &str) -> bool {
         self.catalog.world(name).is_some()
-    }
-}
-
-/// How long a visitor may press no key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct IdleLimits {
-    /// As a member of a room; then they are in the lobby.
-    pub(crate) in_room: Duration,
-    /// Elsewhere; then the session ends.
-    pub(crate) elsewhere: Duration,
-    /// How long before that they are warned.
-    pub(crate) warning: Duration,
-}
-
-impl Default for IdleLimits {
-    /// Five minutes in a room, and a quarter of an hour elsewhere, with a warning a minute before.
-    fn default() -> Self {
-        let [in_room, elsewhere, warning] = [5, 15, 1].map(Duration::from_mins);
-        Self { in_room, elsewhere, warning }
     }
 }
 

@@ -3,17 +3,16 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::ghosts::{Ghosts, Seen};
+use super::frames::ShownSteps;
 use super::intent_queue::IntentQueue;
-use super::look::Look;
 use super::messages::Request;
-use super::shown_steps::ShownSteps;
 use super::talk::Talk;
+use crate::rooms::ghost::Ghost;
 use crate::rooms::room::{Header, MemberId, MemberView, Mode, Phase, RoomView};
 use cellcaster::app::MapDisplay;
 use cellcaster::app::parts::{MapPanel, Watch};
-use cellcaster::game::{self, Outcome, PlayerView, STEPS_PER_SECOND};
-use cellcaster::world::{Camera, FieldOfView, Figure};
+use cellcaster::game::{self, Outcome, PlayerColor, PlayerView, STEPS_PER_SECOND};
+use cellcaster::world::{Camera, Difficulty, FieldOfView, Figure};
 
 /// A stay in a room.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
@@ -125,15 +124,19 @@ impl Stay {
         acted.is_none_or(|acted| acted.with_look(game::Look::NONE) == self.intents.newest())
     }
 
-    /// The ghosts in the picture.
+    /// The colour of the visitor's own figure and ghost.
+    pub(crate) fn own_color(&self, room: &RoomView) -> Option<PlayerColor> {
+        self.member.and_then(|id| room.member(id)).map(|member| member.color)
+    }
+
+    /// The figures of the ghosts in the picture.
     pub(crate) fn ghosts<'r>(
         &'r self,
         room: &'r RoomView,
-        look: &Look,
-    ) -> impl Iterator<Item = Seen<'r>> {
-        let own = self.member.and_then(|id| room.member(id)).map(|member| member.color);
-        let is_on = look.shows_ghosts;
-        self.ghosts.seen(room, own).filter(move |_| is_on)
+        is_on: bool,
+    ) -> impl Iterator<Item = Figure> {
+        let own = self.own_color(room);
+        self.ghosts.seen(room, own, is_on).map(|seen| seen.figure)
     }
 
     /// The member through whose eyes the room is seen: the visitor until they finish, or the member that they watch.
@@ -167,15 +170,20 @@ impl Stay {
     }
 
     /// Whether a picture of `room` would differ from the last one.
-    pub(crate) fn differs_from(&self, room: &RoomView, look: &Look) -> bool {
+    pub(crate) fn differs_from(
+        &self,
+        room: &RoomView,
+        view: FieldOfView,
+        shows_ghosts: bool,
+    ) -> bool {
         let Some(shown) = &self.shown else { return true };
         let elapsed = room.game.elapsed();
         shown.revision != room.game.revision()
-            || shown.camera != self.camera(room, look.field_of_view)
+            || shown.camera != self.camera(room, view)
             || std::mem::discriminant(&shown.phase) != std::mem::discriminant(&room.phase)
             || shown.times != times(room)
             || shown.members != room.members
-            || !self.ghosts(room, look).map(|seen| seen.figure).eq(shown.ghosts.iter().copied())
+            || !self.ghosts(room, shows_ghosts).eq(shown.ghosts.iter().copied())
             || shown.standings != room.standings.len()
             || self.talk.is_behind(&room.said)
             || shown.animates_at.is_some_and(|time| time <= elapsed)
@@ -183,18 +191,73 @@ impl Stay {
     }
 
     /// Records that `room` was drawn.
-    pub(crate) fn drawn(&mut self, room: &RoomView, look: &Look) {
+    pub(crate) fn drawn(&mut self, room: &RoomView, view: FieldOfView, shows_ghosts: bool) {
         self.shown = Some(Shown {
             header: Arc::clone(&room.header),
             revision: room.game.revision(),
-            camera: self.camera(room, look.field_of_view),
+            camera: self.camera(room, view),
             phase: room.phase,
             times: times(room),
             members: room.members.clone(),
-            ghosts: self.ghosts(room, look).map(|seen| seen.figure).collect(),
+            ghosts: self.ghosts(room, shows_ghosts).collect(),
             standings: room.standings.len(),
             animates_at: self.next_change,
         });
+    }
+}
+
+/// The ghosts of the level that is played.
+#[derive(Debug, Default)]
+pub(crate) struct Ghosts {
+    /// The level that they were asked for.
+    level: Option<(String, Difficulty)>,
+    ghosts: Option<Arc<[Ghost]>>,
+}
+
+/// A ghost in a step.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SeenGhost<'g> {
+    pub(crate) ghost: &'g Ghost,
+    pub(crate) color: PlayerColor,
+    pub(crate) figure: Figure,
+}
+
+impl Ghosts {
+    /// Forgets all at the beginning of a round; returns the wish for those of its level.
+    pub(crate) fn begin(&mut self, room: &RoomView) -> Option<Request> {
+        *self = Self::default();
+        let header = &room.header;
+        header.mode.has_ghosts().then(|| {
+            let (level, difficulty) = (header.level.clone(), header.difficulty);
+            self.level = Some((level.clone(), difficulty));
+            Request::Ghosts { level, difficulty }
+        })
+    }
+
+    /// Takes the ghosts of a level, if it is still played.
+    pub(crate) fn receive(&mut self, level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]>) {
+        if self.level == Some((level, difficulty)) {
+            self.ghosts = Some(ghosts);
+        }
+    }
+
+    /// The ghosts where they are now, if they are switched on; the visitor's own one in their colour. There are
+    /// some only while the round is played.
+    pub(crate) fn seen<'g>(
+        &'g self,
+        room: &'g RoomView,
+        own: Option<PlayerColor>,
+        is_on: bool,
+    ) -> impl Iterator<Item = SeenGhost<'g>> {
+        let step = room.begun.map(|begun| room.step.saturating_sub(begun));
+        let ghosts = self.ghosts.as_deref().filter(|_| is_on).unwrap_or_default();
+        step.into_iter().flat_map(move |step| {
+            ghosts.iter().filter_map(move |ghost| {
+                let color = ghost.color(own);
+                let figure = ghost.figure(step, room.game.sprite_of_players(color)?)?;
+                Some(SeenGhost { ghost, color, figure })
+            })
+        })
     }
 }
 

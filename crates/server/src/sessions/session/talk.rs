@@ -1,11 +1,17 @@
-//! What was said last, for as long as it is shown.
+//! The latest lines of chat, at the lower left of the picture for as long as they are shown.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use ratatui::layout::Rect;
+use ratatui::text::{Line as TextLine, Span};
+
+use super::draw::overhead;
 use crate::rooms::room::Said;
 use crate::sessions::line::Line;
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::PlayerColor;
+use cellcaster::tui::canvas::Canvas;
 
 /// How long a line is shown.
 const SHOWN: Duration = Duration::from_secs(8);
@@ -88,6 +94,30 @@ impl Talk {
         if self.remarks.len() > MOST {
             self.remarks.pop_front();
         }
+    }
+}
+
+/// The rows of a picture that are left to others.
+const ROWS_ABOVE: u16 = 3;
+
+/// Draws `remarks`, the newest at the bottom; above the typed line if there is one.
+pub(crate) fn draw<'r>(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    remarks: impl DoubleEndedIterator<Item = &'r Remark>,
+    is_typed: bool,
+    depth: ColorDepth,
+) {
+    let bottom = picture.bottom() - u16::from(is_typed);
+    let rows = (picture.top() + ROWS_ABOVE..bottom).rev();
+    for (y, remark) in rows.zip(remarks.rev()) {
+        let by = remark.by.as_ref();
+        let name = by
+            .map(|(name, color)| Span::styled(format!(" {name}"), overhead::style(*color, depth)));
+        let text = Span::raw(format!(" {} ", remark.text));
+        let line = name.into_iter().chain([text]).collect::<TextLine<'_>>();
+        let width = (line.width() as u16).min(picture.width);
+        canvas.draw_widget(line, Rect { y, width, height: 1, ..picture });
     }
 }
 

@@ -17,20 +17,20 @@ use cellcaster::world::FieldOfView;
 impl Session {
     /// The number of the visitor as a member.
     pub(crate) fn member(&self) -> Option<MemberId> {
-        self.visit.stay.as_ref()?.member
+        self.ui.stay.as_ref()?.member
     }
 
     /// Whether the terminal shows all that there is to see.
     pub(crate) fn is_settled(&self, room: Option<&RoomView>) -> bool {
-        !self.visit.is_stale(room) && self.protocol.is_settled()
+        !self.ui.is_stale(room) && self.protocol.is_settled()
     }
 
     /// What the next frame waits for.
     pub(crate) fn wait(&self, room: Option<&RoomView>) -> String {
-        let Self { protocol, visit, ending, pace, .. } = self;
-        let (is_ready, is_settled) = (protocol.is_ready(visit.now), protocol.is_settled());
-        let (is_stale, sent) = (visit.is_stale(room), protocol.frames_sent());
-        let (now, answered) = (visit.now, protocol.frames_answered());
+        let Self { protocol, ui, ending, pace, .. } = self;
+        let (is_ready, is_settled) = (protocol.is_ready(ui.now), protocol.is_settled());
+        let (is_stale, sent) = (ui.is_stale(room), protocol.frames_sent());
+        let (now, answered) = (ui.now, protocol.frames_answered());
         format!(
             "ready {is_ready}, settled {is_settled}, stale {is_stale}, at {now:?}, {pace:?}, \
              {sent} frames, {answered} answered, {ending:?}"
@@ -42,15 +42,15 @@ impl Session {
         let size = self.protocol.size();
         let size = ratatui::layout::Size::new(size.columns, size.rows);
         let mut writer = CellWriter::new(Vec::new(), size);
-        writer.set_ascii(self.visit.look.is_ascii());
-        writer.draw_frame(|screen| self.visit.draw(screen, room));
+        writer.set_ascii(self.ui.is_ascii());
+        writer.draw_frame(|screen| self.ui.draw(screen, room));
         _ = ratatui::backend::Backend::flush(&mut writer);
         std::mem::take(writer.output_mut())
     }
 }
 
 impl Rig {
-    fn page(&self, index: usize) -> page::Page {
-        self.session(index, |session, _| session.visit.page)
+    fn page(&self, index: usize) -> super::pages::Page {
+        self.session(index, |session, _| session.ui.page())
     }
 }

@@ -181,9 +181,8 @@ fn address(network: u8, host: u8) -> IpAddr {
     IpAddr::V4(Ipv4Addr::new(10, 0, network, host))
 }
 
-fn key(number: u8) -> KeyData {
-    use russh::keys::ssh_key::public::{Ed25519PublicKey, KeyData as Public};
-    KeyData::new(&Public::from(Ed25519PublicKey([number; 32]))).unwrap()
+fn key(number: u8) -> AccountKey {
+    AccountKey::new([number; 32])
 }
 
 #[test]
@@ -346,5 +345,27 @@ proptest! {
                 .collect::<Vec<_>>()
         };
         prop_assert_eq!(run(), run());
+    }
+}
+
+/// The networks that have failed longest ago are dropped first.
+#[test]
+fn memory_for_networks_is_bounded() {
+    let mut penalties = Penalties::new(20, Duration::from_secs(1000));
+    let network = |number: u64| {
+        let address = Ipv6Addr::from_bits((u128::from(number) << 64) | (1 << 127));
+        AddressPrefix::network_of(IpAddr::V6(address))
+    };
+    let time = |number: u64| Duration::from_millis(number);
+    for number in 0..3 * MOST_NETWORKS as u64 {
+        penalties.charge(network(number), Outcome::LeftEarly, time(number));
+        penalties.charge(network(0), Outcome::LeftEarly, time(number));
+    }
+    assert_eq!(penalties.networks.len(), MOST_NETWORKS);
+    assert_eq!(penalties.order.len(), MOST_NETWORKS);
+    let last = 3 * MOST_NETWORKS as u64 - 1;
+    assert!(penalties.refused_share(network(0), time(last)) > 0.8);
+    for (number, is_known) in [(1, false), (last + 1 - MOST_NETWORKS as u64, false), (last, true)] {
+        assert_eq!(penalties.networks.contains_key(&network(number)), is_known, "{number}");
     }
 }

@@ -134,7 +134,7 @@ fn a_visitor_who_is_displaced_reads_why() {
     let mut player = house.player(&["-o", &format!("IdentityFile={key}")]);
     player.wait_for("Enter passphrase");
     let _newcomer = TcpStream::connect(house.address).unwrap();
-    let displaced = || house.counters.refused_for(Refusal::Startups);
+    let displaced = || house.metrics.refused(Refusal::Startups).get();
     wait_until("nobody is displaced", || displaced() == 1);
     player.send("secret\r");
     player.wait_for("Too many visitors");

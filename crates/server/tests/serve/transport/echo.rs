@@ -155,7 +155,7 @@ impl Screen {
 
     fn text(&self) -> String {
         let Visitor { key, user, term, environment, compresses, notice, .. } = &self.visitor;
-        let who = key.as_ref().map_or("guest", |key| key.fingerprint());
+        let who = key.map_or_else(|| "guest".to_owned(), |key| key.to_string());
         let environment: Vec<String> =
             environment.iter().map(|(name, value)| format!("{name}={value}")).collect();
         let ticks = self.ticks.as_ref();

@@ -2,7 +2,6 @@
 
 use std::io::Read;
 use std::net::TcpStream;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::house::{House, PATIENCE, wait_until};
@@ -38,9 +37,10 @@ fn what_is_no_text_reaches_the_session_as_it_is() {
 #[test]
 fn clients_that_never_read_hold_one_frame_each() {
     const CLIENTS: usize = 5;
+    const MOST: i64 = CLIENTS as i64 * 2 * 80 * 24 * 40;
     let house = House::open();
     let players = [(); CLIENTS].map(|()| house.visitor(&[]));
-    let held = || house.counters.held.load(Ordering::Relaxed);
+    let held = || house.metrics.held.get();
     for player in &players {
         player.set_reading(false);
         player.send("F");
@@ -50,7 +50,7 @@ fn clients_that_never_read_hold_one_frame_each() {
     for _ in 0..3 {
         house.assert_answers();
         // A frame of noise has 80 × 24 cells of at most 40 bytes, in a buffer that has grown by doubling.
-        assert!(held() <= CLIENTS * 2 * 80 * 24 * 40, "{} bytes", held());
+        assert!(held() <= MOST, "{} bytes", held());
     }
     players[0].set_reading(true);
     players[0].send("awakef");
@@ -87,7 +87,7 @@ fn a_flood_of_refused_connections_is_told_seldom() {
     let (begun, told) = (Instant::now(), told.count());
     let most = 8 * (1 + begun.elapsed().as_secs() as usize / 2);
     assert!((1..=most).contains(&told), "{told} of 200, and at most {most}");
-    assert_eq!(house.counters.connections.load(Ordering::Relaxed), 1);
+    assert_eq!(house.metrics.connections.get(), 1);
     player.send("still here");
     player.wait_for("[typed still here]");
 }

@@ -11,8 +11,9 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use cellcaster_server::ops::config::Config;
+use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
-use cellcaster_server::ssh::{Counters, Server};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::oneshot;
 
@@ -26,7 +27,7 @@ const WINDOW: (u16, u16) = (80, 24);
 
 pub(crate) struct House {
     pub(crate) address: SocketAddr,
-    pub(crate) counters: Arc<Counters>,
+    pub(crate) metrics: Arc<Metrics>,
     pub(crate) folder: PathBuf,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -46,11 +47,11 @@ impl House {
         let key = HostKey::open(&folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
-        let (address, counters) = (server.address().unwrap(), server.counters());
+        let (address, metrics) = (server.address().unwrap(), server.metrics());
         let (stop, stopped) = oneshot::channel();
         let stopped = async { _ = stopped.await };
         let thread = thread::spawn(move || serve(&runtime, server, stopped));
-        Self { address, counters, folder, stop: Some(stop), thread: Some(thread) }
+        Self { address, metrics, folder, stop: Some(stop), thread: Some(thread) }
     }
 
     /// What `ssh` is told to connect.
@@ -131,8 +132,8 @@ impl House {
         result
     }
 
-    pub(crate) fn sessions(&self) -> usize {
-        self.counters.sessions.load(Ordering::Relaxed)
+    pub(crate) fn sessions(&self) -> i64 {
+        self.metrics.sessions.get()
     }
 
     /// Asks the server to end.
@@ -150,8 +151,8 @@ impl Drop for House {
     fn drop(&mut self) {
         if !thread::panicking() {
             self.wait_for_end();
-            assert_eq!(self.counters.connections.load(Ordering::Relaxed), 0);
-            assert_eq!(self.counters.held.load(Ordering::Relaxed), 0);
+            assert_eq!(self.metrics.connections.get(), 0);
+            assert_eq!(self.metrics.held.get(), 0);
         }
         _ = fs::remove_dir_all(&self.folder);
     }

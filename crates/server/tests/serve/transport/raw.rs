@@ -155,7 +155,7 @@ fn half_open_connections_leave_room() {
     let is_over = AtomicBool::new(false);
     thread::scope(|scope| {
         scope.spawn(|| flood(house.address, &is_over));
-        let displaced = || house.counters.refused_for(Refusal::Startups);
+        let displaced = || house.metrics.refused(Refusal::Startups).get();
         super::house::wait_until("none is displaced", || displaced() > 10);
         for _ in 0..5 {
             let before = displaced();

@@ -6,8 +6,8 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::Span;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-use super::ghost::Ghost;
 use crate::rooms::room::{MemberView, Mode, Role, RoomView};
+use crate::sessions::session::stay::SeenGhost;
 use cellcaster::app::parts::DrawOptions;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::{OtherPlayer, PlayerColor, PlayerView};
@@ -39,7 +39,7 @@ pub(crate) fn draw(
     options: &DrawOptions,
     player: &PlayerView,
     room: &RoomView,
-    ghosts: &[Ghost],
+    ghosts: &[SeenGhost],
 ) {
     let [columns, rows] = options.glyphs.pixels_per_cell();
     let (width, height) = (u32::from(area.width) * columns, u32::from(area.height) * rows);
@@ -79,10 +79,10 @@ impl Overhead {
         })
     }
 
-    fn of_ghost(ghost: &Ghost) -> Self {
-        let Ghost { figure, label, color } = ghost;
+    fn of_ghost(seen: &SeenGhost) -> Self {
+        let SeenGhost { ghost, color, figure } = *seen;
         let head = figure.base + HEAD;
-        Self { position: figure.position, head, text: label.clone(), color: *color }
+        Self { position: figure.position, head, text: ghost.label(), color }
     }
 }
 

@@ -6,12 +6,12 @@ use ratatui::layout::Rect;
 
 use crate::rooms::room::{MemberView, Mode, Phase, Role, RoomView};
 use crate::sessions::session::stay::{Stay, run_seconds, seconds_left};
-use crate::sessions::session::visit::Visit;
+use crate::sessions::session::ui::Ui;
 use cellcaster::app::parts::{HealthSigns, Part, StatusLine, whole_seconds};
 use cellcaster::game::{Outcome, PlayerView};
 use cellcaster::tui::canvas::Canvas;
 
-impl Visit {
+impl Ui {
     /// Draws the mode, the time, what the player is and has, and who is watched.
     pub(crate) fn draw_room_status(
         &mut self,
@@ -19,7 +19,8 @@ impl Visit {
         area: Rect,
         room: &RoomView,
     ) {
-        let Self { stay, status, host, controls, pointer, bindings, look, .. } = self;
+        let signs = HealthSigns::for_picture(self.glyphs(), self.depth());
+        let Self { stay, status, host, controls, pointer, bindings, .. } = self;
         let stats = self.stats.as_ref().filter(|_| self.shows_stats);
         let Some(stay) = stay else { return };
         let seen = stay.seen_through(room);
@@ -31,7 +32,6 @@ impl Visit {
                 !room.header.mode.has_guards() && health.points == health.most
             };
             if let Some((_, player)) = mission.filter(|(_, player)| !is_safe(player)) {
-                let signs = HealthSigns::for_picture(look.glyphs, look.depth);
                 line.write_vitals(&room.game, &player, signs)?;
             }
             write_round(line, room)?;

@@ -21,7 +21,7 @@ fn race(ghosts: impl IntoIterator<Item = Ghost>) -> (Rig, usize) {
 fn notify(rig: &Rig, index: usize, level: &str, ghosts: impl IntoIterator<Item = Ghost>) {
     let (level, ghosts) = (level.to_owned(), ghosts.into_iter().collect());
     let event = SessionEvent::Ghosts { level, difficulty: Difficulty::Normal, ghosts };
-    rig.session(index, |session, _| session.notify(event, session.visit.now));
+    rig.session(index, |session, _| session.notify(event, session.ui.now));
 }
 
 fn hall() -> Arc<World> {
@@ -54,9 +54,9 @@ fn a_stored_run_walks_along_where_the_script_was() {
     (0..step - step % 2).for_each(|_| game.step(forward));
     let view = rig.view();
     let (position, opacity) = rig.session(mara, move |session, _| {
-        let visit = &session.visit;
-        let seen = visit.stay.as_ref().unwrap().ghosts(&view, &visit.look).next().unwrap();
-        (seen.figure.position, seen.figure.opacity)
+        let ui = &session.ui;
+        let figure = ui.stay.as_ref().unwrap().ghosts(&view, true).next().unwrap();
+        (figure.position, figure.opacity)
     });
     let at = game.camera(FieldOfView::default()).position();
     assert!(position.distance(at) < 1e-4, "{position} {at}");

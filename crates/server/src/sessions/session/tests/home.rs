@@ -3,23 +3,21 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use russh::keys::ssh_key::public::{self, Ed25519PublicKey};
-
 use super::*;
+use crate::accounts::AccountKey;
 use crate::rooms::room::{Room, parse_log};
 use crate::rooms::summary::RoomId;
 use crate::sessions::line::Line;
-use crate::sessions::session::page::Page;
+use crate::sessions::session::pages::Page;
 use crate::simulation::guest;
-use crate::ssh::{KeyData, Visitor};
+use crate::ssh::Visitor;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Outcome;
 use cellcaster::terminal::Fidelity;
 
 /// A key, which makes its owner an account.
-fn key() -> KeyData {
-    let key = Ed25519PublicKey([7; 32]);
-    KeyData::new(&public::KeyData::Ed25519(key)).unwrap()
+fn key() -> AccountKey {
+    AccountKey::new([7; 32])
 }
 
 /// From the name to the first level alone.
@@ -125,7 +123,7 @@ fn the_bell_rings_for_those_who_want_it_when_they_are_hurt() {
     let rings = [false, true].map(|bell| {
         let mut rig = Rig::with(Wish { catalog: catalog(&spikes), ..Wish::new(Mode::Together) });
         let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
-        rig.session(one, move |session, _| session.visit.identity.preferences.bell = bell);
+        rig.session(one, move |session, _| session.ui.identity.preferences.bell = bell);
         for _ in 0..3 {
             rig.press(one, ENTER);
         }
@@ -166,7 +164,7 @@ fn a_preset_of_keys_is_chosen_and_kept() {
     assert!(rig.position(one).x > start.x + 0.1);
     let again = rig.connect(mara, Speaks::Plain, ColorDepth::Mono);
     rig.pump(300);
-    let kept = rig.session(again, |session, _| session.visit.identity.configuration.clone());
+    let kept = rig.session(again, |session, _| session.ui.identity.configuration.clone());
     assert!(kept.to_string().contains("preset = \"azerty\"") && kept.mouse, "{kept}");
 }
 
@@ -175,7 +173,7 @@ fn a_notice_about_the_key_stands_in_the_lobby() {
     let mut rig = Rig::new(Mode::Roam);
     let one = rig.visitor("Mara", (80, 24), Speaks::Plain);
     rig.session(one, |session, _| {
-        session.visit.host.notice = Line::of("An RSA key is not an account.", 60);
+        session.ui.host.notice = Line::of("An RSA key is not an account.", 60);
     });
     rig.press(one, ENTER);
     let text = rig.text(one);
@@ -195,7 +193,7 @@ fn compression_is_advised_only_where_it_would_help() {
         let one = rig.visitor_with("Mara", (80, 24), Speaks::Kitty, ColorDepth::True);
         rig.clients[one].set(|link| link.latency = Duration::from_millis(60));
         rig.session(one, move |session, _| {
-            session.visit.host.compresses = compresses;
+            session.ui.host.compresses = compresses;
             session.is_limited = is_limited;
         });
         rig.press(one, "Xenia");

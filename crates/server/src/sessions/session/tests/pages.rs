@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::rooms::summary::RoomId;
-use crate::sessions::session::choice::Target;
-use crate::sessions::session::page::Page;
+use crate::sessions::session::pages::Page;
+use crate::sessions::session::pages::Target;
 use crate::simulation::emulator::{Emulator, Modes};
 
 #[test]
@@ -29,7 +29,7 @@ fn a_name_is_typed_in_place_of_the_offer() {
     assert!(rig.text(one).contains("Mara31m v_"), "{}", rig.text(one));
     assert_eq!(rig.clients[one].look(|emulator| emulator.title().to_owned()), "");
     rig.press(one, "\x7f\x7f\x7f\x7f\x7f\r");
-    let name = rig.session(one, |session, _| session.visit.identity.name.clone());
+    let name = rig.session(one, |session, _| session.ui.identity.name.clone());
     assert_eq!(name, line("Mara"));
     assert_eq!(rig.page(one), Page::Lobby);
 }
@@ -146,7 +146,7 @@ fn keys_beyond_what_anybody_types_are_dropped() {
     rig.press(fast, &"\x1b[C".repeat(1000));
     (0..KEYS_AT_ONCE as usize % 3).for_each(|_| rig.press(slow, "\x1b[C"));
     let difficulty = |rig: &Rig, index| {
-        rig.session(index, |session, _| session.visit.identity.preferences.difficulty)
+        rig.session(index, |session, _| session.ui.identity.preferences.difficulty)
     };
     assert_eq!(difficulty(&rig, fast), difficulty(&rig, slow));
     for visitor in [fast, slow] {

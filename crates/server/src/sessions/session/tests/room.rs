@@ -1,7 +1,7 @@
 //! Members of one room: they see each other, talk, and play rounds.
 
 use super::*;
-use crate::sessions::session::page::Page;
+use crate::sessions::session::pages::Page;
 
 /// Two members; the second one looks back at the first.
 fn two(mode: Mode) -> (Rig, usize, usize) {

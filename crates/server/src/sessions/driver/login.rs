@@ -1,0 +1,288 @@
+//! The beginning of a visit: the account, bans, names, limits over all hosts, and the terminal.
+
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
+
+use super::{Shared, unix_time};
+use crate::accounts::{
+    Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
+    Origin, Refusal, StoreFailure,
+};
+use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
+use crate::lock::locked;
+use crate::ops::logging::events;
+use crate::rooms::room::NAME_COLUMNS;
+use crate::sessions::line::Line;
+use crate::ssh::{Departure, Visitor};
+use cellcaster::terminal::{Options, locale_without_utf8};
+
+/// A visitor as the store knows them.
+#[derive(Debug)]
+pub(crate) struct Known {
+    /// The key; `None` for a guest.
+    pub(crate) key: Option<AccountKey>,
+    /// The account; `None` for a guest, and before the name is chosen.
+    pub(crate) account: Option<Account>,
+    pub(crate) settings: AccountSettings,
+    /// The name that is offered.
+    pub(crate) offer: Name,
+}
+
+/// Names of visitors who have no account, while they are here.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NamesInUse(Arc<Mutex<Vec<Name>>>);
+
+/// A name that is in use until this is dropped.
+#[derive(Debug)]
+pub(crate) struct NameInUse {
+    name: Name,
+    names: NamesInUse,
+}
+
+/// Shown to a visitor while the store cannot be asked.
+const NOT_KNOWN: &str = "The host can't look you up now; try again later.";
+/// Shown to a visitor whose name cannot be kept.
+const NOT_NOW: &str = "The host can't keep this now; try again later.";
+
+impl Shared {
+    /// Looks a visitor up, or returns the reason why they may not play and how they depart.
+    pub(crate) async fn log_in(&self, visitor: &Visitor) -> Result<Known, (String, Departure)> {
+        let key = visitor.key;
+        let address = visitor.peer.ip();
+        let answer = self.store.call(move |store| {
+            let now = unix_time();
+            let account = key.map(|key| store.account(&key)).transpose()?.flatten();
+            let name = account.as_ref().map(|account| &account.name);
+            let identity = Identity { address: Some(address), key: key.as_ref(), name };
+            let ban = store.ban_of(&identity, now)?;
+            let settings = match &account {
+                Some(account) => {
+                    store.note_visit(account.id, now)?;
+                    store.settings(account.id)?
+                }
+                None => AccountSettings::default(),
+            };
+            Ok::<_, StoreFailure>((ban, account, settings))
+        });
+        let (ban, account, settings) = match answer.await {
+            Ok(Ok(known)) => known,
+            failed => {
+                self.metrics.store_errors.inc();
+                events::store_failed(format!("{failed:?}"));
+                return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
+            }
+        };
+        if let Some(ban) = ban {
+            events::banned_visitor(address, &ban.target);
+            return Err((banned(&ban), Departure::REFUSED));
+        }
+        let offer = match &account {
+            Some(account) => account.name.clone(),
+            None => self.offer(&visitor.user),
+        };
+        Ok(Known { key, account, settings, offer })
+    }
+
+    /// A name for somebody new: that of their user name, if it can be one.
+    fn offer(&self, user: &str) -> Name {
+        let own = Name::new(user).ok().filter(|name| !self.names.has(name));
+        own.unwrap_or_else(|| Name::of_guest(self.next_guest.fetch_add(1, Ordering::Relaxed)))
+    }
+}
+
+/// The name that a visitor wants, once it is theirs.
+pub(crate) fn choose_name(
+    store: &mut HostStore,
+    origin: &Origin,
+    key: Option<AccountKey>,
+    account: Option<AccountId>,
+    name: &Name,
+) -> Result<Option<Account>, String> {
+    let now = unix_time();
+    let sentence = |refusal: Refusal| refusal.to_string();
+    match (key, account) {
+        (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
+        (Some(key), None) => {
+            let account = store.create_account_from(Some(origin), &key, name, now);
+            account.map(Some).map_err(sentence)
+        }
+        (None, None) => match guest_may_use(store, name) {
+            Ok(true) => Ok(None),
+            Ok(false) => Err(Refusal::NameTaken.to_string()),
+            Err(_) => Err(NOT_NOW.to_owned()),
+        },
+    }
+}
+
+fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
+    let is_taken = store.account_named(name)?.is_some();
+    let identity = Identity { name: Some(name), ..Identity::default() };
+    Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
+}
+
+fn banned(ban: &Ban) -> String {
+    let what = match ban.target {
+        BanTarget::Key(_) => "Your key is",
+        BanTarget::Name(_) => "Your name is",
+        BanTarget::Addresses(_) => "Your network is",
+    };
+    match Line::of(&ban.reason, 200) {
+        Some(reason) => format!("{what} banned from this server: {reason}"),
+        None => format!("{what} banned from this server."),
+    }
+}
+
+/// A name as lines have it.
+pub(crate) fn line(name: &Name) -> Line {
+    // A name is printable, and fits.
+    Line::of(name.as_str(), NAME_COLUMNS).unwrap_or_else(|| Line::of("guest", 5).expect("a line"))
+}
+
+impl NamesInUse {
+    /// Reserves a name; `None` if somebody uses one that looks like it.
+    pub(crate) fn reserve(&self, name: &Name) -> Option<NameInUse> {
+        let is_free = locked(&self.0, |names| {
+            let is_free = !names.iter().any(|other| other.looks_like(name));
+            if is_free {
+                names.push(name.clone());
+            }
+            is_free
+        });
+        is_free.then(|| NameInUse { name: name.clone(), names: self.clone() })
+    }
+
+    fn has(&self, name: &Name) -> bool {
+        locked(&self.0, |names| names.iter().any(|other| other.looks_like(name)))
+    }
+}
+
+impl Drop for NameInUse {
+    fn drop(&mut self) {
+        locked(&self.names.0, |names| {
+            if let Some(index) = names.iter().position(|name| *name == self.name) {
+                names.swap_remove(index);
+            }
+        });
+    }
+}
+
+impl Shared {
+    /// Counts a visitor on all hosts of a cluster, or returns the reason why they may not play and how they depart.
+    pub(crate) async fn begin_visit(
+        &self,
+        visitor: &Visitor,
+        key: Option<AccountKey>,
+    ) -> Result<Option<CountedVisit>, (String, Departure)> {
+        let Some(rooms) = &self.cluster else { return Ok(None) };
+        let limits = self.config.get().admission;
+        let new_visit = NewVisit {
+            key,
+            per_key: limits.per_key,
+            address: visitor.peer.ip(),
+            per_address: limits.per_address,
+        };
+        rooms.visits().begin(new_visit).await.map(Some).map_err(|refusal| match refusal {
+            VisitRefusal::TooMany(reason) => {
+                let refusal = Some(reason);
+                (reason.sentence(&limits), Departure { refusal, ..Departure::REFUSED })
+            }
+            VisitRefusal::NotNow(failure) => {
+                self.metrics.store_errors.inc();
+                events::store_failed(failure);
+                (NOT_KNOWN.to_owned(), Departure::FAILED)
+            }
+        })
+    }
+}
+
+/// A visitor's terminal, as their client describes it.
+pub(crate) fn terminal_options(visitor: &Visitor) -> Options {
+    Options {
+        is_remote: true,
+        is_ascii: ascii_locale(visitor).is_some(),
+        ..Options::from_environment(|name| variable(visitor, name))
+    }
+}
+
+/// The setting of the visitor's locale that restricts them to ASCII. `None` for UTF-8, and if their
+/// client sends no locale.
+pub(crate) fn ascii_locale(visitor: &Visitor) -> Option<String> {
+    locale_without_utf8(|name| variable(visitor, name))
+}
+
+/// A sentence for a visitor whose terminal cannot show the game.
+pub(crate) fn terminal_refusal(visitor: &Visitor) -> Option<String> {
+    let term = terminal_options(visitor).teletype?;
+    Some(format!(
+        "TERM is {term}, a terminal that cannot move its cursor, which playing needs. Set it to what \
+         you have, such as TERM=xterm-256color."
+    ))
+}
+
+fn variable(visitor: &Visitor, name: &str) -> Option<String> {
+    match name {
+        "TERM" => Some(visitor.term.clone()),
+        _ => visitor.environment.get(name).cloned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::net::SocketAddr;
+
+    use super::*;
+    use cellcaster::color::palette::ColorDepth;
+    use cellcaster::terminal::WindowSize;
+
+    fn visitor(term: &str, variables: &str) -> Visitor {
+        let pairs = variables.split_whitespace().filter_map(|pair| pair.split_once('='));
+        let environment: BTreeMap<String, String> =
+            pairs.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+        Visitor {
+            peer: SocketAddr::from(([192, 0, 2, 1], 50_000)),
+            key: None,
+            notice: None,
+            user: "ann".to_owned(),
+            term: term.to_owned(),
+            environment,
+            size: WindowSize::of_cells(80, 24),
+            compresses: false,
+        }
+    }
+
+    #[test]
+    fn the_locale_that_a_client_sends_decides_on_ascii() {
+        for (variables, setting) in [
+            ("", None),
+            ("LANG=en_GB.UTF-8 LC_TIME=C", None),
+            ("LANG=C", Some("LANG=C")),
+            ("LANG=en_GB.UTF-8 LC_ALL=C", Some("LC_ALL=C")),
+            ("LANG=C LC_CTYPE=C.UTF-8", None),
+        ] {
+            let visitor = visitor("xterm-256color", variables);
+            assert_eq!(ascii_locale(&visitor).as_deref(), setting, "{variables}");
+            assert_eq!(terminal_options(&visitor).is_ascii, setting.is_some(), "{variables}");
+        }
+    }
+
+    #[test]
+    fn only_terminals_without_cursor_motion_are_refused() {
+        for term in ["dumb", "unknown", "tty33"] {
+            assert!(
+                terminal_refusal(&visitor(term, "")).is_some_and(|it| it.contains(term)),
+                "{term}"
+            );
+        }
+        for term in ["", "linux", "vt100", "no-such", "xterm-256color"] {
+            assert_eq!(terminal_refusal(&visitor(term, "")), None, "{term}");
+        }
+    }
+
+    #[test]
+    fn a_linux_console_is_queried_for_nothing_that_it_prints() {
+        let options = terminal_options(&visitor("linux", ""));
+        assert!(!options.probe_extensions && !options.ask_for_version && !options.is_ascii);
+        assert_eq!(options.color_depth.depth(), ColorDepth::Indexed16);
+    }
+}

@@ -1,0 +1,127 @@
+//! Ends of a session that come with time: the visitor is idle, or the server ends.
+
+use std::time::Duration;
+
+/// How long a visitor may press no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct IdleLimits {
+    /// As a member of a room; then they are in the lobby.
+    pub(crate) in_room: Duration,
+    /// Elsewhere; then the session ends.
+    pub(crate) elsewhere: Duration,
+    /// How long before that they are warned.
+    pub(crate) warning: Duration,
+}
+
+impl Default for IdleLimits {
+    /// Five minutes in a room, and a quarter of an hour elsewhere, with a warning a minute before.
+    fn default() -> Self {
+        let [in_room, elsewhere, warning] = [5, 15, 1].map(Duration::from_mins);
+        Self { in_room, elsewhere, warning }
+    }
+}
+
+/// The time since the last key.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Idle {
+    since: Duration,
+    is_warned: bool,
+}
+
+/// What happens to a visitor who presses no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum IdleAction {
+    /// They are warned.
+    Warn,
+    /// They leave the room, or the session ends.
+    End,
+}
+
+impl Idle {
+    /// Counts from `now` on. Returns whether a warning was shown, which now is not any more.
+    pub(crate) fn restart(&mut self, now: Duration) -> bool {
+        let was_warned = self.is_warned;
+        *self = Self { since: now, is_warned: false };
+        was_warned
+    }
+
+    /// Whether the warning is shown.
+    pub(crate) fn is_warned(&self) -> bool {
+        self.is_warned
+    }
+
+    /// What happens at `now`, after which no key may be missing for longer than `limit`.
+    pub(crate) fn step(
+        &mut self,
+        limits: &IdleLimits,
+        limit: Duration,
+        now: Duration,
+    ) -> Option<IdleAction> {
+        if self.next_at(limits, limit) > now {
+            return None;
+        }
+        if now >= self.since + limit {
+            return Some(IdleAction::End);
+        }
+        self.is_warned = true;
+        Some(IdleAction::Warn)
+    }
+
+    /// The time of the next thing that happens if no key is pressed.
+    pub(crate) fn next_at(&self, limits: &IdleLimits, limit: Duration) -> Duration {
+        let wait = if self.is_warned { limit } else { limit.saturating_sub(limits.warning) };
+        self.since + wait
+    }
+}
+
+/// The end of the server, to which visitors see the seconds counted down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Draining {
+    pub(crate) ends_at: Duration,
+    /// Whether the visitor finds the room as it was on another host.
+    pub(crate) can_return: bool,
+}
+
+impl Draining {
+    /// The whole seconds to the end, rounded up.
+    pub(crate) fn seconds(self, now: Duration) -> u64 {
+        let left = self.ends_at.saturating_sub(now).as_millis();
+        u64::try_from(left.div_ceil(1000)).unwrap_or(u64::MAX)
+    }
+
+    /// The time at which the number of seconds changes; `None` at the end.
+    pub(crate) fn next_at(self, now: Duration) -> Option<Duration> {
+        let after = Duration::from_secs(self.seconds(now).checked_sub(1)?);
+        Some(self.ends_at.saturating_sub(after))
+    }
+
+    pub(crate) fn sentence(self, now: Duration) -> String {
+        let then = if self.can_return { " Connect again, and you are where you were." } else { "" };
+        match self.seconds(now) {
+            0 => format!("The server ends now.{then}"),
+            1 => format!("The server ends in 1 second.{then}"),
+            seconds => format!("The server ends in {seconds} seconds.{then}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_comes_before_the_end() {
+        let limits = IdleLimits::default();
+        let at = Duration::from_secs;
+        let mut idle = Idle::default();
+        let step = |idle: &mut Idle, seconds| idle.step(&limits, limits.in_room, at(seconds));
+        assert_eq!(step(&mut idle, 239), None);
+        assert_eq!(step(&mut idle, 240), Some(IdleAction::Warn));
+        assert_eq!(step(&mut idle, 299), None);
+        assert!(idle.is_warned());
+        assert!(idle.restart(at(299)));
+        assert_eq!(step(&mut idle, 300), None);
+        assert_eq!(step(&mut idle, 539), Some(IdleAction::Warn));
+        assert_eq!(step(&mut idle, 599), Some(IdleAction::End));
+    }
+}

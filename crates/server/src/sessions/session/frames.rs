@@ -1,0 +1,198 @@
+//! The frames of a session: when the next one may be drawn, which keys it answers, and which step of the game the
+//! visitor sees.
+//!
+//! - **Pace.** The answer to a key is drawn early, so that the frame rate does not delay it, but on credit: a
+//!   visitor who holds a key gets no more frames in the long run than others. Without credit, the keys of
+//!   300 visitors drew all their frames, and the [governor](crate::sessions::governor) governed nothing.
+//! - **Answers.** A frame answers a key if it shows the effect. What a key changes on the screen is in the next picture.
+//!   What it wants of the room is in the first picture of a snapshot in which the room has acted on it, if the room
+//!   has changed then. Keys without an effect are not answered: with each key counted until the next frame, whatever
+//!   that showed, the mean of [`Metrics::key_time`](crate::ops::metrics::Metrics::key_time) was 2.5 s.
+//! - **Steps.** The visitor sees the step of the newest frame that their terminal has answered.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// The pace of frames.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    frame_time: Duration,
+    drawn_at: Option<Duration>,
+    /// When all frames so far would have been drawn at the frame rate.
+    paid_at: Duration,
+}
+
+/// The least time between two frames.
+const PROMPT: Duration = Duration::from_millis(16);
+
+impl Pace {
+    pub(crate) fn new(frame_time: Duration) -> Self {
+        Self { frame_time, drawn_at: None, paid_at: Duration::ZERO }
+    }
+
+    /// Sets the time between two frames.
+    pub(crate) fn set_frame_time(&mut self, frame_time: Duration) {
+        self.frame_time = frame_time;
+    }
+
+    /// The time of the next frame, earlier if it answers a key.
+    pub(crate) fn next(&self, answers_key: bool) -> Duration {
+        let Some(drawn_at) = self.drawn_at else { return Duration::ZERO };
+        if answers_key {
+            let credit = self.paid_at.saturating_sub(self.frame_time);
+            credit.max(drawn_at + PROMPT.min(self.frame_time))
+        } else {
+            self.paid_at.max(drawn_at + self.frame_time)
+        }
+    }
+
+    /// Records a frame.
+    pub(crate) fn drawn(&mut self, now: Duration) {
+        self.drawn_at = Some(now);
+        self.paid_at = now.max(self.paid_at + self.frame_time);
+    }
+}
+
+/// The keys that no frame has answered yet: the time of the oldest one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Unanswered {
+    /// Of those that have changed the screen.
+    shown: Option<Duration>,
+    /// Of those by which the visitor wants something else of the room.
+    wanted: Option<Duration>,
+}
+
+/// What a key has changed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeyEffect {
+    pub(crate) is_shown: bool,
+    pub(crate) is_wanted: bool,
+}
+
+impl Unanswered {
+    /// Records the effect of a key that came at `now`.
+    pub(crate) fn press(&mut self, effect: KeyEffect, now: Duration) {
+        if effect.is_shown {
+            self.shown.get_or_insert(now);
+        }
+        if effect.is_wanted {
+            self.wanted.get_or_insert(now);
+        }
+    }
+
+    /// Records that the room has acted on all that was wanted, and that nothing has changed.
+    pub(crate) fn forget_wanted(&mut self) {
+        self.wanted = None;
+    }
+
+    /// When the oldest key came that a new picture answers, where `has_acted` says that the room has acted on all
+    /// that was wanted.
+    pub(crate) fn answer(&mut self, has_acted: bool) -> Option<Duration> {
+        let wanted = self.wanted.take_if(|_| has_acted);
+        self.shown.take().into_iter().chain(wanted).min()
+    }
+}
+
+/// The most frames that are remembered: more than can be unanswered.
+const MAX_FRAMES: usize = 8;
+
+/// The steps that the last frames showed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ShownSteps {
+    /// The number of the frame, and the step; the newest frame last.
+    frames: VecDeque<(u64, u64)>,
+}
+
+impl ShownSteps {
+    /// Records that after `frame` frames, the last one shows the state after `step`. A frame that
+    /// has changed nothing has no number of its own: the last one shows the new step, too.
+    pub(crate) fn drawn(&mut self, frame: u64, step: u64) {
+        match self.frames.back_mut() {
+            Some(last) if last.0 == frame => last.1 = step,
+            _ => self.frames.push_back((frame, step)),
+        }
+        if self.frames.len() > MAX_FRAMES {
+            self.frames.pop_front();
+        }
+    }
+
+    /// The step that the visitor sees if `answered` frames are answered. Before the first answer it
+    /// is that of the first frame.
+    pub(crate) fn seen(&self, answered: u64) -> u64 {
+        let seen = self.frames.iter().rfind(|frame| frame.0 <= answered);
+        seen.or(self.frames.front()).map_or(0, |&(_, step)| step)
+    }
+
+    /// Forgets all frames, at the beginning of a game.
+    pub(crate) fn forget(&mut self) {
+        self.frames.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const MILLISECOND: Duration = Duration::from_millis(1);
+
+    #[test]
+    fn a_key_after_a_pause_is_answered_at_once() {
+        let mut pace = Pace::new(100 * MILLISECOND);
+        assert_eq!(pace.next(false), Duration::ZERO);
+        pace.drawn(1000 * MILLISECOND);
+        assert_eq!(pace.next(false), 1100 * MILLISECOND);
+        assert_eq!(pace.next(true), 1016 * MILLISECOND);
+    }
+
+    #[test]
+    fn an_early_frame_delays_the_next_one() {
+        let mut pace = Pace::new(100 * MILLISECOND);
+        pace.drawn(1000 * MILLISECOND);
+        pace.drawn(pace.next(true));
+        assert_eq!(pace.next(true), 1032 * MILLISECOND);
+        assert_eq!(pace.next(false), 1116 * MILLISECOND);
+        pace.drawn(pace.next(true));
+        assert_eq!(pace.next(true), 1100 * MILLISECOND);
+        assert_eq!(pace.next(false), 1200 * MILLISECOND);
+    }
+
+    proptest! {
+        /// Whatever asks for frames, there are two more than the rate allows at most.
+        #[test]
+        fn keys_draw_no_more_frames_in_the_long_run(
+            frame_time in 20_u32..500,
+            waits in prop::collection::vec((0_u32..400, any::<bool>()), 1..200),
+        ) {
+            let mut pace = Pace::new(frame_time * MILLISECOND);
+            let mut frames: Vec<Duration> = Vec::new();
+            let mut now = 1000 * MILLISECOND;
+            for (wait, answers_key) in waits {
+                now = pace.next(answers_key).max(now + wait * MILLISECOND);
+                pace.drawn(now);
+                frames.push(now);
+                for (count, first) in frames.iter().rev().enumerate() {
+                    let time = now.saturating_sub(*first);
+                    let allowed = time.as_millis() / u128::from(frame_time) + 2;
+                    prop_assert!(count as u128 <= allowed, "{count} frames in {time:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_step_of_the_newest_answered_frame_is_seen() {
+        let mut shown = ShownSteps::default();
+        assert_eq!(shown.seen(7), 0);
+        for (frame, step) in [(4, 100), (5, 102), (5, 104), (6, 110)] {
+            shown.drawn(frame, step);
+        }
+        assert_eq!([3, 4, 5, 6, 9].map(|answered| shown.seen(answered)), [100, 100, 104, 110, 110]);
+        for frame in 7..30 {
+            shown.drawn(frame, frame * 10);
+        }
+        assert_eq!(shown.frames.len(), MAX_FRAMES);
+        assert_eq!(shown.seen(28), 280);
+    }
+}

@@ -1,0 +1,452 @@
+//! The pages of a session, their menus, and what choosing an entry does.
+//!
+//! The pages outside of a room lead from the name to the lobby, to the card of a room, and into it.
+//! The selected entry of each is the usual choice, so that Enter alone leads to a first walk. Escape
+//! goes back, and asks before it leaves.
+
+use super::draw::COMPRESSION;
+use super::messages::Request;
+use super::ui::Ui;
+use crate::rooms::directory::RoomRefusal;
+use crate::rooms::room::{Command, Emote, Mode};
+use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::sessions::line::Line;
+use cellcaster::app::parts::{self, Kind, Menu, of_steps};
+use cellcaster::world::Difficulty;
+
+/// The rooms that the lobby lists itself; the others are on a page of their own.
+const ROOMS_IN_LOBBY: usize = 5;
+/// The level of a first walk.
+const FIRST_LEVEL: &str = "museum";
+
+/// A page. The effect of keys depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// The name is typed.
+    Name,
+    Lobby,
+    /// All rooms, to enter or to watch one.
+    Rooms {
+        watches: bool,
+    },
+    /// The mode of a new room.
+    Modes,
+    /// The level of a new room.
+    Levels(Mode),
+    /// The level whose board is wanted.
+    Boards,
+    Board,
+    /// A description of a room, before the visitor enters it.
+    Card(Target),
+    /// The room is asked for.
+    Entering,
+    Settings,
+    Help,
+    /// The question whether to end the session.
+    Leaving,
+    /// In the room, with keys to walk.
+    Room,
+    /// A line of chat is typed.
+    Chat,
+    Emotes,
+    /// Further actions in the room.
+    RoomMenu,
+}
+
+/// What an entry of a menu does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Choice {
+    /// Opens a page.
+    Open(Page),
+    /// Enters the room of the card.
+    Enter { watches: bool },
+    /// Shows the board of the level with that index.
+    Board(usize),
+    /// Changes the setting in that row of the settings page.
+    Change(usize),
+    /// Returns to the page before.
+    Back,
+    /// Shows all an emotion.
+    Emote(Emote),
+    /// Wishes to begin the round again.
+    Again,
+    /// Leaves the room.
+    LeaveRoom,
+    /// Does nothing: the entry is only read.
+    Nothing,
+}
+
+/// A room to enter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A room of the list.
+    Existing(RoomId),
+    /// A new one, in the level of the catalog with that index.
+    New { mode: Mode, level: usize, difficulty: Difficulty },
+}
+
+impl parts::Page for Page {
+    fn kind(self) -> Kind {
+        match self {
+            Self::Name | Self::Room | Self::Chat => Kind::Bare,
+            Self::Help => Kind::Help,
+            Self::Leaving => Kind::Leaving,
+            Self::Settings | Self::Levels(_) | Self::Board => Kind::Menu { has_values: true },
+            _ => Kind::Menu { has_values: false },
+        }
+    }
+}
+
+impl Page {
+    /// Whether a line is typed.
+    pub(crate) fn is_typed_in(self) -> bool {
+        matches!(self, Self::Name | Self::Chat)
+    }
+}
+
+impl Ui {
+    pub(crate) fn page(&self) -> Page {
+        self.pages.page()
+    }
+
+    /// Shows `page`, from which there is no way back.
+    pub(crate) fn show(&mut self, page: Page) {
+        self.leave_page(page);
+        self.pages.show(page, self.menu_of(page), self.now);
+    }
+
+    /// Opens `page` over the one that is shown.
+    pub(crate) fn open(&mut self, page: Page) {
+        self.leave_page(page);
+        self.pages.open(page, self.menu_of(page), self.now);
+    }
+
+    /// Returns to the page from which this one was opened.
+    pub(crate) fn close(&mut self) {
+        let home = if self.stay.is_some() { Page::Room } else { Page::Lobby };
+        self.pages.close(home, self.now);
+        self.renew_menu();
+    }
+
+    /// Makes the menu again, after something that it shows has changed.
+    pub(crate) fn renew_menu(&mut self) {
+        self.pages.renew(self.menu_of(self.page()));
+        self.is_stale = true;
+    }
+
+    fn leave_page(&mut self, next: Page) {
+        if self.page() == Page::Room && next != Page::Room {
+            self.release_keys();
+        }
+        self.is_stale = true;
+    }
+}
+
+impl Ui {
+    /// Does what the selected entry says.
+    pub(crate) fn choose(&mut self) {
+        let Some(choice) = self.pages.menu.choice() else { return };
+        match choice {
+            Choice::Open(page) => self.open(page),
+            Choice::Enter { watches } => self.enter_room(watches),
+            Choice::Board(level) => {
+                self.board.level = level;
+                self.ask_for_board();
+                self.open(Page::Board);
+            }
+            Choice::Change(row) => self.change_setting(row, true),
+            Choice::Back => self.close(),
+            Choice::Emote(emote) => {
+                self.ask(Request::Command(Command::Emote(emote)));
+                self.show(Page::Room);
+            }
+            Choice::Again => {
+                self.ask(Request::Command(Command::Again));
+                self.show(Page::Room);
+            }
+            Choice::LeaveRoom => self.leave_by_request(),
+            Choice::Nothing => {}
+        }
+    }
+
+    fn enter_room(&mut self, watches: bool) {
+        let Page::Card(target) = self.page() else { return };
+        let ask = match target {
+            Target::Existing(room) => Some(Request::Enter { room, watches }),
+            Target::New { mode, level, difficulty } => {
+                let level = self.host.catalog.names().get(level).cloned();
+                level.map(|level| Request::Open(RoomWish { level, mode, difficulty }))
+            }
+        };
+        if let Some(ask) = ask {
+            self.ask(ask);
+            self.open(Page::Entering);
+        }
+    }
+
+    /// Asks for the board of the chosen level.
+    pub(crate) fn ask_for_board(&mut self) {
+        self.board.rows = None;
+        let difficulty = self.identity.preferences.difficulty;
+        if let Some(level) = self.host.catalog.names().get(self.board.level).cloned() {
+            self.ask(Request::Board { level, difficulty });
+        }
+    }
+
+    /// Leaves the room as the visitor wishes.
+    pub(crate) fn leave_by_request(&mut self) {
+        self.ask(Request::Leave);
+        self.leave_room(None);
+    }
+
+    /// Records that the visitor has left the room.
+    pub(crate) fn leave_room(&mut self, sentence: Option<String>) {
+        self.stay = None;
+        self.note = sentence;
+        self.ask(Request::Rooms);
+        self.show(Page::Lobby);
+    }
+}
+
+impl Ui {
+    /// The menu of `page`; an empty one if it has none.
+    pub(crate) fn menu_of(&self, page: Page) -> Menu<Choice> {
+        match page {
+            Page::Lobby => self.lobby_menu(),
+            Page::Rooms { watches } => self.rooms_menu(watches),
+            Page::Modes => modes_menu(),
+            Page::Levels(mode) => self.levels_menu(mode),
+            Page::Boards => self.boards_menu(),
+            Page::Board => self.board_menu(),
+            Page::Card(target) => self.card_menu(target),
+            Page::Entering => Menu::new("").line("Going in…"),
+            Page::Settings => self.settings_menu(),
+            Page::Emotes => emotes_menu(),
+            Page::RoomMenu => self.room_menu(),
+            _ => Menu::new(""),
+        }
+    }
+
+    fn lobby_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new(self.host.name.as_str());
+        let [notice, message] = [&self.host.notice, &self.host.message];
+        let lines = [
+            self.note.clone(),
+            self.draining.map(|draining| draining.sentence(self.now)),
+            notice.as_ref().map(ToString::to_string),
+            message.as_ref().map(ToString::to_string),
+            self.wants_compression.then(|| COMPRESSION.to_owned()),
+        ];
+        let menu = lines.into_iter().flatten().fold(menu, Menu::line);
+        let rooms = self.rooms_by_life();
+        let offer = self.offer(&rooms);
+        let (label, value) = self.label_of(offer);
+        let menu = menu.entry_with(label, value, Choice::Open(Page::Card(offer)));
+        let others = rooms.iter().map(|room| Target::Existing(room.id));
+        let others = others.filter(|&target| target != offer).take(ROOMS_IN_LOBBY);
+        let menu = others.fold(menu, |menu, target| {
+            let (label, value) = self.label_of(target);
+            menu.entry_with(label, value, Choice::Open(Page::Card(target)))
+        });
+        let menu = match rooms.len() {
+            0..=ROOMS_IN_LOBBY => menu,
+            all => {
+                let all_rooms = Choice::Open(Page::Rooms { watches: false });
+                menu.entry_with("All rooms", all.to_string(), all_rooms)
+            }
+        };
+        menu.entry("Open a room", Choice::Open(Page::Modes))
+            .entry("Watch a room", Choice::Open(Page::Rooms { watches: true }))
+            .entry(Mode::Alone.title(), Choice::Open(Page::Levels(Mode::Alone)))
+            .entry("Board", Choice::Open(Page::Boards))
+            .entry("Settings", Choice::Open(Page::Settings))
+            .entry("Help", Choice::Open(Page::Help))
+            .entry("Leave", Choice::Open(Page::Leaving))
+    }
+
+    /// The rooms for several in levels that this host has, the one with the most members first, the full ones last.
+    fn rooms_by_life(&self) -> Vec<&RoomSummary> {
+        let is_offered =
+            |room: &&RoomSummary| room.mode != Mode::Alone && self.host.has_level(&room.level);
+        let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_offered).collect();
+        let life = |room: &RoomSummary| std::cmp::Reverse(room.members.len());
+        rooms.sort_by_key(|room| (room.is_full(), life(room), room.mode, room.id));
+        rooms
+    }
+
+    /// The room that is offered: the liveliest one that is not full, or else a new one.
+    fn offer(&self, rooms: &[&RoomSummary]) -> Target {
+        let open = rooms.first().filter(|room| !room.is_full());
+        open.map_or_else(|| self.first_walk(), |room| Target::Existing(room.id))
+    }
+
+    fn first_walk(&self) -> Target {
+        let names = self.host.catalog.names();
+        let level = names.iter().position(|name| name == FIRST_LEVEL).unwrap_or(0);
+        Target::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
+    }
+
+    /// The label and the value of an entry for a room.
+    fn label_of(&self, target: Target) -> (String, String) {
+        let catalog = &self.host.catalog;
+        match target {
+            Target::Existing(id) => {
+                let Some(room) = self.room(id) else { return Default::default() };
+                let label = format!("{} in {}", room.mode.title(), catalog.title(&room.level));
+                (label, format!("{}/{}", room.members.len(), room.mode.most()))
+            }
+            Target::New { mode, .. } => {
+                let label = format!("{} in {}", mode.title(), self.level_title(target));
+                (label, "new".to_owned())
+            }
+        }
+    }
+
+    /// The title of the level of a room.
+    pub(crate) fn level_title(&self, target: Target) -> String {
+        let catalog = &self.host.catalog;
+        let name = match target {
+            Target::Existing(id) => self.room(id).map(|room| room.level.as_str()),
+            Target::New { level, .. } => catalog.names().get(level).map(String::as_str),
+        };
+        name.map_or_else(String::new, |name| catalog.title(name).to_owned())
+    }
+
+    fn rooms_menu(&self, watches: bool) -> Menu<Choice> {
+        let menu = Menu::new(if watches { "watch a room" } else { "all rooms" });
+        let rooms = self.rooms_by_life();
+        let rooms = rooms.into_iter().filter(|room| !watches || !room.members.is_empty());
+        let menu = rooms.fold(menu, |menu, room| {
+            let target = Target::Existing(room.id);
+            let (label, value) = self.label_of(target);
+            menu.entry_with(label, value, Choice::Open(Page::Card(target)))
+        });
+        let is_empty = menu.choice().is_none();
+        let menu = if is_empty { menu.line("There is nobody in any room.") } else { menu };
+        menu.entry("Back", Choice::Back)
+    }
+
+    fn levels_menu(&self, mode: Mode) -> Menu<Choice> {
+        let difficulty = self.identity.preferences.difficulty;
+        let menu = Menu::new(mode.title());
+        let menu = if mode.has_guards() {
+            menu.line(format!("On {}; left and right change it.", difficulty.name()))
+        } else {
+            menu
+        };
+        self.each_level(menu, mode, |level| {
+            Choice::Open(Page::Card(Target::New { mode, level, difficulty }))
+        })
+    }
+
+    fn boards_menu(&self) -> Menu<Choice> {
+        self.each_level(Menu::new("board"), Mode::Alone, Choice::Board)
+    }
+
+    /// `menu` with an entry for each level that suits a mode.
+    fn each_level(
+        &self,
+        menu: Menu<Choice>,
+        mode: Mode,
+        choice: impl Fn(usize) -> Choice,
+    ) -> Menu<Choice> {
+        let catalog = &self.host.catalog;
+        let levels = catalog.names().iter().enumerate();
+        levels
+            .filter(|(_, name)| catalog.suits(name, mode))
+            .fold(menu, |menu, (index, name)| menu.entry(catalog.title(name), choice(index)))
+    }
+
+    fn board_menu(&self) -> Menu<Choice> {
+        let catalog = &self.host.catalog;
+        let level = catalog.names().get(self.board.level).map_or("", |name| catalog.title(name));
+        let difficulty = self.identity.preferences.difficulty.name();
+        let menu = Menu::new(level).line(format!("On {difficulty}; left and right change it."));
+        match &self.board.rows {
+            None => menu.line("…"),
+            Some(rows) if rows.is_empty() => menu.line("Nobody has won it yet."),
+            Some(rows) => rows.iter().enumerate().fold(menu, |menu, (index, row)| {
+                let own = if row.is_own { " (you)" } else { "" };
+                let label = format!("{:>2}. {}{own}", index + 1, row.name);
+                let value = format!("{}  {}", row.rank.name(), of_steps(row.steps));
+                menu.entry_with(label, value, Choice::Nothing)
+            }),
+        }
+        .entry("Back", Choice::Back)
+    }
+
+    fn card_menu(&self, target: Target) -> Menu<Choice> {
+        let back = |menu: Menu<Choice>| menu.entry("Back", Choice::Back);
+        let (mode, who, is_full) = match target {
+            Target::New { mode, .. } => (mode, None, false),
+            Target::Existing(id) => match self.room(id) {
+                None => return back(Menu::new("").line("The room is closed.")),
+                Some(room) if !self.host.has_level(&room.level) => {
+                    return back(Menu::new("").line(RoomRefusal::NoLevel.to_string()));
+                }
+                Some(room) => (room.mode, Some(who_is_here(room)), room.is_full()),
+            },
+        };
+        let menu = Menu::new(mode.title());
+        let keys = "Arrows walk, Enter talks, ? helps.";
+        let alone = "Arrows walk, ? helps.";
+        let is_alone = mode == Mode::Alone;
+        let guest = "You are a guest: with a key, results stand on the board.";
+        let lines = [
+            Some(self.level_title(target)),
+            Some(mode.about().to_owned()),
+            who,
+            Some(if is_alone { alone } else { keys }.to_owned()),
+            (is_alone && !self.identity.has_account).then(|| guest.to_owned()),
+        ];
+        let menu = lines.into_iter().flatten().fold(menu, Menu::line);
+        let [enters, watches] = [false, true].map(|watches| Choice::Enter { watches });
+        back(match target {
+            Target::New { .. } => menu.entry("Go in", enters),
+            Target::Existing(_) if is_full => menu.entry("Watch, since it is full", watches),
+            Target::Existing(_) => menu.entry("Go in", enters).entry("Watch", watches),
+        })
+    }
+
+    fn room_menu(&self) -> Menu<Choice> {
+        let is_member = self.stay.as_ref().is_some_and(|stay| stay.member.is_some());
+        let menu = Menu::new("room").line("The room goes on meanwhile.");
+        let menu = menu.entry("Go on", Choice::Back);
+        let menu =
+            if is_member { menu.entry("Begin the round again", Choice::Again) } else { menu };
+        menu.entry("Settings", Choice::Open(Page::Settings))
+            .entry("Help", Choice::Open(Page::Help))
+            .entry_with("Leave the room", "q", Choice::LeaveRoom)
+    }
+}
+
+/// The names of those who are in a room.
+fn who_is_here(room: &RoomSummary) -> String {
+    let watchers = match room.watchers {
+        0 => String::new(),
+        1 => " One watches.".to_owned(),
+        count => format!(" {count} watch."),
+    };
+    let names: Vec<&str> = room.members.iter().map(Line::as_str).collect();
+    if names.is_empty() {
+        return format!("Nobody is here yet.{watchers}");
+    }
+    format!("Here: {}.{watchers}", names.join(", "))
+}
+
+fn modes_menu() -> Menu<Choice> {
+    let modes = Mode::ALL.into_iter().filter(|&mode| mode != Mode::Alone);
+    modes.fold(Menu::new("open a room"), |menu, mode| {
+        let members = match mode.fewest() {
+            1 => format!("up to {}", mode.most()),
+            fewest => format!("{fewest} to {}", mode.most()),
+        };
+        menu.entry_with(mode.title(), members, Choice::Open(Page::Levels(mode)))
+    })
+}
+
+fn emotes_menu() -> Menu<Choice> {
+    (1..).zip(Emote::ALL).fold(Menu::new("show"), |menu, (number, emote)| {
+        menu.entry_with(emote.text(), number.to_string(), Choice::Emote(emote))
+    })
+}

@@ -1,0 +1,338 @@
+//! The interface of a session, without the terminal: its state, the events of the driver, and what is due at
+//! which time.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::endings::{Draining, Idle, IdleAction};
+use super::line_entry::LineEntry;
+use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
+use super::pages::{Choice, Page};
+use super::stay::Stay;
+use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
+use crate::rooms::summary::{RoomId, RoomSummary};
+use crate::sessions::line::Line;
+use cellcaster::app::parts::{
+    Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine, TerminalLook,
+};
+use cellcaster::app::{Bindings, Configuration};
+use cellcaster::game::Intents;
+use cellcaster::terminal::Key;
+use cellcaster::world::FieldOfView;
+
+/// The most requests that wait for the driver. Further ones are dropped: they come from a paste.
+const MAX_REQUESTS: usize = 64;
+
+/// The state of a session.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+pub(crate) struct Ui {
+    pub(crate) identity: Identity,
+    pub(crate) host: HostFacts,
+    pub(crate) requests: Vec<Request>,
+    pub(crate) bindings: Bindings,
+    pub(crate) controls: Controls,
+    pub(crate) pointer: Pointer,
+    pub(crate) clock: Clock,
+    pub(crate) terminal: TerminalLook,
+    /// Whether the terminal shows only ASCII.
+    pub(crate) has_ascii_only: bool,
+    pub(crate) field_of_view: FieldOfView,
+    pub(crate) detection: Detection,
+    pub(crate) pages: Pages<Page, Choice>,
+    pub(crate) entry: LineEntry,
+    /// Whether the driver is asked about the name.
+    pub(crate) awaits_name: bool,
+    /// A sentence about what happened last.
+    pub(crate) note: Option<String>,
+    /// When the server ends, if it does.
+    pub(crate) draining: Option<Draining>,
+    pub(crate) rooms: Arc<[RoomSummary]>,
+    pub(crate) board: Board,
+    /// The room that the visitor is in.
+    pub(crate) stay: Option<Stay>,
+    pub(crate) status: StatusLine,
+    /// The figures of frames and the link, and whether the status line shows them.
+    pub(crate) stats: Option<Stats>,
+    pub(crate) shows_stats: bool,
+    /// Whether compression would make pictures finer, as far as is known.
+    pub(crate) wants_compression: bool,
+    pub(crate) idle: Idle,
+    /// The number of frames that the terminal has answered.
+    pub(crate) answered: u64,
+    /// The time of the last event.
+    pub(crate) now: Duration,
+    /// Whether the screen must be drawn again, whatever the room does.
+    pub(crate) is_stale: bool,
+    /// Why the session ends, if it does.
+    pub(crate) farewell: Option<String>,
+}
+
+/// The board that is shown.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Board {
+    /// The index of the level in the catalog.
+    pub(crate) level: usize,
+    /// The entries; `None` before they are known.
+    pub(crate) rows: Option<Arc<[BoardRow]>>,
+}
+
+impl Ui {
+    pub(crate) fn new(
+        identity: Identity,
+        host: HostFacts,
+        has_ascii_only: bool,
+        now: Duration,
+    ) -> Self {
+        let mut idle = Idle::default();
+        idle.restart(now);
+        let mut clock = Clock::default();
+        clock.skip_to(now);
+        Self {
+            entry: LineEntry::offering(&identity.name, NAME_COLUMNS),
+            requests: Vec::new(),
+            bindings: bindings_of(&identity.configuration),
+            controls: Controls::default(),
+            pointer: Pointer::new(identity.configuration.mouse),
+            clock,
+            terminal: TerminalLook::default(),
+            has_ascii_only,
+            field_of_view: identity.configuration.field_of_view,
+            detection: Detection {
+                ascii_locale: host.ascii_locale.as_ref().map(ToString::to_string),
+                is_visitor: true,
+                ..Detection::default()
+            },
+            pages: Pages::new(Page::Name),
+            awaits_name: false,
+            note: None,
+            draining: None,
+            rooms: Arc::from([]),
+            board: Board::default(),
+            stay: None,
+            status: StatusLine::default(),
+            stats: None,
+            shows_stats: false,
+            wants_compression: false,
+            idle,
+            answered: 0,
+            now,
+            is_stale: true,
+            farewell: None,
+            identity,
+            host,
+        }
+    }
+
+    /// Requests something of the driver.
+    pub(crate) fn ask(&mut self, request: Request) {
+        if self.requests.len() < MAX_REQUESTS {
+            self.requests.push(request);
+        }
+    }
+
+    /// The room with that number, if it is listed.
+    pub(crate) fn room(&self, id: RoomId) -> Option<&RoomSummary> {
+        self.rooms.iter().find(|room| room.id == id)
+    }
+
+    /// Whether a picture would differ from the one that is shown.
+    pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
+        let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
+        let differs =
+            |stay: &Stay| room.is_some_and(|room| stay.differs_from(room, view, shows_ghosts));
+        self.is_stale || self.stay.as_ref().is_some_and(differs)
+    }
+
+    /// Does what is due at `now`.
+    pub(crate) fn wake(&mut self, now: Duration) {
+        self.advance(now);
+        self.settle();
+        if let Some(stay) = &mut self.stay {
+            self.is_stale |= stay.talk.forget_old(now);
+        }
+        match self.idle.step(&self.host.idle, self.idle_limit(), now) {
+            None => {}
+            Some(IdleAction::Warn) => self.is_stale = true,
+            Some(IdleAction::End) => self.put_out(),
+        }
+    }
+
+    /// The time at which to wake again.
+    pub(crate) fn wakes_at(&self) -> Option<Duration> {
+        let held = &self.controls.held;
+        let tap = self.is_playing() && held.has_taps();
+        let turns = self.is_playing() && self.pointer.is_busy();
+        let stay = self.stay.as_ref();
+        let times = [
+            Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
+            self.pages.pending_until(),
+            held.next_expiry(),
+            (tap || turns).then(|| self.clock.step_after(0)),
+            stay.and_then(|stay| stay.talk.next_end()),
+            stay.and_then(|stay| stay.intents.next_at()),
+            self.draining.and_then(|draining| draining.next_at(self.now)),
+        ];
+        times.into_iter().flatten().min()
+    }
+
+    /// Counts the steps up to `now`, and tells the room what the visitor wants in them.
+    pub(crate) fn advance(&mut self, now: Duration) {
+        let before = std::mem::replace(&mut self.now, now);
+        if self.draining.is_some_and(|it| it.seconds(before) != it.seconds(now)) {
+            self.renew_menu();
+        }
+        let context = self.key_context();
+        for _ in 0..self.clock.steps_until(now).min(Clock::MOST_STEPS) {
+            self.controls.advance(now, context);
+            self.want();
+            self.turn();
+            self.controls.held.step();
+        }
+        self.controls.advance(now, context);
+        self.want();
+    }
+
+    /// Turns by what the mouse has moved in a step.
+    fn turn(&mut self) {
+        if !self.is_playing() {
+            return;
+        }
+        if let Some(stay) = &mut self.stay {
+            stay.intents.turn(self.pointer.look());
+        }
+        self.pointer.passed(1);
+    }
+
+    /// Tells the room what the held keys and the buttons of the mouse want.
+    pub(crate) fn want(&mut self) {
+        let intents = if self.is_playing() {
+            let keys = self.controls.intents(&self.bindings, self.key_context());
+            keys.iter().chain(self.pointer.clicked().iter()).collect()
+        } else {
+            Intents::new()
+        };
+        let Some(stay) = self.stay.as_mut().filter(|stay| stay.member.is_some()) else { return };
+        stay.intents.set(intents);
+        if let Some(intents) = stay.intents.take(self.now) {
+            let seen = stay.frames.seen(self.answered);
+            self.ask(Request::Command(Command::Intents { seen, intents }));
+        }
+    }
+
+    /// Whether keys walk.
+    pub(crate) fn is_playing(&self) -> bool {
+        self.page() == Page::Room && self.stay.as_ref().is_some_and(|stay| stay.member.is_some())
+    }
+
+    pub(crate) fn key_context(&self) -> KeyContext {
+        let is_airborne = self.stay.as_ref().is_some_and(|stay| stay.is_airborne);
+        KeyContext { plays: self.is_playing(), is_airborne, flies: false }
+    }
+
+    /// Releases all keys, as if nobody touched the keyboard.
+    pub(crate) fn release_keys(&mut self) {
+        self.controls.held.release_all();
+        self.controls.toggles.keeps_walking = false;
+        self.want();
+    }
+
+    fn idle_limit(&self) -> Duration {
+        match &self.stay {
+            Some(stay) if stay.member.is_some() => self.host.idle.in_room,
+            _ => self.host.idle.elsewhere,
+        }
+    }
+
+    /// Puts out a visitor who has pressed no key for too long.
+    fn put_out(&mut self) {
+        let minutes = self.idle_limit().as_secs().div_ceil(60);
+        self.idle.restart(self.now);
+        let sentence = format!("You pressed no key for {minutes} minutes.");
+        if self.stay.as_ref().is_some_and(|stay| stay.member.is_some()) {
+            self.ask(Request::Leave);
+            self.leave_room(Some(sentence));
+        } else {
+            self.farewell = Some(sentence);
+        }
+    }
+}
+
+/// The events of the driver.
+impl Ui {
+    /// Records an event of the driver.
+    pub(crate) fn notify(&mut self, event: SessionEvent) {
+        self.is_stale = true;
+        match event {
+            SessionEvent::Named(answer) => self.named(answer),
+            SessionEvent::Rooms(rooms) => {
+                self.rooms = rooms;
+                if self.stay.is_none() {
+                    self.renew_menu();
+                }
+            }
+            SessionEvent::Entered { member, .. } => {
+                self.note = None;
+                self.stay = Some(Stay::new(member, self.identity.configuration.minimap));
+                self.clock.skip_to(self.now);
+                self.show(Page::Room);
+            }
+            SessionEvent::Refused(sentence) | SessionEvent::Left(sentence) => {
+                self.leave_room(Some(sentence));
+            }
+            SessionEvent::Board { level, difficulty, rows } => {
+                let asked = self.host.catalog.names().get(self.board.level);
+                let is_asked = self.identity.preferences.difficulty == difficulty;
+                if asked == Some(&level) && is_asked {
+                    self.board.rows = Some(rows);
+                    self.renew_menu();
+                }
+            }
+            SessionEvent::Ghosts { level, difficulty, ghosts } => {
+                if let Some(stay) = &mut self.stay {
+                    stay.ghosts.receive(level, difficulty, ghosts);
+                }
+            }
+            SessionEvent::Result(sentence) => self.hear(sentence),
+            SessionEvent::Said(line) => self.hear(format!("{}: {line}", self.host.name)),
+            SessionEvent::Draining { ends_at, can_return } => {
+                self.draining = Some(Draining { ends_at, can_return });
+                self.renew_menu();
+            }
+            SessionEvent::Ended(sentence) => self.farewell = Some(sentence),
+        }
+    }
+
+    fn named(&mut self, answer: Result<Line, String>) {
+        self.awaits_name = false;
+        match answer {
+            Ok(name) => {
+                self.identity.name = name;
+                self.identity.is_named = true;
+                self.enter_lobby();
+            }
+            Err(sentence) => self.note = Some(sentence),
+        }
+    }
+
+    /// Shows the lobby for the first time.
+    pub(crate) fn enter_lobby(&mut self) {
+        self.note = None;
+        self.ask(Request::Rooms);
+        self.show(Page::Lobby);
+    }
+
+    fn hear(&mut self, sentence: String) {
+        if let Some(stay) = &mut self.stay {
+            stay.talk.hear_host(sentence, self.now);
+        } else {
+            self.note = Some(sentence);
+            self.renew_menu();
+        }
+    }
+}
+
+/// The bindings without the keys that have another meaning in a room.
+pub(crate) fn bindings_of(configuration: &Configuration) -> Bindings {
+    let keys = ['/', ';', '1'].map(Key::Char);
+    configuration.bindings.clone().without(&keys).without(&[Key::Enter, Key::Tab])
+}

@@ -1,0 +1,133 @@
+//! A server that listens, until it is told to stop.
+
+use std::future::Future;
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::net::{TcpListener, TcpSocket};
+use tokio::task::JoinSet;
+use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
+
+use super::connection::{self, ssh_config};
+use super::explanation::explain;
+use super::gate::{Gate, Phase};
+use super::host_key::HostKey;
+use super::visitor::Host;
+use crate::ops::config::{Config, LiveConfig};
+use crate::ops::logging::events;
+use crate::ops::metrics::Metrics;
+
+/// A server that listens.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+    config: LiveConfig,
+    key: HostKey,
+    metrics: Arc<Metrics>,
+}
+
+/// The pause after a failed `accept`, as when the process has no file descriptors left.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+/// The time in which events are summed for the log.
+const SECOND: Duration = Duration::from_secs(1);
+/// In bytes: of a socket, for what the client's system has not acknowledged. That is 640 KB a second on
+/// a link with a round trip of 0.2 s.
+const SEND_BUFFER: u32 = 128 << 10;
+/// The connections that wait to be accepted.
+const BACKLOG: u32 = 1024;
+/// The time in which a session that ends with the server says its last words.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+/// The time in which closed connections end.
+const CLOSING: Duration = Duration::from_secs(2);
+
+impl Server {
+    /// Listens at the address of `config`.
+    ///
+    /// # Errors
+    /// The address can't be listened at.
+    #[expect(clippy::unused_async, reason = "a listener is made within a runtime")]
+    pub async fn bind(config: Config, key: HostKey) -> io::Result<Self> {
+        let listener = listen(config.listen)?;
+        Ok(Self { listener, config: LiveConfig::new(config), key, metrics: Arc::default() })
+    }
+
+    /// The address that it listens at.
+    ///
+    /// # Errors
+    /// The system does not tell.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    /// Its configuration, which can be replaced while it runs.
+    pub fn config(&self) -> LiveConfig {
+        self.config.clone()
+    }
+
+    /// Its figures.
+    pub fn metrics(&self) -> Arc<Metrics> {
+        Arc::clone(&self.metrics)
+    }
+
+    /// Serves visitors until `stop` is ready. Then it accepts no more, tells each session that the
+    /// server drains, waits for them as long as the configuration says and two seconds more for their last
+    /// words, and closes what is left.
+    pub async fn run<H: Host>(self, host: H, stop: impl Future<Output = ()> + Send) {
+        let Self { listener, config, key, metrics } = self;
+        let gate = Arc::new(Gate::new(config.clone(), metrics));
+        let (ssh, host) = (Arc::new(ssh_config(&key)), Arc::new(host));
+        let mut tasks = JoinSet::new();
+        let mut second = interval(SECOND);
+        second.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        tokio::pin!(stop);
+        loop {
+            tokio::select! {
+                () = &mut stop => break,
+                Some(_) = tasks.join_next(), if !tasks.is_empty() => {}
+                _ = second.tick() => gate.end_second(),
+                accepted = listener.accept() => match accepted {
+                    Ok((socket, peer)) => match gate.admit(peer) {
+                        Ok(entry) => {
+                            // Frames are small, and whole when they are written.
+                            _ = socket.set_nodelay(true);
+                            let (gate, ssh, host) = (gate.clone(), ssh.clone(), host.clone());
+                            tasks.spawn(connection::serve(gate, ssh, host, socket, entry));
+                        }
+                        Err(Some(sentence)) => _ = tasks.spawn(explain(socket, sentence)),
+                        Err(None) => {}
+                    },
+                    Err(error) => {
+                        events::fault("accept", error);
+                        sleep(ACCEPT_PAUSE).await;
+                    }
+                },
+            }
+        }
+        drop(listener);
+        let drain = config.get().drain;
+        events::draining(drain.as_secs());
+        let until_end = drain + LAST_WORDS.min(drain);
+        for (next, time) in [(Phase::Draining, until_end), (Phase::Closing, CLOSING)] {
+            gate.enter(next);
+            let all = async { while tasks.join_next().await.is_some() {} };
+            if timeout(time, all).await.is_ok() {
+                break;
+            }
+        }
+        tasks.shutdown().await;
+        gate.end_second();
+    }
+}
+
+fn listen(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = if address.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
+    // As `TcpListener::bind` does: another server may have ended just now.
+    #[cfg(unix)]
+    socket.set_reuseaddr(true)?;
+    // Connections inherit it. The system would keep megabytes for a client that does not read.
+    socket.set_send_buffer_size(SEND_BUFFER)?;
+    socket.bind(address)?;
+    socket.listen(BACKLOG)
+}
