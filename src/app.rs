@@ -40,10 +40,8 @@ mod title;
 pub mod parts {
     pub use crate::app::banner::draw as draw_banner;
     pub use crate::app::bindings::{Action, Preset};
-    pub use crate::app::controls::Clock;
-    pub use crate::app::controls::{Controls, KeyContext};
+    pub use crate::app::controls::{Clock, Controls, KeyContext};
     pub use crate::app::detection::Detection;
-    pub use crate::app::help::HelpScroll;
     pub use crate::app::map_panel::MapPanel;
     pub use crate::app::menu::Menu;
     pub use crate::app::mouse::Pointer;
@@ -53,8 +51,7 @@ pub mod parts {
     pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
     pub use crate::app::settings_page::{Choices, settings_menu};
     pub use crate::app::stats::{Meter, Stats};
-    pub use crate::app::status::HealthSigns;
-    pub use crate::app::status::{Part, StatusLine, hint};
+    pub use crate::app::status::{HealthSigns, Part, StatusLine, hint};
     pub use crate::app::steps::Watch;
     pub use crate::app::time::{of_steps, tenths, whole_seconds};
 }
@@ -109,7 +106,7 @@ struct App {
     reached: Reached,
     difficulty: Difficulty,
     goal: Goal,
-    /// What a key has just done, where nothing else shows it.
+    /// The effect of the last key, if nothing else shows it.
     notice: Option<Goal>,
     /// The run since the level began.
     log: RunLog,
@@ -124,7 +121,7 @@ struct App {
     /// The seconds that the earlier levels took.
     earlier: f64,
     pages: Pages<Screen, Choice>,
-    /// What the title offers; `None` if there is no title to return to.
+    /// The offers of the title; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
     /// The level behind the title, while there is no game.

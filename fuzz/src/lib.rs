@@ -26,7 +26,6 @@ mod room;
 #[cfg(fuzzing)]
 mod rows;
 #[cfg(fuzzing)]
-mod stores;
 mod texts;
 #[cfg(fuzzing)]
 mod typing;
@@ -77,7 +76,6 @@ pub const TARGETS: &[Target] = &[
     #[cfg(fuzzing)]
     Target { name: "rows", run: rows::run },
     #[cfg(fuzzing)]
-    Target { name: "stores", run: stores::run },
     Target { name: "texts", run: texts::run },
     #[cfg(fuzzing)]
     Target { name: "typing", run: typing::run },

@@ -1,8 +1,8 @@
-//! What operators and visitors write: a configuration, a name, a range of addresses, a day, a script. The first
+//! What operators and visitors write: a configuration, a name, a range of addresses, a script. The first
 //! byte says which one, the others are the text.
 
 use cellcaster_server::ops::config::Config;
-use cellcaster_server::accounts::{AccountKey, AddressPrefix, Day, Name, printable, verify};
+use cellcaster_server::accounts::{AccountKey, AddressPrefix, Name, printable, verify};
 
 use crate::faults::check_faults;
 
@@ -39,9 +39,6 @@ fn names(text: &str) {
     }
     if let Some(prefix) = AddressPrefix::parse(text) {
         assert_eq!(AddressPrefix::parse(&prefix.to_string()), Some(prefix));
-    }
-    if let Some(day) = Day::parse(text) {
-        assert_eq!(Day::from_number(day.number()), Some(day));
     }
     _ = AccountKey::parse(text);
 }

@@ -7,8 +7,8 @@ use std::cell::RefCell;
 
 use cellcaster::game::{Rank, Share, Tally};
 use cellcaster_server::accounts::{
-    AccountKey, AccountSettings, BanTarget, ColumnValue, Day, HostStore, LevelBoard, Name,
-    SqliteStore, UnixTime, VerifiedLevel,
+    AccountKey, AccountSettings, BanTarget, ColumnValue, HostStore, LevelBoard, Name, UnixTime,
+    VerifiedRun,
 };
 use cellcaster::world::Difficulty;
 
@@ -51,7 +51,7 @@ const NUMBERS: [i64; 12] = [
 ];
 
 thread_local! {
-    static STORE: RefCell<SqliteStore> = RefCell::new(SqliteStore::in_memory());
+    static STORE: RefCell<HostStore> = RefCell::new(HostStore::in_memory());
 }
 
 /// Puts the rows into a store, and uses all of it.
@@ -91,21 +91,18 @@ fn value(choices: &mut Bytes) -> Option<ColumnValue> {
     })
 }
 
-fn use_all(store: &mut SqliteStore) {
+fn use_all(store: &mut HostStore) {
     let now = UnixTime::new(1_795_300_000);
     let name = Name::new("Ada").expect("it is a name");
     let board = LevelBoard::new("cellar", Difficulty::Normal).expect("it is built in");
     let share = Share { found: 1, total: 2 };
     let tally =
         Tally { steps: 7, treasure: share, secrets: share, alarms: 1, deaths: 2, stunned: 3 };
-    let run = VerifiedLevel::made_up(board.clone(), tally, Rank::ALL[0], "4 s forward\n");
+    let run = VerifiedRun::made_up(board.clone(), tally, Rank::ALL[0], "4 s forward\n");
     check(store.bans(now));
     check(store.level_boards());
     check(store.level_scores(&board, 10));
     check(store.account_named(&name));
-    for day in [20_261_122, 20_261_123].into_iter().filter_map(Day::from_number) {
-        check(store.daily_scores(day, 10));
-    }
     for byte in 0..2 {
         let key = AccountKey::new([byte; 32]);
         _ = store.create_account(&key, &name, now);
@@ -118,9 +115,6 @@ fn use_all(store: &mut SqliteStore) {
         check(store.set_settings(account, &AccountSettings::default()));
         check(store.note_visit(account, now));
         _ = store.rename(account, &name, now);
-        if let Some(day) = Day::from_number(20_261_122) {
-            check(store.begin_daily(account, day, now));
-        }
     }
     check(store.unban(&BanTarget::Name(name)));
 }

@@ -5,7 +5,7 @@
 
 use allocation_counter::measure;
 use cellcaster::map::builtin;
-use cellcaster_server::accounts::{AccountKey, HostStore, MemoryStore, Name, UnixTime, WaitingResults};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, WaitingResults};
 
 use crate::folder::Folder;
 
@@ -46,7 +46,7 @@ fn length_of_a_new(folder: &Folder) -> usize {
 }
 
 fn record(waiting: &mut WaitingResults) {
-    let mut store = MemoryStore::default();
+    let mut store = HostStore::in_memory();
     let (name, now) = (Name::new("Ada").expect("it is a name"), UnixTime::new(1_795_300_000));
     store.create_account(&AccountKey::new([0; 32]), &name, now).expect("it is the first one");
     let world = |name: &str| builtin::LEVELS.iter().find(|it| it.name == name)?.world().ok();

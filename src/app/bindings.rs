@@ -239,7 +239,7 @@ impl Bindings {
             (Key::Shift, Action::Want(Intent::Run)),
             (Key::Char(' '), Action::Want(Intent::Jump)),
             (Key::Char('e'), Action::Want(Intent::Open)),
-            // Control was refused: with another key held, it is a command to the terminal.
+            // Rejected: Control. With another key held, it is a command to the terminal.
             (Key::Char('c'), Action::Want(Intent::Duck)),
             (Key::Char('f'), Action::Want(Intent::Strike)),
             (Key::Char('t'), Action::Want(Intent::Throw)),

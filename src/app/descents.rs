@@ -15,7 +15,7 @@ use crate::app::store::{Descent, Reached, Save};
 use crate::game::{LevelName, Rules, STEP};
 use crate::world::Difficulty;
 
-/// What is said about a daily run that does not count.
+/// The sentence about a daily run that does not count.
 const PRACTICE: &str = "Practice: the first try of the day counts";
 
 impl App {
@@ -92,7 +92,7 @@ impl App {
         Some(Levels::descent(seed, course))
     }
 
-    /// Counts the floor of which the exit has just been reached.
+    /// Counts the floor whose exit the player has just reached.
     pub(crate) fn count_floor(&mut self) {
         if let Some(game) = self.game.grid() {
             self.reached = self.reached.and(&game.tally());

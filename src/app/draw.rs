@@ -8,6 +8,7 @@
 //!   after that renders the picture again. Other keys wait: if each of them abandoned a picture, none
 //!   would ever be complete while a key repeats.
 
+use std::fmt::Write;
 use std::time::Duration;
 
 use ratatui::layout::{Rect, Size};
@@ -17,7 +18,8 @@ use crate::app::picture::{DrawOptions, Overlay};
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::Screen;
-use crate::app::status::{HealthSigns, StatusValues, hint};
+use crate::app::status::{HealthSigns, Part, hint};
+use crate::app::time::whole_seconds;
 use crate::app::{App, Shown, banner, panels};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
@@ -88,17 +90,43 @@ impl App {
     }
 
     fn draw_status(&mut self, canvas: &mut impl Canvas, area: Rect) {
-        self.status.update(&StatusValues {
-            game: &self.game,
-            goal: &self.goal,
-            notice: self.notice.as_ref(),
-            level: self.level,
-            share_seen: self.game.grid().and_then(|game| self.map.share_seen(game)),
-            toggles: self.controls.toggles,
-            mouse: self.pointer.is_on(),
-            stats: self.stats.as_ref().filter(|_| self.settings.shows_stats),
-            bindings: &self.settings.bindings,
-            health_signs: HealthSigns::for_picture(self.settings.glyphs, self.depth()),
+        let signs = HealthSigns::for_picture(self.settings.glyphs, self.depth());
+        let Self { game, goal, notice, level, map, controls, pointer, settings, .. } = self;
+        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        let notice = notice.as_ref().filter(|notice| notice.is_shown());
+        let stats = self.stats.as_ref().filter(|_| settings.shows_stats);
+        self.status.rewrite(|line| {
+            if let Some((game, player)) = &mission {
+                line.write_vitals(game, player, signs)?;
+            }
+            line.both(Part::Title, format_args!("{}", game.title()))?;
+            if level.is_one_of_several() {
+                let [short, long] = line.forms(Part::Level);
+                level.write_short(short)?;
+                write!(long, "{level}")?;
+            }
+            if let Some(site) = game.site() {
+                line.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
+            }
+            let lamp = mission.is_some_and(|(_, player)| player.lamp_is_lit());
+            line.write_modes(controls.toggles, pointer.is_on(), lamp)?;
+            line.write_keys(game.keys())?;
+            if let (None, Some(message)) = (notice, game.message()) {
+                line.both(Part::Notice, format_args!("{message}"))?;
+            } else if let Some(goal) = notice.or(Some(goal)).filter(|goal| goal.is_shown()) {
+                let [short, long] = line.forms(Part::Notice);
+                short.push_str(goal.short());
+                long.push_str(goal.text());
+            }
+            if let Some(stats) = stats {
+                line.write_stats(stats)?;
+            }
+            if let Some(share) = game.grid().and_then(|game| map.share_seen(game)) {
+                line.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
+            }
+            line.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
+            line.write_help(&settings.bindings)
         });
         canvas.draw_widget(&self.status, area);
     }
@@ -170,7 +198,7 @@ impl App {
             || self.steps_to_animation() == Some(0)
     }
 
-    /// The viewpoint, and a number that grows with every visible change but those of figures.
+    /// The viewpoint, and a number that grows with every visible change except of figures.
     fn surroundings(&self) -> (Viewpoint, u64) {
         let ghost = self.ghost.as_ref().map_or(0, Ghost::steps);
         (self.game.viewpoint(self.settings.field_of_view), self.game.revision() + ghost)

@@ -3,12 +3,10 @@
 //! The first line says how to close it. Keys that every terminal has scroll it: the arrows, the
 //! page keys, and the space bar.
 
-use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::layout::Rect;
 use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Padding, Paragraph};
 
-use super::panels::wrapped;
-use super::panels::{BORDERS, PADDING, framed, key_names};
+use super::panels::{BORDERS, PADDING, key_names, message, wrapped};
 use crate::app::bindings::{Action, Bindings, MapChange};
 use crate::game::Intent;
 use crate::terminal::Key;
@@ -17,7 +15,7 @@ use crate::tui::canvas::Canvas;
 /// The scroll position of the help.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HelpScroll {
-    /// The first line shown, below those that are always shown.
+    /// The first line shown, below the lines that are always shown.
     first: usize,
     /// The number of lines shown last, and the number of all lines.
     page: usize,
@@ -48,7 +46,7 @@ impl HelpScroll {
         self.lines.saturating_sub(self.page)
     }
 
-    /// Draws the help: further keys, in sentences, before those of the bindings, and `notes` about the
+    /// Draws the help: further keys, in sentences, before the keys of the bindings, and `notes` about the
     /// terminal at the end.
     pub fn draw(
         &mut self,
@@ -79,14 +77,7 @@ impl HelpScroll {
         });
         let lines: Vec<Line> =
             [leave].into_iter().chain(shown).chain(more).map(Line::from).collect();
-        let widest = lines.iter().map(Line::width).max().unwrap_or_default() as u16;
-        let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
-        let height = Constraint::Length((lines.len() as u16).saturating_add(BORDERS));
-        let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
-        let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
-        let inside = framed(canvas, area, "keys");
-        let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
-        canvas.draw_widget(Paragraph::new(Text::from(lines)).block(padded), inside);
+        message(canvas, picture, "keys", Text::from(lines));
     }
 }
 

@@ -1,4 +1,4 @@
-//! What lies over the picture while the game runs: directions of sounds, a flash at the edge, the
+//! The overlay of a running game: directions of sounds, a flash at the edge, the
 //! compass, the middle of the picture, and the text of a note.
 //!
 //! Everything here depends only on the state of the game. A level without guards looks and costs as if
@@ -92,7 +92,7 @@ fn is_threat(kind: SoundKind) -> bool {
     word(kind).is_some()
 }
 
-/// What the guard does from whom the sound comes, if it is a threat to the player.
+/// What the guard behind the sound does, if it threatens the player.
 const fn word(kind: SoundKind) -> Option<&'static str> {
     match kind {
         SoundKind::Wonder => Some("wonders"),
@@ -177,7 +177,7 @@ fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     }
 }
 
-/// The place of `text` on the ring, or the nearest one that is not taken.
+/// The place of `text` on the ring, or the nearest free place.
 fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect> {
     let width = text.chars().count() as u16;
     let place = place(ring, angle, width);

@@ -1,4 +1,4 @@
-//! Keys and the mouse: what they do on each screen, and what the player wants by them.
+//! Keys and the mouse: their effect on each screen, and the player's intents.
 
 use std::time::Duration;
 
@@ -73,7 +73,7 @@ impl App {
         }
     }
 
-    /// Handles the keys that do the same on every screen, and those of the game.
+    /// Handles the keys of the game, and the keys with one effect on every screen.
     fn press_command(&mut self, key: Key, press: Press) {
         match self.settings.bindings.action(key) {
             Some(Action::WidenView) => self.widen_view(true),

@@ -36,7 +36,7 @@ pub struct Levels {
     pub(crate) course: Course,
 }
 
-/// What levels belong to.
+/// The course that levels belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Course {
     /// Levels that are tried again until they are won.

@@ -1,18 +1,16 @@
-//! Menus: a panel with text and a list of entries, one of which is selected.
+//! Menus: a panel with text and a list of entries, with one selected.
 //!
-//! Every panel that asks for a choice is such a menu, so that the same keys work in all of them:
+//! Every panel that asks for a choice is such a menu, and the same keys work in all of them:
 //! the arrows or the keys to walk select, Enter or Space chooses, a digit chooses the entry with
 //! that number, Escape or Backspace goes back. On a result, only Enter and the arrows act, and the selection
 //! stops at both ends. A list that is higher than the window scrolls, and
 //! the text above it is cut first.
 
-use ratatui::layout::{Constraint, Flex, Layout, Rect};
+use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span, Text};
-use ratatui::widgets::{Block, Padding, Paragraph};
 
-use super::panels::wrapped;
-use super::panels::{BORDERS, PADDING, framed};
+use super::panels::{BORDERS, PADDING, message, wrapped};
 use crate::app::bindings::{Action, Bindings};
 use crate::game::Intent;
 use crate::terminal::Key;
@@ -56,7 +54,7 @@ pub(crate) enum Selection {
 }
 
 impl Selection {
-    /// The movement of the selection by `key`: the keys to walk, and those that every terminal has.
+    /// The movement of the selection by `key`: the keys to walk, and keys that every terminal has.
     pub(crate) fn by(key: Key, bindings: &Bindings) -> Option<Self> {
         Some(match key {
             Key::Up => Self::Previous,
@@ -218,13 +216,7 @@ impl<C: Copy> Menu<C> {
         });
         let lines: Vec<Line> =
             above.chain(is_separated.then(Line::default)).chain(entries).collect();
-        let size = [width as u16 + BORDERS + PADDING, lines.len() as u16 + BORDERS];
-        let [area] =
-            Layout::horizontal([Constraint::Length(size[0])]).flex(Flex::Center).areas(room);
-        let [area] = Layout::vertical([Constraint::Length(size[1])]).flex(Flex::Center).areas(area);
-        let inside = framed(canvas, area, &title);
-        let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
-        canvas.draw_widget(Paragraph::new(Text::from(lines)).block(padded), inside);
+        message(canvas, room, &title, Text::from(lines));
     }
 
     /// The title, and where the list is scrolled, the number of the selected entry.

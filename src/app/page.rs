@@ -1,4 +1,4 @@
-//! Pages over the picture: the one that is shown, the way back from it, and what keys do on it.
+//! Pages over the picture: the page shown, the way back from it, and the effect of keys on it.
 //!
 //! The same keys work on all pages of a kind, at home and on a server. [`Pages`] handles them, and
 //! returns the [`Effect`] that its owner carries out. A page that is opened from another one returns to
@@ -42,7 +42,7 @@ pub enum Kind {
     Leaving,
 }
 
-/// What a key does.
+/// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Nothing.
@@ -102,7 +102,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         self.enter(page, menu, now);
     }
 
-    /// Opens `page` over the one that is shown.
+    /// Opens `page` over the present one.
     pub fn open(&mut self, page: P, menu: Menu<C>, now: Duration) {
         self.behind.push((self.page, self.menu.clone()));
         self.enter(page, menu, now);

@@ -90,9 +90,9 @@ pub fn leaving(canvas: &mut impl Canvas, picture: Rect, bindings: &Bindings, eff
     message(canvas, picture, "leave?", Text::from(text).centered());
 }
 
-/// Draws a panel in the middle of the picture, as large as `text` needs.
+/// Draws a panel in the middle of the picture, as large as `text` needs and the picture has room for.
 pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text) {
-    let widest = text.width().max(title.len()) as u16;
+    let widest = text.width().max(Span::raw(title).width()) as u16;
     let width = Constraint::Length(widest.saturating_add(BORDERS + PADDING));
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);

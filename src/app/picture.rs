@@ -178,7 +178,7 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Draws the map with its panel, if it is shown. `view` is that of the picture.
+    /// Draws the map with its panel, if it is shown. `view` has drawn the picture.
     pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,

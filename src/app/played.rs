@@ -142,7 +142,7 @@ impl Played {
     }
 }
 
-/// What both kinds of levels have.
+/// The parts that both kinds of levels have.
 impl Played {
     /// The level's title, or a substitute if the map gives none.
     pub(crate) fn title(&self) -> &str {
@@ -177,8 +177,7 @@ impl Played {
         }
     }
 
-    /// A number that grows with every visible change other than those of the viewpoint and of figures. Bodies do
-    /// not change.
+    /// A number that grows with every visible change except of the viewpoint and of figures. Bodies do not change.
     pub(crate) fn revision(&self) -> u64 {
         self.grid().map_or(0, Game::revision_without_figures)
     }

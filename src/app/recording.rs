@@ -129,7 +129,7 @@ impl ScriptCursor {
 /// How much of the ghost shows, of 255.
 const OPACITY: u8 = 96;
 
-/// The game of the best run, step by step beside that of the player.
+/// The game of the best run, step by step beside the player's game.
 #[derive(Debug)]
 pub(crate) struct Ghost {
     game: Game,

@@ -1,4 +1,4 @@
-//! Results: what is kept of a run, and the panels at the end of a level, at a death, and at the end of
+//! Results: records of a run, and the panels at the end of a level, at a death, and at the end of
 //! the last level.
 
 use crate::app::App;
@@ -117,7 +117,7 @@ pub(crate) fn builtin_named(name: &str) -> Option<usize> {
 }
 
 impl App {
-    /// What the player has done in the level, its rank, and how to go on.
+    /// The result of the level, and the ways to go on.
     pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
         let menu =
             self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
@@ -134,7 +134,7 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// What happened to the player, and how to go on. The first choice goes on at once.
+    /// The cause of death, and the ways to go on. The first choice goes on at once.
     pub(crate) fn death_menu(&self) -> Menu<Choice> {
         let cause = match self.game.grid().map(Game::outcome) {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
@@ -195,7 +195,7 @@ fn result_lines(result: &LevelResult) -> Vec<String> {
     lines
 }
 
-/// What was found and what happened, where there was something to find or something happened.
+/// The counts of finds and events, without zeros that say nothing.
 fn counts(tally: &Tally) -> String {
     let shares = [("gold", tally.treasure), ("secrets", tally.secrets)];
     let shares = shares.into_iter().filter(|(_, share)| share.total > 0);

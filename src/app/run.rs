@@ -3,7 +3,7 @@
 //! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
 //! frame, so that nothing is computed or written.
 //!
-//! The time is that of the machine's clock. For tests, a debug build has another one: if the environment
+//! The time comes from the machine's clock. For tests, a debug build has another one: if the environment
 //! variable `CELLCASTER_CLOCK` is `focus`, time stands still until the terminal reports that the
 //! window has the focus, and each such report is one step of the game. What happens is then a
 //! function of the bytes that the program reads, on a machine under any load. Bytes, keys, screens
@@ -32,7 +32,7 @@ use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_u
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
-/// What the program begins with.
+/// The way in which the program begins.
 #[derive(Debug)]
 pub enum Opening {
     /// The title screen, with these offers.
@@ -120,7 +120,7 @@ pub fn play(
     Ok(Farewell { done: app.left, trouble })
 }
 
-/// What is said after the terminal has been given back.
+/// The lines that are printed after the terminal has been given back.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Farewell {
     /// A line about what was done; `None` if nothing was.

@@ -6,8 +6,8 @@
 //!
 //! The checksum of the game at the end of the script is kept beside it. Where a replay ends in another
 //! state, the level or the rules have changed since, and the player is offered to begin anew. Rejected:
-//! a checksum of the map alone. It would not notice a change of the rules, and would reject a map of which
-//! only a comment has changed.
+//! a checksum of the map alone. It would not notice a change of the rules, and would reject a map in
+//! which only a comment has changed.
 
 use super::descents::{date_of, save_of_descent};
 use super::menu::Menu;
@@ -22,7 +22,7 @@ use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
 use crate::world::Difficulty;
 
-/// What leaving does with the game.
+/// The effect of leaving on the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Leaving {
     /// Nothing has been played, or the game is over.
@@ -91,7 +91,7 @@ impl App {
         }
     }
 
-    /// What leaving the program does, for the question whether to leave.
+    /// The effect of leaving the program, for the question whether to leave.
     pub(crate) fn effect_of_leaving(&self) -> &'static str {
         match self.leaving() {
             Leaving::LosesNothing => "leaves the program",
@@ -134,7 +134,7 @@ impl App {
         self.with_leaving(menu)
     }
 
-    /// The question what to do in a level of which no game can be saved.
+    /// The question how to begin a level in which no game can be saved.
     pub(crate) fn no_room_menu(&self) -> Menu<Choice> {
         let menu = self.with_removal(Menu::new("no room"));
         self.with_leaving(menu.entry("Play without saving", Choice::GoOn))
@@ -151,7 +151,7 @@ impl App {
         }
     }
 
-    /// Removes the oldest saved game to make room for the one that begins.
+    /// Removes the oldest saved game to make room for the new one.
     pub(crate) fn remove_oldest(&mut self) {
         if let Some(id) = self.store.saves().last().map(Save::id) {
             self.store.remove_saved(id);
@@ -185,7 +185,7 @@ impl App {
             .fold(menu, |menu, (name, played, choice)| menu.entry_with(name, played, choice))
     }
 
-    /// What can be continued: its name, how long it was played, and the choice.
+    /// The games to continue: name, time played, and choice.
     fn ways_on(&self) -> impl Iterator<Item = (String, String, Choice)> {
         let saves = self.store.saves();
         let saves = saves.map(|save| (name_of(save), time_of(save), Choice::Continue(save.id())));
@@ -327,7 +327,7 @@ impl App {
         self.show(Screen::Playing);
     }
 
-    /// The levels from that of a saved game on: built-in ones, or a map of the player's own.
+    /// The level of a saved game and the levels after it: built-in ones, or a map of the player's own.
     fn levels_of(&mut self, save: &Save) -> Result<Levels, String> {
         if let Some(file) = &save.file {
             let load =

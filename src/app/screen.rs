@@ -48,7 +48,7 @@ pub(crate) enum Screen {
     End,
 }
 
-/// What an entry of a menu does.
+/// The effect of an entry of a menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice {
     /// Opens a screen.
@@ -130,7 +130,7 @@ impl App {
         self.shown = None;
     }
 
-    /// Opens `screen` over the one that is shown.
+    /// Opens `screen` over the present one.
     pub(crate) fn open(&mut self, screen: Screen) {
         let menu = self.menu_of(screen);
         self.pages.open(screen, menu, self.now);

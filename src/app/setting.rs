@@ -360,7 +360,7 @@ pub fn reject_range<T>(entry: &Entry<'_, '_>, wanted: &str, example: &str) -> Op
     entry.reject(message, "", format!("write {example}"))
 }
 
-/// The value after the one that `is_it`, or before it; from the last, the first.
+/// The value after the value that `is_it`, or before it. The first follows the last.
 fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
     let index = values.iter().position(is_it).unwrap_or(0);
     let by = if forward { 1 } else { values.len() - 1 };

@@ -44,11 +44,11 @@ pub struct Settings {
     pub frame_time: Duration,
     /// The field of view. Keys change it.
     pub field_of_view: FieldOfView,
-    /// The shape of a cell; `None` for that of the terminal.
+    /// The shape of a cell; `None` for the terminal's.
     pub cell_aspect: Option<CellAspect>,
     /// The glyph set.
     pub glyphs: GlyphSet,
-    /// The colour depth; `None` for that of the terminal.
+    /// The colour depth; `None` for the terminal's.
     pub depth: Option<ColorDepth>,
     /// The caster that finds the walls.
     pub caster: DynCaster,
@@ -58,8 +58,8 @@ pub struct Settings {
     pub fidelity: Option<Fidelity>,
     /// Whether the status line shows the figures of frames and the link. A key changes it.
     pub shows_stats: bool,
-    /// The difficulty of levels that are played without the title; `None` for the one that the player
-    /// has chosen before.
+    /// The difficulty of levels that are played without the title; `None` for the player's
+    /// earlier choice.
     pub difficulty: Option<Difficulty>,
     /// The content of the minimap at first.
     pub minimap: MapDisplay,
@@ -69,8 +69,8 @@ pub struct Settings {
     pub given: Given,
 }
 
-/// The origin of the settings that the game keeps. What is given holds in place of what the player has
-/// chosen in an earlier game.
+/// The origin of the settings that the game keeps. A given value takes the place of the player's choice
+/// in an earlier game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Given {
     /// Of the glyph set.
@@ -138,7 +138,7 @@ pub struct Configuration {
     pub preset: Preset,
     /// The actions of keys.
     pub bindings: Bindings,
-    /// The colour depth; `None` for that of the terminal.
+    /// The colour depth; `None` for the terminal's.
     pub colors: Option<ColorDepth>,
     /// The glyph set; `None` for the best that the terminal can show.
     pub glyphs: Option<GlyphSet>,

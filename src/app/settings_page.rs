@@ -21,7 +21,7 @@ use crate::tui::GlyphSet;
 /// The values that every settings page shows and changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choices {
-    /// What is kept from one game to the next.
+    /// The choices that are kept from one game to the next.
     pub preferences: Preferences,
     /// Whether the mouse turns the player.
     pub mouse: bool,

@@ -1,7 +1,7 @@
 //! The status line below the picture.
 //!
 //! It is rewritten in each frame, into memory that is kept: no change must be tracked, and nothing
-//! is allocated. Its time is therefore that of the last frame: while nothing moves, no frame is
+//! is allocated. So it shows the time of the last frame: while nothing moves, no frame is
 //! drawn to show another second.
 //!
 //! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
@@ -17,30 +17,11 @@ use ratatui::widgets::Widget;
 
 use crate::app::bindings::{Action, Bindings};
 use crate::app::controls::Toggles;
-use crate::app::levels::LevelNumber;
-use crate::app::played::{Goal, Played};
 use crate::app::stats::Stats;
-use crate::app::time::whole_seconds;
 use crate::color::palette::ColorDepth;
-use crate::game::{Alarm, Game, GuardView, Health, PlayerId, PlayerView, Share};
+use crate::game::{Alarm, Game, GuardView, Health, PlayerView, Share};
 use crate::tui::GlyphSet;
 use crate::world::{FieldOfView, Supply};
-
-/// The values that the line shows.
-pub(crate) struct StatusValues<'a> {
-    pub(crate) game: &'a Played,
-    pub(crate) goal: &'a Goal,
-    pub(crate) notice: Option<&'a Goal>,
-    pub(crate) level: LevelNumber,
-    /// The share of the level that has been seen, from 0 to 1, if that is counted.
-    pub(crate) share_seen: Option<f64>,
-    pub(crate) toggles: Toggles,
-    /// Whether the mouse turns the player.
-    pub(crate) mouse: bool,
-    pub(crate) stats: Option<&'a Stats>,
-    pub(crate) bindings: &'a Bindings,
-    pub(crate) health_signs: HealthSigns,
-}
 
 /// The texts of the line: place and state of the player at the left; progress and help at the
 /// right.
@@ -58,7 +39,7 @@ pub enum Part {
     Alarm,
     /// How lit the player is.
     Light,
-    /// What the player carries.
+    /// The supplies.
     Supplies,
     /// The level's title.
     Title,
@@ -70,7 +51,7 @@ pub enum Part {
     Modes,
     /// The keys that the player has.
     Keys,
-    /// What has just happened, or the goal.
+    /// The latest event, or the goal.
     Notice,
     /// The figures of frames and the link.
     Stats,
@@ -141,12 +122,7 @@ const LEAST_TITLE: u16 = 8;
 const LEAST_NOTICE: u16 = 3;
 
 impl StatusLine {
-    /// Updates the texts.
-    pub(crate) fn update(&mut self, values: &StatusValues) {
-        self.rewrite(|line| line.write(values));
-    }
-
-    /// Replaces all texts by those that `write` writes.
+    /// Replaces all texts with the output of `write`.
     pub fn rewrite(&mut self, write: impl FnOnce(&mut Self) -> fmt::Result) {
         self.texts.iter_mut().flatten().for_each(String::clear);
         // Writing to a string never fails.
@@ -227,50 +203,6 @@ pub fn hint(text: &str) -> impl Widget {
 }
 
 impl StatusLine {
-    pub(crate) fn write(&mut self, values: &StatusValues) -> fmt::Result {
-        let StatusValues { game, level, share_seen, toggles, mouse, stats, bindings, .. } = *values;
-        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
-        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
-        if let Some((game, player)) = mission {
-            self.write_vitals(game, &player, values.health_signs)?;
-        }
-        self.both(Part::Title, format_args!("{}", game.title()))?;
-        if level.is_one_of_several() {
-            let [short, long] = &mut self.texts[Part::Level as usize];
-            level.write_short(short)?;
-            write!(long, "{level}")?;
-        }
-        if let Some(site) = game.site() {
-            self.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
-        }
-        self.write_modes(toggles, mouse, mission.is_some_and(|it| it.1.lamp_is_lit()))?;
-        self.write_keys(game.keys())?;
-        self.write_notice(values)?;
-        if let Some(stats) = stats {
-            self.write_stats(stats)?;
-        }
-        if let Some(share) = share_seen {
-            self.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
-        }
-        self.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
-        self.write_help(bindings)
-    }
-
-    /// Writes what a key has done, the message of the game, or the goal.
-    fn write_notice(&mut self, values: &StatusValues) -> fmt::Result {
-        let StatusValues { game, goal, notice, .. } = *values;
-        let notice = notice.filter(|notice| notice.is_shown());
-        if let (None, Some(message)) = (notice, game.message()) {
-            return self.both(Part::Notice, format_args!("{message}"));
-        }
-        if let Some(line) = notice.or(Some(goal)).filter(|line| line.is_shown()) {
-            let [short, long] = self.forms(Part::Notice);
-            short.push_str(line.short());
-            long.push_str(line.text());
-        }
-        Ok(())
-    }
-
     /// Writes the modes that are switched on.
     pub fn write_modes(&mut self, toggles: Toggles, mouse: bool, lamp: bool) -> fmt::Result {
         let modes = [

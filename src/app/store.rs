@@ -26,9 +26,9 @@
 //! - **A failure does not stop the game.** Changes that can't be written stay in memory, are tried
 //!   again with the next change, and [`Store::trouble`] is one sentence about them.
 //!
-//! A database was refused: it would be the largest dependency of the program, for a hundred lines of
-//! text that the player can read and copy. So was one file that is locked while the game runs: the
-//! second game would keep nothing.
+//! Rejected: a database. It would be the largest dependency of the program, for a hundred lines of
+//! text that the player can read and copy. Also rejected: one file that is
+//! locked while the game runs. The second game would keep nothing.
 
 pub mod home;
 mod names;
@@ -51,7 +51,7 @@ pub use results::{DescentRun, replayed};
 
 use crate::world::Difficulty;
 
-/// What one player keeps: in a folder, or in memory.
+/// One player's store: a folder, or memory.
 ///
 /// ```
 /// use cellcaster::app::store::{Preferences, Store};
@@ -63,7 +63,7 @@ use crate::world::Difficulty;
 /// ```
 #[derive(Debug)]
 pub struct Store {
-    /// The state that the player sees: that of the file as last read, with all changes.
+    /// The state that the player sees: the file as last read, with all changes.
     progress: Progress,
     /// The changes that are not in the file.
     pending: Vec<Change>,
@@ -168,7 +168,7 @@ impl Store {
         }
     }
 
-    /// What the player has chosen in the game.
+    /// The player's choices.
     pub fn preferences(&self) -> Preferences {
         self.progress.preferences
     }

@@ -59,7 +59,7 @@ impl Demo {
     }
 }
 
-/// What the title screen offers beside the built-in levels.
+/// The offers of the title screen, beside the built-in levels.
 #[derive(Default)]
 pub struct Offers {
     /// Finds the player's own maps. It is called when the player asks for them.
@@ -93,7 +93,7 @@ pub struct OwnMap {
 pub struct OwnLevel {
     /// The level.
     pub level: Level,
-    /// The key of its results in the store. It differs from that of the map if the file was changed after it
+    /// The key of its results in the store. It differs from the map's key if the file was changed after it
     /// was found.
     pub key: String,
     /// The absolute path of its file, for [`Offers::load`]. Without it, the map is found by its key.

@@ -3,7 +3,6 @@
 #[cfg(unix)]
 mod admin;
 mod arguments;
-mod database;
 mod host_store;
 mod replay;
 mod scores;

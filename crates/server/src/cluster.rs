@@ -53,7 +53,7 @@ use self::record::Record;
 use self::room_state::RoomState;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
-use crate::accounts::{HostNotice, Leases, Presence};
+use crate::accounts::{HostNotice, HostStore};
 use crate::lock::locked;
 use crate::rooms::directory::{RoomRefusal, Rooms};
 use crate::rooms::room::Catalog;
@@ -80,8 +80,8 @@ impl Cluster {
     /// A sentence, if the server does not answer, or has no `JetStream`.
     pub async fn join(
         address: &str,
-        leases: Box<dyn Leases>,
-        presence: Box<dyn Presence>,
+        leases: HostStore,
+        presence: HostStore,
         notice: HostNotice,
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");

@@ -17,7 +17,9 @@ use crate::rooms::room::{
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
 use crate::sessions::line::Line;
-use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
+use crate::sessions::session::{
+    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
+};
 pub use crate::ssh::fuzzing::serve;
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
@@ -228,15 +230,15 @@ impl Hall {
                 Some(SessionEvent::Named(line))
             }
             Request::Rooms => Some(SessionEvent::Rooms([self.summary()].into())),
-            Request::Enter { watches: true, .. } => {
+            Request::Go(Way::Watch(_)) => {
                 self.leave(visitor);
                 self.visitors[visitor].is_inside = true;
                 Some(SessionEvent::Entered { room: ROOM, member: None })
             }
-            Request::Enter { .. } | Request::Open(_) if self.room.is_full() => {
+            Request::Go(_) if self.room.is_full() => {
                 Some(SessionEvent::Refused("The room is full.".to_owned()))
             }
-            Request::Enter { .. } | Request::Open(_) => {
+            Request::Go(_) => {
                 self.leave(visitor);
                 let member = self.room.next_member();
                 let name = self.visitors[visitor].name.clone();

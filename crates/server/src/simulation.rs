@@ -25,7 +25,7 @@ use tokio::time::{Instant, sleep};
 pub(crate) use self::client::{Client, Conditions, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::tapes::Tapes;
-use crate::accounts::MemoryStore;
+use crate::accounts::HostStore;
 use crate::ops::config::StandingRoom;
 use crate::ops::config::{Config, LiveConfig};
 use crate::ops::metrics::Metrics;
@@ -127,7 +127,7 @@ impl Rig {
             visitors: visitors.clone(),
             catalog: wish.catalog,
             logs: tapes.logs(),
-            store: Box::new(MemoryStore::default()),
+            store: HostStore::in_memory(),
             store_time: wish.store_time,
             worker: wish.worker,
             seed: wish.seed,

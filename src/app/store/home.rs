@@ -216,7 +216,7 @@ impl Home {
 
 /// File operations.
 pub trait Disk: fmt::Debug + Send {
-    /// Creates a folder and those that it is in, unless it exists.
+    /// Creates a folder and its parents, unless it exists.
     fn create_folder(&self, folder: &Path) -> io::Result<()>;
 
     /// The content of a file.

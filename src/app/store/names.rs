@@ -55,7 +55,7 @@ fn figures(Reached { floors, treasure, steps }: Reached) -> Option<String> {
     (floors > 0).then(|| format!("{floors}-{treasure}-{steps}"))
 }
 
-/// No level has this name, nor those of descents: the names of levels end in a difficulty and a number.
+/// No level has this name or a descent's: the names of levels end in a difficulty and a number.
 const SAVED: &str = "saved";
 
 fn escaped(key: &str) -> String {

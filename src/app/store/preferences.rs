@@ -1,5 +1,4 @@
-//! What the player chooses in the game: one table for the file, the settings page, and the merging of two
-//! games' choices.
+//! The player's choices: one table for the file, the settings page, and the merging of two games' choices.
 
 use std::num::NonZeroU32;
 
@@ -8,7 +7,7 @@ use crate::color::palette::ColorDepth;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
-/// What the player has chosen in the game.
+/// The player's choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Preferences {
@@ -24,7 +23,7 @@ pub struct Preferences {
     pub difficulty: Difficulty,
     /// The glyph set; `None` for the best that the terminal can show.
     pub glyphs: Option<GlyphSet>,
-    /// The colour depth; `None` for that of the terminal.
+    /// The colour depth; `None` for the terminal's.
     pub colors: Option<ColorDepth>,
     /// How pictures are changed for the player's eyes.
     pub correction: Correction,

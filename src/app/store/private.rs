@@ -37,7 +37,7 @@ pub(crate) fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// The text in a regular file.
 ///
 /// # Errors
-/// As those of [`read`]; [`io::ErrorKind::InvalidData`] if it is no UTF-8.
+/// As for [`read`]; [`io::ErrorKind::InvalidData`] if it is no UTF-8.
 #[cfg(feature = "cli")]
 pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
     let content = read(file, most)?;
@@ -45,7 +45,7 @@ pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
         .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
 }
 
-/// Creates a folder, and those that it is in, unless it exists. Only its owner can look into it.
+/// Creates a folder and its parents, unless it exists. Only its owner can look into it.
 pub fn create_folder(folder: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);

@@ -44,7 +44,7 @@ pub struct Save {
 /// A game to be continued: its script is played again up to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SavedGame {
-    /// What was saved.
+    /// Its description.
     pub save: Save,
     /// The script so far.
     pub script: String,
@@ -60,7 +60,7 @@ pub struct SaveId(u64);
 pub enum NotSaved {
     /// [`MOST_SAVES`] other games are saved.
     Full,
-    /// Its script is longer than the longest one that is read.
+    /// Its script is longer than the longest script that is read.
     TooLong,
 }
 
@@ -107,7 +107,7 @@ impl Progress {
         self.saves.retain(|entry| entry.save.id() != id);
     }
 
-    /// What a run would improve.
+    /// The improvement by a run.
     pub(crate) fn improved_by(&self, level: &str, difficulty: Difficulty, run: &Run) -> Improved {
         match self.best(level, difficulty) {
             None => Improved { time: true, rank: true },

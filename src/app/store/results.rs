@@ -1,4 +1,4 @@
-//! Results: of a run, the best of several, and those that a script leads to when it is played again.
+//! Results: of a run, of the best runs, and of a script that is played again.
 
 use crate::game::{Game, Outcome, Rank, Rules, Script, Tally};
 use crate::generate::floors_below;
@@ -7,7 +7,7 @@ use crate::world::World;
 /// A run that reached the exit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// What happened in it.
+    /// Its tally.
     pub tally: Tally,
     /// Its rank.
     pub rank: Rank,
@@ -24,7 +24,7 @@ pub struct Best {
     pub rank: Rank,
 }
 
-/// What a run improved.
+/// The improvement by a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Improved {
     /// Whether it is the fastest run.

@@ -1,9 +1,15 @@
-//! Accounts: a key, a name, and settings.
+//! Accounts: a key, a name, settings, and times.
 
 use std::fmt;
 
-use super::{Name, StoreFailure, UnixTime};
 use cellcaster::app::store::Preferences;
+use russh::keys::ssh_key::Fingerprint;
+
+use super::{Name, StoreFailure};
+
+/// Seconds since 1970-01-01, in UTC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct UnixTime(u64);
 
 /// The number of an account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -49,6 +55,25 @@ pub struct AccountSettings {
     pub configuration: String,
 }
 
+impl UnixTime {
+    /// The time that many seconds after 1970 began. Later times than a database holds are its last.
+    pub const fn new(seconds: u64) -> Self {
+        const LAST: u64 = i64::MAX as u64;
+        Self(if seconds < LAST { seconds } else { LAST })
+    }
+
+    /// The seconds since 1970.
+    pub const fn seconds(self) -> u64 {
+        self.0
+    }
+
+    /// The time that many seconds later.
+    #[must_use]
+    pub const fn after(self, seconds: u64) -> Self {
+        Self::new(self.0.saturating_add(seconds))
+    }
+}
+
 impl AccountSettings {
     /// The longest configuration that is kept, in bytes.
     pub const MOST_BYTES: usize = 16 << 10;
@@ -59,11 +84,6 @@ impl AccountSettings {
     }
 }
 
-/// What OpenSSH puts before the digits.
-const PREFIX: &str = "SHA256:";
-/// The digits of RFC 4648, section 4.
-const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
 impl AccountKey {
     /// The key whose data has this SHA-256.
     pub const fn new(sha256: [u8; 32]) -> Self {
@@ -72,22 +92,10 @@ impl AccountKey {
 
     /// The key that is written as `ssh-keygen -l` does.
     pub fn parse(text: &str) -> Option<Self> {
-        let mut bytes = [0; 32];
-        let digits = text.strip_prefix(PREFIX)?.trim_end_matches('=').as_bytes();
-        let (mut bits, mut count, mut index) = (0_u32, 0, 0);
-        for digit in digits {
-            let value = DIGITS.iter().position(|known| known == digit)?;
-            (bits, count) = ((bits << 6 | value as u32) & 0xffff, count + 6);
-            if count >= 8 {
-                count -= 8;
-                *bytes.get_mut(index)? = (bits >> count) as u8;
-                index += 1;
-            }
+        match text.trim_end_matches('=').parse() {
+            Ok(Fingerprint::Sha256(sha256)) => Some(Self(sha256)),
+            _ => None,
         }
-        // A digit too many, or one whose last bits are not 0, would be a second text for the same key.
-        let key = Self(bytes);
-        (index == bytes.len() && &key.to_string().as_bytes()[PREFIX.len()..] == digits)
-            .then_some(key)
     }
 
     /// The SHA-256.
@@ -99,14 +107,7 @@ impl AccountKey {
 impl fmt::Display for AccountKey {
     /// Writes it as `ssh-keygen -l` does.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut text = PREFIX.to_owned();
-        for chunk in self.0.chunks(3) {
-            let byte = |index: usize| u32::from(chunk.get(index).copied().unwrap_or_default());
-            let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-            let digits = (0..=chunk.len()).map(|index| bits >> (18 - 6 * index) & 63);
-            text.extend(digits.map(|value| char::from(DIGITS[value as usize])));
-        }
-        f.write_str(&text)
+        Fingerprint::Sha256(self.0).fmt(f)
     }
 }
 
@@ -116,12 +117,17 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn no_time_is_later_than_a_database_can_hold() {
+        assert_eq!(UnixTime::new(u64::MAX).after(9), UnixTime::new(i64::MAX as u64));
+    }
+
     proptest! {
         #[test]
         fn a_key_has_one_text(bytes in any::<[u8; 32]>(), end in "[A-Za-z0-9+/=]{0,2}") {
             let key = AccountKey::new(bytes);
             let text = key.to_string();
-            prop_assert_eq!(text.len(), PREFIX.len() + 43);
+            prop_assert_eq!(text.len(), "SHA256:".len() + 43);
             prop_assert_eq!(AccountKey::parse(&text), Some(key));
             let longer = text.clone() + &end;
             prop_assert_eq!(AccountKey::parse(&longer).is_some(), end.chars().all(|c| c == '='));

@@ -1,7 +1,9 @@
 //! Bans: of a key, a name, or a range of addresses.
 
 use std::fmt;
-use std::net::{IpAddr, Ipv6Addr};
+use std::net::IpAddr;
+
+use ipnet::IpNet;
 
 use super::{AccountKey, Name, UnixTime};
 
@@ -53,11 +55,7 @@ pub struct Identity<'a> {
 /// assert!(!prefix.contains("203.0.114.7".parse().unwrap()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct AddressPrefix {
-    /// In the canonical form, with all bits after the prefix 0.
-    first: IpAddr,
-    length: u8,
-}
+pub struct AddressPrefix(IpNet);
 
 impl Ban {
     /// Whether it is in force.
@@ -101,15 +99,7 @@ impl AddressPrefix {
     /// The addresses that share their first `length` bits with `address`; `None` if it has fewer. An
     /// IPv4 address that is written as IPv6 is an IPv4 address.
     pub fn new(address: IpAddr, length: u8) -> Option<Self> {
-        let first = match address.to_canonical() {
-            IpAddr::V4(address) if length <= 32 => {
-                let mask = u32::MAX.checked_shl(32 - u32::from(length)).unwrap_or_default();
-                IpAddr::V4((u32::from(address) & mask).into())
-            }
-            IpAddr::V6(address) if length <= 128 => IpAddr::V6(masked(address, length)),
-            _ => return None,
-        };
-        Some(Self { first, length })
+        IpNet::new(address.to_canonical(), length).ok().map(|range| Self(range.trunc()))
     }
 
     /// The network of an address, as far as one owner has it: a /24 of IPv4, a /64 of IPv6.
@@ -123,29 +113,27 @@ impl AddressPrefix {
         let address = address.to_canonical();
         let length = if address.is_ipv4() { v4 } else { v6 };
         // No address has more bits.
-        Self::new(address, length).unwrap_or(Self { first: address, length })
+        Self::new(address, length).unwrap_or_else(|| Self(address.into()))
     }
 
     /// The range of a text such as 203.0.113.0/24. An address without a length is a range of one.
     pub fn parse(text: &str) -> Option<Self> {
-        let Some((address, length)) = text.split_once('/') else {
-            let address = text.parse::<IpAddr>().ok()?.to_canonical();
-            return Self::new(address, if address.is_ipv4() { 32 } else { 128 });
-        };
-        let is_number = length.bytes().all(|byte| byte.is_ascii_digit());
-        Self::new(address.parse().ok()?, length.parse().ok().filter(|_| is_number)?)
+        if !text.contains('/') {
+            return text.parse().ok().map(|address| Self::around(address, [32, 128]));
+        }
+        let range: IpNet = text.parse().ok()?;
+        Self::new(range.addr(), range.prefix_len())
     }
 
     /// Whether an address belongs to it.
     pub fn contains(&self, address: IpAddr) -> bool {
-        let address = address.to_canonical();
-        address.is_ipv4() == self.first.is_ipv4() && Self::new(address, self.length) == Some(*self)
+        self.0.contains(&address.to_canonical())
     }
 }
 
 impl fmt::Display for AddressPrefix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.first, self.length)
+        self.0.fmt(f)
     }
 }
 
@@ -153,11 +141,6 @@ impl fmt::Display for AddressPrefix {
 pub(crate) fn applying(bans: Vec<Ban>, identity: &Identity<'_>) -> Option<Ban> {
     let applying = bans.into_iter().filter(|ban| ban.target.applies_to(identity));
     applying.max_by_key(|ban| (ban.until.is_none(), ban.until))
-}
-
-fn masked(address: Ipv6Addr, length: u8) -> Ipv6Addr {
-    let mask = u128::MAX.checked_shl(128 - u32::from(length)).unwrap_or_default();
-    (u128::from(address) & mask).into()
 }
 
 #[cfg(test)]

@@ -15,18 +15,15 @@
 //! combining marks or from right to left were refused: terminals disagree about their width and order,
 //! and a name stands in the middle of another player's picture.
 
-mod key;
-mod printable;
-
 use std::fmt;
 use std::sync::LazyLock;
 
 use unicode_normalization::UnicodeNormalization;
 use unicode_script::{Script, UnicodeScript};
-use unicode_security::{GeneralSecurityProfile, RestrictionLevel, RestrictionLevelDetection};
+use unicode_security::{
+    GeneralSecurityProfile, RestrictionLevel, RestrictionLevelDetection, skeleton,
+};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
-
-pub use printable::printable;
 
 /// A name.
 ///
@@ -107,6 +104,12 @@ const RESERVED: [&str; 28] = [
 ];
 /// The beginning of the names of guests.
 const GUEST: &str = "guest";
+/// Characters with a width that some terminals show as nothing, or that change what is beside them: the
+/// soft hyphen, Hangul fillers, the blank of Braille, marks of annotation, and the object replacement.
+const INVISIBLE: [char; 9] = [
+    '\u{ad}', '\u{115f}', '\u{1160}', '\u{2800}', '\u{3164}', '\u{ffa0}', '\u{fff9}', '\u{fffb}',
+    '\u{fffc}',
+];
 /// In bytes. A longer text is not looked at.
 const MOST_BYTES: usize = 256;
 
@@ -145,16 +148,16 @@ impl Name {
     /// host or for nobody.
     fn is_reserved(&self) -> bool {
         // Made once: that takes some thirty times as long as the keys of one name.
-        static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| key::of(GUEST));
+        static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| keys_of(GUEST));
         static WORDS: LazyLock<Vec<String>> =
-            LazyLock::new(|| RESERVED.iter().flat_map(|word| key::of(word)).collect());
+            LazyLock::new(|| RESERVED.iter().flat_map(|word| keys_of(word)).collect());
         let is_guest = |key: &String| GUESTS.iter().any(|guest| key.starts_with(guest.as_str()));
         self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
     }
 
     /// The keys of the name: two names that share one are not told from each other.
     pub(crate) fn keys(&self) -> Vec<String> {
-        key::of(&self.0)
+        keys_of(&self.0)
     }
 
     /// The name that the store has kept. What would be no name now is taken as it is, as far as it can be
@@ -218,6 +221,62 @@ impl fmt::Display for NameFault {
 
 impl std::error::Error for NameFault {}
 
+/// The printable characters of a text, up to that many columns, in one line.
+///
+/// Every character that is kept takes one or two columns. Kinds of blanks and breaks become one blank,
+/// and there is none at the ends. Control characters, escape sequences' introducers, marks that combine,
+/// marks of direction, invisible, private and unassigned characters are dropped, and characters that
+/// terminals draw in different widths. Letters with accents are composed before, so that these stay.
+///
+/// ```
+/// use cellcaster_server::accounts::printable;
+///
+/// assert_eq!(printable(" a\tb\r\n\u{1b}[31mc\u{202e} e\u{301}", 80), "a b [31mc é");
+/// assert_eq!(printable("漢字漢字", 5), "漢字");
+/// ```
+pub fn printable(text: &str, columns: usize) -> String {
+    let mut line = String::new();
+    let (mut width, mut owes_blank) = (0, false);
+    for character in text.nfc() {
+        if character.is_whitespace() {
+            owes_blank = !line.is_empty();
+            continue;
+        }
+        let Some(own_width) = width_of(character) else { continue };
+        let needed = own_width + usize::from(owes_blank);
+        if width + needed > columns {
+            break;
+        }
+        if owes_blank {
+            line.push(' ');
+        }
+        line.push(character);
+        (width, owes_blank) = (width + needed, false);
+    }
+    line
+}
+
+/// The keys of a name. Two names that share a key are not told from each other.
+///
+/// A key is a skeleton of Unicode Technical Standard #39, section 4, in which letters that look alike are
+/// one. Skeletons know upper from lower case, and these look alike in another way each: `I` is like `l`,
+/// and `i` is not. So there are two keys, the skeleton of the name in lower case, and the skeleton of the
+/// name as it is, put in lower case then. Names that differ in case alone share the first one, and names
+/// with the same skeleton share the second one.
+fn keys_of(name: &str) -> Vec<String> {
+    let of_lower_case: String = skeleton(&folded(name)).collect();
+    let of_name: String = skeleton(name).collect();
+    let mut keys = vec![of_lower_case, folded(&of_name)];
+    keys.dedup();
+    keys
+}
+
+/// The text with one case. It goes by way of upper case, in which `ß` is `SS` and both forms of a small
+/// sigma are one.
+fn folded(text: &str) -> String {
+    text.chars().flat_map(char::to_uppercase).flat_map(char::to_lowercase).collect()
+}
+
 fn is_allowed(character: char) -> bool {
     matches!(character, '0'..='9' | '-' | '_') || is_letter(character)
 }
@@ -231,6 +290,27 @@ fn is_letter(character: char) -> bool {
 /// Whether a sentence can show it.
 fn is_shown(character: char) -> bool {
     character != ' ' && printable(character.encode_utf8(&mut [0; 4]), 2).starts_with(character)
+}
+
+/// The columns of a character that is kept.
+fn width_of(character: char) -> Option<usize> {
+    let is_dropped = character.is_control()
+        || INVISIBLE.contains(&character)
+        || is_of_disputed_width(character)
+        || [Script::Unknown, Script::Cuneiform].contains(&character.script());
+    character.width().filter(|width| !is_dropped && (1..=2).contains(width))
+}
+
+/// Whether terminals draw `character` over its neighbours, or join it with them: dashes of two and three
+/// ems, Arabic words that are one character, halves of flags, and skin tones. (Cuneiform signs, too.)
+fn is_of_disputed_width(character: char) -> bool {
+    matches!(
+        character,
+        '\u{2e3a}'..='\u{2e3b}'
+            | '\u{fdf0}'..='\u{fdff}'
+            | '\u{1f1e6}'..='\u{1f1ff}'
+            | '\u{1f3fb}'..='\u{1f3ff}'
+    )
 }
 
 #[cfg(test)]

@@ -1,42 +1,48 @@
-//! A store in a PostgreSQL database, which several hosts share.
+//! The PostgreSQL database of a store, which several hosts share.
 //!
 //! Rules:
 //!
 //! - **A change is on the server's disk when its method returns**, unless the server is told not to wait for
 //!   its disk (`fsync = off`).
-//! - **Transactions are serializable**, but for those whose statements each do all by themselves. One that meets another is run again, after a random wait that doubles,
-//!   up to [`MOST_CONFLICTS`] times.
+//! - **Transactions are serializable**, except for those in which each statement does everything by itself. A transaction
+//!   that meets another one is run again, after a random wait that doubles, up to [`MOST_CONFLICTS`] times.
 //! - **Each call ends after [`PATIENCE`]**, whatever the server or the network does. The limit is kept on both
 //!   sides: by a timer here, and by `statement_timeout` there.
 //! - **A lost connection is made again.** A call that lost it before it asked to keep its change is run once
-//!   more. One that lost it after that fails, and its sentence says that the change may be kept or not.
-//!   After a connection that could not be made, calls fail at once for [`PAUSE`].
-//! - **The tables are made by the first host**, under a lock, and have a version. Those of a newer version are
+//!   more. A call that lost it after that fails, and its sentence says that the change may be kept or not.
+//!   After a failed attempt to connect, calls fail at once for [`PAUSE`].
+//! - **The tables are made by the first host**, under a lock, and have a version. Tables of another version are
 //!   left alone, and so is a database in which another program has tables of these names.
 //! - **A password is never shown.** Sentences have neither the address as it was given nor a part of it that
 //!   may belong to a misspelt password.
-//! - **A text may have any character**, also the one with the number 0, which PostgreSQL's texts have not: it
-//!   is escaped.
+//! - **A text may have any character**, also U+0000, which PostgreSQL's texts can't contain. It is written as U+0001 and
+//!   `0`, and U+0001 itself as U+0001 and `1`, so that each text has one form. All other texts are themselves.
 //!
-//! A pool of connections was refused: a host has one thread for its store. The crate `postgres` was refused:
-//! its calls wait without limit for a server that has stopped without closing its connections.
+//! Rejected: a pool of connections, since a host has one thread for its store; and the crate `postgres`, whose
+//! calls wait without limit for a server that has stopped without closing its connections.
 
-mod address;
-mod lease;
-mod presence;
-mod schema;
-mod session;
 mod tls;
-mod value;
 
-use std::fmt;
+use std::borrow::Cow;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::error::Error as _;
+use std::future::Future;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use self::address::Address;
-use self::session::{Call, Fault, Link};
+use rusqlite::types::{ToSqlOutput, Value, ValueRef};
+use tokio::runtime::{Builder, Runtime};
+use tokio::time::timeout_at;
+use tokio_postgres::config::{Host, SslMode};
+use tokio_postgres::error::SqlState;
+use tokio_postgres::types::private::BytesMut;
+use tokio_postgres::types::{FromSql, IsNull, ToSql, Type, to_sql_checked};
+use tokio_postgres::{Client, Config, Error, NoTls, Statement};
+
+use self::tls::Tls;
 use super::StoreFailure;
-use super::sql::{Database, SqlStore, Statements};
+use super::database::{Row, SCHEMA, Statements, VERSION};
 
 /// The most time that a call takes.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -51,53 +57,37 @@ const MOST_CONFLICTS: u32 = 12;
 /// The longest wait before a transaction is run again.
 const LONGEST_WAIT: Duration = Duration::from_millis(128);
 
-/// A store in a PostgreSQL database.
-pub type PostgresStore = SqlStore<PostgresDatabase>;
+/// What stands before an escaped character.
+const ESCAPE: char = '\u{1}';
+/// The lock under which tables are made, "Cell".
+const LOCK: i64 = 0x4365_6c6c;
+/// What the server is told about a new connection. A change is on the disk when it is kept, whatever the
+/// configuration says. A host that hangs holds no lock for long.
+const SETTINGS: &str = "SET idle_in_transaction_session_timeout = 10000; \
+    SELECT set_config('synchronous_commit', 'on', false) \
+    WHERE current_setting('synchronous_commit') = 'off'";
+/// What PostgreSQL calls otherwise in the [tables](SCHEMA). A text is compared by its bytes, whatever the language of the
+/// database.
+const TYPES: [(&str, &str); 5] = [
+    ("INTEGER PRIMARY KEY AUTOINCREMENT", "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"),
+    ("INTEGER", "BIGINT"),
+    ("BLOB", "BYTEA"),
+    ("TEXT", "TEXT COLLATE \"C\""),
+    (" STRICT", ""),
+];
+/// The time of the database, at the moment of the statement and not of the transaction's begin; and the version.
+const CLOCK_AND_VERSION: &str = "CREATE VIEW clock AS SELECT (extract(epoch FROM clock_timestamp()) * 1000)::bigint AS ms; \
+     CREATE TABLE cellcaster (version BIGINT NOT NULL)";
 
-/// The database of a [`PostgresStore`].
-pub struct PostgresDatabase {
-    link: Link,
-}
-
-impl PostgresStore {
-    /// The store at an address such as `postgres://user@host/database`, whose tables are made if there are
-    /// none.
-    ///
-    /// # Errors
-    /// If the server can't be reached, or the database is of a newer version or of another program.
-    pub fn open(address: &str) -> Result<Self, StoreFailure> {
-        let mut link = Link::new(Address::parse(address)?, false)?;
-        let call = link.call(SCHEMA_PATIENCE)?;
-        schema::migrate(&call, schema::MIGRATIONS)?;
-        Ok(Self { database: PostgresDatabase { link } })
-    }
-
-    /// The store at an address to read from. `None` if there is none. All methods that change something
-    /// fail.
-    ///
-    /// # Errors
-    /// If the server can't be reached, or the database is of another version.
-    pub fn open_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
-        let mut link = Link::new(Address::parse(address)?, true)?;
-        let has_tables = schema::check_to_read(&link.call(PATIENCE)?)?;
-        Ok(has_tables.then_some(Self { database: PostgresDatabase { link } }))
-    }
-}
-
-impl Database for PostgresDatabase {
-    fn once<T, E: From<StoreFailure>>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Kind::Repeatable, act)
-    }
-
-    fn change<T, E: From<StoreFailure>>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Kind::Serializable, act)
-    }
+/// A database on a server. Its connection is made when it is needed.
+pub(crate) struct Server {
+    address: Address,
+    is_to_read: bool,
+    /// `None` at the end alone.
+    runtime: Option<Runtime>,
+    session: Option<Session>,
+    /// When a connection could not be made, and why.
+    refused: Option<(Instant, StoreFailure)>,
 }
 
 /// How statements are run.
@@ -111,10 +101,88 @@ enum Kind {
     Serializable,
 }
 
-impl PostgresDatabase {
-    /// Runs a transaction whose statements each see what others have kept until then, and wait for those who
-    /// change the same row.
-    fn change_rows<T>(
+/// How a database is reached.
+struct Address {
+    config: Config,
+    /// `None` if the connection is not encrypted.
+    tls: Option<Tls>,
+    /// The server and the database, to name in sentences.
+    shown: String,
+}
+
+/// A connection.
+struct Session {
+    client: Client,
+    /// The statements that the server knows. A store has some thirty.
+    prepared: RefCell<HashMap<String, Statement>>,
+}
+
+/// Statements over a connection, up to a deadline.
+struct Call<'a> {
+    runtime: &'a Runtime,
+    session: &'a Session,
+    deadline: tokio::time::Instant,
+    shown: &'a str,
+    fault: Cell<Option<Fault>>,
+}
+
+/// Why a statement failed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    /// The connection is lost, and what a transaction has changed is not kept.
+    Lost,
+    /// Nobody knows what the server has done: the time was over, or the connection was lost while a change was
+    /// kept.
+    Unknown,
+    /// Another transaction came before this one, which can be run again.
+    Conflict,
+    /// The disk of the server is full.
+    Full,
+    /// The server does not do it.
+    Refused,
+}
+
+impl Server {
+    /// The database at an address, whose tables are made if there are none.
+    pub(crate) fn open(address: &str) -> Result<Self, StoreFailure> {
+        let mut server = Self::new(address, false)?;
+        make_tables(&server.call(SCHEMA_PATIENCE)?)?;
+        Ok(server)
+    }
+
+    /// The database at an address to read from; `None` if it has no tables.
+    pub(crate) fn open_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
+        let mut server = Self::new(address, true)?;
+        let has_tables = has_tables(&server.call(PATIENCE)?)?;
+        Ok(has_tables.then_some(server))
+    }
+
+    fn new(address: &str, is_to_read: bool) -> Result<Self, StoreFailure> {
+        let address = Address::parse(address)?;
+        let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| {
+            StoreFailure::new(format!("the host's store can't have a connection: {error}"))
+        })?;
+        Ok(Self { address, is_to_read, runtime: Some(runtime), session: None, refused: None })
+    }
+
+    /// See [`once`](super::database::Database::once).
+    pub(crate) fn once<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Kind::Repeatable, act)
+    }
+
+    /// See [`change`](super::database::Database::change).
+    pub(crate) fn change<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Kind::Serializable, act)
+    }
+
+    /// See [`change_rows`](super::database::Database::change_rows).
+    pub(crate) fn change_rows<T>(
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
     ) -> Result<T, StoreFailure> {
@@ -130,7 +198,7 @@ impl PostgresDatabase {
         let (mut conflicts, mut was_lost) = (0, false);
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
-            let call = self.link.call(left)?;
+            let call = self.call(left)?;
             let result = match kind {
                 Kind::Repeatable => act(&call),
                 Kind::Committed => in_transaction(&call, "READ COMMITTED", &mut act),
@@ -140,13 +208,13 @@ impl PostgresDatabase {
                 Ok(value) => return Ok(value),
                 Err(failure) => failure,
             };
-            match call.fault() {
+            match call.fault.get() {
                 Some(Fault::Lost) if !was_lost => {
-                    self.link.close();
+                    self.session = None;
                     was_lost = true;
                 }
                 Some(Fault::Lost | Fault::Unknown) => {
-                    self.link.close();
+                    self.session = None;
                     return Err(failure);
                 }
                 Some(Fault::Conflict) if conflicts < MOST_CONFLICTS => {
@@ -168,11 +236,226 @@ impl PostgresDatabase {
         if kind == Kind::Repeatable {
             return;
         }
-        let is_undone =
-            self.link.call(UNDO_PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
+        let is_undone = self.call(UNDO_PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());
         if !is_undone {
-            self.link.close();
+            self.session = None;
         }
+    }
+
+    /// A call that ends after `patience`. A connection is made if there is none.
+    fn call(&mut self, patience: Duration) -> Result<Call<'_>, StoreFailure> {
+        let deadline = tokio::time::Instant::now() + patience;
+        self.look_at_the_connection();
+        if self.session.as_ref().is_none_or(|session| session.client.is_closed()) {
+            self.session = Some(self.connect(deadline)?);
+        }
+        let (Some(runtime), Some(session)) = (&self.runtime, &self.session) else {
+            return Err(StoreFailure::new("the host's store is closed"));
+        };
+        let shown = self.address.shown.as_str();
+        Ok(Call { runtime, session, deadline, shown, fault: Cell::new(None) })
+    }
+
+    /// Notices that the server has ended the connection meanwhile, before anything is lost with it.
+    fn look_at_the_connection(&self) {
+        const TURNS: u32 = 3;
+        if let Some(runtime) = self.runtime.as_ref().filter(|_| self.session.is_some()) {
+            // A turn each for the end to be heard, for the task of the connection, and for its own end.
+            runtime.block_on(async {
+                for _ in 0..TURNS {
+                    tokio::task::yield_now().await;
+                }
+            });
+        }
+    }
+
+    fn connect(&mut self, deadline: tokio::time::Instant) -> Result<Session, StoreFailure> {
+        if let Some((_, failure)) = self.refused.as_ref().filter(|(at, _)| at.elapsed() < PAUSE) {
+            return Err(failure.clone());
+        }
+        let Some(runtime) = &self.runtime else {
+            return Err(StoreFailure::new("the host's store is closed"));
+        };
+        let (config, read) = (&self.address.config, if self.is_to_read { "on" } else { "off" });
+        let connect = async {
+            // The end of the connection is noticed by the next call.
+            let client = if let Some(tls) = &self.address.tls {
+                let (client, connection) = config.connect(tls.clone()).await?;
+                tokio::spawn(connection);
+                client
+            } else {
+                let (client, connection) = config.connect(NoTls).await?;
+                tokio::spawn(connection);
+                client
+            };
+            let patience = PATIENCE.as_millis();
+            let settings = format!(
+                "{SETTINGS}; SET statement_timeout = {patience}; \
+                 SET default_transaction_read_only = {read}"
+            );
+            client.batch_execute(&settings).await?;
+            Ok::<_, Error>(client)
+        };
+        let connected = runtime.block_on(async { timeout_at(deadline, connect).await });
+        let why = match connected {
+            Ok(Ok(client)) => {
+                self.refused = None;
+                return Ok(Session { client, prepared: RefCell::default() });
+            }
+            Ok(Err(error)) => reason(&error),
+            Err(_) => "no answer in time".to_owned(),
+        };
+        let failure = StoreFailure::away(format!("{} can't be used: {why}", self.address.shown));
+        self.refused = Some((Instant::now(), failure.clone()));
+        Err(failure)
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.session = None;
+        // It may be in a task of another runtime, which must not wait.
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+impl Call<'_> {
+    /// Runs statements without parameters.
+    fn batch(&self, sql: &str) -> Result<(), StoreFailure> {
+        self.wait(self.session.client.batch_execute(sql))
+    }
+
+    /// Keeps what a transaction has changed.
+    fn commit(&self) -> Result<(), StoreFailure> {
+        self.batch("COMMIT").map_err(|failure| match self.fault.get() {
+            Some(Fault::Lost | Fault::Unknown) => {
+                self.fault.set(Some(Fault::Unknown));
+                StoreFailure::away(format!("{failure}; the last change may be kept or not"))
+            }
+            _ => failure,
+        })
+    }
+
+    async fn prepare(&self, sql: &str) -> Result<Statement, Error> {
+        let known = self.session.prepared.borrow().get(sql).cloned();
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        // No statement has a question mark that is not a parameter's.
+        let statement = self.session.client.prepare(&sql.replace('?', "$")).await?;
+        self.session.prepared.borrow_mut().insert(sql.to_owned(), statement.clone());
+        Ok(statement)
+    }
+
+    fn wait<T>(&self, answer: impl Future<Output = Result<T, Error>>) -> Result<T, StoreFailure> {
+        let answered = self.runtime.block_on(async { timeout_at(self.deadline, answer).await });
+        let (fault, why) = match answered {
+            Ok(Ok(value)) => return Ok(value),
+            Ok(Err(error)) => (fault(&error), reason(&error)),
+            Err(_) => (Fault::Unknown, "no answer in time".to_owned()),
+        };
+        self.fault.set(Some(fault));
+        let sentence = format!("{} failed: {why}", self.shown);
+        Err(match fault {
+            Fault::Lost | Fault::Unknown => StoreFailure::away(sentence),
+            Fault::Full => StoreFailure::full(sentence),
+            Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
+        })
+    }
+}
+
+impl Statements for Call<'_> {
+    fn execute(&self, sql: &str, values: &[&dyn rusqlite::ToSql]) -> Result<u64, StoreFailure> {
+        let values = parameters(values)?;
+        self.wait(async {
+            let statement = self.prepare(sql).await?;
+            self.session.client.execute_raw(&statement, &values).await
+        })
+    }
+
+    fn rows(&self, sql: &str, values: &[&dyn rusqlite::ToSql]) -> Result<Vec<Row>, StoreFailure> {
+        let values: Vec<Parameter<'_>> = parameters(values)?;
+        let values: Vec<_> = values.iter().map(|it| it as &(dyn ToSql + Sync)).collect();
+        self.wait(async {
+            let statement = self.prepare(sql).await?;
+            let rows = self.session.client.query(&statement, &values).await?;
+            rows.iter().map(row).collect()
+        })
+    }
+
+    fn lock(&self, name: &str) -> Result<(), StoreFailure> {
+        let sql = "SELECT pg_advisory_xact_lock(hashtextextended(?1, 0)) IS NULL";
+        self.rows(sql, &[&name]).map(|_| ())
+    }
+}
+
+fn row(row: &tokio_postgres::Row) -> Result<Row, Error> {
+    let values = (0..row.len()).map(|column| row.try_get(column).map(|Column(value)| value));
+    values.collect::<Result<_, _>>().map(Row)
+}
+
+fn parameters<'a>(values: &'a [&dyn rusqlite::ToSql]) -> Result<Vec<Parameter<'a>>, StoreFailure> {
+    Ok(values.iter().map(|value| value.to_sql().map(Parameter)).collect::<Result<_, _>>()?)
+}
+
+/// A parameter, as rusqlite has it.
+#[derive(Debug)]
+struct Parameter<'a>(ToSqlOutput<'a>);
+
+/// A column.
+struct Column(Value);
+
+impl ToSql for Parameter<'_> {
+    fn to_sql(
+        &self,
+        kind: &Type,
+        out: &mut BytesMut,
+    ) -> Result<IsNull, Box<dyn std::error::Error + Sync + Send>> {
+        let value = match &self.0 {
+            ToSqlOutput::Borrowed(value) => *value,
+            ToSqlOutput::Owned(value) => ValueRef::from(value),
+            _ => return Err("the parameter has no value".into()),
+        };
+        match value {
+            ValueRef::Null => Ok(IsNull::Yes),
+            ValueRef::Integer(number) if *kind == Type::INT8 => number.to_sql(kind, out),
+            ValueRef::Blob(bytes) if *kind == Type::BYTEA => bytes.to_sql(kind, out),
+            ValueRef::Text(text) if *kind == Type::JSON => str::from_utf8(text)?.to_sql(kind, out),
+            ValueRef::Text(text) if *kind == Type::TEXT => {
+                escaped(str::from_utf8(text)?).as_ref().to_sql(kind, out)
+            }
+            _ => Err(format!("the parameter is of the type {kind}").into()),
+        }
+    }
+
+    fn accepts(_: &Type) -> bool {
+        true
+    }
+
+    to_sql_checked!();
+}
+
+impl<'a> FromSql<'a> for Column {
+    fn from_sql(
+        kind: &Type,
+        raw: &'a [u8],
+    ) -> Result<Self, Box<dyn std::error::Error + Sync + Send>> {
+        Ok(Self(match *kind {
+            Type::BOOL => bool::from_sql(kind, raw)?.into(),
+            Type::INT8 => i64::from_sql(kind, raw)?.into(),
+            Type::BYTEA => Vec::from_sql(kind, raw)?.into(),
+            _ => unescaped(<&str>::from_sql(kind, raw)?).into(),
+        }))
+    }
+
+    fn from_sql_null(_: &Type) -> Result<Self, Box<dyn std::error::Error + Sync + Send>> {
+        Ok(Self(Value::Null))
+    }
+
+    fn accepts(kind: &Type) -> bool {
+        [Type::BOOL, Type::INT8, Type::BYTEA, Type::TEXT].contains(kind)
     }
 }
 
@@ -195,9 +478,214 @@ fn wait(conflicts: u32) -> Duration {
     longest.mul_f64(share)
 }
 
-impl fmt::Debug for PostgresDatabase {
-    /// Without what may be secret.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PostgresDatabase").finish_non_exhaustive()
+/// Makes the tables if there are none, all at once or not at all.
+fn make_tables(call: &Call<'_>) -> Result<(), StoreFailure> {
+    // Not serializable: what another host has made while this one waited for the lock is to be seen.
+    let patience = SCHEMA_PATIENCE.as_millis();
+    call.batch(&format!("BEGIN; SET LOCAL statement_timeout = {patience}"))?;
+    let made = call.batch(&format!("SELECT pg_advisory_xact_lock({LOCK})")).and_then(|()| {
+        if has_tables(call)? {
+            return Ok(());
+        }
+        let schema = TYPES.iter().fold(SCHEMA.to_owned(), |it, (name, own)| it.replace(name, own));
+        call.batch(&schema)?;
+        call.batch(CLOCK_AND_VERSION)?;
+        call.batch(&format!("INSERT INTO cellcaster (version) VALUES ({VERSION})"))
+    });
+    call.batch(if made.is_ok() { "COMMIT" } else { "ROLLBACK" })?;
+    made
+}
+
+/// Whether a database has the tables, which must be of this version.
+fn has_tables(call: &Call<'_>) -> Result<bool, StoreFailure> {
+    let sql = "SELECT current_setting('server_encoding') = 'UTF8', \
+               to_regclass('cellcaster') IS NOT NULL, to_regclass('accounts') IS NOT NULL";
+    let row = call.row(sql, &[])?;
+    let row = row.ok_or_else(|| StoreFailure::new("the database says nothing of its tables"))?;
+    let [is_utf8, has_version, has_accounts]: [bool; 3] = [row.get(0)?, row.get(1)?, row.get(2)?];
+    if !is_utf8 {
+        return Err(StoreFailure::new(
+            "the database does not hold texts of all languages: make one with the encoding UTF8",
+        ));
+    }
+    if !has_version && has_accounts {
+        return Err(StoreFailure::new(
+            "the database belongs to another program: it has a table accounts, and is left as it is",
+        ));
+    }
+    if !has_version {
+        return Ok(false);
+    }
+    let row = call.row("SELECT version FROM cellcaster", &[])?;
+    let version: i64 = row.map(|row| row.get(0)).transpose()?.unwrap_or_default();
+    if version == VERSION {
+        return Ok(true);
+    }
+    let by =
+        if version > VERSION { "a newer Cellcaster wrote" } else { "no Cellcaster of today reads" };
+    Err(StoreFailure::new(format!(
+        "the store has version {version}, which {by}: it is left as it is"
+    )))
+}
+
+impl Address {
+    fn parse(text: &str) -> Result<Self, StoreFailure> {
+        let mut config: Config = text.parse().map_err(|_| no_address())?;
+        let host = host(&config).ok_or_else(no_address)?;
+        let database = config.get_dbname().or(config.get_user()).unwrap_or("").to_owned();
+        // A password with an @ that is not written as %40 is cut there, and its end taken for the host.
+        if [&host, &database].iter().any(|part| part.contains(['@', ':'])) {
+            return Err(no_address());
+        }
+        let is_local = host.starts_with('/');
+        let is_encrypted = config.get_ssl_mode() == SslMode::Require && !is_local;
+        let tls = is_encrypted.then(Tls::of_system).transpose()?;
+        if tls.is_none() {
+            config.ssl_mode(SslMode::Disable);
+        }
+        if config.get_application_name().is_none() {
+            config.application_name("cellcaster");
+        }
+        config.connect_timeout(PATIENCE).tcp_user_timeout(PATIENCE);
+        config.keepalives_idle(Duration::from_secs(30));
+        let shown = format!("the database {database:?} at {host}");
+        Ok(Self { config, tls, shown })
+    }
+}
+
+/// The first server of an address; `None` if there is none.
+fn host(config: &Config) -> Option<String> {
+    let address = config.get_hostaddrs().first().map(ToString::to_string);
+    address.or_else(|| match config.get_hosts().first()? {
+        Host::Tcp(name) => Some(name.clone()),
+        #[cfg(unix)]
+        Host::Unix(path) => Some(path.display().to_string()),
+    })
+}
+
+fn no_address() -> StoreFailure {
+    StoreFailure::new(
+        "the store is no address such as postgres://USER:PASSWORD@HOST:PORT/DATABASE; in a password, \
+         %40 stands for @, %2F for / and %25 for %",
+    )
+}
+
+/// A text as the tables have it.
+fn escaped(text: &str) -> Cow<'_, str> {
+    if !text.contains(['\0', ESCAPE]) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::with_capacity(text.len() + 8);
+    for character in text.chars() {
+        match character {
+            '\0' => escaped.extend([ESCAPE, '0']),
+            ESCAPE => escaped.extend([ESCAPE, '1']),
+            other => escaped.push(other),
+        }
+    }
+    Cow::Owned(escaped)
+}
+
+fn unescaped(text: &str) -> String {
+    if !text.contains(ESCAPE) {
+        return text.to_owned();
+    }
+    let (mut unescaped, mut rest) = (String::with_capacity(text.len()), text.chars());
+    while let Some(character) = rest.next() {
+        unescaped.extend(match character {
+            ESCAPE if rest.next() == Some('0') => Some('\0'),
+            other => Some(other),
+        });
+    }
+    unescaped
+}
+
+fn fault(error: &Error) -> Fault {
+    // A transaction may learn that another one has inserted the same row from that row alone.
+    const CONFLICTS: [&SqlState; 3] = [
+        &SqlState::T_R_SERIALIZATION_FAILURE,
+        &SqlState::T_R_DEADLOCK_DETECTED,
+        &SqlState::UNIQUE_VIOLATION,
+    ];
+    // The connection is lost, or the server ends, begins, or is not one that takes changes any more.
+    const LOSSES: [&str; 3] = ["08", "57P", "25006"];
+    match error.code() {
+        Some(code) if CONFLICTS.contains(&code) => Fault::Conflict,
+        Some(&SqlState::DISK_FULL) => Fault::Full,
+        Some(code) if LOSSES.iter().any(|class| code.code().starts_with(class)) => Fault::Lost,
+        Some(_) => Fault::Refused,
+        None if is_of_the_value(error) => Fault::Refused,
+        None => Fault::Lost,
+    }
+}
+
+/// Whether the cause is a parameter or a column, and not the connection.
+fn is_of_the_value(error: &Error) -> bool {
+    let text = error.to_string();
+    text.starts_with("error serializing") || text.starts_with("error deserializing")
+}
+
+/// What the server or the system says.
+fn reason(error: &Error) -> String {
+    match (error.as_db_error(), error.source()) {
+        (Some(error), _) => error.message().to_owned(),
+        (None, Some(cause)) => cause.to_string(),
+        (None, None) => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn an_address_names_its_server_and_its_database() {
+        for (text, shown) in [
+            ("postgres://ada:geheim@db.example.org/games", "\"games\" at db.example.org"),
+            ("postgresql://ada:geheim@192.0.2.7:5433", "\"ada\" at 192.0.2.7"),
+            ("postgres://ada@%2Frun%2Fpostgresql/games?sslmode=disable", "at /run/postgresql"),
+            ("postgres://ada:ge%40heim@host/games?sslmode=prefer", "\"games\" at host"),
+        ] {
+            let address = Address::parse(text).unwrap();
+            assert!(address.shown.contains(shown), "{}", address.shown);
+            assert!(!address.shown.contains("heim"), "{}", address.shown);
+        }
+    }
+
+    #[test]
+    fn what_is_no_address_is_refused_without_a_word_of_it() {
+        for text in [
+            "postgres://",
+            "postgres:///games",
+            "postgres://ada:geheim@host:port/games",
+            "postgres://ada:ge@heim@host/games",
+            "postgres://ada:ge@heim/heim@host/games",
+            "postgres://ada:ge?heim=1@host/games?geheim=2",
+            "postgres://ada:geheim@host/games?sslmode=geheim",
+        ] {
+            let Err(failure) = Address::parse(text) else { panic!("{text}") };
+            let sentence = failure.to_string();
+            assert!(!sentence.contains("heim") && sentence.lines().count() == 1, "{sentence}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_text_has_one_form_without_a_zero(
+            text in "[\u{0}\u{1}01a]{0,9}|.{0,20}",
+            other in "[\u{0}\u{1}01a]{0,9}",
+        ) {
+            let form = escaped(&text);
+            prop_assert!(!form.contains('\0'));
+            prop_assert_eq!(unescaped(&form), text.clone());
+            prop_assert_eq!(form == escaped(&other), text == other);
+        }
+    }
+
+    #[test]
+    fn a_text_without_the_two_characters_is_itself() {
+        assert!(matches!(escaped("10 steps; '\"\u{2}"), Cow::Borrowed("10 steps; '\"\u{2}")));
     }
 }

@@ -6,22 +6,22 @@
 //! - **A visit counts on all hosts, while its host is there**, so that a limit of visits by a key or by addresses
 //!   holds for all hosts together. A host that was late has its visitors none the less: then its visits count
 //!   again, and for a while there may be more than the limit.
-//! - **Who is refused learns how fresh that is.** The visits in the way may be those of a host that was just
+//! - **A refusal says how fresh it is.** The visits in the way may be those of a host that was just
 //!   killed.
-//! - **Time is that of the store**, as with [leases](super::Leases).
+//! - **Time is that of the store**, as with [leases](super::Lease).
 //!
 //! A counter for each visitor was refused: what a host has counted when it is killed would be there for ever. So
 //! was a time for each visit that the host renews: a host with a thousand visitors would write a thousand rows
 //! each time.
 
-mod memory;
-
 use std::fmt;
 use std::time::Duration;
 
-pub use memory::MemoryPresence;
+use rusqlite::params;
 
-use super::{AccountKey, AddressPrefix, StoreFailure};
+use super::database::Row;
+use super::lease::milliseconds;
+use super::{AccountKey, AddressPrefix, HostStore, StoreFailure};
 
 /// By what the visits of somebody are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -80,50 +80,122 @@ pub struct HostRow {
     pub ago: Duration,
 }
 
-/// Where visits and hosts are kept. In each method, a host is there that has announced itself in the last `time`.
-pub trait Presence: Send {
+/// The visits and hosts of a cluster. In each method, a host is there if it has announced itself in the last `time`.
+impl HostStore {
     /// Begins a visit, if fewer than `most` of the visitor count.
     ///
     /// # Errors
-    /// Where the store can't be asked; so for each method. If it says that a change may be kept or not, the visit
+    /// If the store can't be asked; so for each method. If the failure says that a change may be kept or not, the visit
     /// may count.
-    fn begin_visit(
+    pub fn begin_visit(
         &mut self,
         host: &str,
         visitor: &Visitor,
         most: u32,
         time: Duration,
-    ) -> Result<VisitBegin, StoreFailure>;
+    ) -> Result<VisitBegin, StoreFailure> {
+        let Some(others) = most.checked_sub(1) else {
+            return Ok(VisitBegin::TooMany(Duration::ZERO));
+        };
+        let in_the_way = "SELECT (SELECT ms FROM clock) - seen_at \
+                          FROM visits JOIN hosts ON hosts.name = visits.host \
+                          WHERE visitor = ?1 AND seen_at > (SELECT ms FROM clock) - ?2 \
+                          ORDER BY seen_at DESC LIMIT 1 OFFSET ?3";
+        let insert = "INSERT INTO visits (host, visitor, began_at) \
+                      VALUES (?1, ?2, (SELECT ms FROM clock)) RETURNING id";
+        let visitor = visitor.to_string();
+        self.database.change_rows(|it| {
+            // Transactions that count the same visits wait for each other. A serializable transaction would also
+            // conflict with those that count others, as long as the table is short.
+            it.lock(&format!("visits of {visitor}"))?;
+            let row = it.row(in_the_way, params![visitor, milliseconds(time), others])?;
+            if let Some(row) = row {
+                return Ok(VisitBegin::TooMany(Duration::from_millis(row.count(0)?)));
+            }
+            let row = it.row(insert, params![host, visitor])?;
+            let row = row.ok_or_else(|| StoreFailure::new("the host's store began no visit"))?;
+            Ok(VisitBegin::Begun(VisitId(row.get(0)?)))
+        })
+    }
 
     /// Ends a visit.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure>;
+    pub fn end_visit(&mut self, visit: VisitId) -> Result<(), StoreFailure> {
+        let sql = "DELETE FROM visits WHERE id = ?1";
+        self.database.once(|it| it.execute(sql, params![visit.0]).map(|_| ()))
+    }
 
     /// The visits that count, in the order in which they were begun.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure>;
+    pub fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure> {
+        let sql = "SELECT id, host, visitor, (SELECT ms FROM clock) - began_at \
+                   FROM visits JOIN hosts ON hosts.name = visits.host \
+                   WHERE seen_at > (SELECT ms FROM clock) - ?1 ORDER BY id";
+        let rows = self.database.once(|it| it.rows(sql, params![milliseconds(time)]))?;
+        rows.iter().map(visit).collect()
+    }
 
     /// Keeps what a host says of itself, in place of what it said before.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure>;
+    pub fn announce(&mut self, notice: &HostNotice) -> Result<(), StoreFailure> {
+        const DAY: Duration = Duration::from_hours(24);
+        // Hosts that do not come back.
+        let visits = "DELETE FROM visits WHERE host IN \
+                      (SELECT name FROM hosts WHERE seen_at < (SELECT ms FROM clock) - ?1)";
+        let hosts = "DELETE FROM hosts WHERE seen_at < (SELECT ms FROM clock) - ?1";
+        let upsert = "INSERT INTO hosts (name, version, address, load, seen_at) \
+                      VALUES (?1, ?2, ?3, ?4, (SELECT ms FROM clock)) \
+                      ON CONFLICT (name) DO UPDATE SET version = excluded.version, \
+                      address = excluded.address, load = excluded.load, seen_at = excluded.seen_at";
+        let HostNotice { name, version, address, load } = notice;
+        self.database.once(|it| {
+            it.execute(visits, params![milliseconds(DAY)])?;
+            it.execute(hosts, params![milliseconds(DAY)])?;
+            it.execute(upsert, params![name, version, address, load]).map(|_| ())
+        })
+    }
 
     /// Forgets a host that ends, with all of its visits.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn leave(&mut self, host: &str) -> Result<(), StoreFailure>;
+    pub fn leave(&mut self, host: &str) -> Result<(), StoreFailure> {
+        self.database.once(|it| {
+            it.execute("DELETE FROM hosts WHERE name = ?1", params![host])?;
+            it.execute("DELETE FROM visits WHERE host = ?1", params![host]).map(|_| ())
+        })
+    }
 
     /// The hosts that are there, by name.
     ///
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
-    fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure>;
+    pub fn hosts(&mut self, time: Duration) -> Result<Vec<HostRow>, StoreFailure> {
+        let sql = "SELECT name, version, address, load, (SELECT ms FROM clock) - seen_at \
+                   FROM hosts WHERE seen_at > (SELECT ms FROM clock) - ?1 ORDER BY name";
+        let rows = self.database.once(|it| it.rows(sql, params![milliseconds(time)]))?;
+        rows.iter().map(host).collect()
+    }
+}
+
+fn visit(row: &Row) -> Result<Visit, StoreFailure> {
+    let id = row.get(0)?;
+    let visitor = Visitor::parse(&row.get::<String>(2)?)
+        .ok_or_else(|| StoreFailure::new(format!("the visit {id} has no visitor")))?;
+    let since = Duration::from_millis(row.count(3)?);
+    Ok(Visit { id: VisitId(id), host: row.get(1)?, visitor, since })
+}
+
+fn host(row: &Row) -> Result<HostRow, StoreFailure> {
+    let (name, version, address) = (row.get(0)?, row.get(1)?, row.get(2)?);
+    let notice = HostNotice { name, version, address, load: row.get(3)? };
+    Ok(HostRow { notice, ago: Duration::from_millis(row.count(4)?) })
 }
 
 impl Visitor {

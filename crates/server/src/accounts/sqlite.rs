@@ -1,145 +1,354 @@
-//! A store in a SQLite file.
+//! The store's SQLite file: where it lies, who may read it, and whether it is sound.
 //!
 //! Rules:
 //!
 //! - **A change is on the disk when its method returns.** The file has a write-ahead log, which is
 //!   synchronised with each transaction (`journal_mode = WAL`, `synchronous = FULL`). A process that is
 //!   killed loses at most the change that has not returned.
-//! - **Others can read at the same time**, such as `cellcaster scores`.
+//! - **Others can read at the same time**, such as `cellcaster-server scores`.
 //! - **The log is short.** What is in it is copied into the file at each start and end.
-//! - **A damaged file is kept.** [`open`](SqliteStore::open) checks the whole file, and refuses a damaged one.
-//!   [`open_or_salvage`](SqliteStore::open_or_salvage) renames it to `host.db.damaged-1` with its log, copies
+//! - **A damaged file is kept.** [`open`] checks the whole file, and refuses a damaged one.
+//!   [`open_or_salvage`] renames it to `host.db.damaged-1` with its log, copies
 //!   all rows that can be read into a new file, and says so in a sentence. That is never done unasked: names
 //!   would be free to take, and bans gone.
-//! - **A file of a newer version is left alone**, and so is one of another program.
+//! - **A file of another version is left alone**, and so is one of another program.
 //! - **Nobody else on the machine reads it**: the file has the mode 0600, and the folder 0700 where it is
 //!   created.
 //!
-//! SQLite's own table of statements is not used (rusqlite's feature `cache`): a host prepares some ten
+//! Rejected: a cache of prepared statements (rusqlite's feature `cache`). A host prepares some ten
 //! statements a second.
 
-mod opening;
-mod salvage;
-mod schema;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use std::path::Path;
-
-use rusqlite::types::{ToSqlOutput, Value as SqliteValue, ValueRef};
-use rusqlite::{Connection, ErrorCode, ToSql, TransactionBehavior, params_from_iter};
-
-#[cfg(fuzzing)]
-pub use rusqlite::types::Value as ColumnValue;
+use cellcaster::app::store::private;
+use cellcaster::fault::printable_path;
+use rusqlite::types::Value;
+use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, params_from_iter};
 
 use super::StoreFailure;
-use super::sql::{Database, Row, SqlStore, Statements, Value};
+use super::database::{Row, SCHEMA, Statements, VERSION};
 
-/// A store in the file `host.db` of a folder.
-pub type SqliteStore = SqlStore<SqliteFile>;
+/// The mark of the file in its header, "Cell".
+const APPLICATION: i32 = 0x4365_6c6c;
+/// The time of the database.
+const CLOCK: &str = "CREATE VIEW clock AS SELECT CAST(unixepoch('subsec') * 1000 AS INTEGER) AS ms";
+const FILE: &str = "host.db";
+/// What SQLite adds to the name for its log, and for the index of the log.
+const LOGS: [&str; 2] = ["-wal", "-shm"];
+/// The time to wait for another process.
+const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The file of a [`SqliteStore`].
-#[derive(Debug)]
-pub struct SqliteFile {
-    pub(crate) connection: Connection,
+/// The file in `folder` to read and write. A damaged one is refused, and left as it is.
+pub(crate) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
+    open_sound(folder).map_err(|fault| match fault {
+        Fault::Failure(failure) => failure,
+        Fault::Damaged => StoreFailure::new(format!(
+            "{} is damaged: put a backup in its place, or start once with --accept-empty, which keeps it as \
+             {} and goes on with the rows that can be read",
+            printable_path(&folder.join(FILE)),
+            free_name(folder)
+        )),
+    })
 }
 
-impl SqliteStore {
-    /// The store in `folder`, which is created if it does not exist.
-    ///
-    /// # Errors
-    /// If the folder can't be used, or the file is damaged, of a newer version or of another program.
-    pub fn open(folder: &Path) -> Result<Self, StoreFailure> {
-        let connection = opening::open(folder)?;
-        Ok(Self { database: SqliteFile { connection } })
-    }
-
-    /// The store in `folder`; if its file was damaged, a new one with the rows that can be read, and a sentence
-    /// about it.
-    ///
-    /// # Errors
-    /// If the folder can't be used, or the file is of a newer version or of another program.
-    pub fn open_or_salvage(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
-        let (connection, sentence) = opening::open_or_salvage(folder)?;
-        Ok((Self { database: SqliteFile { connection } }, sentence))
-    }
-
-    /// The store in `folder` to read from while a host uses it. `None` if there is none. All methods that
-    /// change something fail.
-    ///
-    /// # Errors
-    /// If it can't be read, or is of another version.
-    pub fn open_to_read(folder: &Path) -> Result<Option<Self>, StoreFailure> {
-        let connection = opening::open_to_read(folder)?;
-        Ok(connection.map(|connection| Self { database: SqliteFile { connection } }))
+/// The same, but a damaged file is put aside, and the rows that can be read are copied into a new one. Then a
+/// sentence says so.
+pub(crate) fn open_or_salvage(folder: &Path) -> Result<(Connection, Option<String>), StoreFailure> {
+    match open_sound(folder) {
+        Ok(connection) => Ok((connection, None)),
+        Err(Fault::Failure(failure)) => Err(failure),
+        Err(Fault::Damaged) => replace(folder).map(|(it, sentence)| (it, Some(sentence))),
     }
 }
 
-impl Database for SqliteFile {
-    fn once<T, E: From<StoreFailure>>(
-        &mut self,
-        mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        act(&self.connection)
+/// The file in `folder`, which is made if there is none.
+fn open_sound(folder: &Path) -> Result<Connection, Fault> {
+    let file = folder.join(FILE);
+    if has_lost_its_content(&file) {
+        return Err(Fault::Damaged);
     }
+    let is_new = !file.exists();
+    private::create_folder(folder).and_then(|()| private::create_file(&file)).map_err(|error| {
+        let sentence = format!("{} can't be used: {error}", printable_path(&file));
+        Fault::Failure(StoreFailure::new(sentence))
+    })?;
+    connect(&file).inspect_err(|_| {
+        // An empty file would be taken for a damaged one at the next start.
+        if is_new && fs::metadata(&file).is_ok_and(|data| data.len() == 0) {
+            _ = fs::remove_file(&file);
+        }
+    })
+}
 
-    fn change<T, E: From<StoreFailure>>(
-        &mut self,
-        mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        // One that begins by reading could not wait for another one that writes.
-        let behavior = TransactionBehavior::Immediate;
-        let transaction = self.connection.transaction_with_behavior(behavior);
-        let transaction = transaction.map_err(StoreFailure::from)?;
-        let result = act(&*transaction)?;
-        transaction.commit().map_err(StoreFailure::from)?;
-        Ok(result)
+/// Whether the file is empty, or missing beside its log. SQLite would take either for a new database, and
+/// delete the log.
+fn has_lost_its_content(file: &Path) -> bool {
+    match fs::metadata(file) {
+        Ok(data) => data.is_file() && data.len() == 0,
+        Err(_) => fs::metadata(with_end(file, LOGS[0])).is_ok_and(|log| log.len() > 0),
     }
+}
 
-    fn checkpoint(&mut self) -> Result<(), StoreFailure> {
-        Ok(opening::checkpoint(&self.connection)?)
+/// Copies the content of the write-ahead log into the file, and empties the log. What another process still
+/// reads remains in the log.
+pub(crate) fn checkpoint(connection: &Connection) -> rusqlite::Result<()> {
+    connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))
+}
+
+/// The file in `folder` to read, if it exists.
+pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFailure> {
+    let file = folder.join(FILE);
+    if !file.exists() {
+        return Ok(None);
     }
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    // Not by opening it: to close it again would give up the locks of this process.
+    private::check_is_file(&file).map_err(|error| {
+        StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)))
+    })?;
+    let connection = Connection::open_with_flags(&file, flags).and_then(|connection| {
+        connection.busy_timeout(PATIENCE)?;
+        Ok((version(&connection)?, connection))
+    });
+    let unreadable =
+        |error| StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)));
+    let (version, connection) = connection.map_err(unreadable)?;
+    if version == 0 {
+        return Ok(None);
+    }
+    check_origin(&connection, &file).map_err(|fault| fault.or_damage_of(&file))?;
+    Ok(Some(connection))
+}
+
+/// Why a file is not opened.
+enum Fault {
+    Damaged,
+    Failure(StoreFailure),
+}
+
+impl Fault {
+    fn or_damage_of(self, file: &Path) -> StoreFailure {
+        match self {
+            Self::Damaged => StoreFailure::new(format!("{} is damaged", printable_path(file))),
+            Self::Failure(failure) => failure,
+        }
+    }
+}
+
+impl From<rusqlite::Error> for Fault {
+    fn from(error: rusqlite::Error) -> Self {
+        match error.sqlite_error_code() {
+            Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => Self::Damaged,
+            _ => Self::Failure(error.into()),
+        }
+    }
+}
+
+/// A connection to a file that is sound and of this version.
+fn connect(file: &Path) -> Result<Connection, Fault> {
+    // Without SQLITE_OPEN_URI: a path is a path.
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let mut connection = Connection::open_with_flags(file, flags)?;
+    connection.busy_timeout(PATIENCE)?;
+    check_origin(&connection, file)?;
+    check_content(&connection)?;
+    let mode: String = connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))?;
+    if !mode.eq_ignore_ascii_case("wal") {
+        let sentence = format!("{} can't have a write-ahead log here", printable_path(file));
+        return Err(Fault::Failure(StoreFailure::new(sentence)));
+    }
+    connection.execute_batch(
+        "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF;",
+    )?;
+    make_tables(&mut connection)?;
+    // What can't be copied now, as on a full disk, is as safe in the log.
+    _ = checkpoint(&connection);
+    Ok(connection)
+}
+
+/// Refuses a file of another program or of another version.
+fn check_origin(connection: &Connection, file: &Path) -> Result<(), Fault> {
+    let application: i32 = connection.query_row("PRAGMA application_id", [], |row| row.get(0))?;
+    let objects: i64 =
+        connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+    let version = version(connection)?;
+    let is_new = application == 0 && version == 0 && objects == 0;
+    let sentence = if application != APPLICATION && !is_new {
+        format!("{} belongs to another program: it is left as it is", printable_path(file))
+    } else if version > VERSION {
+        format!(
+            "{} has version {version}, which a newer Cellcaster wrote: it is left as it is",
+            printable_path(file)
+        )
+    } else if ![0, VERSION].contains(&version) {
+        format!(
+            "{} has version {version}, which no Cellcaster of today reads: it is left as it is; move it away",
+            printable_path(file)
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Fault::Failure(StoreFailure::new(sentence)))
+}
+
+fn check_content(connection: &Connection) -> Result<(), Fault> {
+    let answer: String = connection.query_row("PRAGMA integrity_check(1)", [], |row| row.get(0))?;
+    if answer == "ok" { Ok(()) } else { Err(Fault::Damaged) }
+}
+
+/// Puts a damaged file aside, and copies what can be read into a new one. Returns that, and a sentence.
+fn replace(folder: &Path) -> Result<(Connection, String), StoreFailure> {
+    let file = folder.join(FILE);
+    let aside = put_aside(folder, &file).and_then(|aside| {
+        private::create_file(&file)?;
+        Ok(aside)
+    });
+    let aside = aside.map_err(|error| {
+        let file = printable_path(&file);
+        StoreFailure::new(format!("{file} is damaged, and can't be put aside: {error}"))
+    })?;
+    let mut connection = connect(&file).map_err(|fault| fault.or_damage_of(&file))?;
+    let damaged = folder.join(&aside);
+    let is_lost = has_lost_its_content(&damaged);
+    let rows = if is_lost { 0 } else { salvage(&damaged, &mut connection)? };
+    let file = printable_path(&file);
+    let sentence = format!(
+        "{file} was damaged and is kept as {aside}; {rows} rows of it could be read and stay in force"
+    );
+    Ok((connection, sentence))
+}
+
+/// Renames a damaged file and its logs, and returns the new name.
+fn put_aside(folder: &Path, file: &Path) -> io::Result<String> {
+    let name = free_name(folder);
+    for end in LOGS.into_iter().chain([""]) {
+        match fs::rename(with_end(file, end), with_end(&folder.join(&name), end)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            result => result?,
+        }
+    }
+    Ok(name)
+}
+
+/// The name that a damaged file gets.
+fn free_name(folder: &Path) -> String {
+    let is_free = |name: &String| {
+        let file = folder.join(name);
+        LOGS.into_iter().chain([""]).all(|end| !with_end(&file, end).exists())
+    };
+    let mut names = (1_u32..).map(|number| format!("{FILE}.damaged-{number}"));
+    names.find(is_free).unwrap_or_default()
+}
+
+fn with_end(file: &Path, end: &str) -> PathBuf {
+    let mut name = file.as_os_str().to_owned();
+    name.push(end);
+    name.into()
+}
+
+/// Copies the rows of a damaged file that can be read and obey the rules of their table, and returns their
+/// number. Each table is read from both ends, so that a damaged page hides only the rows on it.
+fn salvage(damaged: &Path, into: &mut Connection) -> rusqlite::Result<usize> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let Ok(from) = Connection::open_with_flags(damaged, flags) else { return Ok(0) };
+    let tables = tables(into)?;
+    let transaction = into.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let mut rows = 0;
+    for (table, columns) in &tables {
+        for direction in ["ASC", "DESC"] {
+            let sql =
+                format!("SELECT {columns} FROM {table} NOT INDEXED ORDER BY rowid {direction}");
+            // What can't be read is lost, and the damaged file is kept.
+            _ = copy(&from, &sql, &transaction, (table, columns), &mut rows);
+        }
+    }
+    transaction.commit()?;
+    Ok(rows)
+}
+
+/// The tables and their columns. A table comes after the tables to which it refers.
+pub(crate) fn tables(connection: &Connection) -> rusqlite::Result<Vec<(String, String)>> {
+    let sql = "SELECT name, (SELECT group_concat(name, ', ') FROM pragma_table_info(tables.name)) \
+               FROM sqlite_schema AS tables WHERE type = 'table' AND name NOT LIKE 'sqlite_%' \
+               ORDER BY rowid";
+    let mut statement = connection.prepare(sql)?;
+    statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+}
+
+/// Copies rows until one can't be read, and counts them.
+fn copy(
+    from: &Connection,
+    sql: &str,
+    into: &Connection,
+    (table, columns): (&str, &str),
+    rows: &mut usize,
+) -> rusqlite::Result<()> {
+    let places = vec!["?"; columns.split(',').count()].join(", ");
+    let insert = format!("INSERT OR IGNORE INTO {table} ({columns}) VALUES ({places})");
+    let mut insert = into.prepare(&insert)?;
+    let mut select = from.prepare(sql)?;
+    let mut found = select.query([])?;
+    while let Some(row) = found.next()? {
+        if let Ok(values) = values(row) {
+            *rows += insert.execute(params_from_iter(values)).unwrap_or_default();
+        }
+    }
+    Ok(())
+}
+
+/// The values of a row.
+fn values(row: &rusqlite::Row<'_>) -> rusqlite::Result<Vec<Value>> {
+    (0..row.as_ref().column_count()).map(|column| row.get(column)).collect()
+}
+
+/// The version of the file; 0 if it has no tables. In a file that no Cellcaster wrote, it may be negative.
+fn version(connection: &Connection) -> rusqlite::Result<i64> {
+    connection.query_row("PRAGMA user_version", [], |row| row.get(0))
+}
+
+/// Makes the tables in a new file, all at once or not at all.
+pub(crate) fn make_tables(connection: &mut Connection) -> rusqlite::Result<()> {
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    if version(&transaction)? == 0 {
+        transaction.execute_batch(SCHEMA)?;
+        transaction.execute_batch(CLOCK)?;
+        transaction.pragma_update(None, "user_version", VERSION)?;
+        transaction.pragma_update(None, "application_id", APPLICATION)?;
+    }
+    transaction.commit()
+}
+
+/// Runs a transaction.
+pub(crate) fn change<T, E: From<StoreFailure>>(
+    connection: &mut Connection,
+    mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
+) -> Result<T, E> {
+    // A transaction that begins by reading could not wait for another one that writes.
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate);
+    let transaction = transaction.map_err(StoreFailure::from)?;
+    let result = act(&*transaction)?;
+    transaction.commit().map_err(StoreFailure::from)?;
+    Ok(result)
 }
 
 impl Statements for Connection {
-    fn execute(&self, sql: &str, values: &[Value]) -> Result<u64, StoreFailure> {
-        Ok(Self::execute(self, sql, params_from_iter(values))? as u64)
+    fn execute(&self, sql: &str, values: &[&dyn ToSql]) -> Result<u64, StoreFailure> {
+        Ok(Self::execute(self, sql, values)? as u64)
     }
 
-    fn rows(&self, sql: &str, values: &[Value]) -> Result<Vec<Row>, StoreFailure> {
+    fn rows(&self, sql: &str, parameters: &[&dyn ToSql]) -> Result<Vec<Row>, StoreFailure> {
         let mut statement = self.prepare(sql)?;
-        let count = statement.column_count();
-        let mut found = statement.query(params_from_iter(values))?;
-        let mut rows = Vec::new();
-        while let Some(row) = found.next()? {
-            let values = (0..count).map(|column| value(row.get_ref(column)?));
-            rows.push(Row(values.collect::<Result<_, StoreFailure>>()?));
-        }
-        Ok(rows)
+        let rows = statement.query_map(parameters, |row| values(row).map(Row))?;
+        Ok(rows.collect::<Result<_, _>>()?)
     }
-}
 
-impl ToSql for Value {
-    fn to_sql(&self) -> rusqlite::Result<ToSqlOutput<'_>> {
-        Ok(match self {
-            Self::Null => ToSqlOutput::Owned(SqliteValue::Null),
-            Self::Integer(number) => ToSqlOutput::Owned(SqliteValue::Integer(*number)),
-            Self::Text(text) => ToSqlOutput::Borrowed(ValueRef::Text(text.as_bytes())),
-            Self::Bytes(bytes) => ToSqlOutput::Borrowed(ValueRef::Blob(bytes)),
-        })
+    fn lock(&self, _: &str) -> Result<(), StoreFailure> {
+        // A transaction that writes has the file to itself.
+        Ok(())
     }
-}
-
-fn value(value: ValueRef<'_>) -> Result<Value, StoreFailure> {
-    let unknown = |what: &str| StoreFailure::new(format!("the host's store has {what}"));
-    Ok(match value {
-        ValueRef::Null => Value::Null,
-        ValueRef::Integer(number) => Value::Integer(number),
-        ValueRef::Text(text) => match str::from_utf8(text) {
-            Ok(text) => text.into(),
-            Err(_) => return Err(unknown("a text that is not UTF-8")),
-        },
-        ValueRef::Blob(bytes) => bytes.into(),
-        ValueRef::Real(_) => return Err(unknown("a number that is not whole")),
-    })
 }
 
 impl From<rusqlite::Error> for StoreFailure {
@@ -149,54 +358,5 @@ impl From<rusqlite::Error> for StoreFailure {
             Some(ErrorCode::DiskFull) => Self::full(sentence),
             _ => Self::new(sentence),
         }
-    }
-}
-
-#[cfg(any(test, fuzzing))]
-impl SqliteStore {
-    /// A store without a file.
-    ///
-    /// # Panics
-    /// Without memory for it.
-    #[doc(hidden)]
-    pub fn in_memory() -> Self {
-        let mut connection = Connection::open_in_memory().unwrap();
-        connection.execute_batch("PRAGMA foreign_keys = ON").unwrap();
-        schema::migrate(&mut connection, schema::MIGRATIONS).unwrap();
-        Self { database: SqliteFile { connection } }
-    }
-}
-
-#[cfg(fuzzing)]
-impl SqliteStore {
-    /// Removes all rows.
-    ///
-    /// # Panics
-    /// Without memory for it.
-    #[doc(hidden)]
-    pub fn clear(&mut self) {
-        let tables = schema::TABLES.iter().rev().map(|(table, _)| *table);
-        for table in tables.chain(["sqlite_sequence"]) {
-            let sql = format!("DELETE FROM {table}");
-            self.database.connection.execute_batch(&sql).unwrap();
-        }
-    }
-
-    /// Puts a row into the table with that number, whatever refers to what. Returns whether the table takes it.
-    ///
-    /// # Panics
-    /// If the database does not stop to look at references.
-    #[doc(hidden)]
-    pub fn put(&mut self, table: usize, values: &[ColumnValue]) -> bool {
-        let connection = &self.database.connection;
-        let open = "PRAGMA foreign_keys = OFF; PRAGMA ignore_check_constraints = ON";
-        connection.execute_batch(open).unwrap();
-        let (table, columns) = schema::TABLES[table % schema::TABLES.len()];
-        let count = columns.split(", ").count();
-        let parameters: Vec<String> = (1..=count).map(|number| format!("?{number}")).collect();
-        let parameters = parameters.join(", ");
-        let sql = format!("INSERT OR REPLACE INTO {table} ({columns}) VALUES ({parameters})");
-        let values = values.iter().chain(std::iter::repeat(&ColumnValue::Null)).take(count);
-        connection.execute(&sql, params_from_iter(values)).is_ok()
     }
 }

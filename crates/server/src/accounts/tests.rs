@@ -1,5 +1,6 @@
-//! What every store does, and that all do the same.
+//! What a store does in each database.
 
+#[cfg(all(unix, feature = "system-tests"))]
 mod alike;
 mod file;
 mod lease;
@@ -17,9 +18,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 use std::{env, fs};
 
+use proptest::prelude::*;
+
+use super::database::Database;
 use super::*;
-use cellcaster::app::store::{Preferences, Reached};
-use cellcaster::game::{Rank, Rules, Share, Tally};
+use cellcaster::app::store::Preferences;
+use cellcaster::game::{Rank, Share, Tally};
 use cellcaster::world::Difficulty;
 
 /// A folder that is removed at the end of a test.
@@ -41,31 +45,32 @@ impl Drop for Folder {
 }
 
 /// Runs a test with a store of each kind.
-fn with_each(test: impl Fn(&mut dyn HostStore)) {
-    test(&mut MemoryStore::default());
+fn with_each(test: impl Fn(&mut HostStore)) {
+    test(&mut HostStore::in_memory());
     let folder = Folder::new();
-    let mut store = SqliteStore::open(&folder.0).unwrap();
-    test(&mut store);
+    test(&mut HostStore::open(&folder.0).unwrap());
     #[cfg(all(unix, feature = "system-tests"))]
-    test(&mut postgres_store());
+    test(&mut on_server());
 }
 
 /// A store in the database that all tests share.
 #[cfg(all(unix, feature = "system-tests"))]
-fn postgres_store() -> PostgresStore {
-    PostgresStore::open(&postgres_server::PostgresServer::shared().address()).unwrap()
+fn on_server() -> HostStore {
+    HostStore::connect(&postgres_server::PostgresServer::shared().address()).unwrap()
 }
 
-/// What has a clock, which is set or that of a database.
-trait Timed {
-    /// Lets `time` pass.
-    fn wait(&mut self, time: Duration);
+/// Runs a test of leases or visits with a store of each kind whose clock a test can let run.
+fn with_each_clock(test: impl Fn(&mut HostStore)) {
+    test(&mut HostStore::in_memory());
+    #[cfg(all(unix, feature = "system-tests"))]
+    test(&mut on_server());
 }
 
-#[cfg(all(unix, feature = "system-tests"))]
-impl Timed for PostgresStore {
-    fn wait(&mut self, time: Duration) {
-        std::thread::sleep(time);
+/// Lets time pass for a store.
+fn wait(store: &mut HostStore, time: Duration) {
+    match store.database {
+        Database::File(_) => store.pass(time),
+        _ => std::thread::sleep(time),
     }
 }
 
@@ -87,7 +92,7 @@ fn board(level: &str) -> LevelBoard {
     LevelBoard::new(level, Difficulty::Hard).unwrap()
 }
 
-fn run(level: &str, steps: u64, rank: Rank) -> VerifiedLevel {
+fn run(level: &str, steps: u64, rank: Rank) -> VerifiedRun {
     let tally = Tally {
         steps,
         treasure: Share { found: 2, total: 3 },
@@ -96,13 +101,7 @@ fn run(level: &str, steps: u64, rank: Rank) -> VerifiedLevel {
         deaths: 5,
         stunned: 6,
     };
-    VerifiedLevel::made_up(board(level), tally, rank, &format!("{steps} steps; '\"\u{1F600}\0"))
-}
-
-fn descent(seed: u64, floors: u32, treasure: u32) -> VerifiedDescent {
-    let rules = Rules { difficulty: Difficulty::Normal, seed };
-    let reached = Reached { floors, treasure, steps: 100 * u64::from(floors) };
-    VerifiedDescent::made_up(rules, reached, "4 s forward\n")
+    VerifiedRun::made_up(board(level), tally, rank, &format!("{steps} steps; '\"\u{1F600}\0"))
 }
 
 #[test]
@@ -263,29 +262,24 @@ fn boards_have_the_best_run_of_each_account() {
     });
 }
 
-#[test]
-fn the_first_try_of_a_day_counts() {
-    let day = Day::parse("2026-11-22").unwrap();
-    with_each(|store| {
-        let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
-            store.create_account(&key(number), &name(text), at(0)).unwrap().id
-        });
-        let of_ada = store.begin_daily(ada, day, at(0)).unwrap().unwrap();
-        let of_bob = store.begin_daily(bob, day, at(0)).unwrap().unwrap();
-        store.begin_daily(eve, day, at(0)).unwrap().unwrap();
-        assert_eq!(store.begin_daily(ada, day, at(0)).unwrap(), None);
-        let seed = u64::from(day.number());
-        assert!(store.record_daily(&of_ada, &descent(seed, 1, 40), at(1)).unwrap());
-        assert!(store.record_daily(&of_ada, &descent(seed, 2, 10), at(2)).unwrap());
-        assert!(!store.record_daily(&of_ada, &descent(seed, 1, 99), at(3)).unwrap());
-        assert!(!store.record_daily(&of_ada, &descent(seed + 1, 9, 99), at(3)).unwrap());
-        assert!(store.record_daily(&of_bob, &descent(seed, 2, 11), at(4)).unwrap());
-        let scores = store.daily_scores(day, 9).unwrap();
-        let shown = scores.iter().map(|it| (it.name.as_str(), it.reached.treasure, it.verified_at));
-        assert_eq!(shown.collect::<Vec<_>>(), [("Bob", 11, at(4)), ("Ada", 10, at(2))]);
-        assert_eq!(store.daily_scores(day, 1).unwrap().len(), 1);
-        let next = Day::parse("2026-11-23").unwrap();
-        assert_eq!(store.daily_scores(next, 9).unwrap(), []);
-        assert!(store.begin_daily(ada, next, at(5)).unwrap().is_some());
-    });
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn names_of_accounts_are_told_from_each_other(texts in prop::collection::vec(
+        "[a-cA-CIl1iOo0аАсС]{2,4}", 2..60
+    )) {
+        let mut store = HostStore::in_memory();
+        let mut accepted: Vec<Name> = Vec::new();
+        for (number, text) in (1_u8..).zip(&texts) {
+            let Ok(name) = Name::new(text) else { continue };
+            if store.create_account(&key(number), &name, at(0)).is_ok() {
+                let skeleton = |name: &Name| -> String {
+                    unicode_security::skeleton(name.as_str()).collect()
+                };
+                prop_assert!(accepted.iter().all(|other| skeleton(other) != skeleton(&name)));
+                accepted.push(name);
+            }
+        }
+    }
 }

@@ -21,8 +21,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedLevel, VerifiedRun,
-    verify_with,
+    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify_with,
 };
 use cellcaster::app::store::home::{Disk, Real};
 use cellcaster::app::store::private;
@@ -62,7 +61,7 @@ pub struct WaitingResult {
 #[derive(Debug)]
 pub enum Late {
     /// It was recorded, and waits no more.
-    Recorded(Account, VerifiedLevel),
+    Recorded(Account, VerifiedRun),
     /// Its script is no run that counts in this version. It waits no more.
     Refuted(WaitingResult, Unverified),
     /// The store refuses it, and it is given up.
@@ -141,7 +140,7 @@ impl WaitingResults {
     pub fn record(
         &mut self,
         index: usize,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         world: impl FnOnce(&str) -> Option<World>,
         now: UnixTime,
     ) -> Option<Late> {
@@ -196,7 +195,7 @@ impl WaitingResults {
 impl WaitingResult {
     fn record(
         &self,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         world: impl FnOnce(&str) -> Option<World>,
         now: UnixTime,
     ) -> Late {
@@ -207,10 +206,7 @@ impl WaitingResult {
             Err(failure) => return self.refused(failure, now),
         };
         let run = match verify_with(&self.script, world) {
-            Ok(VerifiedRun::Level(run)) => run,
-            Ok(VerifiedRun::Descent(_)) => {
-                return Late::Refuted(self.clone(), Unverified::OtherLevel);
-            }
+            Ok(run) => run,
             Err(reason) => return Late::Refuted(self.clone(), reason),
         };
         match store.record(account.id, &run, self.at) {

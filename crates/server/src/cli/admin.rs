@@ -11,8 +11,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction};
-use super::database::Database;
-use super::host_store::{self, failed};
+use super::host_store::{Database, failed};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
 use crate::ops::admin::{
     AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
@@ -26,7 +25,7 @@ pub(crate) fn run(options: Admin) -> Result<(), Error> {
     let folder = options.data.or_else(data_folder).ok_or_else(|| {
         Error::mistake("there is no folder for data files: name the one of the host by --data")
     })?;
-    let database = host_store::named(options.store);
+    let database = Database::named(options.store);
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let text = act(&folder, &database, options.action)?;
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
@@ -188,7 +187,7 @@ fn ban(
 ) -> Result<String, Error> {
     let mut store = open(database)?;
     let now = now();
-    let targets = targets(&mut *store, target)?;
+    let targets = targets(&mut store, target)?;
     for target in &targets {
         let ban = Ban {
             target: target.clone(),
@@ -214,7 +213,7 @@ fn ban(
 fn unban(database: &Database, target: &Target) -> Result<String, Error> {
     let mut store = open(database)?;
     let mut ended = Vec::new();
-    for target in targets(&mut *store, target)? {
+    for target in targets(&mut store, target)? {
         if store.unban(&target).map_err(failed)? {
             ended.push(target.to_string());
         }
@@ -229,7 +228,7 @@ fn unban(database: &Database, target: &Target) -> Result<String, Error> {
 
 /// The bans in force.
 fn bans(database: &Database) -> Result<String, Error> {
-    let mut store = host_store::open_to_read(database)?;
+    let mut store = database.open_to_read()?;
     let now = now();
     let bans = store.bans(now).map_err(failed)?;
     if bans.is_empty() {
@@ -250,7 +249,7 @@ fn bans(database: &Database) -> Result<String, Error> {
 }
 
 /// The target of a ban; for a name, also the key of the account that has it.
-fn targets(store: &mut dyn HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
+fn targets(store: &mut HostStore, target: &Target) -> Result<Vec<BanTarget>, Error> {
     let target = target.to_ban().map_err(Error::mistake)?;
     let account = match &target {
         BanTarget::Name(name) => store.account_named(name).map_err(failed)?,
@@ -285,9 +284,9 @@ fn remove(
 }
 
 /// The store, which is not made if there is none.
-fn open(database: &Database) -> Result<Box<dyn HostStore>, Error> {
-    host_store::open_to_read(database)?;
-    host_store::open(database).map_err(failed)
+fn open(database: &Database) -> Result<HostStore, Error> {
+    database.open_to_read()?;
+    database.open().map_err(failed)
 }
 
 /// Who bans: the user who calls, also through `sudo`.

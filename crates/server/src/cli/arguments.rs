@@ -10,8 +10,8 @@ use cellcaster::cli::parse::Takes;
 use cellcaster::world::Difficulty;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
-use super::database::Database;
-use crate::accounts::{AccountKey, AddressPrefix, Day};
+use super::host_store::Database;
+use crate::accounts::{AccountKey, AddressPrefix};
 use crate::ops::admin::Target;
 use crate::ops::logging::LogFormat;
 use crate::sessions::visitors::SessionId;
@@ -190,11 +190,11 @@ impl Player {
 
 /// List the leaderboards of a host
 ///
-/// For each level and difficulty it lists the fastest run of each account, with the highest rank of all its runs; for a
-/// day, how far the daily runs came. It reads the store of the server, also while that runs.
+/// For each level and difficulty it lists the fastest run of each account, with the highest rank of all its runs. It
+/// reads the store of the server, also while that runs.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --day 2026-11-22 --format json"
+    after_help = "Examples:\n  cellcaster-server scores --level cellar --difficulty hard\n  cellcaster-server scores --format json"
 )]
 pub(crate) struct Scores {
     /// The folder of the store [default: the folder for data files, or $`CELLCASTER_DATA`]
@@ -208,9 +208,6 @@ pub(crate) struct Scores {
     /// List this difficulty only: easy, normal or hard
     #[arg(long, value_name = "LEVEL", value_parser = difficulty)]
     pub(crate) difficulty: Option<Difficulty>,
-    /// List the daily runs of this day
-    #[arg(long, value_name = "DATE", value_parser = day, conflicts_with_all = ["level", "difficulty"])]
-    pub(crate) day: Option<Day>,
     /// How the boards are written
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ScoresFormat,
@@ -296,10 +293,6 @@ fn level(text: &str) -> Result<String, Takes> {
 
 fn difficulty(text: &str) -> Result<Difficulty, Takes> {
     Difficulty::named(text).ok_or(Takes("easy, normal or hard"))
-}
-
-fn day(text: &str) -> Result<Day, Takes> {
-    Day::parse(text).ok_or(Takes("a date such as 2026-11-22"))
 }
 
 /// The time of a text such as `7d`, up to a hundred years.

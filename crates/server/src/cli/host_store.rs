@@ -4,56 +4,88 @@
 //! password out of the list of processes.
 
 use std::env;
+use std::ffi::OsString;
+use std::fmt;
+use std::path::PathBuf;
 
-use crate::accounts::PostgresStore;
-use crate::accounts::{HostStore, SqliteStore, StoreFailure};
-use crate::cli::database::Database;
 use cellcaster::cli::Error;
+use cellcaster::cli::parse::Takes;
+use cellcaster::fault::printable_path;
 
-/// The store that `option` names, or else the environment.
-pub(crate) fn named(option: Option<Database>) -> Option<Database> {
-    let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
-    option.or_else(|| word().map(Database::of))
+use crate::accounts::{HostStore, StoreFailure};
+
+/// Where the store of a host is.
+#[derive(Clone, PartialEq)]
+pub(crate) enum Database {
+    /// In a folder.
+    Folder(PathBuf),
+    /// At an address of PostgreSQL, which may have a password.
+    Address(String),
 }
 
-/// Opens a store, which is made if there is none.
-pub(crate) fn open(database: &Database) -> Result<Box<dyn HostStore>, StoreFailure> {
-    match database {
-        Database::Folder(folder) => Ok(Box::new(SqliteStore::open(folder)?)),
-        Database::Address(address) => Ok(open_address(address)?),
+impl Database {
+    /// Reads the value of `--store`.
+    pub(crate) fn parse(text: &str) -> Result<Self, Takes> {
+        const TAKES: Takes = Takes("a folder, or an address such as postgres://user@host/database");
+        if text.is_empty() { Err(TAKES) } else { Ok(Self::of(text.into())) }
+    }
+
+    /// The database that `option` names, or else the environment.
+    pub(crate) fn named(option: Option<Self>) -> Option<Self> {
+        let word = || env::var_os("CELLCASTER_STORE").filter(|word| !word.is_empty());
+        option.or_else(|| word().map(Self::of))
+    }
+
+    /// Opens the store, which is made if there is none.
+    pub(crate) fn open(&self) -> Result<HostStore, StoreFailure> {
+        match self {
+            Self::Folder(folder) => HostStore::open(folder),
+            Self::Address(address) => HostStore::connect(address),
+        }
+    }
+
+    /// As [`open`](Self::open), but goes on with what can be read of a damaged file. Returns a sentence about it then.
+    pub(crate) fn open_or_salvage(&self) -> Result<(HostStore, Option<String>), StoreFailure> {
+        match self {
+            Self::Folder(folder) => HostStore::open_or_salvage(folder),
+            Self::Address(_) => Ok((self.open()?, None)),
+        }
+    }
+
+    /// Opens a store that exists, to read from it.
+    pub(crate) fn open_to_read(&self) -> Result<HostStore, Error> {
+        let store = match self {
+            Self::Folder(folder) => HostStore::open_to_read(folder),
+            Self::Address(address) => HostStore::connect_to_read(address),
+        };
+        store.map_err(failed)?.ok_or_else(|| match self {
+            Self::Folder(folder) => {
+                Error::mistake(format!("there is no store of a host in {}", printable_path(folder)))
+            }
+            Self::Address(_) => {
+                Error::mistake("there is no store of a host in this database: start the host once")
+            }
+        })
+    }
+
+    fn of(word: OsString) -> Self {
+        match word.to_str() {
+            Some(text) if ["postgres:", "postgresql:"].iter().any(|it| text.starts_with(it)) => {
+                Self::Address(text.to_owned())
+            }
+            _ => Self::Folder(word.into()),
+        }
     }
 }
 
-/// As [`open`], but goes on with what can be read of a damaged file. Returns a sentence about it then.
-pub(crate) fn open_or_salvage(
-    database: &Database,
-) -> Result<(Box<dyn HostStore>, Option<String>), StoreFailure> {
-    match database {
-        Database::Folder(folder) => {
-            let (store, sentence) = SqliteStore::open_or_salvage(folder)?;
-            Ok((Box::new(store), sentence))
+impl fmt::Debug for Database {
+    /// Without what may be secret.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Folder(folder) => f.debug_tuple("Folder").field(folder).finish(),
+            Self::Address(_) => f.debug_tuple("Address").finish_non_exhaustive(),
         }
-        Database::Address(_) => Ok((open(database)?, None)),
     }
-}
-
-/// Opens a store that exists, to read from it.
-pub(crate) fn open_to_read(database: &Database) -> Result<Box<dyn HostStore>, Error> {
-    let store: Option<Box<dyn HostStore>> = match database {
-        Database::Folder(folder) => {
-            SqliteStore::open_to_read(folder).map_err(failed)?.map(|store| Box::new(store) as _)
-        }
-        Database::Address(address) => open_address_to_read(address).map_err(failed)?,
-    };
-    store.ok_or_else(|| match database {
-        Database::Folder(folder) => {
-            let folder = folder.display().to_string().replace(char::is_control, "?");
-            Error::mistake(format!("there is no store of a host in {folder}"))
-        }
-        Database::Address(_) => {
-            Error::mistake("there is no store of a host in this database: start the host once")
-        }
-    })
 }
 
 /// The error of a store that exists.
@@ -62,10 +94,19 @@ pub(crate) fn failed(failure: StoreFailure) -> Error {
     Error::machine(failure.to_string())
 }
 
-fn open_address(address: &str) -> Result<Box<dyn HostStore>, StoreFailure> {
-    Ok(Box::new(PostgresStore::open(address)?))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn open_address_to_read(address: &str) -> Result<Option<Box<dyn HostStore>>, StoreFailure> {
-    Ok(PostgresStore::open_to_read(address)?.map(|store| Box::new(store) as _))
+    #[test]
+    fn an_address_begins_with_its_kind_and_is_not_shown() {
+        for text in ["postgres://ada:geheim@host/games", "postgresql://ada:geheim@host"] {
+            let database = Database::of(text.into());
+            assert_eq!(database, Database::Address(text.to_owned()));
+            assert!(!format!("{database:?}").contains("geheim"));
+        }
+        for text in ["data", "/var/lib/cellcaster", "postgres", "./postgres:"] {
+            assert_eq!(Database::of(text.into()), Database::Folder(text.into()));
+        }
+    }
 }

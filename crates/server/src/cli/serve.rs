@@ -12,9 +12,8 @@ use tokio::runtime::Runtime;
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
-use super::database::Database;
-use crate::accounts::{HostNotice, HostStore, PostgresStore, StoreFailure, WaitingResults};
-use crate::cli::host_store::{self, failed};
+use super::host_store::{Database, failed};
+use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
 use crate::cluster::Cluster;
 #[cfg(unix)]
 use crate::ops::admin::AdminSocket;
@@ -39,7 +38,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
         )
     })?;
     let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
-    let database = host_store::named(options.store.store.take());
+    let database = Database::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let cluster = pending_cluster(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
@@ -60,7 +59,7 @@ struct Parts<'a> {
     /// For data.
     folder: &'a Path,
     format: LogFormat,
-    store: Box<dyn HostStore>,
+    store: HostStore,
     waiting: WaitingResults,
     /// In a cluster.
     cluster: Option<PendingCluster>,
@@ -120,12 +119,12 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
 }
 
 /// The store. A damaged one is an error unless the operator accepts that it may be empty.
-fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostStore>, Error> {
+fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
     if !accepts_empty {
-        return host_store::open(database).map_err(refused);
+        return database.open().map_err(refused);
     }
-    let (store, damage) = host_store::open_or_salvage(database).map_err(refused)?;
+    let (store, damage) = database.open_or_salvage().map_err(refused)?;
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
@@ -136,8 +135,8 @@ fn open_store(database: &Database, accepts_empty: bool) -> Result<Box<dyn HostSt
 struct PendingCluster {
     address: String,
     /// Each on a connection of its own, so that they wait for nothing else.
-    leases: PostgresStore,
-    presence: PostgresStore,
+    leases: HostStore,
+    presence: HostStore,
 }
 
 /// The cluster that `options` name. The store is that of all hosts.
@@ -152,7 +151,7 @@ fn pending_cluster(options: &Serve, store: &Database) -> Result<Option<PendingCl
     if options.record_room.is_some() {
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
-    let open = || PostgresStore::open(store).map_err(|failure| Error::mistake(failure.to_string()));
+    let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
     Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
 }
 
@@ -165,8 +164,7 @@ impl PendingCluster {
             address: address.to_string(),
             load: 0,
         };
-        let (leases, presence) = (Box::new(self.leases), Box::new(self.presence));
-        let cluster = Cluster::join(&self.address, leases, presence, notice).await;
+        let cluster = Cluster::join(&self.address, self.leases, self.presence, notice).await;
         Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
     }
 }

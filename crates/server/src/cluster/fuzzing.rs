@@ -10,7 +10,7 @@ use super::peer_message::PeerMessage;
 use super::record::Record;
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
-use crate::accounts::{Leases, MemoryLeases};
+use crate::accounts::HostStore;
 use crate::rooms::room::{Catalog, Header, Mode};
 use cellcaster::world::Difficulty;
 
@@ -25,7 +25,7 @@ pub struct SharedRoom {
     state: RoomState,
     sequencer: Option<ClusterSequencer>,
     record: Record,
-    leases: MemoryLeases,
+    leases: HostStore,
     now: Instant,
 }
 
@@ -51,7 +51,7 @@ impl SharedRoom {
     }
 
     fn with(state: RoomState, record: Record) -> Self {
-        let (leases, now) = (MemoryLeases::default(), Instant::now());
+        let (leases, now) = (HostStore::in_memory(), Instant::now());
         Self { state, sequencer: None, record, leases, now }
     }
 

@@ -9,7 +9,7 @@ use std::{io, iter, thread};
 
 use tokio::sync::{mpsc, oneshot};
 
-use crate::accounts::{Lease, Leases, StoreFailure};
+use crate::accounts::{HostStore, Lease, StoreFailure};
 
 /// The time that a lease lasts without being renewed.
 pub(crate) const LEASE_TIME: Duration = Duration::from_secs(3);
@@ -43,15 +43,11 @@ impl LeaseWorker {
     }
 
     /// Starts the thread, for the host called `host`.
-    pub(crate) fn start(mut leases: Box<dyn Leases>, host: String) -> io::Result<Self> {
+    pub(crate) fn start(mut leases: HostStore, host: String) -> io::Result<Self> {
         let (worker, mut queue) = Self::new();
         thread::Builder::new().name("leases".to_owned()).spawn(move || {
-            while let Some(first) = queue.blocking_recv() {
-                if matches!(first, Call::Renew(..)) {
-                    thread::sleep(GATHERED);
-                }
-                let rest = iter::from_fn(|| queue.try_recv().ok()).take(MOST_CALLS);
-                run(iter::once(first).chain(rest), &mut *leases, &host);
+            while let Some(calls) = gathered(&mut queue) {
+                run(calls, &mut leases, &host);
             }
         })?;
         Ok(worker)
@@ -91,8 +87,18 @@ impl LeaseWorker {
     }
 }
 
+/// Waits for a call, and returns it with those that wait behind it; `None` after the last call.
+fn gathered(queue: &mut mpsc::Receiver<Call>) -> Option<Vec<Call>> {
+    let first = queue.blocking_recv()?;
+    if matches!(first, Call::Renew(..)) {
+        thread::sleep(GATHERED);
+    }
+    let rest = iter::from_fn(|| queue.try_recv().ok()).take(MOST_CALLS);
+    Some(iter::once(first).chain(rest).collect())
+}
+
 /// Does what was asked, and answers: all renewals at once, after the rest.
-pub(crate) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, host: &str) {
+pub(crate) fn run(calls: impl IntoIterator<Item = Call>, leases: &mut HostStore, host: &str) {
     let (mut held, mut replies) = (Vec::new(), Vec::new());
     for call in calls {
         match call {
@@ -118,60 +124,31 @@ pub(crate) fn run(calls: impl Iterator<Item = Call>, leases: &mut dyn Leases, ho
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
     use super::*;
-    use crate::accounts::MemoryLeases;
-
-    /// Leases that count how often they are asked for renewals.
-    struct Counted(MemoryLeases, Arc<AtomicUsize>);
-
-    impl Leases for Counted {
-        fn acquire(
-            &mut self,
-            room: &str,
-            host: &str,
-            time: Duration,
-            above: u64,
-        ) -> Result<Option<Lease>, StoreFailure> {
-            self.0.acquire(room, host, time, above)
-        }
-
-        fn renew(&mut self, leases: &[Lease]) -> Result<Vec<bool>, StoreFailure> {
-            self.1.fetch_add(1, Ordering::Relaxed);
-            self.0.renew(leases)
-        }
-
-        fn release(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
-            self.0.release(lease)
-        }
-
-        fn forget(&mut self, lease: &Lease) -> Result<bool, StoreFailure> {
-            self.0.forget(lease)
-        }
-
-        fn holder(&mut self, room: &str) -> Result<Option<Lease>, StoreFailure> {
-            self.0.holder(room)
-        }
-    }
 
     #[test]
     fn leases_that_are_renewed_at_the_same_time_are_one_call() {
-        let calls = Arc::<AtomicUsize>::default();
-        let leases = Box::new(Counted(MemoryLeases::default(), Arc::clone(&calls)));
-        let worker = LeaseWorker::start(leases, "one".to_owned()).unwrap();
-        let take = |room: usize| {
-            let answer = worker.acquire(&room.to_string(), 0).blocking_recv();
-            answer.unwrap().unwrap().unwrap()
-        };
-        let leases: Vec<Lease> = (0..100).map(take).collect();
-        assert!(worker.release(&leases[7]).blocking_recv().unwrap().unwrap());
-        let answers: Vec<_> = leases.iter().map(|lease| worker.renew(lease)).collect();
-        for (room, answer) in answers.into_iter().enumerate() {
+        let (worker, mut queue) = LeaseWorker::new();
+        let mut store = HostStore::in_memory();
+        let mut take =
+            |room: usize| store.acquire(&room.to_string(), "one", LEASE_TIME, 0).unwrap().unwrap();
+        let leases: Vec<Lease> = (0..100).map(&mut take).collect();
+        let (first, rest) = leases.split_at(1);
+        let first = worker.renew(&first[0]);
+        let later = worker.clone();
+        let rest = rest.to_vec();
+        // They come while the first one waits for others.
+        let renewing =
+            thread::spawn(move || rest.iter().map(|lease| later.renew(lease)).collect::<Vec<_>>());
+        let calls = gathered(&mut queue).unwrap();
+        assert_eq!(calls.len(), 100);
+        assert!(store.release(&leases[7]).unwrap());
+        run(calls, &mut store, "one");
+        let answers = iter::once(first).chain(renewing.join().unwrap());
+        for (room, answer) in answers.enumerate() {
             assert_eq!(answer.blocking_recv().unwrap(), Ok(room != 7));
         }
-        // A thread that was not scheduled for a while may have sent some of them late.
-        assert!(calls.load(Ordering::Relaxed) <= 3);
+        drop(worker);
+        assert!(gathered(&mut queue).is_none());
     }
 }

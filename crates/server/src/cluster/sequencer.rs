@@ -86,7 +86,7 @@ impl ClusterSequencer {
     }
 
     pub(crate) fn epoch(&self) -> u64 {
-        self.lease.epoch()
+        self.lease.epoch
     }
 
     /// The message that is being appended; otherwise the next one, of `steps` steps.

@@ -26,7 +26,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
 pub(crate) use self::registry::VisitRegistry;
-use crate::accounts::{AccountKey, HostNotice, HostRow, Presence, StoreFailure, VisitId, Visitor};
+use crate::accounts::{AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitId, Visitor};
 use crate::lock::locked;
 use crate::ssh::admission::Refusal;
 use crate::ssh::admission::counted_address;
@@ -40,7 +40,7 @@ const AGAIN: Duration = Duration::from_millis(250);
 /// The most calls that wait.
 const MOST_CALLS: usize = 256;
 
-/// The sender of calls to a thread, since the methods of [`Presence`] block. Clones send to the same thread.
+/// The sender of calls to a thread, since the methods of [`HostStore`] block. Clones send to the same thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Visits {
     calls: mpsc::Sender<Call>,
@@ -108,12 +108,12 @@ impl Visits {
     }
 
     /// Starts the thread, for the host of `notice`.
-    pub(crate) fn start(mut presence: Box<dyn Presence>, notice: HostNotice) -> io::Result<Self> {
+    pub(crate) fn start(mut presence: HostStore, notice: HostNotice) -> io::Result<Self> {
         let (visits, mut queue) = Self::new();
         let mut registry = VisitRegistry::new(notice, &visits);
         thread::Builder::new().name("visits".to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
-                registry.run(&mut *presence, call);
+                registry.run(&mut presence, call);
             }
         })?;
         Ok(visits)

@@ -6,7 +6,7 @@
 //!   driver holds no snapshot, so that steps do not copy the game.
 //! - Frames of large windows are drawn on threads of their own, at most one for two processors at a time. On the
 //!   threads of the runtime, one session with a window of 500×200 cells delayed the keys of others by up to a whole
-//!   frame, since the thread that draws may be the one that waits for sockets.
+//!   frame, since the drawing thread may be the thread that waits for sockets.
 //! - Rooms step whether anybody draws or not, see [`Sequencer`](crate::rooms::sequencer::Sequencer).
 //! - The store is called on a thread of its own, and no driver waits for it except at the beginning.
 //! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
@@ -111,7 +111,7 @@ impl HostParts {
         live: LiveConfig,
         metrics: Arc<Metrics>,
         visitors: Visitors,
-        store: Box<dyn HostStore>,
+        store: HostStore,
     ) -> io::Result<Self> {
         Ok(Self {
             visitors,

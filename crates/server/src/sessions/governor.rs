@@ -4,11 +4,11 @@
 //! answer to a key comes with the next frame. The rate falls by a fifth in a decision and rises by one
 //! frame a second in [`CALM`], so that it does not swing.
 //!
-//! A rate for each session was refused: whoever came last would have the worst picture.
+//! Rejected: a rate for each session. The latest visitor would have the worst picture.
 
 use std::time::Duration;
 
-/// What was measured since the last decision.
+/// Measurements since the last decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
     /// The share of their time in which the threads that draw were busy, from 0 to 1.
@@ -32,7 +32,7 @@ const LEAST: f64 = 5.0;
 const BUSY: f64 = 0.9;
 /// The share below which it may rise.
 const SPARE: f64 = 0.75;
-/// The mean delay of steps from which on the rate falls: a step. The longest delay was refused: where
+/// The mean delay of steps from which on the rate falls: a step. Rejected: the longest delay. If
 /// other programs use the machine, some step is late in each quarter of a second.
 const LATE: Duration = Duration::from_micros(16_667);
 /// The decisions with time to spare after which the rate rises: a second.

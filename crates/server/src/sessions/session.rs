@@ -1,4 +1,4 @@
-//! The session of a visitor: what they see, and what their keys do.
+//! A visitor's session: what they see, and what their keys do.
 //!
 //! A session has no connection, no clock and no room. The driver passes it what arrives and when,
 //! takes bytes and [requests](Request) from it, notifies it of [events](SessionEvent), and shows it the newest
@@ -35,7 +35,7 @@ use std::time::Duration;
 
 pub(crate) use self::endings::IdleLimits;
 use self::frames::{KeyEffect, Pace, Unanswered};
-pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
+pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent, Way};
 use self::ui::Ui;
 use crate::bucket::Bucket;
 use crate::rooms::room::RoomView;
@@ -85,7 +85,7 @@ enum Ending {
 }
 
 impl Session {
-    /// A session with a terminal of which `options` are known.
+    /// A session with a terminal that has these `options`.
     pub(crate) fn new(
         identity: Identity,
         options: Options,
@@ -157,7 +157,7 @@ impl Session {
         self.ui.stay.as_ref().is_none_or(|stay| stay.has_acted(room))
     }
 
-    /// What the session wants since the last call.
+    /// The requests of the session since the last call.
     pub(crate) fn requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.ui.requests)
     }
@@ -300,7 +300,7 @@ impl Session {
         self.ui.is_stale |= was_stale;
     }
 
-    /// What the visitor wants of the room.
+    /// The visitor's intents in the room.
     fn wanted(&self) -> Option<Intents> {
         self.ui.stay.as_ref().map(|stay| stay.intents.newest())
     }

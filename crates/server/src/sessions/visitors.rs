@@ -1,10 +1,10 @@
-//! Who is on: the visitors of a server, as its operator sees them, and what reaches them from there.
+//! The visitors who are on a server, as its operator sees them, and the operator's notices to them.
 //!
 //! The driver of a session holds a [`Presence`], says in it what the visitor is called and where they
 //! are, and waits for its [notices](Presence::notice). An operator lists visitors, says a line to all
 //! of them, and removes some.
 //!
-//! At most `MOST_LINES` lines wait for a session; then the oldest one is dropped. So a session that
+//! At most `MAX_LINES` lines wait for a session; then the oldest one is dropped. So a session that
 //! does not take them costs no memory.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -30,7 +30,7 @@ pub struct Presence {
     inbox: Arc<Inbox>,
 }
 
-/// What an operator tells the session of a visitor.
+/// An operator's notice to a visitor's session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
     /// A line from the host.
@@ -47,7 +47,7 @@ pub struct SessionId {
     number: u64,
 }
 
-/// What an operator sees of a visitor.
+/// A visitor, as an operator sees them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Present {
     /// Their session.
@@ -95,7 +95,7 @@ struct Notices {
 }
 
 /// The most lines that wait for a session.
-const MOST_LINES: usize = 8;
+const MAX_LINES: usize = 8;
 
 impl Default for Table {
     fn default() -> Self {
@@ -177,7 +177,7 @@ impl Visitors {
         })
     }
 
-    /// Ends the sessions of all to whom a ban of `target` applies, with a sentence for them. Returns
+    /// Ends the sessions of all visitors that a ban of `target` covers, with a sentence for them. Returns
     /// how many there are.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
         self.with(|table| {
@@ -201,7 +201,7 @@ impl Visitors {
 }
 
 impl Presence {
-    /// Records what the visitor is called: the name of an account, or one that a guest has chosen.
+    /// Records the visitor's name: of an account, or chosen by a guest.
     pub fn set_name(&self, name: &str) {
         self.change(|entry| entry.name = Some(Name::kept(name)));
     }
@@ -253,7 +253,7 @@ impl Inbox {
     fn say(&self, line: &str) {
         self.with(|notices| {
             notices.lines.push_back(line.to_owned());
-            let surplus = notices.lines.len().saturating_sub(MOST_LINES);
+            let surplus = notices.lines.len().saturating_sub(MAX_LINES);
             notices.lines.drain(..surplus);
         });
         self.changed.notify_one();

@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::{env, fs};
 
-use cellcaster_server::accounts::{
-    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
-};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 
 /// An empty folder for the test `name`.
 pub(crate) fn scratch(name: &str) -> PathBuf {
@@ -34,8 +32,8 @@ fn key(number: u32) -> AccountKey {
 /// Creates an account with a result and begins the next, until the process is killed. It says each number
 /// that is kept.
 fn write(folder: &Path, first: u32) {
-    let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
-    let mut store = SqliteStore::open(folder).unwrap();
+    let run = verify(WON).unwrap();
+    let mut store = HostStore::open(folder).unwrap();
     for number in first.. {
         let name = Name::new(&format!("n{number}")).unwrap();
         let account = store.create_account(&key(number), &name, NOW).unwrap();
@@ -76,7 +74,7 @@ fn what_is_said_to_be_kept_outlives_a_killed_process() {
         let number = |line: &String| -> u32 { line.rsplit_once(' ').unwrap().1.parse().unwrap() };
         let last = later.as_ref().or(said.as_ref()).map(number).unwrap();
 
-        let mut store = SqliteStore::open(&folder).unwrap();
+        let mut store = HostStore::open(&folder).unwrap();
         for number in next..=last {
             let account = store.account(&key(number)).unwrap().expect("it was kept");
             assert_eq!(store.bests(account.id).unwrap().len(), 1, "account {number}");

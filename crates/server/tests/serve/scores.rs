@@ -3,9 +3,7 @@
 use std::path::Path;
 use std::process::Output;
 
-use cellcaster_server::accounts::{
-    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
-};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 use serde_json::Value;
 
 use crate::kept::{WON, scratch};
@@ -17,14 +15,14 @@ const MUSEUM: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/museum.normal.script"));
 
 /// A store in which two accounts have results. It stays open, as while a host runs.
-fn filled(folder: &Path) -> SqliteStore {
-    let mut store = SqliteStore::open(folder).unwrap();
+fn filled(folder: &Path) -> HostStore {
+    let mut store = HostStore::open(folder).unwrap();
     let now = UnixTime::new(1_795_300_000);
     for (number, name, scripts) in [(1, "漢字", &[WON, HARD][..]), (2, "Ada", &[WON, MUSEUM])] {
         let (key, name) = (AccountKey::new([number; 32]), Name::new(name).unwrap());
         let account = store.create_account(&key, &name, now).unwrap();
         for script in scripts {
-            let VerifiedRun::Level(run) = verify(script).unwrap() else { panic!("not a level") };
+            let run = verify(script).unwrap();
             store.record(account.id, &run, now.after(u64::from(number))).unwrap();
         }
     }
@@ -62,7 +60,6 @@ fn boards_are_listed_while_a_host_runs() {
         ["cellar, hard"]
     );
     assert_eq!(written(&folder, &["--level", "prison"]), "no results\n");
-    assert_eq!(written(&folder, &["--day", "2026-11-22"]), "2026-11-22: no results\n");
     let elsewhere = scratch("elsewhere");
     assert_eq!(written(&elsewhere, &["--data", folder.to_str().unwrap()]), table);
 }
@@ -72,7 +69,7 @@ fn json_has_every_figure() {
     let folder = scratch("json");
     drop(filled(&folder));
     let boards: Value = serde_json::from_str(&written(&folder, &["--format", "json"])).unwrap();
-    let VerifiedRun::Level(run) = verify(MUSEUM).unwrap() else { panic!("not a level") };
+    let run = verify(MUSEUM).unwrap();
     let museum = &boards[2];
     assert_eq!((&museum["level"], &museum["difficulty"]), (&"museum".into(), &"normal".into()));
     let entry = &museum["entries"][0];
@@ -80,8 +77,6 @@ fn json_has_every_figure() {
     assert_eq!(entry["steps"], run.tally().steps);
     assert_eq!(entry["rank"], run.rank().name());
     assert_eq!(entry["verified"], 1_795_300_002_u64);
-    let day = written(&folder, &["--day", "2026-11-22", "--format", "json"]);
-    assert_eq!(day, "{\"day\":\"2026-11-22\",\"entries\":[]}\n");
 }
 
 #[test]
@@ -90,8 +85,6 @@ fn what_is_wrong_is_told_in_a_sentence() {
     for (arguments, said) in [
         (&[][..], "there is no store of a host in"),
         (&["--level", "No where"], "the name of a built-in level, or of a map"),
-        (&["--day", "2026-02-30"], "a date such as 2026-11-22"),
-        (&["--day", "2026-11-22", "--level", "cellar"], "--day goes without --level"),
     ] {
         let output = scores(&folder, arguments);
         let sentence = String::from_utf8(output.stderr).unwrap();

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::accounts::HostStore;
 use cellcaster_server::ops::admin::RoomRow;
 use cellcaster_server::ops::config::Config;
 use cellcaster_server::ops::metrics::Metrics;
@@ -73,14 +73,14 @@ impl Counted {
         config.stall = 2 * PATIENCE;
         config.empty_room = Duration::from_secs(1);
         let key = HostKey::open(&folder).unwrap();
-        let store = SqliteStore::open(&folder).unwrap();
+        let store = HostStore::open(&folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
         let (address, metrics) = (server.address().unwrap(), server.metrics());
         let visitors = Visitors::default();
         let guard = runtime.enter();
         let (counts, seen) = (Arc::clone(&metrics), visitors.clone());
-        let host = HostParts::new(server.config(), counts, seen, Box::new(store));
+        let host = HostParts::new(server.config(), counts, seen, store);
         let host = GameHost::start(host.unwrap());
         drop(guard);
         let rooms = Box::new(host.room_rows());

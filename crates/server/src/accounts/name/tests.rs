@@ -160,7 +160,7 @@ proptest! {
     fn names_without_a_common_key_have_other_skeletons(one in texts(), other in texts()) {
         if let (Ok(one), Ok(other)) = (Name::new(&one), Name::new(&other)) {
             let skeleton = |name: &Name| -> String {
-                unicode_security::skeleton(name.as_str()).collect()
+                skeleton(name.as_str()).collect()
             };
             let lower_case = |name: &Name| name.as_str().to_lowercase();
             if !one.looks_like(&other) {

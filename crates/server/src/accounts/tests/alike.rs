@@ -1,4 +1,4 @@
-//! All stores answer alike, whatever is asked of them.
+//! Both databases answer alike, whatever is asked of them.
 
 use std::fmt::Write;
 
@@ -18,13 +18,10 @@ enum Call {
     Ban(usize, Option<u64>, String),
     Unban(usize),
     Record(i64, usize, u64, usize),
-    BeginDaily(i64, usize),
-    RecordDaily(i64, usize, u32),
 }
 
 const NAMES: [&str; 7] = ["Ada", "ADA", "Bill", "BiIl", "Eve", "СССР", "cccp"];
 const LEVELS: [&str; 3] = ["cellar", "museum", "observatory"];
-const DAYS: [u32; 2] = [20_261_122, 20_261_123];
 
 fn target(index: usize) -> BanTarget {
     match index {
@@ -50,15 +47,12 @@ fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
         1 => (0..10_usize).prop_map(Call::Unban),
         4 => (account(), 0..LEVELS.len(), 1..5_u64, 0..4_usize)
             .prop_map(|(id, level, steps, rank)| Call::Record(id, level, steps, rank)),
-        2 => (account(), 0..DAYS.len()).prop_map(|(id, day)| Call::BeginDaily(id, day)),
-        2 => (account(), 0..DAYS.len(), 0..4_u32)
-            .prop_map(|(id, day, floors)| Call::RecordDaily(id, day, floors)),
     ];
     prop::collection::vec((prop_oneof![Just(0), Just(8), Just(31)], call), 1..40)
 }
 
 /// The answer of a store. What it says about a failure is its own.
-fn answer(store: &mut dyn HostStore, call: &Call, now: UnixTime) -> String {
+fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
     let of_failure = |_: StoreFailure| "failure";
     match call {
         Call::Create(number, text) => {
@@ -90,20 +84,11 @@ fn answer(store: &mut dyn HostStore, call: &Call, now: UnixTime) -> String {
             let run = run(LEVELS[*level], *steps, Rank::ALL[*rank]);
             format!("{:?}", store.record(AccountId(*id), &run, now).map_err(of_failure))
         }
-        Call::BeginDaily(id, day) => {
-            let day = Day::from_number(DAYS[*day]).unwrap();
-            format!("{:?}", store.begin_daily(AccountId(*id), day, now).map_err(of_failure))
-        }
-        Call::RecordDaily(id, day, floors) => {
-            let (account, seed) = (AccountId(*id), u64::from(DAYS[*day]));
-            let daily = DailyTry { account, day: Day::from_number(DAYS[*day]).unwrap() };
-            format!("{:?}", store.record_daily(&daily, &descent(seed, *floors, 7), now))
-        }
     }
 }
 
 /// Everything that a store shows.
-fn shown(store: &mut dyn HostStore, now: UnixTime) -> String {
+fn shown(store: &mut HostStore, now: UnixTime) -> String {
     let mut shown = format!("{:?} {:?}", store.bans(now), store.level_boards());
     for number in 1..4 {
         let id = AccountId(number.into());
@@ -112,60 +97,21 @@ fn shown(store: &mut dyn HostStore, now: UnixTime) -> String {
         shown += &LEVELS.map(|level| format!("{:?}", store.script(id, &board(level)))).concat();
     }
     shown += &NAMES.map(|text| format!("{:?}", store.account_named(&name(text)))).concat();
-    shown += &LEVELS.map(|level| format!("{:?}", store.level_scores(&board(level), 2))).concat();
-    let day = |number| Day::from_number(number).unwrap();
-    shown + &DAYS.map(|number| format!("{:?}", store.daily_scores(day(number), 2))).concat()
+    shown + &LEVELS.map(|level| format!("{:?}", store.level_scores(&board(level), 2))).concat()
 }
 
-fn answers_as_memory_does(
-    store: &mut dyn HostStore,
-    calls: &[(u64, Call)],
-) -> Result<(), TestCaseError> {
-    let (mut memory, mut day) = (MemoryStore::default(), 0);
-    for (days, call) in calls {
-        day += days;
-        let answers = [answer(store, call, at(day)), answer(&mut memory, call, at(day))];
-        prop_assert_eq!(&answers[0], &answers[1], "{:?}", call);
-    }
-    prop_assert_eq!(shown(store, at(day)), shown(&mut memory, at(day)));
-    Ok(())
-}
-
-#[cfg(all(unix, feature = "system-tests"))]
 proptest! {
     // Each has tables of its own.
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn a_database_answers_as_memory_does(calls in calls()) {
-        let address = postgres_server::PostgresServer::shared().address();
-        answers_as_memory_does(&mut PostgresStore::open(&address).unwrap(), &calls)?;
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
-
-    #[test]
-    fn a_file_answers_as_memory_does(calls in calls()) {
-        answers_as_memory_does(&mut SqliteStore::in_memory(), &calls)?;
-    }
-
-    #[test]
-    fn names_of_accounts_are_told_from_each_other(texts in prop::collection::vec(
-        "[a-cA-CIl1iOo0аАсС]{2,4}", 2..60
-    )) {
-        let mut store = MemoryStore::default();
-        let mut accepted: Vec<Name> = Vec::new();
-        for (number, text) in (1_u8..).zip(&texts) {
-            let Ok(name) = Name::new(text) else { continue };
-            if store.create_account(&key(number), &name, at(0)).is_ok() {
-                let skeleton = |name: &Name| -> String {
-                    unicode_security::skeleton(name.as_str()).collect()
-                };
-                prop_assert!(accepted.iter().all(|other| skeleton(other) != skeleton(&name)));
-                accepted.push(name);
-            }
+    fn a_server_answers_as_a_file_does(calls in calls()) {
+        let (mut server, mut file, mut day) = (on_server(), HostStore::in_memory(), 0);
+        for (days, call) in calls {
+            day += days;
+            let answers = [&mut server, &mut file].map(|store| answer(store, &call, at(day)));
+            prop_assert_eq!(&answers[0], &answers[1], "{:?}", call);
         }
+        prop_assert_eq!(shown(&mut server, at(day)), shown(&mut file, at(day)));
     }
 }

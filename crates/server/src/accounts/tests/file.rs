@@ -8,7 +8,7 @@ use super::*;
 
 /// Makes a store with many accounts, and returns the path of its file.
 fn filled(folder: &Path) -> PathBuf {
-    let mut store = SqliteStore::open(folder).unwrap();
+    let mut store = HostStore::open(folder).unwrap();
     for number in 0..=250_u8 {
         let text = format!("n-{number}-x");
         let account = store.create_account(&key(number), &name(&text), at(0)).unwrap();
@@ -21,7 +21,7 @@ fn filled(folder: &Path) -> PathBuf {
     folder.join("host.db")
 }
 
-fn accounts(store: &mut SqliteStore) -> usize {
+fn accounts(store: &mut HostStore) -> usize {
     (0..=250).filter(|&number| store.account(&key(number)).unwrap().is_some()).count()
 }
 
@@ -29,7 +29,7 @@ fn accounts(store: &mut SqliteStore) -> usize {
 fn what_is_kept_is_there_after_a_restart() {
     let folder = Folder::new();
     filled(&folder.0);
-    let mut store = SqliteStore::open(&folder.0).unwrap();
+    let mut store = HostStore::open(&folder.0).unwrap();
     assert_eq!(accounts(&mut store), 251);
     assert_eq!(store.level_scores(&board("cellar"), 99).unwrap().len(), 20);
 }
@@ -40,7 +40,7 @@ fn nobody_else_reads_it() {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::new();
     let inner = folder.0.join("a/b");
-    let mut store = SqliteStore::open(&inner).unwrap();
+    let mut store = HostStore::open(&inner).unwrap();
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!([mode(&folder.0), mode(&inner)], [0o700; 2]);
@@ -49,7 +49,7 @@ fn nobody_else_reads_it() {
     }
     drop(store);
     fs::set_permissions(inner.join("host.db"), fs::Permissions::from_mode(0o644)).unwrap();
-    SqliteStore::open(&inner).unwrap();
+    HostStore::open(&inner).unwrap();
     assert_eq!(mode(&inner.join("host.db")), 0o600);
 }
 
@@ -68,13 +68,13 @@ fn accounts_in_the_file_alone(folder: &Folder) -> usize {
     let copy = Folder::new();
     fs::create_dir_all(&copy.0).unwrap();
     fs::copy(folder.0.join("host.db"), copy.0.join("host.db")).unwrap();
-    accounts(&mut SqliteStore::open(&copy.0).unwrap())
+    accounts(&mut HostStore::open(&copy.0).unwrap())
 }
 
 #[test]
 fn the_log_is_copied_into_the_file_at_each_start_and_end() {
     let folder = Folder::new();
-    let mut store = SqliteStore::open(&folder.0).unwrap();
+    let mut store = HostStore::open(&folder.0).unwrap();
     for number in 0..99 {
         store.create_account(&key(number), &name(&format!("n-{number}-x")), at(0)).unwrap();
     }
@@ -82,7 +82,7 @@ fn the_log_is_copied_into_the_file_at_each_start_and_end() {
     assert_eq!(accounts_in_the_file_alone(&killed), 0);
     let length = || fs::metadata(killed.0.join("host.db-wal")).unwrap().len();
     assert!(length() > 0);
-    let _next = SqliteStore::open(&killed.0).unwrap();
+    let _next = HostStore::open(&killed.0).unwrap();
     assert_eq!((length(), accounts_in_the_file_alone(&killed)), (0, 99));
 
     store.checkpoint().unwrap();
@@ -101,7 +101,7 @@ fn files(folder: &Folder) -> Vec<(PathBuf, Vec<u8>)> {
 /// Asserts that a store is refused as damaged, and that nothing in its folder changes.
 fn assert_refused(folder: &Folder) {
     let before = files(folder);
-    let sentence = SqliteStore::open(&folder.0).unwrap_err().to_string();
+    let sentence = HostStore::open(&folder.0).unwrap_err().to_string();
     let file = folder.0.join("host.db").display().to_string();
     assert!(sentence.starts_with(&format!("{file} is damaged: ")), "{sentence}");
     for part in ["a backup", "--accept-empty", "host.db.damaged-"] {
@@ -120,14 +120,14 @@ fn a_damaged_file_is_refused_and_if_that_is_accepted_what_can_be_read_stays() {
     content[10 * 4096..11 * 4096].fill(0x5a);
     fs::write(&file, &content).unwrap();
     assert_refused(&folder);
-    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
+    let (mut store, sentence) = HostStore::open_or_salvage(&folder.0).unwrap();
     let sentence = sentence.unwrap();
     assert!(sentence.contains("host.db.damaged-1") && sentence.lines().count() == 1, "{sentence}");
     assert_eq!(fs::read(folder.0.join("host.db.damaged-1")).unwrap(), content);
     let left = accounts(&mut store);
     assert!((100..=251).contains(&left), "{left}");
     drop(store);
-    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
+    let (mut store, sentence) = HostStore::open_or_salvage(&folder.0).unwrap();
     assert_eq!((accounts(&mut store), sentence), (left, None));
 }
 
@@ -140,7 +140,7 @@ fn a_file_without_anything_readable_is_refused_and_kept() {
     {
         fs::write(&file, content).unwrap();
         assert_refused(&folder);
-        let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
+        let (mut store, sentence) = HostStore::open_or_salvage(&folder.0).unwrap();
         assert!(sentence.is_some_and(|it| it.contains("0 rows")));
         assert_eq!(accounts(&mut store), 0);
         let kept = folder.0.join(format!("host.db.damaged-{number}"));
@@ -155,7 +155,7 @@ fn a_file_cut_short_is_refused_and_kept() {
     let content = fs::read(&file).unwrap();
     fs::write(&file, &content[..content.len() * 2 / 3]).unwrap();
     assert_refused(&folder);
-    let (mut store, sentence) = SqliteStore::open_or_salvage(&folder.0).unwrap();
+    let (mut store, sentence) = HostStore::open_or_salvage(&folder.0).unwrap();
     assert!(sentence.is_some_and(|it| it.contains("host.db.damaged-1")));
     store.create_account(&key(251), &name("Later"), at(0)).unwrap();
 }
@@ -164,13 +164,13 @@ fn a_file_cut_short_is_refused_and_kept() {
 #[test]
 fn a_log_without_its_file_is_refused_and_kept() {
     let folder = Folder::new();
-    let mut store = SqliteStore::open(&folder.0).unwrap();
+    let mut store = HostStore::open(&folder.0).unwrap();
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let killed = killed(&folder);
     let log = fs::read(killed.0.join("host.db-wal")).unwrap();
     fs::remove_file(killed.0.join("host.db")).unwrap();
     assert_refused(&killed);
-    let (_, sentence) = SqliteStore::open_or_salvage(&killed.0).unwrap();
+    let (_, sentence) = HostStore::open_or_salvage(&killed.0).unwrap();
     assert!(sentence.is_some_and(|it| it.contains("host.db.damaged-1")));
     assert_eq!(fs::read(killed.0.join("host.db.damaged-1-wal")).unwrap(), log);
 }
@@ -179,12 +179,12 @@ fn a_log_without_its_file_is_refused_and_kept() {
 #[test]
 fn a_full_disk_is_told_from_other_failures() {
     let folder = Folder::new();
-    let mut store = SqliteStore::open(&folder.0).unwrap();
+    let mut store = HostStore::open(&folder.0).unwrap();
     let account = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let pages: i64 =
-        store.database.connection.query_row("PRAGMA page_count", [], |row| row.get(0)).unwrap();
-    let set = |store: &SqliteStore, most: i64| {
-        store.database.connection.pragma_update(None, "max_page_count", most).unwrap();
+        store.connection().query_row("PRAGMA page_count", [], |row| row.get(0)).unwrap();
+    let set = |store: &HostStore, most: i64| {
+        store.connection().pragma_update(None, "max_page_count", most).unwrap();
     };
     set(&store, pages);
     let script = "#".repeat(AccountSettings::MOST_BYTES);
@@ -202,20 +202,23 @@ fn other_files_are_left_alone() {
     let alter = |sql: &str| Connection::open(&file).unwrap().execute_batch(sql).unwrap();
     let refused = || {
         let before = fs::read(&file).unwrap();
-        let sentence = SqliteStore::open(&folder.0).unwrap_err().to_string();
-        assert_eq!(SqliteStore::open_to_read(&folder.0).unwrap_err().to_string(), sentence);
+        let sentence = HostStore::open(&folder.0).unwrap_err().to_string();
+        assert_eq!(HostStore::open_to_read(&folder.0).unwrap_err().to_string(), sentence);
         assert!(sentence.lines().count() == 1 && fs::read(&file).unwrap() == before);
         sentence
     };
     alter("PRAGMA user_version = 99");
     assert!(refused().contains("has version 99, which a newer Cellcaster wrote"));
-    alter("PRAGMA user_version = -5");
-    assert!(refused().contains("has version -5, which no Cellcaster wrote"));
+    for version in [-5, 3] {
+        alter(&format!("PRAGMA user_version = {version}"));
+        let said = format!("has version {version}, which no Cellcaster of today reads");
+        assert!(refused().contains(&said));
+    }
     alter("PRAGMA user_version = 1; PRAGMA application_id = 7");
     assert!(refused().contains("belongs to another program"));
     let blocked = folder.0.join("blocked");
     fs::write(&blocked, "").unwrap();
-    let sentence = SqliteStore::open(&blocked).unwrap_err().to_string();
+    let sentence = HostStore::open(&blocked).unwrap_err().to_string();
     assert!(sentence.contains("can't be used"), "{sentence}");
 }
 
@@ -227,8 +230,8 @@ fn a_pipe_is_named_and_not_waited_for() {
     fs::remove_file(&file).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&file).status().unwrap().success());
     let sentences = [
-        SqliteStore::open(&folder.0).unwrap_err().to_string(),
-        SqliteStore::open_to_read(&folder.0).unwrap_err().to_string(),
+        HostStore::open(&folder.0).unwrap_err().to_string(),
+        HostStore::open_to_read(&folder.0).unwrap_err().to_string(),
     ];
     for sentence in sentences {
         assert!(sentence.contains("it is a named pipe, and must be a file"), "{sentence}");
@@ -238,16 +241,16 @@ fn a_pipe_is_named_and_not_waited_for() {
 #[test]
 fn a_reader_sees_what_a_host_writes() {
     let folder = Folder::new();
-    assert!(SqliteStore::open_to_read(&folder.0).unwrap().is_none());
+    assert!(HostStore::open_to_read(&folder.0).unwrap().is_none());
     assert!(!folder.0.exists());
-    let mut host = SqliteStore::open(&folder.0).unwrap();
-    let mut reader = SqliteStore::open_to_read(&folder.0).unwrap().unwrap();
+    let mut host = HostStore::open(&folder.0).unwrap();
+    let mut reader = HostStore::open_to_read(&folder.0).unwrap().unwrap();
     let ada = host.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     host.record(ada.id, &run("cellar", 9, Rank::Ghost), at(0)).unwrap();
     assert_eq!(reader.level_scores(&board("cellar"), 9).unwrap()[0].name, ada.name);
     let refused = reader.create_account(&key(2), &name("Bob"), at(0));
     assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
     drop((host, reader));
-    let mut reader = SqliteStore::open_to_read(&folder.0).unwrap().unwrap();
+    let mut reader = HostStore::open_to_read(&folder.0).unwrap().unwrap();
     assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));
 }

@@ -4,57 +4,39 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Runs a test with leases of each kind.
-fn with_each(test: impl Fn(&mut dyn TimedLeases)) {
-    test(&mut MemoryLeases::default());
-    #[cfg(all(unix, feature = "system-tests"))]
-    test(&mut postgres_store());
-}
-
-/// Leases whose clock a test can let run.
-trait TimedLeases: Leases + Timed {}
-
-impl<T: Leases + Timed> TimedLeases for T {}
-
-impl Timed for MemoryLeases {
-    fn wait(&mut self, time: Duration) {
-        self.pass(time);
-    }
-}
-
 /// Longer than any test asks for it.
 const LONG: Duration = Duration::from_mins(1);
 const SHORT: Duration = Duration::from_millis(200);
 
 #[test]
 fn a_room_has_one_holder() {
-    with_each(|leases| {
-        assert_eq!(leases.holder("cellar").unwrap(), None);
+    with_each_clock(|leases| {
+        assert_eq!(holder(leases, "cellar"), None);
         let lease = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
-        assert_eq!((lease.room(), lease.host(), lease.time()), ("cellar", "one", LONG));
+        assert_eq!((lease.room.as_str(), lease.host.as_str(), lease.time), ("cellar", "one", LONG));
         for host in ["one", "other"] {
             assert_eq!(leases.acquire("cellar", host, LONG, 0).unwrap(), None);
         }
-        assert_eq!(leases.holder("cellar").unwrap().as_ref(), Some(&lease));
+        assert_eq!(holder(leases, "cellar").as_ref(), Some(&lease));
         // Another room is another matter.
         let other = leases.acquire("museum", "other", LONG, 0).unwrap().unwrap();
-        assert_eq!(leases.holder("museum").unwrap(), Some(other));
+        assert_eq!(holder(leases, "museum"), Some(other));
         assert!(renew(leases, &lease));
     });
 }
 
 #[test]
 fn many_leases_are_renewed_at_once() {
-    with_each(|leases| {
-        let rooms: Vec<String> = (0..40).map(|it| format!("room \u{1} \"{it}\"")).collect();
+    with_each_clock(|leases| {
+        let rooms: Vec<String> = (0..40).map(|it| format!("room \u{e9} \\ \"{it}\"")).collect();
         let take = |room: &String| leases.acquire(room, "one", SHORT * 5, 0).unwrap().unwrap();
         let mut held: Vec<Lease> = rooms.iter().map(take).collect();
         leases.release(&held[7]).unwrap();
         leases.release(&held[8]).unwrap();
-        let taken = leases.acquire(held[8].room(), "other", LONG, 0).unwrap().unwrap();
+        let taken = leases.acquire(&held[8].room, "other", LONG, 0).unwrap().unwrap();
         // One twice, and one of another host.
         held.extend([held[9].clone(), taken]);
-        leases.wait(SHORT);
+        wait(leases, SHORT);
         let renewed = leases.renew(&held).unwrap();
         let expected: Vec<bool> = (0..42).map(|it| it != 7 && it != 8).collect();
         assert_eq!(renewed, expected);
@@ -64,15 +46,15 @@ fn many_leases_are_renewed_at_once() {
 
 #[test]
 fn epochs_grow_also_over_a_release() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let mut last = 0;
         for round in 0..6 {
             let host = ["one", "other"][round % 2];
             let lease = leases.acquire("cellar", host, LONG, 0).unwrap().unwrap();
-            assert!(lease.epoch() > last);
-            last = lease.epoch();
+            assert!(lease.epoch > last);
+            last = lease.epoch;
             assert!(leases.release(&lease).unwrap());
-            assert_eq!(leases.holder("cellar").unwrap(), None);
+            assert_eq!(holder(leases, "cellar"), None);
             // It is over for good.
             assert!(!leases.release(&lease).unwrap() && !renew(leases, &lease));
         }
@@ -81,7 +63,7 @@ fn epochs_grow_also_over_a_release() {
 
 #[test]
 fn a_room_that_is_forgotten_begins_anew() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let old = leases.acquire("cellar", "one", LONG, 0).unwrap().unwrap();
         leases.release(&old).unwrap();
         assert!(!leases.forget(&old).unwrap());
@@ -89,41 +71,41 @@ fn a_room_that_is_forgotten_begins_anew() {
         assert!(!leases.forget(&old).unwrap());
         assert!(leases.forget(&lease).unwrap() && !leases.forget(&lease).unwrap());
         assert!(!renew(leases, &lease));
-        assert_eq!(leases.holder("cellar").unwrap(), None);
-        assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap().unwrap().epoch(), 1);
+        assert_eq!(holder(leases, "cellar"), None);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap().unwrap().epoch, 1);
     });
 }
 
 #[test]
 fn a_lease_that_is_over_can_be_taken() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
-        leases.wait(SHORT * 2);
-        assert_eq!(leases.holder("cellar").unwrap(), None);
+        wait(leases, SHORT * 2);
+        assert_eq!(holder(leases, "cellar"), None);
         let next = leases.acquire("cellar", "other", LONG, 0).unwrap().unwrap();
-        assert!(next.epoch() > lease.epoch());
+        assert!(next.epoch > lease.epoch);
         assert!(!renew(leases, &lease) && !leases.release(&lease).unwrap());
-        assert_eq!(leases.holder("cellar").unwrap(), Some(next));
+        assert_eq!(holder(leases, "cellar"), Some(next));
     });
 }
 
 #[test]
 fn a_lease_that_is_over_and_not_taken_can_be_renewed() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT, 0).unwrap().unwrap();
-        leases.wait(SHORT * 2);
+        wait(leases, SHORT * 2);
         assert!(renew(leases, &lease));
-        assert_eq!(leases.holder("cellar").unwrap(), Some(lease));
+        assert_eq!(holder(leases, "cellar"), Some(lease));
         assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap(), None);
     });
 }
 
 #[test]
 fn a_renewed_lease_lasts() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", SHORT * 5, 0).unwrap().unwrap();
         for _ in 0..4 {
-            leases.wait(SHORT * 2);
+            wait(leases, SHORT * 2);
             assert!(renew(leases, &lease));
         }
         assert_eq!(leases.acquire("cellar", "other", LONG, 0).unwrap(), None);
@@ -132,18 +114,27 @@ fn a_renewed_lease_lasts() {
 
 #[test]
 fn an_epoch_is_above_that_which_the_caller_knows() {
-    with_each(|leases| {
+    with_each_clock(|leases| {
         let lease = leases.acquire("cellar", "one", LONG, 41).unwrap().unwrap();
-        assert_eq!(lease.epoch(), 42);
+        assert_eq!(lease.epoch, 42);
         leases.release(&lease).unwrap();
-        assert_eq!(leases.acquire("cellar", "one", SHORT, 7).unwrap().unwrap().epoch(), 43);
-        leases.wait(SHORT * 2);
-        assert_eq!(leases.acquire("cellar", "other", LONG, 99).unwrap().unwrap().epoch(), 100);
+        assert_eq!(leases.acquire("cellar", "one", SHORT, 7).unwrap().unwrap().epoch, 43);
+        wait(leases, SHORT * 2);
+        assert_eq!(leases.acquire("cellar", "other", LONG, 99).unwrap().unwrap().epoch, 100);
     });
 }
 
-fn renew(leases: &mut (impl Leases + ?Sized), lease: &Lease) -> bool {
+fn renew(leases: &mut HostStore, lease: &Lease) -> bool {
     leases.renew(std::slice::from_ref(lease)).unwrap() == [true]
+}
+
+/// The lease of a room that is in force.
+fn holder(leases: &mut HostStore, room: &str) -> Option<Lease> {
+    let sql = "SELECT host, epoch, time_ms FROM leases WHERE room = ?1 AND host IS NOT NULL \
+               AND ends_at > (SELECT ms FROM clock)";
+    let row = leases.database.once(|it| it.row(sql, &[&room])).unwrap()?;
+    let (host, time) = (row.get(0).unwrap(), Duration::from_millis(row.count(2).unwrap()));
+    Some(Lease { room: room.to_owned(), host, epoch: row.count(1).unwrap(), time })
 }
 
 /// Something that a host does, or that happens.
@@ -182,7 +173,7 @@ proptest! {
 
     #[test]
     fn no_two_hosts_have_a_room_at_once_or_an_epoch_ever(events in events()) {
-        let (mut leases, mut now) = (MemoryLeases::default(), 0);
+        let (mut leases, mut now) = (HostStore::in_memory(), 0);
         let mut known: Vec<Vec<Option<Known>>> = vec![vec![None; ROOMS.len()]; HOSTS.len()];
         let mut owners: Vec<Vec<(u64, usize)>> = vec![Vec::new(); ROOMS.len()];
         for event in events {
@@ -195,16 +186,16 @@ proptest! {
                     let time = Duration::from_secs(seconds);
                     if let Some(lease) = leases.acquire(ROOMS[room], HOSTS[host], time, 0).unwrap() {
                         let last = owners[room].last().map_or(0, |(epoch, _)| *epoch);
-                        prop_assert!(lease.epoch() > last);
-                        owners[room].push((lease.epoch(), host));
+                        prop_assert!(lease.epoch > last);
+                        owners[room].push((lease.epoch, host));
                         known[host][room] = Some(Known { lease, until: now + seconds });
                     }
                 }
                 Event::Renew(host, room) => {
                     let Some(own) = &mut known[host][room] else { continue };
                     if renew(&mut leases, &own.lease) {
-                        prop_assert_eq!(owners[room].last(), Some(&(own.lease.epoch(), host)));
-                        own.until = now + own.lease.time().as_secs();
+                        prop_assert_eq!(owners[room].last(), Some(&(own.lease.epoch, host)));
+                        own.until = now + own.lease.time.as_secs();
                     }
                 }
                 Event::Release(host, room) => {
@@ -217,7 +208,7 @@ proptest! {
                     .iter()
                     .filter_map(|of_host| of_host[room].as_ref().filter(|own| now < own.until))
                     .collect();
-                let holder = leases.holder(name).unwrap();
+                let holder = holder(&mut leases, name);
                 prop_assert!(holders.len() <= 1);
                 prop_assert_eq!(holders.first().map(|own| &own.lease), holder.as_ref());
             }
@@ -239,7 +230,7 @@ fn of_hosts_that_take_a_lease_at_once_one_has_it() {
                 .map(|host| {
                     let (barrier, address) = (&barrier, &address);
                     scope.spawn(move || {
-                        let mut store = PostgresStore::open(address).unwrap();
+                        let mut store = HostStore::connect(address).unwrap();
                         barrier.wait();
                         store.acquire("cellar", host, time, 0).unwrap()
                     })
@@ -249,12 +240,12 @@ fn of_hosts_that_take_a_lease_at_once_one_has_it() {
         });
         // A short one may be over before the last host asks.
         assert!(taken.len() == 1 || (round % 2 == 0 && !taken.is_empty()), "{taken:?}");
-        let mut epochs: Vec<u64> = taken.iter().map(Lease::epoch).collect();
+        let mut epochs: Vec<u64> = taken.iter().map(|lease| lease.epoch).collect();
         epochs.sort_unstable();
         epochs.dedup();
         assert!(epochs.len() == taken.len() && epochs[0] > last, "{taken:?} after {last}");
         last = epochs[epochs.len() - 1];
-        let mut store = PostgresStore::open(&address).unwrap();
+        let mut store = HostStore::connect(&address).unwrap();
         if round % 2 == 0 {
             std::thread::sleep(SHORT / 5);
         } else {

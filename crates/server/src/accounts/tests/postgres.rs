@@ -9,8 +9,8 @@ use std::thread;
 use super::postgres_server::PostgresServer;
 use super::*;
 
-fn open(address: &str) -> PostgresStore {
-    PostgresStore::open(address).unwrap()
+fn open(address: &str) -> HostStore {
+    HostStore::connect(address).unwrap()
 }
 
 /// The name of the schema of an address.
@@ -22,7 +22,7 @@ fn place(address: &str) -> &str {
 fn at_once<T: Send>(
     address: &str,
     hosts: u8,
-    act: impl Fn(u8, &mut PostgresStore) -> T + Sync,
+    act: impl Fn(u8, &mut HostStore) -> T + Sync,
 ) -> Vec<T> {
     let barrier = Barrier::new(hosts.into());
     thread::scope(|scope| {
@@ -45,7 +45,7 @@ fn hosts_that_start_at_once_make_the_tables_once() {
     let server = PostgresServer::shared();
     for _ in 0..4 {
         let address = server.address();
-        assert!(PostgresStore::open_to_read(&address).unwrap().is_none());
+        assert!(HostStore::connect_to_read(&address).unwrap().is_none());
         at_once(&address, 6, |_, _| ());
         let sql = format!("SELECT version FROM {}.cellcaster", place(&address));
         let version: usize = server.sql(&sql).trim().parse().unwrap();
@@ -62,7 +62,7 @@ fn what_one_host_keeps_another_one_shows() {
     assert_eq!(other.account(&key(1)).unwrap(), Some(ada.clone()));
     assert_eq!(other.level_scores(&board("cellar"), 9).unwrap()[0].name, ada.name);
     drop((one, other));
-    let mut reader = PostgresStore::open_to_read(&address).unwrap().unwrap();
+    let mut reader = HostStore::connect_to_read(&address).unwrap().unwrap();
     assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));
     let refused = reader.create_account(&key(2), &name("Bob"), at(0));
     assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
@@ -139,22 +139,11 @@ fn results_that_come_at_once_leave_the_best() {
 }
 
 #[test]
-fn the_first_try_of_a_day_counts_on_all_hosts() {
-    let address = PostgresServer::shared().address();
-    let ada = open(&address).create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
-    for number in 20_261_101..=20_261_110 {
-        let day = Day::from_number(number).unwrap();
-        let tries = at_once(&address, 4, |_, store| store.begin_daily(ada, day, at(0)).unwrap());
-        assert_eq!(tries.iter().flatten().count(), 1, "{tries:?}");
-    }
-}
-
-#[test]
 fn databases_of_others_are_left_alone() {
     let server = PostgresServer::shared();
     let refused = |address: &str| {
-        let sentence = PostgresStore::open(address).unwrap_err().to_string();
-        let to_read = PostgresStore::open_to_read(address).unwrap_err().to_string();
+        let sentence = HostStore::connect(address).unwrap_err().to_string();
+        let to_read = HostStore::connect_to_read(address).unwrap_err().to_string();
         assert_eq!((to_read.as_str(), sentence.lines().count()), (sentence.as_str(), 1));
         sentence
     };
@@ -173,16 +162,19 @@ fn databases_of_others_are_left_alone() {
 }
 
 #[test]
-fn an_older_database_is_renewed_by_a_host_and_not_by_a_reader() {
+fn a_database_of_an_older_version_is_left_alone() {
     let server = PostgresServer::shared();
     let address = server.address();
     server.sql(&format!(
         "SET search_path TO {}; CREATE TABLE cellcaster (version BIGINT NOT NULL); \
-         INSERT INTO cellcaster VALUES (0)",
+         INSERT INTO cellcaster VALUES (4)",
         place(&address)
     ));
-    let sentence = PostgresStore::open_to_read(&address).unwrap_err().to_string();
-    assert!(sentence.contains("older version 0: start a host once"), "{sentence}");
-    open(&address);
-    assert!(PostgresStore::open_to_read(&address).unwrap().is_some());
+    for opened in [HostStore::connect(&address).map(Some), HostStore::connect_to_read(&address)] {
+        let sentence = opened.unwrap_err().to_string();
+        assert!(
+            sentence.contains("has version 4, which no Cellcaster of today reads"),
+            "{sentence}"
+        );
+    }
 }

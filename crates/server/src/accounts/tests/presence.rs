@@ -2,24 +2,6 @@
 
 use super::*;
 
-/// Runs a test with a store of each kind.
-fn with_each(test: impl Fn(&mut dyn TimedPresence)) {
-    test(&mut MemoryPresence::default());
-    #[cfg(all(unix, feature = "system-tests"))]
-    test(&mut postgres_store());
-}
-
-/// The presence of hosts and visitors, whose clock a test can let run.
-trait TimedPresence: Presence + Timed {}
-
-impl<T: Presence + Timed> TimedPresence for T {}
-
-impl Timed for MemoryPresence {
-    fn wait(&mut self, time: Duration) {
-        self.pass(time);
-    }
-}
-
 const LONG: Duration = Duration::from_mins(1);
 const SHORT: Duration = Duration::from_millis(200);
 
@@ -40,14 +22,14 @@ fn notice(name: &str, load: u32) -> HostNotice {
     }
 }
 
-fn announce(presence: &mut dyn TimedPresence, hosts: &[&str]) {
+fn announce(presence: &mut HostStore, hosts: &[&str]) {
     for host in hosts {
         presence.announce(&notice(host, 0)).unwrap();
     }
 }
 
 /// A visit that is let in.
-fn begin(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> VisitId {
+fn begin(presence: &mut HostStore, host: &str, visitor: &Visitor, most: u32) -> VisitId {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         VisitBegin::Begun(visit) => visit,
         VisitBegin::TooMany(ago) => panic!("too many on hosts that were there {ago:?} ago"),
@@ -55,7 +37,7 @@ fn begin(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: 
 }
 
 /// How fresh a refusal is.
-fn refused(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most: u32) -> Duration {
+fn refused(presence: &mut HostStore, host: &str, visitor: &Visitor, most: u32) -> Duration {
     match presence.begin_visit(host, visitor, most, LONG).unwrap() {
         VisitBegin::TooMany(ago) => ago,
         VisitBegin::Begun(visit) => panic!("{visit:?} has begun"),
@@ -64,7 +46,7 @@ fn refused(presence: &mut dyn TimedPresence, host: &str, visitor: &Visitor, most
 
 #[test]
 fn the_visits_of_somebody_are_limited_over_all_hosts() {
-    with_each(|presence| {
+    with_each_clock(|presence| {
         announce(presence, &["one", "other", "third"]);
         let first = begin(presence, "one", &ada(), 2);
         let second = begin(presence, "other", &ada(), 2);
@@ -90,11 +72,11 @@ fn the_visits_of_somebody_are_limited_over_all_hosts() {
 
 #[test]
 fn visits_count_while_their_host_is_there() {
-    with_each(|presence| {
+    with_each_clock(|presence| {
         announce(presence, &["one", "killed"]);
         begin(presence, "one", &ada(), 1);
         begin(presence, "killed", &network(), 1);
-        presence.wait(SHORT * 2);
+        wait(presence, SHORT * 2);
         announce(presence, &["one", "other"]);
         assert!(refused(presence, "other", &ada(), 1) < SHORT);
         // It may have been killed: of its visits is said how old their host's last word is.
@@ -111,12 +93,12 @@ fn visits_count_while_their_host_is_there() {
 
 #[test]
 fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
-    with_each(|presence| {
+    with_each_clock(|presence| {
         announce(presence, &["old", "one", "other"]);
         for host in ["old", "one", "other"] {
             begin(presence, host, &ada(), 3);
         }
-        presence.wait(SHORT * 2);
+        wait(presence, SHORT * 2);
         announce(presence, &["one", "other"]);
         assert!(refused(presence, "one", &ada(), 3) >= SHORT * 2);
         assert!(refused(presence, "one", &ada(), 2) < SHORT);
@@ -125,12 +107,12 @@ fn a_refusal_is_as_fresh_as_the_hosts_that_it_needs() {
 
 #[test]
 fn a_host_is_there_while_it_announces_itself() {
-    with_each(|presence| {
+    with_each_clock(|presence| {
         presence.announce(&notice("one", 1)).unwrap();
         presence.announce(&notice("other", 2)).unwrap();
-        presence.wait(SHORT * 2);
+        wait(presence, SHORT * 2);
         presence.announce(&notice("one", 3)).unwrap();
-        let told = |presence: &mut dyn TimedPresence, time| -> Vec<HostNotice> {
+        let told = |presence: &mut HostStore, time| -> Vec<HostNotice> {
             presence.hosts(time).unwrap().into_iter().map(|row| row.notice).collect()
         };
         assert_eq!(told(presence, LONG), [notice("one", 3), notice("other", 2)]);
@@ -153,7 +135,7 @@ fn a_visitor_is_read_as_it_is_written() {
 fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
     let address = postgres_server::PostgresServer::shared().address();
     let hosts = ["a", "b", "c", "d", "e", "f"];
-    announce(&mut PostgresStore::open(&address).unwrap(), &hosts);
+    announce(&mut HostStore::connect(&address).unwrap(), &hosts);
     let barrier = std::sync::Barrier::new(hosts.len());
     let begun: Vec<VisitBegin> = std::thread::scope(|scope| {
         let threads: Vec<_> = hosts
@@ -161,7 +143,7 @@ fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
             .map(|host| {
                 let (barrier, address) = (&barrier, &address);
                 scope.spawn(move || {
-                    let mut store = PostgresStore::open(address).unwrap();
+                    let mut store = HostStore::connect(address).unwrap();
                     barrier.wait();
                     let mut begin = || store.begin_visit(host, &ada(), 7, LONG).unwrap();
                     [begin(), begin(), begin()]
@@ -172,5 +154,5 @@ fn of_visits_that_begin_at_once_no_more_than_allowed_do() {
     });
     let begun = begun.iter().filter(|it| matches!(it, VisitBegin::Begun(_))).count();
     assert_eq!(begun, 7);
-    assert_eq!(PostgresStore::open(&address).unwrap().visits(LONG).unwrap().len(), 7);
+    assert_eq!(HostStore::connect(&address).unwrap().visits(LONG).unwrap().len(), 7);
 }

@@ -8,7 +8,7 @@ fn origin(address: &str) -> Origin {
 
 /// Creates an account at a second.
 fn create(
-    store: &mut dyn HostStore,
+    store: &mut HostStore,
     address: &str,
     number: u8,
     second: u64,
@@ -56,13 +56,13 @@ fn a_network_makes_so_many_accounts() {
 #[test]
 fn hosts_count_the_accounts_of_a_network_together() {
     let address = postgres_server::PostgresServer::shared().address();
-    PostgresStore::open(&address).unwrap();
+    HostStore::connect(&address).unwrap();
     let made: usize = std::thread::scope(|scope| {
         let hosts: Vec<_> = (0..4_u8)
             .map(|host| {
                 let address = &address;
                 scope.spawn(move || {
-                    let mut store = PostgresStore::open(address).unwrap();
+                    let mut store = HostStore::connect(address).unwrap();
                     let number = |index| 4 * host + index;
                     let made =
                         (0..4).map(|index| create(&mut store, "192.0.2.1", number(index), 0));

@@ -5,48 +5,6 @@ use super::*;
 const WON: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/scripts/cellar.normal.script"));
 
-/// A store that is away, or that refuses all changes.
-struct Failing<'a>(&'a mut MemoryStore, Option<StoreFailure>);
-
-impl Failing<'_> {
-    fn fault(&self) -> Result<(), StoreFailure> {
-        self.1.clone().map_or(Ok(()), Err)
-    }
-}
-
-/// Methods that fail while the store does, and then do the same as those of the store in memory.
-macro_rules! failing {
-    ($($name:ident($($argument:ident: $type:ty),*) -> $value:ty;)*) => {
-        impl HostStore for Failing<'_> {
-            $(fn $name(&mut self, $($argument: $type),*) -> $value {
-                self.fault()?;
-                self.0.$name($($argument),*)
-            })*
-        }
-    };
-}
-
-failing! {
-    account(key: &AccountKey) -> Result<Option<Account>, StoreFailure>;
-    account_named(name: &Name) -> Result<Option<Account>, StoreFailure>;
-    create_account_from(origin: Option<&Origin>, key: &AccountKey, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
-    rename(account: AccountId, name: &Name, now: UnixTime) -> Result<Account, Refusal>;
-    note_visit(account: AccountId, now: UnixTime) -> Result<(), StoreFailure>;
-    settings(account: AccountId) -> Result<AccountSettings, StoreFailure>;
-    set_settings(account: AccountId, settings: &AccountSettings) -> Result<(), StoreFailure>;
-    ban(ban: &Ban) -> Result<(), StoreFailure>;
-    unban(target: &BanTarget) -> Result<bool, StoreFailure>;
-    bans(now: UnixTime) -> Result<Vec<Ban>, StoreFailure>;
-    record(account: AccountId, run: &VerifiedLevel, now: UnixTime) -> Result<Improved, StoreFailure>;
-    begin_daily(account: AccountId, day: Day, now: UnixTime) -> Result<Option<DailyTry>, StoreFailure>;
-    record_daily(daily: &DailyTry, run: &VerifiedDescent, now: UnixTime) -> Result<bool, StoreFailure>;
-    bests(account: AccountId) -> Result<Vec<(LevelBoard, Best)>, StoreFailure>;
-    level_boards() -> Result<Vec<LevelBoard>, StoreFailure>;
-    level_scores(board: &LevelBoard, most: usize) -> Result<Vec<LevelScore>, StoreFailure>;
-    daily_scores(day: Day, most: usize) -> Result<Vec<DailyScore>, StoreFailure>;
-    script(account: AccountId, board: &LevelBoard) -> Result<Option<String>, StoreFailure>;
-}
-
 fn waiting(folder: &Folder) -> WaitingResults {
     fs::create_dir_all(&folder.0).unwrap();
     let (waiting, sentence) = WaitingResults::open(&folder.0).unwrap();
@@ -58,13 +16,13 @@ fn result(number: u8, day: u64, script: &str) -> WaitingResult {
     WaitingResult { key: key(number), at: at(day), script: script.to_owned() }
 }
 
-fn cellar(store: &mut MemoryStore) -> Vec<LevelScore> {
+fn cellar(store: &mut HostStore) -> Vec<LevelScore> {
     store.level_scores(&LevelBoard::new("cellar", Difficulty::Normal).unwrap(), 9).unwrap()
 }
 
 #[test]
 fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
-    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     for (number, text) in [(1, "Ada"), (2, "Bob")] {
         store.create_account(&key(number), &name(text), at(0)).unwrap();
     }
@@ -76,7 +34,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 
     let mut after = waiting(&folder);
     assert_eq!(after.len(), 2);
-    let mut away = Failing(&mut store, Some(StoreFailure::away("gone")));
+    let mut away = HostStore::failing(StoreFailure::away("gone"));
     assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
     assert_eq!(after.len(), 2);
     for text in ["Bob", "Ada"] {
@@ -99,7 +57,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 
 #[test]
 fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() {
-    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let mut waiting = waiting(&folder);
     waiting.add(result(7, 0, WON)).unwrap();
@@ -112,7 +70,7 @@ fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() 
     // It does not hold those behind it.
     let recorded = waiting.record(1, &mut store, |_| None, at(6));
     assert!(matches!(recorded, Some(Late::Recorded(..))), "{recorded:?}");
-    let mut full = Failing(&mut store, Some(StoreFailure::new("the disk is full")));
+    let mut full = HostStore::failing(StoreFailure::new("the disk is full"));
     assert!(matches!(waiting.record(0, &mut full, |_| None, at(6)), Some(Late::Refused(_))));
     assert!(matches!(waiting.record(0, &mut store, |_| None, at(8)), Some(Late::GivenUp(..))));
     assert!(waiting.is_empty());
@@ -154,7 +112,7 @@ fn nobody_else_reads_the_file() {
 
 #[test]
 fn what_cannot_be_written_waits_in_memory_until_it_can() {
-    let (folder, mut store) = (Folder::new(), MemoryStore::default());
+    let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     let mut results = waiting(&folder);
     fs::remove_dir_all(&folder.0).unwrap();
@@ -162,7 +120,7 @@ fn what_cannot_be_written_waits_in_memory_until_it_can() {
     assert!(results.save().is_err());
     assert_eq!(results.len(), 1);
     // A store that is full takes nothing, however long it lasts.
-    let mut full = Failing(&mut store, Some(StoreFailure::full("no room")));
+    let mut full = HostStore::failing(StoreFailure::full("no room"));
     assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
     fs::create_dir_all(&folder.0).unwrap();
     results.save().unwrap();

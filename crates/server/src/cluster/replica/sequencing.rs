@@ -77,12 +77,12 @@ impl Replica {
     /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
     async fn take_over(&mut self, lease: Lease) {
         let is_read = self.read().await.is_ok();
-        if self.state.epoch() >= lease.epoch() {
+        if self.state.epoch() >= lease.epoch {
             // The answer has come so late that others have had the room since.
             return;
         }
         let now = Instant::now();
-        tracing::info!(room = %self.id, epoch = lease.epoch(), "this host has a room now");
+        tracing::info!(room = %self.id, epoch = lease.epoch, "this host has a room now");
         self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
         self.times.stepped = now;
         self.is_append_unknown = !is_read;

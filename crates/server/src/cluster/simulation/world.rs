@@ -1,7 +1,6 @@
 //! What the hosts of a simulation have in common: logs, values, leases, and links with faults.
 
 use std::collections::BTreeMap;
-use std::iter;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -12,7 +11,7 @@ use super::super::bus::{Bus, HostRequest, Key};
 use super::super::lease_worker::{self, Call, LeaseWorker};
 use super::super::visits::{VisitRegistry, Visits};
 use super::bus::SimulatedBus;
-use crate::accounts::{HostNotice, MemoryLeases, MemoryPresence};
+use crate::accounts::{HostNotice, HostStore};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 use cellcaster::rng::SplitMix64;
@@ -37,8 +36,7 @@ pub(crate) struct Inner {
     pub(crate) changes: Vec<(RoomId, Option<Vec<u8>>)>,
     pub(crate) listeners: Vec<(usize, RoomId, mpsc::Sender<Vec<u8>>)>,
     pub(crate) operators: Vec<(usize, mpsc::Sender<HostRequest>)>,
-    leases: MemoryLeases,
-    presence: MemoryPresence,
+    store: HostStore,
     asked_at: Instant,
     links: Vec<Link>,
 }
@@ -86,8 +84,7 @@ impl World {
             changes: Vec::new(),
             listeners: Vec::new(),
             operators: Vec::new(),
-            leases: MemoryLeases::default(),
-            presence: MemoryPresence::default(),
+            store: HostStore::in_memory(),
             asked_at: Instant::now(),
             links: vec![good; hosts],
         })))
@@ -128,7 +125,7 @@ impl World {
             while let Some(call) = queue.recv().await {
                 world.pass(host).await;
                 if !world.link(host).has_no_database {
-                    world.with(|inner| registry.run(inner.presence(), call));
+                    world.with(|inner| registry.run(inner.store(), call));
                 }
             }
         });
@@ -136,10 +133,7 @@ impl World {
     }
 
     fn run(&self, call: Call, host: usize) {
-        self.with(|inner| {
-            inner.let_time_pass();
-            lease_worker::run(iter::once(call), &mut inner.leases, &notice(host).name);
-        });
+        self.with(|inner| lease_worker::run([call], inner.store(), &notice(host).name));
     }
 
     pub(crate) fn link(&self, host: usize) -> Link {
@@ -181,16 +175,12 @@ impl World {
 }
 
 impl Inner {
-    fn let_time_pass(&mut self) {
+    /// The database of all hosts, by their time.
+    fn store(&mut self) -> &mut HostStore {
         let now = Instant::now();
-        self.leases.pass(now - self.asked_at);
-        self.presence.pass(now - self.asked_at);
+        self.store.pass(now - self.asked_at);
         self.asked_at = now;
-    }
-
-    fn presence(&mut self) -> &mut MemoryPresence {
-        self.let_time_pass();
-        &mut self.presence
+        &mut self.store
     }
 
     pub(crate) fn keep(&mut self, key: Key, value: Option<Vec<u8>>) -> u64 {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
 use super::{Call, CountedVisit, NewVisit, THERE, TooMany, Visits};
-use crate::accounts::{HostNotice, Presence, StoreFailure, VisitBegin, VisitId};
+use crate::accounts::{HostNotice, HostStore, StoreFailure, VisitBegin, VisitId};
 use crate::lock::locked;
 use crate::ops::logging::events;
 
@@ -28,7 +28,7 @@ impl VisitRegistry {
     }
 
     /// Does what a call asks for, and answers.
-    pub(crate) fn run(&mut self, presence: &mut dyn Presence, call: Call) {
+    pub(crate) fn run(&mut self, presence: &mut HostStore, call: Call) {
         self.end(presence);
         match call {
             Call::Begin(new_visit, visits, reply) => {
@@ -52,7 +52,7 @@ impl VisitRegistry {
     /// Begins a visit by the key and by the address, or neither.
     fn begin(
         &mut self,
-        presence: &mut dyn Presence,
+        presence: &mut HostStore,
         new_visit: &NewVisit,
     ) -> Result<Result<Vec<VisitId>, TooMany>, StoreFailure> {
         let mut ids = Vec::new();
@@ -77,12 +77,12 @@ impl VisitRegistry {
     }
 
     /// Ends the visits whose sessions have ended.
-    fn end(&mut self, presence: &mut dyn Presence) {
+    fn end(&mut self, presence: &mut HostStore) {
         let ended = locked(&self.ended, std::mem::take);
         self.end_all(presence, ended);
     }
 
-    fn end_all(&mut self, presence: &mut dyn Presence, ids: Vec<VisitId>) {
+    fn end_all(&mut self, presence: &mut HostStore, ids: Vec<VisitId>) {
         for id in ids {
             // One that this host has left has ended with all others.
             if self.counting.remove(&id) && (self.is_away || presence.end_visit(id).is_err()) {
@@ -91,7 +91,7 @@ impl VisitRegistry {
         }
     }
 
-    fn announce(&mut self, presence: &mut dyn Presence, load: u32) {
+    fn announce(&mut self, presence: &mut HostStore, load: u32) {
         self.notice.load = load;
         let announced = presence.announce(&self.notice);
         self.note(announced);
@@ -101,7 +101,7 @@ impl VisitRegistry {
     }
 
     /// Ends the visits of this host that nobody has, since a call has failed.
-    fn end_unknown(&mut self, presence: &mut dyn Presence) -> Result<(), StoreFailure> {
+    fn end_unknown(&mut self, presence: &mut HostStore) -> Result<(), StoreFailure> {
         for visit in presence.visits(THERE)? {
             if visit.host == self.notice.name && !self.counting.contains(&visit.id) {
                 presence.end_visit(visit.id)?;

@@ -4,7 +4,6 @@ use tokio::runtime::Builder;
 use tokio::task::JoinHandle;
 
 use super::*;
-use crate::accounts::{MemoryPresence, Visit, VisitBegin};
 
 /// Some hosts and the database that they share.
 struct Hosts {
@@ -18,15 +17,15 @@ struct Running {
 }
 
 struct Database {
-    presence: MemoryPresence,
+    store: HostStore,
     asked_at: Instant,
     is_away: bool,
 }
 
 impl Hosts {
     fn new(count: usize) -> Self {
-        let (presence, asked_at) = (MemoryPresence::default(), Instant::now());
-        let database = Database { presence, asked_at, is_away: false };
+        let (store, asked_at) = (HostStore::in_memory(), Instant::now());
+        let database = Database { store, asked_at, is_away: false };
         let mut hosts = Self { database: Arc::new(Mutex::new(database)), running: Vec::new() };
         (0..count).for_each(|host| hosts.add(host));
         hosts
@@ -70,7 +69,7 @@ impl Hosts {
     fn count(&self) -> usize {
         locked(&self.database, |database| {
             database.pass();
-            database.presence.visits(THERE).unwrap().len()
+            database.store.visits(THERE).unwrap().len()
         })
     }
 }
@@ -79,55 +78,17 @@ impl Database {
     fn run(&mut self, registry: &mut VisitRegistry, call: Call) {
         self.pass();
         if self.is_away {
-            registry.run(&mut Away, call);
+            let failure = StoreFailure::away("the database does not answer");
+            registry.run(&mut HostStore::failing(failure), call);
         } else {
-            registry.run(&mut self.presence, call);
+            registry.run(&mut self.store, call);
         }
     }
 
     fn pass(&mut self) {
         let now = Instant::now();
-        self.presence.pass(now - self.asked_at);
+        self.store.pass(now - self.asked_at);
         self.asked_at = now;
-    }
-}
-
-/// A database that does not answer.
-struct Away;
-
-fn away<T>() -> Result<T, StoreFailure> {
-    Err(StoreFailure::away("the database does not answer"))
-}
-
-impl Presence for Away {
-    fn begin_visit(
-        &mut self,
-        _: &str,
-        _: &Visitor,
-        _: u32,
-        _: Duration,
-    ) -> Result<VisitBegin, StoreFailure> {
-        away()
-    }
-
-    fn end_visit(&mut self, _: VisitId) -> Result<(), StoreFailure> {
-        away()
-    }
-
-    fn visits(&mut self, _: Duration) -> Result<Vec<Visit>, StoreFailure> {
-        away()
-    }
-
-    fn announce(&mut self, _: &HostNotice) -> Result<(), StoreFailure> {
-        away()
-    }
-
-    fn leave(&mut self, _: &str) -> Result<(), StoreFailure> {
-        away()
-    }
-
-    fn hosts(&mut self, _: Duration) -> Result<Vec<HostRow>, StoreFailure> {
-        away()
     }
 }
 

@@ -40,7 +40,7 @@ impl KeptRuns {
     /// Where the store can't be read.
     pub(crate) fn ghosts(
         &mut self,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         catalog: &Catalog,
         (level, difficulty): (&str, Difficulty),
         own: Option<AccountId>,
@@ -66,7 +66,7 @@ impl KeptRuns {
     /// The run of an account that took so many steps.
     fn run(
         &mut self,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         catalog: &Catalog,
         board: &LevelBoard,
         (account, steps): (AccountId, u64),
@@ -97,7 +97,7 @@ impl KeptRuns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accounts::{Account, AccountKey, MemoryStore, Name, UnixTime, VerifiedRun, verify};
+    use crate::accounts::{Account, AccountKey, Name, UnixTime, verify};
 
     const WON: &str = include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -105,23 +105,23 @@ mod tests {
     ));
     const CELLAR: (&str, Difficulty) = ("cellar", Difficulty::Normal);
 
-    fn account(store: &mut MemoryStore, number: u8, name: &str) -> Account {
+    fn account(store: &mut HostStore, number: u8, name: &str) -> Account {
         let key = AccountKey::new([number; 32]);
         store.create_account(&key, &Name::new(name).unwrap(), UnixTime::new(7)).unwrap()
     }
 
     #[test]
     fn the_best_run_and_the_own_one_walk_along() {
-        let (catalog, mut store) = (Catalog::builtin(), MemoryStore::default());
+        let (catalog, mut store) = (Catalog::builtin(), HostStore::in_memory());
         let [mara, jon] =
             [(1, "Mara"), (2, "Jon")].map(|(number, name)| account(&mut store, number, name).id);
         let mut kept = KeptRuns::default();
-        let mut labels = |store: &mut MemoryStore, level, own| -> Vec<String> {
+        let mut labels = |store: &mut HostStore, level, own| -> Vec<String> {
             let ghosts = kept.ghosts(store, &catalog, level, own).unwrap();
             ghosts.iter().map(Ghost::label).collect()
         };
         assert_eq!(labels(&mut store, CELLAR, Some(jon)), [""; 0]);
-        let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
+        let run = verify(WON).unwrap();
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         assert_eq!(labels(&mut store, CELLAR, Some(jon)), ["Mara's best"]);
         assert_eq!(labels(&mut store, CELLAR, None), ["Mara's best"]);
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn only_some_runs_are_kept() {
-        let (catalog, mut store) = (Catalog::builtin(), MemoryStore::default());
+        let (catalog, mut store) = (Catalog::builtin(), HostStore::in_memory());
         let mara = account(&mut store, 1, "Mara").id;
-        let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
+        let run = verify(WON).unwrap();
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         let board = LevelBoard::new(CELLAR.0, CELLAR.1).unwrap();
         let mut kept = KeptRuns::default();

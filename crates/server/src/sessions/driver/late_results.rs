@@ -55,7 +55,7 @@ enum Next {
 
 impl Recorder {
     /// Records the result that waits after `skipped` others.
-    fn record_late(&self, store: &mut dyn HostStore, skipped: usize) -> Next {
+    fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
             let late = waiting.record(skipped, store, |name| self.world(name), unix_time());
@@ -89,7 +89,7 @@ impl Recorder {
     }
 
     /// Leaves everything on the disk when the host ends: results that wait in memory, and the log of the store.
-    pub(crate) fn end(&self, store: &mut dyn HostStore) {
+    pub(crate) fn end(&self, store: &mut HostStore) {
         if let Some(waiting) = &self.waiting
             && locked(waiting, WaitingResults::save).is_err()
         {

@@ -83,16 +83,16 @@ impl Shared {
         Ok(Known { key, account, settings, offer })
     }
 
-    /// A name for somebody new: that of their user name, if it can be one.
+    /// A name for a new visitor: their user name, if it is valid and free.
     fn offer(&self, user: &str) -> Name {
         let own = Name::new(user).ok().filter(|name| !self.names.has(name));
         own.unwrap_or_else(|| Name::of_guest(self.next_guest.fetch_add(1, Ordering::Relaxed)))
     }
 }
 
-/// The name that a visitor wants, once it is theirs.
+/// Gives a visitor the name that they want.
 pub(crate) fn choose_name(
-    store: &mut dyn HostStore,
+    store: &mut HostStore,
     origin: &Origin,
     key: Option<AccountKey>,
     account: Option<AccountId>,
@@ -114,7 +114,7 @@ pub(crate) fn choose_name(
     }
 }
 
-fn guest_may_use(store: &mut dyn HostStore, name: &Name) -> Result<bool, StoreFailure> {
+fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
     let is_taken = store.account_named(name)?.is_some();
     let identity = Identity { name: Some(name), ..Identity::default() };
     Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
@@ -139,7 +139,7 @@ pub(crate) fn line(name: &Name) -> Line {
 }
 
 impl NamesInUse {
-    /// Reserves a name; `None` if somebody uses one that looks like it.
+    /// Reserves a name; `None` if a similar-looking name is in use.
     pub(crate) fn reserve(&self, name: &Name) -> Option<NameInUse> {
         let is_free = locked(&self.0, |names| {
             let is_free = !names.iter().any(|other| other.looks_like(name));

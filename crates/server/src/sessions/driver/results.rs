@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex};
 
 use super::unix_time;
 use crate::accounts::{
-    Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedLevel, VerifiedRun,
-    WaitingResult, WaitingResults, verify_with,
+    Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedRun, WaitingResult,
+    WaitingResults, verify_with,
 };
 use crate::lock::locked;
 use crate::ops::logging::events;
@@ -36,13 +36,12 @@ impl Recorder {
     /// Replays a run of an account and records it; a sentence about it for the player.
     pub(crate) fn record(
         &self,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         account: &Account,
         run: &FinishedRun,
     ) -> String {
         let run = match verify_with(&run.script, |name| self.world(name)) {
-            Ok(VerifiedRun::Level(run)) => run,
-            Ok(VerifiedRun::Descent(_)) => return "The level has no board.".to_owned(),
+            Ok(run) => run,
             Err(reason) => {
                 self.metrics.results(false).inc();
                 events::result_refused(account.name.as_str(), &run.level, &reason);
@@ -75,9 +74,9 @@ impl Recorder {
     /// What a run that was recorded has improved.
     fn placed(
         &self,
-        store: &mut dyn HostStore,
+        store: &mut HostStore,
         account: &Account,
-        run: &VerifiedLevel,
+        run: &VerifiedRun,
         improved: Improved,
     ) -> String {
         let (steps, rank) = (run.tally().steps, run.rank());
@@ -95,7 +94,7 @@ impl Recorder {
     }
 
     /// Keeps a run until the store takes it, on the disk or else in memory. Returns whether it is kept.
-    fn keep(&self, account: &Account, run: &VerifiedLevel, at: UnixTime) -> bool {
+    fn keep(&self, account: &Account, run: &VerifiedRun, at: UnixTime) -> bool {
         let Some(waiting) = &self.waiting else { return false };
         let result = WaitingResult { key: account.key, at, script: run.script().to_owned() };
         let (added, saved, count) = locked(waiting, |waiting| {
@@ -126,7 +125,7 @@ fn kept(failure: &StoreFailure) -> &'static str {
 
 /// The entries of a board.
 pub(crate) fn board(
-    store: &mut dyn HostStore,
+    store: &mut HostStore,
     level: &str,
     difficulty: Difficulty,
     own: Option<AccountId>,

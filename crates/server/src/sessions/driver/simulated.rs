@@ -31,7 +31,7 @@ pub(crate) struct Setup {
     pub(crate) visitors: Visitors,
     pub(crate) catalog: Catalog,
     pub(crate) logs: Logs,
-    pub(crate) store: Box<dyn HostStore>,
+    pub(crate) store: HostStore,
     /// How long the store takes for a call.
     pub(crate) store_time: Duration,
     pub(crate) worker: Worker,

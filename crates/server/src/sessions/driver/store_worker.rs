@@ -14,7 +14,7 @@ use tokio::sync::{mpsc, oneshot};
 
 use crate::accounts::HostStore;
 
-type Call = Box<dyn FnOnce(&mut dyn HostStore) + Send>;
+type Call = Box<dyn FnOnce(&mut HostStore) + Send>;
 
 /// The most calls that wait.
 const MOST_CALLS: usize = 256;
@@ -29,11 +29,11 @@ pub(crate) struct StoreWorker {
 pub(crate) type Answer<T> = oneshot::Receiver<T>;
 
 impl StoreWorker {
-    pub(crate) fn start(mut store: Box<dyn HostStore>) -> io::Result<Self> {
+    pub(crate) fn start(mut store: HostStore) -> io::Result<Self> {
         let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
         let thread = thread::Builder::new().name("store".to_owned()).spawn(move || {
             while let Some(call) = queue.blocking_recv() {
-                answer(call, &mut *store);
+                answer(call, &mut store);
             }
         })?;
         Ok(Self { calls: Some(calls), thread: Some(thread) })
@@ -41,12 +41,12 @@ impl StoreWorker {
 
     /// A task that takes `time` for each call.
     #[cfg(test)]
-    pub(crate) fn simulated(mut store: Box<dyn HostStore>, time: std::time::Duration) -> Self {
+    pub(crate) fn simulated(mut store: HostStore, time: std::time::Duration) -> Self {
         let (calls, mut queue) = mpsc::channel::<Call>(MOST_CALLS);
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
                 tokio::time::sleep(time).await;
-                answer(call, &mut *store);
+                answer(call, &mut store);
             }
         });
         Self { calls: Some(calls), thread: None }
@@ -55,7 +55,7 @@ impl StoreWorker {
     /// Acts on the store, and answers. The answer is an error if too many calls wait.
     pub(crate) fn call<T: Send + 'static>(
         &self,
-        act: impl FnOnce(&mut dyn HostStore) -> T + Send + 'static,
+        act: impl FnOnce(&mut HostStore) -> T + Send + 'static,
     ) -> Answer<T> {
         let (answer, receiver) = oneshot::channel();
         self.run(move |store| {
@@ -65,7 +65,7 @@ impl StoreWorker {
     }
 
     /// Acts on the store; returns whether it will, which it does not if too many calls wait.
-    pub(crate) fn run(&self, act: impl FnOnce(&mut dyn HostStore) + Send + 'static) -> bool {
+    pub(crate) fn run(&self, act: impl FnOnce(&mut HostStore) + Send + 'static) -> bool {
         let calls = self.calls.as_ref();
         let is_accepted = calls.is_some_and(|calls| calls.try_send(Box::new(act)).is_ok());
         if !is_accepted {
@@ -76,7 +76,7 @@ impl StoreWorker {
 }
 
 /// A fault in one call is no reason to answer no other.
-fn answer(call: Call, store: &mut dyn HostStore) {
+fn answer(call: Call, store: &mut HostStore) {
     _ = catch_unwind(AssertUnwindSafe(|| call(store)));
 }
 

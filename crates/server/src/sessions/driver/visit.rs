@@ -24,11 +24,13 @@ use crate::ops::logging::events;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
-use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
+use crate::rooms::summary::RoomSummary;
 use crate::sessions::line::Line;
 #[cfg(test)]
 use crate::sessions::load::Work;
-use crate::sessions::session::{HostFacts, Identity, IdleLimits, Request, Session, SessionEvent};
+use crate::sessions::session::{
+    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
+};
 use crate::sessions::visitors::{Notice, Presence};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use cellcaster::app::Configuration;
@@ -70,7 +72,7 @@ pub(crate) struct Driver {
     is_returning: bool,
 }
 
-/// What a driver waits for.
+/// The events that a driver waits for.
 enum DriverEvent {
     Arrived(Arrival),
     Drained,
@@ -80,13 +82,13 @@ enum DriverEvent {
     Time,
 }
 
-/// The time after which a session is woken again for what it has been woken for.
-const AGAIN: Duration = Duration::from_millis(250);
-/// A driver that sends, or that has a room and does not look at it, wakes after this time, since idle
-/// visitors are put out and a room may close even if nothing is read or answered.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The interval at which a session is woken again if waking it has changed nothing.
+const RETRY_INTERVAL: Duration = Duration::from_millis(250);
+/// The interval at which a driver wakes while it sends, or while it has a room and does not look at it: the visitor
+/// may be idle for too long, and the room may close, even if nothing is read or answered.
+const WAKE_INTERVAL: Duration = Duration::from_secs(1);
 /// The most bytes that wait behind a frame. They are queries and no frame, so some hundred are usual.
-const MOST_WAITING: usize = 64 << 10;
+const MAX_WAITING_BYTES: usize = 64 << 10;
 /// The widest message of the day, in columns.
 const MESSAGE_COLUMNS: usize = 200;
 
@@ -103,13 +105,6 @@ enum Reply {
 
 /// The most answers that wait for a session. Further ones are dropped: they answer a flood of requests.
 const MAX_REPLIES: usize = 16;
-
-/// A way into a room.
-enum Way {
-    Watch(RoomId),
-    Enter(RoomId),
-    Open(RoomWish),
-}
 
 /// Shown while the host looks for the visitor's place.
 const LOOKS: &str = "You were in a room; the host looks for your place.";
@@ -238,7 +233,7 @@ impl Driver {
                 }
                 DriverEvent::Time => self.wake(now),
             }
-            if self.is_sending && self.session.output(now).len() > MOST_WAITING {
+            if self.is_sending && self.session.output(now).len() > MAX_WAITING_BYTES {
                 // A client that reads no frame, and sends what the session must answer.
                 self.leave();
                 return 1;
@@ -253,7 +248,7 @@ impl Driver {
         turns.acquire_owned().await.ok()
     }
 
-    /// The bytes to send: those that wait, or else a frame, if one is due.
+    /// The bytes to send: waiting bytes, or else a frame if one is due.
     fn frame(&mut self, wakes_at: &mut Option<Duration>) -> Vec<u8> {
         let now = self.shared.now();
         let waiting = std::mem::take(self.session.output(now));
@@ -277,8 +272,8 @@ impl Driver {
         }
         // What waking did not change, waking again will not, as where a terminal never answers.
         let time = self.session.wakes_at(view.as_deref(), now);
-        *wakes_at =
-            time.map(|time| if time > self.woken_at { time } else { self.woken_at + AGAIN });
+        *wakes_at = time
+            .map(|time| if time > self.woken_at { time } else { self.woken_at + RETRY_INTERVAL });
         std::mem::take(self.session.output(now))
     }
 
@@ -296,7 +291,7 @@ impl Driver {
         let quiet_end = looks_at.filter(|_| !looks);
         // Elsewhere, it is told when something happens.
         let is_patient = is_sending || self.place.is_some() && !looks;
-        let patience = is_patient.then_some(now + PATIENCE);
+        let patience = is_patient.then_some(now + WAKE_INTERVAL);
         let times = [wakes_at, quiet_end, self.ends_at, patience];
         let time = times.into_iter().flatten().min();
         let begun = self.shared.begun;
@@ -354,9 +349,7 @@ impl Driver {
                 let rooms = self.rooms.borrow_and_update().clone();
                 self.notify(SessionEvent::Rooms(rooms));
             }
-            Request::Enter { room, watches: true } => self.go(Way::Watch(room)),
-            Request::Enter { room, watches: false } => self.go(Way::Enter(room)),
-            Request::Open(wish) => self.go(Way::Open(wish)),
+            Request::Go(way) => self.go(way),
             Request::Command(command) => self.act(command),
             Request::Leave => self.leave(),
             Request::Board { level, difficulty } => self.show_board(level, difficulty),
@@ -568,7 +561,7 @@ impl Driver {
         self.ends_at = Some(ends_at);
     }
 
-    /// What a visitor reads at the end of the server.
+    /// The sentence at the end of the server.
     fn last_sentence(&self) -> &'static str {
         if self.can_return() {
             "This server has ended. Connect again, and you are where you were."

@@ -33,7 +33,7 @@ const ROOM_KEYS: [&str; 2] = [
     "In a room: Enter or / talks, ; hides chat, 1 shows an emotion,",
     "Tab lists the members, or watches another one.",
 ];
-/// What is said on a link that may make pictures coarse.
+/// The advice on a link that may make pictures coarse.
 pub(crate) const COMPRESSION: &str = "On a slow link, ssh -C makes pictures finer.";
 
 /// The least rows of a picture with a banner above a menu.
@@ -112,7 +112,7 @@ impl Ui {
         menu.draw(canvas, area);
     }
 
-    /// What the help says of the link and of the terminal.
+    /// The notes about the link and the terminal in the help.
     fn help_notes(&self) -> Vec<String> {
         let compression = self.wants_compression.then(|| COMPRESSION.to_owned());
         compression.into_iter().chain(self.detection.lines()).collect()

@@ -28,7 +28,7 @@ pub(crate) struct Idle {
     is_warned: bool,
 }
 
-/// What happens to a visitor who presses no key.
+/// The consequence of pressing no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum IdleAction {
     /// They are warned.
@@ -50,7 +50,7 @@ impl Idle {
         self.is_warned
     }
 
-    /// What happens at `now`, after which no key may be missing for longer than `limit`.
+    /// The consequence at `now`, if the visitor may press no key for `limit`.
     pub(crate) fn step(
         &mut self,
         limits: &IdleLimits,

@@ -56,13 +56,13 @@ impl Pace {
 /// The keys that no frame has answered yet: the time of the oldest one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unanswered {
-    /// Of those that have changed the screen.
+    /// Of the keys that have changed the screen.
     shown: Option<Duration>,
-    /// Of those by which the visitor wants something else of the room.
+    /// Of the keys that have changed the visitor's intents in the room.
     wanted: Option<Duration>,
 }
 
-/// What a key has changed.
+/// The changes by a key.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeyEffect {
     pub(crate) is_shown: bool,
@@ -117,7 +117,7 @@ impl ShownSteps {
     }
 
     /// The step that the visitor sees if `answered` frames are answered. Before the first answer it
-    /// is that of the first frame.
+    /// is the first frame's.
     pub(crate) fn seen(&self, answered: u64) -> u64 {
         let seen = self.frames.iter().rfind(|frame| frame.0 <= answered);
         seen.or(self.frames.front()).map_or(0, |&(_, step)| step)

@@ -13,11 +13,11 @@ use cellcaster::game::{Intents, Look};
 
 /// The least time between two changes that are sent: two steps, so that each takes effect in a step
 /// of its own.
-const LEAST: Duration = Duration::from_millis(34);
+const LEAST_INTERVAL: Duration = Duration::from_millis(34);
 /// The time after which a member who moves tells again what they saw.
-const RENEWED: Duration = Duration::from_millis(250);
+const RENEWAL_INTERVAL: Duration = Duration::from_millis(250);
 /// The most changes that wait. If more do, all but the newest are left out.
-const MOST: usize = 8;
+const MAX_WAITING: usize = 8;
 
 /// The intents of a member.
 #[derive(Clone, Debug, Default)]
@@ -30,12 +30,12 @@ pub(crate) struct IntentQueue {
 }
 
 impl IntentQueue {
-    /// Records what the member wants from now on.
+    /// Records the member's intents from now on.
     pub(crate) fn set(&mut self, intents: Intents) {
         if self.newest() == intents {
             return;
         }
-        if self.waiting.len() >= MOST {
+        if self.waiting.len() >= MAX_WAITING {
             self.waiting.clear();
         }
         self.waiting.push_back(intents);
@@ -47,12 +47,12 @@ impl IntentQueue {
         self.angles = [turn + i32::from(by.turn), tilt + i32::from(by.tilt)].map(within);
     }
 
-    /// What the member wants now.
+    /// The member's present intents.
     pub(crate) fn newest(&self) -> Intents {
         *self.waiting.back().unwrap_or(&self.sent)
     }
 
-    /// What is to be sent at `now`, if something is.
+    /// The intents to send at `now`, if any.
     pub(crate) fn take(&mut self, now: Duration) -> Option<Intents> {
         if self.next_at().is_none_or(|due| due > now) {
             return None;
@@ -68,8 +68,8 @@ impl IntentQueue {
         let after = |time| self.sent_at.map_or(Duration::ZERO, |sent| sent + time);
         let is_renewed = self.waiting.is_empty() && self.angles == [0, 0];
         match (is_renewed, self.sent.is_empty()) {
-            (false, _) => Some(after(LEAST)),
-            (true, false) => Some(after(RENEWED)),
+            (false, _) => Some(after(LEAST_INTERVAL)),
+            (true, false) => Some(after(RENEWAL_INTERVAL)),
             (true, true) => None,
         }
     }
@@ -137,7 +137,7 @@ mod tests {
         for change in 0..1000 {
             intents.set(if change % 2 == 0 { forward } else { Intents::new() });
         }
-        assert!(intents.waiting.len() <= MOST);
+        assert!(intents.waiting.len() <= MAX_WAITING);
         let last = (0..20).filter_map(|step| intents.take(at(50 * step))).last();
         assert_eq!(last, Some(Intents::new()));
     }

@@ -1,4 +1,4 @@
-//! What a session and its driver tell each other, and what a session knows from the beginning.
+//! Messages between a session and its driver, and the facts that a session begins with.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use cellcaster::app::store::Preferences;
 use cellcaster::game::Rank;
 use cellcaster::world::Difficulty;
 
-/// Who the visitor is.
+/// The visitor's identity and choices.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Identity {
     /// Whether they have an account, so that their results rank. Otherwise they are a guest.
@@ -28,14 +28,14 @@ pub(crate) struct Identity {
     pub(crate) configuration: Configuration,
 }
 
-/// What a session knows of the host and of the connection.
+/// The host and the connection, as a session knows them.
 #[derive(Clone, Debug)]
 pub(crate) struct HostFacts {
     /// The name of the host.
     pub(crate) name: Line,
     /// The message of the day.
     pub(crate) message: Option<Line>,
-    /// What the visitor is to read about their key.
+    /// A notice about the visitor's key.
     pub(crate) notice: Option<Line>,
     /// Whether the connection compresses what is sent.
     pub(crate) compresses: bool,
@@ -54,6 +54,17 @@ impl HostFacts {
     }
 }
 
+/// A way into a room.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Way {
+    /// To watch it.
+    Watch(RoomId),
+    /// As a member.
+    Enter(RoomId),
+    /// As a member of a new room.
+    Open(RoomWish),
+}
+
 /// A request of a session to its driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Request {
@@ -61,10 +72,8 @@ pub(crate) enum Request {
     Name(String),
     /// The rooms, now and whenever they change, until the session is in a room: [`SessionEvent::Rooms`].
     Rooms,
-    /// To be in a room, as a member or to watch: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
-    Enter { room: RoomId, watches: bool },
-    /// To be a member of a new room: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
-    Open(RoomWish),
+    /// To be in a room: [`SessionEvent::Entered`] or [`SessionEvent::Refused`].
+    Go(Way),
     /// To do something in the room: neither [`Command::Join`] nor [`Command::Leave`].
     Command(Command),
     /// To be in the room no more. Nothing is answered.
@@ -77,7 +86,7 @@ pub(crate) enum Request {
     Save(AccountSettings),
 }
 
-/// What the driver tells a session.
+/// An event that the driver reports to a session.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SessionEvent {
     /// The visitor has this name, or a sentence why they cannot have it.
@@ -94,7 +103,7 @@ pub(crate) enum SessionEvent {
     Board { level: String, difficulty: Difficulty, rows: Arc<[BoardRow]> },
     /// The runs that walk along in a level.
     Ghosts { level: String, difficulty: Difficulty, ghosts: Arc<[Ghost]> },
-    /// What became of a result: a sentence.
+    /// The outcome of a result: a sentence.
     Result(String),
     /// A line from the host to all.
     Said(Line),

@@ -5,7 +5,7 @@
 //! goes back, and asks before it leaves.
 
 use super::draw::COMPRESSION;
-use super::messages::Request;
+use super::messages::{Request, Way};
 use super::ui::Ui;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
@@ -53,7 +53,7 @@ pub(crate) enum Page {
     RoomMenu,
 }
 
-/// What an entry of a menu does.
+/// The effect of an entry of a menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Choice {
     /// Opens a page.
@@ -115,7 +115,7 @@ impl Ui {
         self.pages.show(page, self.menu_of(page), self.now);
     }
 
-    /// Opens `page` over the one that is shown.
+    /// Opens `page` over the present one.
     pub(crate) fn open(&mut self, page: Page) {
         self.leave_page(page);
         self.pages.open(page, self.menu_of(page), self.now);
@@ -143,7 +143,7 @@ impl Ui {
 }
 
 impl Ui {
-    /// Does what the selected entry says.
+    /// Carries out the selected entry.
     pub(crate) fn choose(&mut self) {
         let Some(choice) = self.pages.menu.choice() else { return };
         match choice {
@@ -171,17 +171,16 @@ impl Ui {
 
     fn enter_room(&mut self, watches: bool) {
         let Page::Card(target) = self.page() else { return };
-        let ask = match target {
-            Target::Existing(room) => Some(Request::Enter { room, watches }),
+        let way = match target {
+            Target::Existing(room) if watches => Way::Watch(room),
+            Target::Existing(room) => Way::Enter(room),
             Target::New { mode, level, difficulty } => {
-                let level = self.host.catalog.names().get(level).cloned();
-                level.map(|level| Request::Open(RoomWish { level, mode, difficulty }))
+                let Some(level) = self.host.catalog.names().get(level).cloned() else { return };
+                Way::Open(RoomWish { level, mode, difficulty })
             }
         };
-        if let Some(ask) = ask {
-            self.ask(ask);
-            self.open(Page::Entering);
-        }
+        self.ask(Request::Go(way));
+        self.open(Page::Entering);
     }
 
     /// Asks for the board of the chosen level.
@@ -274,7 +273,7 @@ impl Ui {
         rooms
     }
 
-    /// The room that is offered: the liveliest one that is not full, or else a new one.
+    /// The offered room: the liveliest room that is not full, or else a new room.
     fn offer(&self, rooms: &[&RoomSummary]) -> Target {
         let open = rooms.first().filter(|room| !room.is_full());
         open.map_or_else(|| self.first_walk(), |room| Target::Existing(room.id))
@@ -420,7 +419,7 @@ impl Ui {
     }
 }
 
-/// The names of those who are in a room.
+/// The names of a room's members.
 fn who_is_here(room: &RoomSummary) -> String {
     let watchers = match room.watchers {
         0 => String::new(),

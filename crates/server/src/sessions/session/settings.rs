@@ -1,7 +1,7 @@
 //! The settings page.
 //!
 //! It has the settings of the page at home, the preset of keys, and chat. What is chosen is kept with the
-//! account, except the map and chat, which are those of a stay in a room.
+//! account, except the map and chat, which belong to a stay in a room.
 
 use super::messages::Request;
 use super::pages::Choice;
@@ -83,7 +83,7 @@ impl Ui {
         self.change_choices(|choices| ROWS[row].value.change(choices, forward));
     }
 
-    /// Changes some of the values in force, and keeps those that belong to the account.
+    /// Changes some of the values in force, and keeps the account's values.
     pub(crate) fn change_choices(&mut self, change: impl FnOnce(&mut SessionChoices)) {
         let before = self.choices();
         let mut after = before;

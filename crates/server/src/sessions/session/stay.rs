@@ -21,13 +21,13 @@ pub(crate) struct Stay {
     pub(crate) member: Option<MemberId>,
     /// The member that they watch, unless they play themselves.
     watched: Option<MemberId>,
-    /// Whether the last picture is that of another member: the visitor is no member, or has finished.
+    /// Whether the last picture shows another member's view: the visitor is no member, or has finished.
     pub(crate) is_watching: bool,
     pub(crate) talk: Talk,
     pub(crate) intents: IntentQueue,
     pub(crate) frames: ShownSteps,
     pub(crate) map: MapPanel,
-    /// What the bell rings for.
+    /// Watches for events that ring the bell.
     pub(crate) watch: Watch,
     /// The time in the game at which the last picture changes without a cause.
     pub(crate) next_change: Option<f64>,
@@ -41,7 +41,7 @@ pub(crate) struct Stay {
     pub(crate) dies_for_good: bool,
     /// The members who could be watched in the last picture.
     members: Vec<MemberId>,
-    /// What the last picture shows; `None` before the first one.
+    /// The content of the last picture; `None` before the first one.
     shown: Option<Shown>,
 }
 
@@ -223,7 +223,7 @@ pub(crate) struct SeenGhost<'g> {
 }
 
 impl Ghosts {
-    /// Forgets all at the beginning of a round; returns the wish for those of its level.
+    /// Forgets all at the beginning of a round; returns the request for the ghosts of its level.
     pub(crate) fn begin(&mut self, room: &RoomView) -> Option<Request> {
         *self = Self::default();
         let header = &room.header;

@@ -16,14 +16,14 @@ use cellcaster::tui::canvas::Canvas;
 /// How long a line is shown.
 const SHOWN: Duration = Duration::from_secs(8);
 /// The most lines that are shown.
-const MOST: usize = 5;
-/// The number of earlier lines that are shown to those who come in.
+const MAX_LINES: usize = 5;
+/// The number of earlier lines that a new arrival sees.
 const EARLIER: u64 = 2;
 
 /// A line that is shown.
 #[derive(Clone, Debug)]
 pub(crate) struct Remark {
-    /// Who said it; `None` for the room and the host.
+    /// The speaker; `None` for the room and the host.
     pub(crate) by: Option<(Line, PlayerColor)>,
     pub(crate) text: String,
     until: Duration,
@@ -91,7 +91,7 @@ impl Talk {
 
     fn push(&mut self, remark: Remark) {
         self.remarks.push_back(remark);
-        if self.remarks.len() > MOST {
+        if self.remarks.len() > MAX_LINES {
             self.remarks.pop_front();
         }
     }

@@ -135,7 +135,7 @@ impl Ui {
         self.rooms.iter().find(|room| room.id == id)
     }
 
-    /// Whether a picture would differ from the one that is shown.
+    /// Whether a new picture would differ from the present one.
     pub(crate) fn is_stale(&self, room: Option<&RoomView>) -> bool {
         let (view, shows_ghosts) = (self.field_of_view, self.identity.preferences.ghost);
         let differs =

@@ -40,11 +40,11 @@ fn a_visitor_is_listed_while_present() -> Result<(), Box<dyn std::error::Error>>
 fn lines_wait_in_order_and_are_bounded() {
     let visitors = Visitors::default();
     let mut present = [1, 2].map(|last| visitors.arrive(here(last), None));
-    for number in 0..MOST_LINES + 3 {
+    for number in 0..MAX_LINES + 3 {
         assert_eq!(visitors.say(&number.to_string()), 2);
     }
     for presence in &mut present {
-        for number in 3..MOST_LINES + 3 {
+        for number in 3..MAX_LINES + 3 {
             assert_eq!(next(presence), Some(Notice::Said(number.to_string())));
         }
         assert_eq!(next(presence), None);

@@ -7,7 +7,7 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::Output;
 
-use cellcaster_server::accounts::{AccountKey, HostStore, Name, SqliteStore, UnixTime};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime};
 
 use super::running::Running;
 use crate::support::server;
@@ -97,7 +97,7 @@ fn a_ban_ends_sessions_and_is_kept() {
 #[test]
 fn bans_work_while_no_server_runs() {
     let folder = folder();
-    let mut store = SqliteStore::open(&folder).unwrap();
+    let mut store = HostStore::open(&folder).unwrap();
     let (key, now) = (AccountKey::new([1; 32]), UnixTime::new(1_795_300_000));
     store.create_account(&key, &Name::new("Ada").unwrap(), now).unwrap();
     drop(store);

@@ -8,9 +8,7 @@ use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::thread;
 
-use cellcaster_server::accounts::{
-    AccountKey, HostStore, Name, SqliteStore, UnixTime, VerifiedRun, verify,
-};
+use cellcaster_server::accounts::{AccountKey, HostStore, Name, UnixTime, verify};
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::killed::user_key;
@@ -72,8 +70,8 @@ fn for_each(failures: Vec<Failure>, test: impl Fn(&Failure) + Sync) {
 /// A host that has run, with an account that has a result.
 fn host_that_has_run() -> PathBuf {
     let data = folder();
-    let VerifiedRun::Level(run) = verify(WON).unwrap() else { panic!("not a level") };
-    let mut store = SqliteStore::open(&data).unwrap();
+    let run = verify(WON).unwrap();
+    let mut store = HostStore::open(&data).unwrap();
     let now = UnixTime::new(1_795_300_000);
     let account = store.create_account(&KEY, &Name::new("Mara").unwrap(), now).unwrap();
     store.record(account.id, &run, now).unwrap();
@@ -128,7 +126,7 @@ fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
         let data = copied(&before);
         let traced = Traced::new(&data, &paths(&data), failure);
         let process = start_and_end(&data, Some(&traced));
-        let mut store = SqliteStore::open(&data).unwrap();
+        let mut store = HostStore::open(&data).unwrap();
         let account = store.account(&KEY).unwrap();
         let account = account.unwrap_or_else(|| panic!("{failure:?} lost the account"));
         assert_eq!(store.bests(account.id).unwrap().len(), 1, "{failure:?}");

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster_server::accounts::{HostStore, Name, SqliteStore};
+use cellcaster_server::accounts::{HostStore, Name};
 use rustix::process::Signal;
 
 use super::running::Running;
@@ -106,7 +106,7 @@ fn a_server_that_ends_leaves_all_in_one_file() {
     assert_eq!(log, 0);
     let backup = folder();
     fs::copy(running.folder.join("host.db"), backup.join("host.db")).unwrap();
-    let mut store = SqliteStore::open(&backup).unwrap();
+    let mut store = HostStore::open(&backup).unwrap();
     assert!(store.account_named(&Name::new("Mara").unwrap()).unwrap().is_some());
 }
 

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::accounts::HostStore;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::emulator::Speaks;
@@ -45,7 +45,7 @@ impl Running {
     ) -> Self {
         let folder = folder();
         // A host that has run before.
-        drop(SqliteStore::open(&folder).unwrap());
+        drop(HostStore::open(&folder).unwrap());
         fs::write(folder.join("serve.toml"), config).unwrap();
         let options: Vec<String> = options.iter().map(|&option| option.to_owned()).collect();
         let namespace = namespace.map(str::to_owned);

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use cellcaster_server::accounts::SqliteStore;
+use cellcaster_server::accounts::HostStore;
 use cellcaster_server::ops::config::Config;
 use cellcaster_server::sessions::driver::{GameHost, HostParts};
 use cellcaster_server::sessions::visitors::Visitors;
@@ -37,9 +37,9 @@ impl GameServer {
     }
 
     /// A server with what `fill` puts into its store.
-    pub(crate) fn open_with(fill: impl FnOnce(&mut SqliteStore)) -> Self {
+    pub(crate) fn open_with(fill: impl FnOnce(&mut HostStore)) -> Self {
         let folder = folder();
-        let mut store = SqliteStore::open(&folder).unwrap();
+        let mut store = HostStore::open(&folder).unwrap();
         fill(&mut store);
         drop(store);
         let running = Some(Running::start(&folder));
@@ -101,7 +101,7 @@ impl Running {
         config.admission.per_address = 1000;
         config.drain = Duration::from_secs(4);
         let key = HostKey::open(folder).unwrap();
-        let store = SqliteStore::open(folder).unwrap();
+        let store = HostStore::open(folder).unwrap();
         let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
         let server = runtime.block_on(Server::bind(config, key)).unwrap();
         let address = server.address().unwrap();
@@ -110,7 +110,7 @@ impl Running {
             runtime.block_on(async {
                 let metrics = server.metrics();
                 let visitors = Visitors::default();
-                let host = HostParts::new(server.config(), metrics, visitors, Box::new(store));
+                let host = HostParts::new(server.config(), metrics, visitors, store);
                 server.run(GameHost::start(host.unwrap()), async { _ = stopped.await }).await;
             });
         });

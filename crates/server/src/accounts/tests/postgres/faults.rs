@@ -10,7 +10,7 @@ use super::*;
 const MOST: Duration = Duration::from_secs(8);
 
 /// Asks until the store answers again.
-fn until_it_answers(store: &mut PostgresStore) {
+fn until_it_answers(store: &mut HostStore) {
     let start = Instant::now();
     while let Err(failure) = store.level_boards() {
         assert!(start.elapsed() < Duration::from_secs(30), "{failure}");
@@ -73,7 +73,7 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
         assert!(store.create_account(&key(2), &name("Bob"), at(0)).is_err());
         assert!(start.elapsed() < MOST, "{:?}", start.elapsed());
     }
-    assert!(PostgresStore::open(&address).is_err());
+    assert!(HostStore::connect(&address).is_err());
     server.restart();
     until_it_answers(&mut store);
     assert_eq!(store.account(&key(1)).unwrap(), Some(ada));
@@ -168,7 +168,7 @@ fn a_password_is_needed_and_never_shown() {
     store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
     assert!(!format!("{store:?}").contains("heim"));
     for password in ["geheim", "ge@heim", "", "ge%40heim1"] {
-        let sentence = PostgresStore::open(&address(password)).unwrap_err().to_string();
+        let sentence = HostStore::connect(&address(password)).unwrap_err().to_string();
         assert!(!sentence.contains("heim") && sentence.lines().count() == 1, "{sentence}");
     }
     server.crash();

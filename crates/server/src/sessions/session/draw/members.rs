@@ -67,7 +67,7 @@ fn panel(canvas: &mut impl Canvas, picture: Rect, title: &str, mut lines: Vec<Li
     message(canvas, picture, title, Text::from(lines));
 }
 
-/// What the times of the standings are.
+/// The meaning of the times in the standings.
 const fn counted(mode: Mode) -> &'static str {
     match mode {
         Mode::Tag => "time as \"it\"",

@@ -1,4 +1,4 @@
-//! Names over the heads of those who are near.
+//! Names over the heads of nearby players and ghosts.
 
 use glam::DVec2;
 use ratatui::layout::Rect;

@@ -111,7 +111,7 @@ fn finish(member: &MemberView, mode: Mode) -> Option<String> {
     })
 }
 
-/// What a member has to do.
+/// A member's task.
 fn task(room: &RoomView, member: &MemberView) -> String {
     let it = || room.members.iter().find(|member| member.role == Role::Seeker);
     match (room.header.mode, room.phase, member.role) {

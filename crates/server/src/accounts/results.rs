@@ -1,0 +1,279 @@
+//! Results: the boards that they belong to, and the runs that count. The host plays the scripts of runs again.
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::sync::Arc;
+
+use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
+use cellcaster::fault::Faults;
+use cellcaster::game::{Game, Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
+use cellcaster::map::builtin;
+use cellcaster::world::{Difficulty, World};
+
+use super::{AccountId, Name, UnixTime};
+
+/// The longest script that is verified, in steps: half an hour.
+pub const MOST_SCRIPT_STEPS: u64 = 60 * 30 * STEPS_PER_SECOND as u64;
+/// The longest script that is verified, in bytes. A player who moves the mouse in each step of half an
+/// hour writes less.
+pub const MOST_SCRIPT_BYTES: usize = 8 << 20;
+
+/// A board: a built-in level or a map of the host, at one difficulty.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct LevelBoard {
+    level: Arc<str>,
+    difficulty: Difficulty,
+}
+
+/// An entry of a level's board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LevelScore {
+    /// The account.
+    pub account: AccountId,
+    /// Its name.
+    pub name: Name,
+    /// The tally of its fastest run.
+    pub tally: Tally,
+    /// The highest rank of all its runs.
+    pub rank: Rank,
+    /// When the fastest run was verified.
+    pub verified_at: UnixTime,
+}
+
+/// A run that [`verify`] has replayed: a built-in level or a map of the host that was won.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VerifiedRun {
+    board: LevelBoard,
+    tally: Tally,
+    rank: Rank,
+    script: String,
+}
+
+/// Why a script is no run that counts.
+#[derive(Debug)]
+pub enum Unverified {
+    /// It is longer than [`MOST_SCRIPT_STEPS`] or [`MOST_SCRIPT_BYTES`].
+    TooLong,
+    /// It is no script.
+    Faulty(Faults),
+    /// It names no level that has a board.
+    OtherLevel,
+    /// A level is played with the seed 0, so that all runs of it compare.
+    OtherSeed,
+    /// The player dies.
+    Dead,
+    /// No exit is reached.
+    NotWon,
+}
+
+/// Plays a script again in the level that its header names.
+///
+/// Only built-in levels are played, so that no file is read. The work is that of
+/// [`MOST_SCRIPT_STEPS`] steps at most.
+///
+/// ```
+/// use cellcaster_server::accounts::{Unverified, verify};
+///
+/// assert!(matches!(verify("level cellar\n2 s forward\n"), Err(Unverified::NotWon)));
+/// ```
+///
+/// # Errors
+/// Why the run does not count.
+pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
+    verify_with(script, |_| None)
+}
+
+/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](cellcaster::app::store::map_key).
+///
+/// # Errors
+/// Why the run does not count.
+pub fn verify_with(
+    script: &str,
+    map: impl FnOnce(&str) -> Option<World>,
+) -> Result<VerifiedRun, Unverified> {
+    if script.len() > MOST_SCRIPT_BYTES {
+        return Err(Unverified::TooLong);
+    }
+    let script = Script::parse(script, "the script").map_err(Unverified::Faulty)?;
+    if script.steps() > MOST_SCRIPT_STEPS {
+        return Err(Unverified::TooLong);
+    }
+    let rules = script.header().rules();
+    let level = script.header().level.as_ref().ok_or(Unverified::OtherLevel)?;
+    let board = LevelBoard::new(level.as_str(), rules.difficulty).ok_or(Unverified::OtherLevel)?;
+    if rules.seed != 0 {
+        return Err(Unverified::OtherSeed);
+    }
+    let world = match builtin::LEVELS.iter().find(|level| level.name == board.level()) {
+        Some(level) => level.world().ok(),
+        None => map(board.level()),
+    };
+    let game = replayed(world.ok_or(Unverified::OtherLevel)?, rules, &script);
+    if !game.is_finished() {
+        return Err(not_won(&game));
+    }
+    let tally = game.tally();
+    let rank = tally.rank(game.world().par());
+    Ok(VerifiedRun { board, tally, rank, script: script.to_string() })
+}
+
+impl LevelBoard {
+    /// The board of `level`: the name of a built-in level, or the [key](cellcaster::app::store::map_key) of a map.
+    /// `None` if it is neither.
+    pub fn new(level: &str, difficulty: Difficulty) -> Option<Self> {
+        let is_level = place(level).is_some() || name_in_map_key(level).is_some();
+        is_level.then(|| Self { level: level.into(), difficulty })
+    }
+
+    /// The name of the level, or the key of the map.
+    pub fn level(&self) -> &str {
+        &self.level
+    }
+
+    /// The name of the level, or that of the map without the hash of its text.
+    pub fn name(&self) -> &str {
+        name_in_map_key(&self.level).unwrap_or(&self.level)
+    }
+
+    /// The difficulty.
+    pub fn difficulty(&self) -> Difficulty {
+        self.difficulty
+    }
+}
+
+impl Ord for LevelBoard {
+    /// Built-in levels in their order come before maps by name, and easy before hard.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |board: &Self| {
+            let level = place(&board.level).unwrap_or(usize::MAX);
+            let difficulty = Difficulty::ALL.iter().position(|it| *it == board.difficulty);
+            (level, difficulty)
+        };
+        let [(level, difficulty), (other_level, other_difficulty)] = [rank(self), rank(other)];
+        let by_level = level.cmp(&other_level).then_with(|| self.level.cmp(&other.level));
+        by_level.then(difficulty.cmp(&other_difficulty))
+    }
+}
+
+impl PartialOrd for LevelBoard {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The place of a built-in level among all of them.
+fn place(level: &str) -> Option<usize> {
+    builtin::LEVELS.iter().position(|known| known.name == level)
+}
+
+impl VerifiedRun {
+    /// The board that it belongs to.
+    pub fn board(&self) -> &LevelBoard {
+        &self.board
+    }
+
+    /// What happened in it.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Its rank.
+    pub fn rank(&self) -> Rank {
+        self.rank
+    }
+
+    /// Its script.
+    pub fn script(&self) -> &str {
+        &self.script
+    }
+}
+
+impl fmt::Display for Unverified {
+    /// Writes a sentence; for a text that is no script, a report.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLong => f.write_str("The run took longer than half an hour."),
+            Self::Faulty(faults) => faults.fmt(f),
+            Self::OtherLevel => f.write_str("The level has no board."),
+            Self::OtherSeed => {
+                f.write_str("The level was played with another seed than all others.")
+            }
+            Self::Dead => f.write_str("The run ends with the player's death."),
+            Self::NotWon => f.write_str("The run reaches no exit."),
+        }
+    }
+}
+
+impl std::error::Error for Unverified {}
+
+#[cfg(any(test, fuzzing))]
+impl VerifiedRun {
+    /// A run that nobody has verified.
+    #[doc(hidden)]
+    pub fn made_up(board: LevelBoard, tally: Tally, rank: Rank, script: &str) -> Self {
+        Self { board, tally, rank, script: script.to_owned() }
+    }
+}
+
+/// The best of a known result and a run, and what the run improves.
+pub(crate) fn with_run(known: Option<Best>, run: &VerifiedRun) -> (Best, Improved) {
+    let of_run = Best { tally: run.tally(), rank: run.rank() };
+    let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
+    let time = of_run.tally.steps < known.tally.steps;
+    (known.and(of_run), Improved { time, rank: of_run.rank > known.rank })
+}
+
+fn not_won(game: &Game) -> Unverified {
+    match game.outcome() {
+        Outcome::Dead { .. } => Unverified::Dead,
+        Outcome::Playing | Outcome::Won => Unverified::NotWon,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WON: &str = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../maps/scripts/cellar.normal.script"
+    ));
+
+    #[test]
+    fn a_script_that_wins_is_a_run() {
+        let run = verify(WON).unwrap();
+        assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
+        assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
+        // What is kept is a run, too, and the same one.
+        assert_eq!(verify(run.script()).unwrap(), run);
+    }
+
+    #[test]
+    fn what_comes_after_the_exit_does_not_count() {
+        let (run, longer) = (verify(WON).unwrap(), verify(&format!("{WON}9 s back\n")).unwrap());
+        assert_eq!((run.tally(), run.rank()), (longer.tally(), longer.rank()));
+    }
+
+    #[test]
+    fn other_scripts_are_refused_in_a_sentence() {
+        let shorter = WON.lines().take(6).collect::<Vec<_>>().join("\n");
+        let steps = |count: u64| format!("level cellar\n{count} steps stand\n").repeat(1);
+        let long = steps(MOST_SCRIPT_STEPS) + "1 step stand\n";
+        for (script, expected) in [
+            (shorter.as_str(), "reaches no exit"),
+            ("2 s forward\n", "has no board"),
+            ("level tests/maps/way_out.toml\n2 s forward\n", "has no board"),
+            ("level /dev/zero\n2 s forward\n", "has no board"),
+            ("level floor 2\n2 s forward\n", "has no board"),
+            ("level floor 1\n2 s forward\n", "has no board"),
+            (&WON.replace("seed 0", "seed 1"), "another seed"),
+            (&long, "longer than half an hour"),
+            (&"#".repeat(MOST_SCRIPT_BYTES + 1), "longer than half an hour"),
+            ("level cellar\n2 s fly\n", "nobody can want"),
+            ("", "no stretch of time"),
+        ] {
+            let sentence = verify(script).unwrap_err().to_string();
+            assert!(sentence.contains(expected), "{sentence}");
+        }
+    }
+}

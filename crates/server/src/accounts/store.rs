@@ -1,0 +1,569 @@
+//! Accounts, their settings, bans and results: the statements, which are the same in each database.
+
+use std::fmt;
+use std::path::Path;
+
+use cellcaster::app::parts::Choice;
+use cellcaster::app::store::{Best, Improved, Preferences};
+use cellcaster::game::{Rank, Share, Tally};
+use cellcaster::world::Difficulty;
+use rusqlite::params;
+
+use super::ban::applying;
+use super::database::{Database, Row, Statements};
+use super::postgres::Server;
+use super::rate::milliseconds;
+use super::results::with_run;
+use super::{
+    Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
+    LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime,
+    VerifiedRun, sqlite,
+};
+
+/// What a host keeps.
+pub struct HostStore {
+    pub(crate) database: Database,
+}
+
+/// Opening a store.
+impl HostStore {
+    /// The store in the file `host.db` of `folder`. Both are created if they do not exist.
+    ///
+    /// # Errors
+    /// If the folder can't be used, or the file is damaged, of another version or of another program.
+    pub fn open(folder: &Path) -> Result<Self, StoreFailure> {
+        Ok(Self { database: Database::File(sqlite::open(folder)?) })
+    }
+
+    /// The store in `folder`. If its file was damaged, it is a new one with the rows that can be read, and the
+    /// sentence says so.
+    ///
+    /// # Errors
+    /// If the folder can't be used, or the file is of another version or of another program.
+    pub fn open_or_salvage(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
+        let (connection, sentence) = sqlite::open_or_salvage(folder)?;
+        Ok((Self { database: Database::File(connection) }, sentence))
+    }
+
+    /// The store in `folder` to read from while a host uses it. `None` if there is none. All methods that
+    /// change something fail.
+    ///
+    /// # Errors
+    /// If it can't be read, or is of another version.
+    pub fn open_to_read(folder: &Path) -> Result<Option<Self>, StoreFailure> {
+        let connection = sqlite::open_to_read(folder)?;
+        Ok(connection.map(|connection| Self { database: Database::File(connection) }))
+    }
+
+    /// The store at an address such as `postgres://user@host/database`, whose tables are made if there are none.
+    ///
+    /// # Errors
+    /// If the server can't be reached, or the database is of another version or of another program.
+    pub fn connect(address: &str) -> Result<Self, StoreFailure> {
+        Ok(Self { database: Database::Server(Server::open(address)?) })
+    }
+
+    /// The store at an address to read from. `None` if there is none. All methods that change something fail.
+    ///
+    /// # Errors
+    /// If the server can't be reached, or the database is of another version.
+    pub fn connect_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
+        let server = Server::open_to_read(address)?;
+        Ok(server.map(|server| Self { database: Database::Server(server) }))
+    }
+
+    /// Brings the store into the form in which it rests while no host runs.
+    ///
+    /// # Errors
+    /// If it can't be written. Nothing is lost then.
+    pub fn checkpoint(&mut self) -> Result<(), StoreFailure> {
+        match &self.database {
+            Database::File(connection) => Ok(sqlite::checkpoint(connection)?),
+            _ => Ok(()),
+        }
+    }
+}
+
+const ACCOUNT: &str = "id, key, name, named_at, created_at, seen_at";
+
+/// Accounts, names and settings.
+impl HostStore {
+    /// The account of a key.
+    ///
+    /// # Errors
+    /// If the store can't be read; so for each method.
+    pub fn account(&mut self, key: &AccountKey) -> Result<Option<Account>, StoreFailure> {
+        self.database.once(|it| account_of_key(it, key))
+    }
+
+    /// The account that has `name`, or one that looks like it.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn account_named(&mut self, name: &Name) -> Result<Option<Account>, StoreFailure> {
+        let sql = format!(
+            "SELECT {ACCOUNT} FROM accounts WHERE id IN \
+             (SELECT account FROM names WHERE key IN (?1, ?2) AND held_until IS NULL) \
+             ORDER BY name <> ?3, id LIMIT 1"
+        );
+        let keys = name.keys();
+        let values = params![keys.first(), keys.last(), name];
+        self.database.once(|it| it.row(&sql, values)?.as_ref().map(account).transpose())
+    }
+
+    /// Creates the account of a key, whatever others were created.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn create_account(
+        &mut self,
+        key: &AccountKey,
+        name: &Name,
+        now: UnixTime,
+    ) -> Result<Account, Refusal> {
+        self.create_account_from(None, key, name, now)
+    }
+
+    /// Creates the account of a key, if its network has not made too many. An account that is refused for another
+    /// reason does not count.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn create_account_from(
+        &mut self,
+        origin: Option<&Origin>,
+        key: &AccountKey,
+        name: &Name,
+        now: UnixTime,
+    ) -> Result<Account, Refusal> {
+        let sql = "INSERT INTO accounts (key, name, named_at, created_at, seen_at) \
+                   VALUES (?1, ?2, ?3, ?3, ?3) RETURNING id";
+        self.database.change(|it| {
+            if account_of_key(it, key)?.is_some() {
+                return Err(Refusal::KeyKnown);
+            }
+            check_name(it, None, name, now)?;
+            if let Some(origin) = origin {
+                count_origin(it, origin, now)?;
+            }
+            let row = it.row(sql, params![key.bytes(), name, now])?;
+            let row = row.ok_or_else(|| StoreFailure::new("the host's store made no account"))?;
+            let id = row.get(0)?;
+            take_name(it, id, name)?;
+            let (key, name) = (*key, name.clone());
+            Ok(Account { id, key, name, named_at: now, created_at: now, seen_at: now })
+        })
+    }
+
+    /// Changes the name of an account.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn rename(
+        &mut self,
+        id: AccountId,
+        name: &Name,
+        now: UnixTime,
+    ) -> Result<Account, Refusal> {
+        let select = format!("SELECT {ACCOUNT} FROM accounts WHERE id = ?1");
+        let hold = "UPDATE names SET held_until = ?2 WHERE account = ?1 AND held_until IS NULL";
+        let update = "UPDATE accounts SET name = ?2, named_at = ?3 WHERE id = ?1";
+        self.database.change(|it| {
+            let known = it.row(&select, params![id])?.as_ref().map(account).transpose()?;
+            let known = known.ok_or(Refusal::NoAccount)?;
+            let next = known.named_at.after(RENAME_WAIT);
+            if now < next {
+                return Err(Refusal::TooEarly { next });
+            }
+            check_name(it, Some(id), name, now)?;
+            it.execute(hold, params![id, now.after(NAME_HELD)])?;
+            take_name(it, id, name)?;
+            it.execute(update, params![id, name, now])?;
+            Ok(Account { name: name.clone(), named_at: now, ..known })
+        })
+    }
+
+    /// Notes that the player of an account is here.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn note_visit(&mut self, id: AccountId, now: UnixTime) -> Result<(), StoreFailure> {
+        let sql = "UPDATE accounts SET seen_at = ?2 WHERE id = ?1";
+        self.database.once(|it| it.execute(sql, params![id, now]).map(|_| ()))
+    }
+
+    /// The settings of an account; the defaults if it has none.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn settings(&mut self, id: AccountId) -> Result<AccountSettings, StoreFailure> {
+        let sql = "SELECT crosshair, compass, bell, ghost, difficulty, glyphs, colors, \
+                   frames_per_second, configuration, correction FROM settings WHERE account = ?1";
+        let row = self.database.once(|it| it.row(sql, params![id]))?;
+        let settings = row.as_ref().map(settings).transpose()?;
+        Ok(settings.unwrap_or_default())
+    }
+
+    /// Replaces the settings of an account.
+    ///
+    /// # Errors
+    /// If the configuration is too long; and see [`account`](Self::account).
+    pub fn set_settings(
+        &mut self,
+        id: AccountId,
+        settings: &AccountSettings,
+    ) -> Result<(), StoreFailure> {
+        let AccountSettings { preferences, configuration } = settings.checked()?;
+        let Preferences { crosshair, compass, bell, ghost, .. } = *preferences;
+        let sql = "INSERT INTO settings (account, crosshair, compass, bell, ghost, difficulty, glyphs, \
+                   colors, frames_per_second, configuration, correction) \
+                   VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) \
+                   ON CONFLICT (account) DO UPDATE SET crosshair = excluded.crosshair, \
+                   compass = excluded.compass, bell = excluded.bell, ghost = excluded.ghost, \
+                   difficulty = excluded.difficulty, glyphs = excluded.glyphs, \
+                   colors = excluded.colors, frames_per_second = excluded.frames_per_second, \
+                   configuration = excluded.configuration, correction = excluded.correction";
+        let values = params![
+            id,
+            crosshair,
+            compass,
+            bell,
+            ghost,
+            preferences.difficulty.name(),
+            preferences.glyphs.map(Choice::name),
+            preferences.colors.map(Choice::name),
+            preferences.frames_per_second,
+            configuration,
+            preferences.correction.name(),
+        ];
+        self.database.once(|it| it.execute(sql, values).map(|_| ()))
+    }
+}
+
+/// Bans.
+impl HostStore {
+    /// Bans, in place of an earlier ban of the same target.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn ban(&mut self, ban: &Ban) -> Result<(), StoreFailure> {
+        let Ban { target, until, reason, by, made_at } = ban;
+        let (kind, text) = target.parts();
+        let sql = "INSERT INTO bans (kind, target, until, reason, made_by, made_at) \
+                   VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
+        self.database.change(|it| {
+            remove_ban(it, target)?;
+            it.execute(sql, params![kind, text, until, reason, by, made_at]).map(|_| ())
+        })
+    }
+
+    /// Ends the ban of a target, and returns whether there was one.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn unban(&mut self, target: &BanTarget) -> Result<bool, StoreFailure> {
+        self.database.change(|it| remove_ban(it, target))
+    }
+
+    /// The bans in force, in the order in which they were made.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn bans(&mut self, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
+        self.database.once(|it| bans_in_force(it, now))
+    }
+
+    /// The ban in force that applies to somebody; of several, the one that ends last.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn ban_of(
+        &mut self,
+        identity: &Identity<'_>,
+        now: UnixTime,
+    ) -> Result<Option<Ban>, StoreFailure> {
+        Ok(applying(self.bans(now)?, identity))
+    }
+}
+
+/// The columns of a [`Best`].
+const BEST: &str = "steps, treasure, treasure_total, secrets, secrets_total, alarms, deaths, \
+                    stunned, rank";
+
+/// Results and boards.
+impl HostStore {
+    /// Records a run, and returns what it improved.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn record(
+        &mut self,
+        account: AccountId,
+        run: &VerifiedRun,
+        now: UnixTime,
+    ) -> Result<Improved, StoreFailure> {
+        let (level, difficulty) = (run.board().level(), run.board().difficulty().name());
+        let select = format!(
+            "SELECT {BEST} FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3"
+        );
+        let insert = format!(
+            "INSERT INTO results (account, level, difficulty, {BEST}, verified_at, script) \
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14) \
+             ON CONFLICT (account, level, difficulty) DO UPDATE SET steps = excluded.steps, \
+             treasure = excluded.treasure, treasure_total = excluded.treasure_total, \
+             secrets = excluded.secrets, secrets_total = excluded.secrets_total, \
+             alarms = excluded.alarms, deaths = excluded.deaths, stunned = excluded.stunned, \
+             rank = excluded.rank, verified_at = excluded.verified_at, script = excluded.script"
+        );
+        let set_rank =
+            "UPDATE results SET rank = ?4 WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
+        self.database.change(|it| {
+            let known = it.row(&select, params![account, level, difficulty])?;
+            let (best, improved) = with_run(known.map(|row| best(&row, 0)).transpose()?, run);
+            let Best { tally, rank } = best;
+            if improved.time {
+                let values = params![
+                    account,
+                    level,
+                    difficulty,
+                    tally.steps as i64,
+                    tally.treasure.found,
+                    tally.treasure.total,
+                    tally.secrets.found,
+                    tally.secrets.total,
+                    tally.alarms,
+                    tally.deaths,
+                    tally.stunned,
+                    rank.name(),
+                    now,
+                    run.script(),
+                ];
+                it.execute(&insert, values)?;
+            } else if improved.rank {
+                it.execute(set_rank, params![account, level, difficulty, rank.name()])?;
+            }
+            Ok(improved)
+        })
+    }
+
+    /// The best results of an account, by level and difficulty.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn bests(&mut self, account: AccountId) -> Result<Vec<(LevelBoard, Best)>, StoreFailure> {
+        let sql = format!("SELECT level, difficulty, {BEST} FROM results WHERE account = ?1");
+        let rows = self.database.once(|it| it.rows(&sql, params![account]))?;
+        let bests = rows.iter().map(|row| Ok((board(row)?, best(row, 2)?)));
+        let bests = bests.collect::<Result<Vec<_>, StoreFailure>>()?.into_iter();
+        let mut bests: Vec<_> = bests.filter_map(|(board, best)| Some((board?, best))).collect();
+        bests.sort_by(|(one, _), (other, _)| one.cmp(other));
+        Ok(bests)
+    }
+
+    /// The boards that have results, in the order of levels and difficulties.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn level_boards(&mut self) -> Result<Vec<LevelBoard>, StoreFailure> {
+        let sql = "SELECT DISTINCT level, difficulty FROM results";
+        let rows = self.database.once(|it| it.rows(sql, &[]))?;
+        let known = rows.iter().map(board).collect::<Result<Vec<_>, _>>()?;
+        let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
+        boards.sort();
+        Ok(boards)
+    }
+
+    /// The first `most` entries of a board: the fastest run of each account. Of equally fast runs the earlier one
+    /// is first.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn level_scores(
+        &mut self,
+        board: &LevelBoard,
+        most: usize,
+    ) -> Result<Vec<LevelScore>, StoreFailure> {
+        let sql = format!(
+            "SELECT account, name, verified_at, {BEST} FROM results JOIN accounts ON id = account \
+             WHERE level = ?1 AND difficulty = ?2 ORDER BY steps, verified_at, account LIMIT ?3"
+        );
+        let most = i64::try_from(most).unwrap_or(i64::MAX);
+        let values = params![board.level(), board.difficulty().name(), most];
+        self.database.once(|it| it.rows(&sql, values)?.iter().map(score).collect())
+    }
+
+    /// The script of the fastest run of an account.
+    ///
+    /// # Errors
+    /// See [`account`](Self::account).
+    pub fn script(
+        &mut self,
+        account: AccountId,
+        board: &LevelBoard,
+    ) -> Result<Option<String>, StoreFailure> {
+        let sql =
+            "SELECT script FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
+        let values = params![account, board.level(), board.difficulty().name()];
+        self.database.once(|it| it.row(sql, values)?.map(|row| row.get(0)).transpose())
+    }
+}
+
+impl fmt::Debug for HostStore {
+    /// Without an address, which may have a password.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("HostStore").finish_non_exhaustive()
+    }
+}
+
+fn account_of_key(it: &dyn Statements, key: &AccountKey) -> Result<Option<Account>, StoreFailure> {
+    let sql = format!("SELECT {ACCOUNT} FROM accounts WHERE key = ?1");
+    it.row(&sql, params![key.bytes()])?.as_ref().map(account).transpose()
+}
+
+/// Counts a new account of a network, and forgets the networks that have their whole allowance.
+fn count_origin(it: &dyn Statements, origin: &Origin, now: UnixTime) -> Result<(), Refusal> {
+    let network = origin.network.to_string();
+    let sql = "SELECT whole_at_ms FROM account_rates WHERE network = ?1";
+    let known = it.row(sql, params![network])?.map(|row| row.get(0)).transpose()?;
+    let whole_at = origin.count(known, now)?;
+    let sql = "DELETE FROM account_rates WHERE whole_at_ms <= ?1";
+    it.execute(sql, params![milliseconds(now)])?;
+    let sql = "INSERT INTO account_rates (network, whole_at_ms) VALUES (?1, ?2) \
+               ON CONFLICT (network) DO UPDATE SET whole_at_ms = excluded.whole_at_ms";
+    it.execute(sql, params![network, whole_at])?;
+    Ok(())
+}
+
+/// Refuses a name that is banned, or belongs to another account than `own`.
+fn check_name(
+    it: &dyn Statements,
+    own: Option<AccountId>,
+    name: &Name,
+    now: UnixTime,
+) -> Result<(), Refusal> {
+    let identity = Identity { name: Some(name), ..Identity::default() };
+    if applying(bans_in_force(it, now)?, &identity).is_some() {
+        return Err(Refusal::NameBanned);
+    }
+    let sql = "SELECT account FROM names WHERE key = ?1 AND account IS DISTINCT FROM ?2 \
+               AND (held_until IS NULL OR held_until > ?3)";
+    for key in name.keys() {
+        if it.row(sql, params![key, own, now])?.is_some() {
+            return Err(Refusal::NameTaken);
+        }
+    }
+    Ok(())
+}
+
+fn take_name(it: &dyn Statements, id: AccountId, name: &Name) -> Result<(), StoreFailure> {
+    let sql = "INSERT INTO names (key, account, held_until) VALUES (?1, ?2, NULL) \
+               ON CONFLICT (key) DO UPDATE SET account = excluded.account, held_until = NULL";
+    for key in name.keys() {
+        it.execute(sql, params![key, id])?;
+    }
+    Ok(())
+}
+
+fn remove_ban(it: &dyn Statements, target: &BanTarget) -> Result<bool, StoreFailure> {
+    let mut removed = false;
+    for (id, ban) in bans(it)? {
+        if ban.target.is_same(target) {
+            it.execute("DELETE FROM bans WHERE id = ?1", params![id])?;
+            removed = true;
+        }
+    }
+    Ok(removed)
+}
+
+fn bans_in_force(it: &dyn Statements, now: UnixTime) -> Result<Vec<Ban>, StoreFailure> {
+    let bans = bans(it)?.into_iter().map(|(_, ban)| ban);
+    Ok(bans.filter(|ban| ban.is_in_force(now)).collect())
+}
+
+/// All bans with their numbers, in the order in which they were made. Bans of unknown targets are left out.
+fn bans(it: &dyn Statements) -> Result<Vec<(i64, Ban)>, StoreFailure> {
+    let sql = "SELECT id, kind, target, until, reason, made_by, made_at FROM bans ORDER BY id";
+    let mut bans = Vec::new();
+    for row in it.rows(sql, &[])? {
+        if let Some(target) = BanTarget::of_parts(&row.get::<String>(1)?, &row.get::<String>(2)?) {
+            let (until, reason, by, made_at) = (row.get(3)?, row.get(4)?, row.get(5)?, row.get(6)?);
+            bans.push((row.get(0)?, Ban { target, until, reason, by, made_at }));
+        }
+    }
+    Ok(bans)
+}
+
+impl BanTarget {
+    /// The kind of a target, and its text.
+    fn parts(&self) -> (&'static str, String) {
+        match self {
+            Self::Key(key) => ("key", key.to_string()),
+            Self::Name(name) => ("name", name.to_string()),
+            Self::Addresses(prefix) => ("addresses", prefix.to_string()),
+        }
+    }
+
+    fn of_parts(kind: &str, text: &str) -> Option<Self> {
+        match kind {
+            "key" => AccountKey::parse(text).map(Self::Key),
+            "name" => Some(Self::Name(Name::kept(text))),
+            _ => AddressPrefix::parse(text).map(Self::Addresses),
+        }
+    }
+}
+
+fn account(row: &Row) -> Result<Account, StoreFailure> {
+    Ok(Account {
+        id: row.get(0)?,
+        key: AccountKey::new(row.get(1)?),
+        name: row.get(2)?,
+        named_at: row.get(3)?,
+        created_at: row.get(4)?,
+        seen_at: row.get(5)?,
+    })
+}
+
+fn settings(row: &Row) -> Result<AccountSettings, StoreFailure> {
+    let name = |column| row.get::<Option<String>>(column);
+    let preferences = Preferences {
+        crosshair: row.get(0)?,
+        compass: row.get(1)?,
+        bell: row.get(2)?,
+        ghost: row.get(3)?,
+        difficulty: name(4)?.and_then(|name| Difficulty::named(&name)).unwrap_or_default(),
+        glyphs: name(5)?.and_then(|name| Choice::named(&name)),
+        colors: name(6)?.and_then(|name| Choice::named(&name)),
+        frames_per_second: row.get::<Option<u32>>(7)?.and_then(std::num::NonZeroU32::new),
+        correction: name(9)?.and_then(|name| Choice::named(&name)).unwrap_or_default(),
+    };
+    Ok(AccountSettings { preferences, configuration: row.get(8)? })
+}
+
+/// The board in the first two columns; `None` if there is none of that name any more.
+fn board(row: &Row) -> Result<Option<LevelBoard>, StoreFailure> {
+    let (level, difficulty): (String, String) = (row.get(0)?, row.get(1)?);
+    Ok(Difficulty::named(&difficulty).and_then(|difficulty| LevelBoard::new(&level, difficulty)))
+}
+
+fn score(row: &Row) -> Result<LevelScore, StoreFailure> {
+    let Best { tally, rank } = best(row, 3)?;
+    let (account, name, verified_at) = (row.get(0)?, row.get(1)?, row.get(2)?);
+    Ok(LevelScore { account, name, tally, rank, verified_at })
+}
+
+/// The result in the columns [`BEST`] from `first` on.
+fn best(row: &Row, first: usize) -> Result<Best, StoreFailure> {
+    let share = |column: usize| -> Result<Share, StoreFailure> {
+        Ok(Share { found: row.get(column)?, total: row.get(column + 1)? })
+    };
+    let tally = Tally {
+        steps: row.count(first)?,
+        treasure: share(first + 1)?,
+        secrets: share(first + 3)?,
+        alarms: row.get(first + 5)?,
+        deaths: row.get(first + 6)?,
+        stunned: row.get(first + 7)?,
+    };
+    let rank: String = row.get(first + 8)?;
+    Ok(Best { tally, rank: Rank::named(&rank).unwrap_or(Rank::Burglar) })
+}
