@@ -1,8 +1,29 @@
-//! The date.
+//! Facts about the user's machine: the folders for data and configuration, and the date.
 
+use std::env;
+use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use etcetera::base_strategy::choose_native_strategy;
+use etcetera::{BaseStrategy, choose_base_strategy};
+
 use crate::generate::daily_seed;
+
+/// `cellcaster` in the platform's folder for data, or the folder that `CELLCASTER_DATA` names.
+/// `None` if there is no such folder.
+pub fn data_folder() -> Option<PathBuf> {
+    let named = env::var_os("CELLCASTER_DATA").filter(|name| !name.is_empty());
+    named.map(PathBuf::from).or_else(|| {
+        let folder = choose_native_strategy().ok()?.data_dir();
+        Some(folder.join("cellcaster"))
+    })
+}
+
+/// A file in `cellcaster` in the platform's folder for configuration.
+pub fn configuration_file(name: &str) -> Option<PathBuf> {
+    let folder = choose_base_strategy().ok()?.config_dir();
+    Some(folder.join("cellcaster").join(name))
+}
 
 /// The present date in UTC as a number, such as 20261122, and the seconds since 1970.
 pub fn today() -> (u32, u64) {
