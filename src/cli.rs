@@ -4,56 +4,101 @@
 //! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
-pub mod arguments;
 mod asciicast;
 mod cast;
 mod check;
-mod completions;
 pub mod config;
-pub mod data_folder;
 pub mod error;
 mod external;
+mod help;
 pub mod level;
 mod levels;
-mod manual;
+pub mod machine;
+pub mod options;
 pub mod output_file;
-mod own_maps;
 pub mod parse;
 mod play;
 mod recording;
-mod replay;
-pub mod script;
-pub mod snapshot;
-pub mod today;
-pub mod verify;
+pub mod replay;
+mod snapshot;
 mod watch;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use arguments::Command;
+use clap::{CommandFactory, Parser, Subcommand};
+
 pub use error::Error;
 use external::External;
 
 use crate::render::DynCaster;
 
-/// Runs the command that `arguments` request, and returns the exit status. The first argument is
-/// the program's own name.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let words: Vec<OsString> = arguments.into_iter().collect();
-    match External::of(&words) {
-        Some(external) => exit_code(external.run()),
-        None => run_with_caster(words, &DynCaster::default()),
-    }
+/// A raycaster game in the terminal, and its pictures in scripts
+#[derive(Debug, Parser)]
+#[command(
+    name = "cellcaster",
+    version,
+    long_about = help::about(),
+    after_help = help::WHERE_TO_READ_ON,
+    after_long_help = help::more(play::EXAMPLES, &commands()),
+    args_conflicts_with_subcommands = true,
+    max_term_width = help::WIDTH,
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    play: play::Play,
 }
 
-/// As [`run`], but walls are found by `caster`, and commands of other programs are unknown.
-pub fn run_with_caster(
-    arguments: impl IntoIterator<Item = OsString>,
-    caster: &DynCaster,
+#[derive(Debug, Subcommand)]
+enum Command {
+    Play(play::Play),
+    Snapshot(snapshot::Snapshot),
+    Cast(cast::Cast),
+    Check(check::Check),
+    Levels(levels::Levels),
+    Config(config::Config),
+    Replay(replay::Replay),
+    Completions(help::Completions),
+    Man(help::Manual),
+}
+
+/// Runs the command that `words` request, and returns the exit status. The first word is the program's own name.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let words: Vec<OsString> = words.into_iter().collect();
+    exit_code(match External::of(&words) {
+        Some(external) => external.run(),
+        None => run_here(words),
+    })
+}
+
+fn run_here(mut words: Vec<OsString>) -> Result<(), Error> {
+    let Some(arguments) = parse::parse::<Arguments>(words.clone())? else { return Ok(()) };
+    if arguments.caster() == options::EXACT {
+        return arguments.run(&DynCaster::default());
+    }
+    words.remove(0);
+    if arguments.command.is_none() {
+        words.insert(0, "play".into());
+    }
+    External::laboratory(words).run()
+}
+
+/// As [`run`], but walls are found by the caster that `named` returns for the option `--caster`, and commands of other
+/// programs are unknown.
+pub fn run_with_casters(
+    words: impl IntoIterator<Item = OsString>,
+    named: impl Fn(&str) -> Result<DynCaster, Error>,
 ) -> ExitCode {
-    exit_code(Command::parse(arguments).and_then(|command| command.run(caster)))
+    exit_code(parse::parse::<Arguments>(words).and_then(|arguments| match arguments {
+        Some(arguments) => {
+            let caster = named(arguments.caster())?;
+            arguments.run(&caster)
+        }
+        None => Ok(()),
+    }))
 }
 
 /// Reports the error of a command, if there is one, and returns the exit status. Writes what is left of the output.
@@ -64,21 +109,36 @@ pub fn exit_code(result: Result<(), Error>) -> ExitCode {
     }
 }
 
-impl Command {
-    fn run(self, caster: &DynCaster) -> Result<(), Error> {
-        match self {
-            Self::Text(text) => print(&text),
-            Self::Completions(shell) => completions::run(shell),
-            Self::Manual => manual::run(),
-            Self::Play(options) => play::run(options, caster),
-            Self::Snapshot(options) => snapshot::run(options, caster),
-            Self::Cast(options) => cast::run(&options, caster),
-            Self::Check(options) => check::run(&options),
-            Self::Config(options) => config::run(options),
-            Self::Levels(options) => levels::run(&options),
-            Self::Replay(options) => replay::run(&options),
+impl Arguments {
+    /// The method of casting.
+    fn caster(&self) -> &str {
+        match &self.command {
+            None => &self.play.look.caster,
+            Some(Command::Play(options)) => &options.look.caster,
+            Some(Command::Snapshot(options)) => &options.look.caster,
+            Some(Command::Cast(options)) => &options.caster,
+            Some(_) => options::EXACT,
         }
     }
+
+    fn run(self, caster: &DynCaster) -> Result<(), Error> {
+        match self.command.unwrap_or(Command::Play(self.play)) {
+            Command::Play(options) => play::run(options, caster),
+            Command::Snapshot(options) => snapshot::run(options, caster),
+            Command::Cast(options) => cast::run(&options, caster),
+            Command::Check(options) => check::run(&options),
+            Command::Levels(options) => levels::run(&options),
+            Command::Config(options) => config::run(options),
+            Command::Replay(options) => replay::run(&options),
+            Command::Completions(completions) => completions.run(Self::command()),
+            Command::Man(help::Manual) => help::Manual::run(Self::command()),
+        }
+    }
+}
+
+/// The commands of the program, for its help.
+fn commands() -> clap::Command {
+    Command::augment_subcommands(clap::Command::new("cellcaster"))
 }
 
 /// Writes what is left of the last line of output, which may have no end.
@@ -86,6 +146,14 @@ fn finish() -> Result<(), Error> {
     io::stdout().flush().map_err(|error| Error::of_output(&error))
 }
 
-fn print(text: &str) -> Result<(), Error> {
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_commands_is_complete() {
+        let mut program = Arguments::command();
+        program.build();
+        assert!(program.get_subcommands().map(clap::Command::get_name).eq(options::COMMANDS));
+    }
 }

@@ -11,6 +11,7 @@
 //! Rendering and collision leave out what a world does not have, such as mirrors. These properties depend
 //! on the kinds of tile and sprite, of which there are few, and not on the cells.
 
+pub(crate) mod art;
 mod beam_table;
 mod camera;
 mod distance_field;

@@ -1,21 +1,50 @@
 //! `cellcaster cast`: one line of output for each ray on standard input.
 
+use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 
+use clap::{Args, ValueHint};
 use glam::DVec2;
 use serde::Serialize;
 
-use super::arguments::Cast;
+use super::options::{EXACT, STANDARD_INPUT};
 use super::{Error, level};
 use crate::cast::{Caster, Ray, Side};
 use crate::render::DynCaster;
 use crate::world::World;
+
+/// Rays from standard input, hits to standard output
+#[derive(Args, Debug)]
+#[command(long_about = LONG_ABOUT, after_long_help = EXAMPLES)]
+pub(crate) struct Cast {
+    /// A map file, or a built-in level, as "cellcaster levels" lists them
+    #[arg(value_hint = ValueHint::FilePath)]
+    map: Option<OsString>,
+    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP
+    #[arg(long, value_name = "METHOD", default_value = EXACT)]
+    pub(crate) caster: String,
+}
+
+const LONG_ABOUT: &str = r##"Rays from standard input, hits to standard output
+
+Reads one ray a line, "X Y DX DY", and writes one JSON object a line:
+
+{"cell":[c,r],"side":"x","t":1.5,"u":0.25,"tile":"#"}  what the ray hits
+{"escaped":true}   for a ray that leaves the map
+{"error":"..."}    for a line that is not a ray; the exit status is then 2"##;
+
+const EXAMPLES: &str = "Examples:\n  echo \"1.5 1.5 1 0\" | cellcaster cast my.toml";
 
 /// Reads rays from standard input until it ends, and writes hits to standard output.
 ///
 /// # Errors
 /// A mistake if a line was no ray, after all lines are answered.
 pub(crate) fn run(options: &Cast, caster: &DynCaster) -> Result<(), Error> {
+    if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) {
+        return Err(Error::mistake(
+            "cast reads rays from standard input, so the map can't come from there, too; name a file",
+        ));
+    }
     let world = level::load_grid(options.map.as_deref())?;
     let mut input = BufReader::new(io::stdin().lock());
     let mut output = BufWriter::new(io::stdout().lock());

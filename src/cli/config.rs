@@ -3,16 +3,27 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use etcetera::{BaseStrategy, choose_base_strategy};
+use clap::{Args, ValueHint};
 
 use super::Error;
-use super::arguments::Config;
+use super::machine::configuration_file;
 use crate::app::Configuration;
 use crate::app::store::private;
 use crate::fault::printable;
 
 /// The largest configuration, in bytes.
 pub const LARGEST: u64 = 1 << 20;
+
+/// Print the settings in force, as a file with comments
+///
+/// Says where the file lies and what each setting means. What it prints may be written to that file, and changed there.
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:\n  cellcaster config > config.toml")]
+pub(crate) struct Config {
+    /// The settings [default: cellcaster/config.toml in the folder for configuration files]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    config: Option<PathBuf>,
+}
 
 /// The configuration in force, and the path of its file.
 pub(crate) struct InForce {
@@ -58,10 +69,4 @@ pub(crate) fn load(named: Option<PathBuf>) -> Result<InForce, Error> {
         Err(error) => return Err(Error::mistake(format!("{name} can't be read: {error}"))),
     };
     Ok(InForce { configuration, path: Some(path), is_there })
-}
-
-/// A file in `cellcaster` in the platform's folder for configuration.
-pub fn configuration_file(name: &str) -> Option<PathBuf> {
-    let folder = choose_base_strategy().ok()?.config_dir();
-    Some(folder.join("cellcaster").join(name))
 }

@@ -4,7 +4,7 @@
 //! to the one that has them now.
 
 use std::env;
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -37,11 +37,6 @@ impl External {
     /// program's own name.
     pub(crate) fn of(words: &[OsString]) -> Option<Self> {
         let (_, arguments) = words.split_first()?;
-        if let Some(method) = caster(arguments)
-            && method != "exact"
-        {
-            return Some(Self::new("lab", arguments.to_vec()));
-        }
         let (name, rest) = arguments.split_first()?;
         let name = name.to_str()?;
         if let Some((_, program, words)) = MOVED.iter().find(|(moved, ..)| *moved == name) {
@@ -54,6 +49,11 @@ impl External {
 
     fn new(program: &str, arguments: Vec<OsString>) -> Self {
         Self { program: program.to_owned(), arguments }
+    }
+
+    /// The command `words` with a caster of the laboratory.
+    pub(crate) fn laboratory(words: Vec<OsString>) -> Self {
+        Self::new("lab", words)
     }
 
     /// The command that replays a recording of a room.
@@ -92,23 +92,6 @@ impl External {
     }
 }
 
-/// The value of the last `--caster` in `arguments`.
-fn caster(arguments: &[OsString]) -> Option<&OsStr> {
-    let mut value = None;
-    for (index, word) in arguments.iter().enumerate() {
-        if word == "--" {
-            break;
-        }
-        let Some(word) = word.to_str() else { continue };
-        if word == "--caster" {
-            value = arguments.get(index + 1).map(OsString::as_os_str);
-        } else if let Some(method) = word.strip_prefix("--caster=") {
-            value = Some(OsStr::new(method));
-        }
-    }
-    value
-}
-
 /// The path of `cellcaster-NAME`: beside this program, or on the `PATH`.
 fn installed(name: &str) -> Option<PathBuf> {
     let is_name = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
@@ -139,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_that_moved_and_other_casters_go_to_other_programs() {
+    fn commands_that_moved_go_to_other_programs() {
         for (line, expected) in [
             ("c", "here"),
             ("c cellar", "here"),
@@ -149,10 +132,6 @@ mod tests {
             ("c server admin who", "server: admin who"),
             ("c wire --size 80x24", "lab: wire --size 80x24"),
             ("c lab accuracy", "lab: accuracy"),
-            ("c snapshot --caster exact", "here"),
-            ("c snapshot --caster dda cellar", "lab: snapshot --caster dda cellar"),
-            ("c --caster=march:0.1 cast", "lab: --caster=march:0.1 cast"),
-            ("c snapshot -- --caster dda", "here"),
         ] {
             assert_eq!(external(line), expected, "{line}");
         }

@@ -1,17 +1,19 @@
-//! The level of a command.
+//! The level of a command: built in, generated, on standard input, or in a map file of the player's own.
 
 use std::ffi::OsStr;
-use std::path::Path;
-use std::{io, iter};
+use std::path::{Path, PathBuf};
+use std::{fs, io, iter};
 
-use super::arguments::{Generated, STANDARD_INPUT, subcommand_names};
+use super::Error;
+use super::options::{COMMANDS, Place, STANDARD_INPUT};
 use super::watch::Watch;
-use super::{Error, own_maps};
-use crate::app::Levels;
+use crate::app::store::map_key;
+use crate::app::{Levels, OwnLevel, OwnMap};
 use crate::fault::nearest;
 use crate::game::{Game, Header, LevelName};
-use crate::generate::{Site, Window, descent, floors_below};
+use crate::generate::{Generator, Site, Window, descent, floors_below};
 use crate::map::{self, Folder, Level, builtin};
+use crate::sort;
 use crate::world::World;
 
 /// As [`load`], for a command that needs a grid.
@@ -52,20 +54,16 @@ pub(crate) fn load(argument: Option<&OsStr>) -> Result<Level, Error> {
     }
 }
 
-/// The level in the file that `argument` names, and its [`Watch`]. Only files can change.
-pub(crate) fn watch(
-    argument: Option<&OsStr>,
-    generated: Option<Generated>,
-) -> Result<(Level, Watch), Error> {
-    let is_file = |name: &OsStr| name != STANDARD_INPUT && Path::new(name).is_file();
-    match argument {
-        Some(name) if generated.is_none() && is_file(name) => {
+/// The level in the map file of `place`, and its [`Watch`]. Only files can change.
+pub(crate) fn watch(place: &Place) -> Result<(Level, Watch), Error> {
+    match place.map.as_deref() {
+        Some(name) if name != STANDARD_INPUT && Path::new(name).is_file() => {
             let (level, watch) = Watch::load(Path::new(name));
             Ok((level?, watch))
         }
         // A name that looks like a map reports why it cannot be loaded.
         Some(name) if name != STANDARD_INPUT && builtin_level(name).is_none() => {
-            load(argument).and_then(|_| Err(Error::mistake(NOTHING_TO_WATCH)))
+            load(Some(name)).and_then(|_| Err(Error::mistake(NOTHING_TO_WATCH)))
         }
         _ => Err(Error::mistake(NOTHING_TO_WATCH)),
     }
@@ -82,38 +80,31 @@ pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     let level = load(argument)?;
     let path = argument.filter(|argument| *argument != STANDARD_INPUT).map(Path::new);
     // What is no file, such as a pipe, cannot be found again.
-    Ok(match path.and_then(|path| own_maps::own_level(path, level.clone())) {
+    Ok(match path.and_then(|path| own_level(path, level.clone())) {
         Some(own) => Levels::own(own),
         None => Levels::new(level, iter::empty()),
     })
 }
 
 /// As [`load_series`], or the generated level followed by those of the next seeds.
-pub(crate) fn load_or_generate(
-    map: Option<&OsStr>,
-    generated: Option<Generated>,
-) -> Result<Levels, Error> {
-    let Some(generated) = generated else { return load_series(map) };
-    let Generated { generator, seed, extent, start } = generated;
+pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
+    let Some(generator) = place.generate else { return load_series(place.map.as_deref()) };
+    let (seed, extent) = (place.seed.unwrap_or(FIRST_SEED), place.level_size.unwrap_or_default());
     let game = move |seed: u64, start: Option<Site>| {
         let level = generator.level(seed, extent)?;
         let start = start.or(level.start()).unwrap_or_default();
         Game::in_level(level, start).ok_or_else(|| Error::mistake(NO_START))
     };
-    let first = game(seed, start)?;
+    let first = game(seed, place.start)?;
     let later = (1..).map_while(move |by| game(seed.wrapping_add(by), None).ok());
     Ok(Levels::of_games(first, later))
 }
 
 /// The levels of a script: those that the options name, or else that of its header.
-pub(crate) fn of_script(
-    map: Option<&OsStr>,
-    generated: Option<Generated>,
-    header: &Header,
-) -> Result<Levels, Error> {
+pub(crate) fn of_script(place: &Place, header: &Header) -> Result<Levels, Error> {
     let rules = header.rules();
     match &header.level {
-        Some(name) if map.is_none() && generated.is_none() => {
+        Some(name) if place.map.is_none() && place.generate.is_none() => {
             if let Some(first) = name.floor() {
                 let game = move |world| Game::with_rules(world, rules);
                 let later = floors_below(rules.seed, first);
@@ -133,7 +124,7 @@ pub(crate) fn of_script(
                 None => levels,
             })
         }
-        _ => load_or_generate(map, generated),
+        _ => load_or_generate(place),
     }
 }
 
@@ -154,12 +145,20 @@ pub(crate) fn name(argument: Option<&OsStr>) -> Option<LevelName> {
     }
 }
 
-/// The part of a generated level around `site`, or around its start.
-pub(crate) fn generate(generated: Generated, site: Option<Site>) -> Result<(Window, World), Error> {
-    let level = generated.generator.level(generated.seed, generated.extent)?;
+/// The part around `site` of a level that `generator` makes, or around the start.
+pub(crate) fn generate(
+    generator: Generator,
+    place: &Place,
+    site: Option<Site>,
+) -> Result<(Window, World), Error> {
+    let seed = place.seed.unwrap_or(FIRST_SEED);
+    let level = generator.level(seed, place.level_size.unwrap_or_default())?;
     let site = site.or(level.start()).unwrap_or_default();
     Window::open(level, site).ok_or_else(|| Error::mistake(NO_START))
 }
+
+/// The seed of generated levels for which none is given.
+const FIRST_SEED: u64 = 1;
 
 const NO_START: &str =
     "there is nowhere to stand at --start or --camera: that is outside the level";
@@ -173,6 +172,60 @@ fn builtin_level(name: &OsStr) -> Option<usize> {
 /// The command or built-in level with a name similar to `name`.
 fn similar_name(name: &OsStr) -> Option<&'static str> {
     let levels = builtin::LEVELS.iter().map(|level| level.name);
-    let known: Vec<&str> = subcommand_names().chain(levels).collect();
+    let known: Vec<&str> = COMMANDS.into_iter().chain(levels).collect();
     nearest(name.to_str()?, &known)
+}
+
+/// The map files in `folders`, sorted by name. Folders that cannot be read have none.
+pub(crate) fn find_maps(folders: &[PathBuf]) -> Vec<OwnMap> {
+    let entries = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    sort::by(&mut paths, PathBuf::cmp);
+    paths.into_iter().filter_map(own_map).collect()
+}
+
+/// The map in the file at `path`, if it is a TOML file with a grid or a list of bodies at its top level.
+fn own_map(path: PathBuf) -> Option<OwnMap> {
+    let is_toml = path.extension().is_some_and(|ending| ending == OsStr::new("toml"));
+    let text = text_of(&path).filter(|text| is_toml && text.lines().any(begins_a_map))?;
+    let name = path.file_name()?.to_string_lossy().into_owned();
+    let key = key_of(&path, &text);
+    let load = move || load_own(&path);
+    Some(OwnMap { name, key, load: Box::new(load) })
+}
+
+/// Loads the map in the file at `path`.
+///
+/// # Errors
+/// A sentence for the player.
+pub(crate) fn load_own(path: &Path) -> Result<OwnLevel, String> {
+    if !path.is_file() {
+        return Err(format!("{} is no file now", path.display()));
+    }
+    let level = map::load_level(path).map_err(|faults| faults.summary())?;
+    own_level(path, level).ok_or_else(|| format!("{} can't be read", path.display()))
+}
+
+/// `level` with what it is kept by, which was loaded from `path`; `None` if that is no file that can be read
+/// again.
+fn own_level(path: &Path, level: Level) -> Option<OwnLevel> {
+    let text = text_of(path)?;
+    let file = fs::canonicalize(path).ok()?.into_os_string().into_string().ok();
+    Some(OwnLevel { level, key: key_of(path, &text), file })
+}
+
+fn key_of(path: &Path, text: &str) -> String {
+    map_key(&path.file_name().unwrap_or_default().to_string_lossy(), text)
+}
+
+/// The text of a file that is not too large for a map.
+fn text_of(path: &Path) -> Option<String> {
+    const LARGEST: u64 = 1 << 20;
+    let is_small = fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);
+    if is_small { fs::read_to_string(path).ok() } else { None }
+}
+
+fn begins_a_map(line: &str) -> bool {
+    line.split_once('=').is_some_and(|(name, _)| name.trim() == "grid")
+        || matches!(line.trim(), "[[sphere]]" | "[[plane]]" | "[[box]]")
 }

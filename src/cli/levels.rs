@@ -2,17 +2,37 @@
 
 use std::io::{self, Write};
 
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::Error;
-use super::arguments::{Levels, LevelsFormat};
-use super::data_folder::data_folder;
+use super::machine::data_folder;
 use crate::app::store::{Best, Store};
 use crate::app::time::{of_steps, tenths};
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
 use crate::sort;
 use crate::world::{Difficulty, World};
+
+/// List the built-in levels with your best results
+///
+/// Names each level with its title, its par time, and for each difficulty the time of your fastest run and your highest
+/// rank.
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:\n  cellcaster levels\n  cellcaster levels --format json")]
+pub(crate) struct Levels {
+    /// How the list is written
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The format of the list.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Format {
+    #[default]
+    Table,
+    Json,
+}
 
 /// A built-in level with its best results.
 struct Entry {
@@ -39,8 +59,8 @@ pub(crate) fn run(options: &Levels) -> Result<(), Error> {
     });
     let entries = levels.collect::<Result<Vec<Entry>, Error>>()?;
     let text = match options.format {
-        LevelsFormat::Table => table(&entries),
-        LevelsFormat::Json => {
+        Format::Table => table(&entries),
+        Format::Json => {
             format!("{}\n", json!(entries.iter().map(object).collect::<Vec<_>>()))
         }
     };

@@ -1,5 +1,8 @@
 //! Parsing for programs whose arguments are described by clap's derive macro, with one sentence for each mistake.
 //!
+//! Options may stand before the command: `cellcaster --colors 256 snapshot` is `cellcaster snapshot --colors 256`. In clap
+//! they would have to be options of the program, which every command would then accept.
+//!
 //! Rejected: clap's own messages. They include the usage, and omit the valid values of an option.
 
 use std::error::Error as _;
@@ -7,8 +10,8 @@ use std::ffi::OsString;
 use std::fmt;
 use std::io::{self, Write};
 
-use clap::Parser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, Parser};
 
 use super::Error;
 use crate::fault::nearest;
@@ -33,7 +36,9 @@ impl std::error::Error for Takes {}
 /// # Errors
 /// One sentence about the first mistake.
 pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Option<P>, Error> {
-    let matches = lenient(P::command()).try_get_matches_from(words);
+    let program = lenient(P::command());
+    let words = command_first(&program, words.into_iter().collect());
+    let matches = program.clone().try_get_matches_from(&words);
     match matches.and_then(|matches| P::from_arg_matches(&matches)) {
         Ok(arguments) => Ok(Some(arguments)),
         Err(error)
@@ -42,12 +47,12 @@ pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Opt
             write!(io::stdout(), "{error}").map_err(|error| Error::of_output(&error))?;
             Ok(None)
         }
-        Err(error) => Err(Error::mistake(sentence::<P>(&error))),
+        Err(error) => Err(Error::mistake(sentence(&error, &program, &words))),
     }
 }
 
 /// The command, and its subcommands, with options that take values such as `-1`, and of which the last one counts.
-fn lenient(command: clap::Command) -> clap::Command {
+fn lenient(command: Command) -> Command {
     command
         .args_override_self(true)
         .arg_required_else_help(false)
@@ -58,14 +63,60 @@ fn lenient(command: clap::Command) -> clap::Command {
         .mut_subcommands(lenient)
 }
 
-fn sentence<P: Parser>(error: &clap::Error) -> String {
+/// The same words with the command directly after the program's own name, if only options precede it.
+fn command_first(program: &Command, mut words: Vec<OsString>) -> Vec<OsString> {
+    let mut index = 1;
+    while let Some(word) = words.get(index).and_then(|word| word.to_str()) {
+        if program.find_subcommand(word).is_some() {
+            let name = words.remove(index);
+            words.insert(1, name);
+            break;
+        }
+        if !word.starts_with('-') || ["-", "--", "-V", "--version"].contains(&word) {
+            break;
+        }
+        index += if takes_the_next_word(program, word) { 2 } else { 1 };
+    }
+    words
+}
+
+/// Whether `word` is an option of any command whose value is the next word.
+fn takes_the_next_word(program: &Command, word: &str) -> bool {
+    let mut options = program
+        .get_arguments()
+        .chain(program.get_subcommands().flat_map(|command| command.get_arguments()));
+    word.strip_prefix("--").is_some_and(|name| {
+        options.any(|it| it.get_long() == Some(name) && it.get_action().takes_values())
+    })
+}
+
+fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> String {
+    let (mut path, mut command) = (program.get_name().to_owned(), program);
+    for name in words.iter().skip(1).filter_map(|word| word.to_str()) {
+        if let Some(subcommand) = command.find_subcommand(name) {
+            path = format!("{path} {name}");
+            command = subcommand;
+        }
+    }
+    let command_name = command.get_name();
     let argument = text(error, ContextKind::InvalidArg)
         .or_else(|| text(error, ContextKind::InvalidSubcommand))
         .unwrap_or_default();
-    // A known option includes its value, as in "--fov <DEG>".
-    let name = argument.split_once(' ').map_or(argument, |(name, _)| name);
+    let name = name_of(argument);
     let value = text(error, ContextKind::InvalidValue).unwrap_or_default();
-    let help = format!("\"{} --help\" lists what there is", P::command().get_name());
+    let help = format!("\"{path} --help\" lists what there is");
+    let or_help = |names: &[&str]| {
+        nearest(name, names).map_or(help.clone(), |meant| format!("did you mean {meant}?"))
+    };
+    let surplus = |argument: &str| {
+        let end = match program.find_subcommand(argument) {
+            Some(_) => {
+                format!("a command goes first, as in \"{} {argument} ...\"", program.get_name())
+            }
+            None => help.clone(),
+        };
+        format!("\"{argument}\" is one argument too many; {end}")
+    };
     match error.kind() {
         ErrorKind::ValueValidation => match error.source() {
             Some(reason) => match reason.downcast_ref::<Takes>() {
@@ -85,15 +136,19 @@ fn sentence<P: Parser>(error: &clap::Error) -> String {
                 format!("{name} takes {choices}, not \"{value}\"")
             }
         }
-        ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand => {
-            let names = names(&P::command());
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let end = nearest(name, &names).map_or(help, |meant| format!("did you mean {meant}?"));
-            if argument.starts_with('-') {
-                format!("there is no option {argument}; {end}")
-            } else {
-                format!("\"{argument}\" is no command, and one argument too many; {end}")
-            }
+        ErrorKind::UnknownArgument if argument.len() > 1 && argument.starts_with('-') => {
+            let options = command.get_arguments().filter_map(|it| it.get_long());
+            let options: Vec<String> = options.map(|name| format!("--{name}")).collect();
+            let options: Vec<&str> = options.iter().map(String::as_str).chain(["--help"]).collect();
+            format!("{command_name} has no option {argument}; {}", or_help(&options))
+        }
+        ErrorKind::InvalidSubcommand => {
+            let names: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+            format!("\"{argument}\" is no command; {}", or_help(&names))
+        }
+        ErrorKind::UnknownArgument => surplus(argument),
+        ErrorKind::ArgumentConflict if text(error, ContextKind::InvalidSubcommand).is_some() => {
+            surplus(argument)
         }
         ErrorKind::MissingSubcommand => match error.get(ContextKind::ValidSubcommand) {
             Some(ContextValue::Strings(names)) => {
@@ -106,19 +161,27 @@ fn sentence<P: Parser>(error: &clap::Error) -> String {
                 Some(ContextValue::Strings(names)) => names.join(" and "),
                 _ => "a command".to_owned(),
             };
-            format!("{missing} is missing; {help}")
+            format!("{command_name} needs {missing}; {help}")
         }
         ErrorKind::ArgumentConflict => {
             let other = match error.get(ContextKind::PriorArg) {
-                Some(ContextValue::String(name)) => name.clone(),
-                Some(ContextValue::Strings(names)) => names.join(" and "),
+                Some(ContextValue::String(name)) => name_of(name).to_owned(),
+                Some(ContextValue::Strings(names)) => {
+                    names.iter().map(|name| name_of(name)).collect::<Vec<_>>().join(" and ")
+                }
                 _ => "another argument".to_owned(),
             };
-            format!("{name} goes without {other}")
+            format!("{name} goes without {other}: leave one of them out")
         }
         ErrorKind::TooManyValues => format!("{name} takes no value, and \"{value}\" is one"),
         _ => first_line(error),
     }
+}
+
+/// The name of an argument, which may stand with its value, as in `--fov <DEG>`, or in brackets, as in `[MAP]`.
+fn name_of(argument: &str) -> &str {
+    let name = argument.split_once(' ').map_or(argument, |(name, _)| name);
+    name.trim_matches(['[', ']', '<', '>'])
 }
 
 /// The choices, as in "a, b or c".
@@ -127,17 +190,6 @@ fn one_of(choices: &[String]) -> String {
         [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
         _ => choices.concat(),
     }
-}
-
-/// The options of a command and its subcommands, and the subcommands' names.
-fn names(command: &clap::Command) -> Vec<String> {
-    let options = command.get_arguments().filter_map(|it| it.get_long());
-    let mut names: Vec<String> = options.map(|name| format!("--{name}")).collect();
-    for subcommand in command.get_subcommands() {
-        names.push(subcommand.get_name().to_owned());
-        names.extend(self::names(subcommand));
-    }
-    names
 }
 
 fn text(error: &clap::Error, kind: ContextKind) -> Option<&str> {
@@ -152,4 +204,32 @@ fn first_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();
     line.strip_prefix("error: ").unwrap_or(line).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn only_options_may_stand_before_the_command() {
+        let program = crate::cli::Arguments::command();
+        for (line, expected) in [
+            ("c", "c"),
+            ("c snapshot --fov 9", "c snapshot --fov 9"),
+            ("c --fov 9 snapshot m", "c snapshot --fov 9 m"),
+            ("c --fov=9 --explain snapshot", "c snapshot --fov=9 --explain"),
+            ("c -h check", "c check -h"),
+            ("c --record cast cast", "c cast --record cast"),
+            ("c --fov snapshot", "c --fov snapshot"),
+            ("c m snapshot", "c m snapshot"),
+            ("c - snapshot", "c - snapshot"),
+            ("c -- snapshot", "c -- snapshot"),
+            ("c -V snapshot", "c -V snapshot"),
+        ] {
+            let words = line.split(' ').map(OsString::from).collect();
+            let words: Vec<OsString> = command_first(&program, words);
+            assert_eq!(words.join(" ".as_ref()), expected, "{line}");
+        }
+    }
 }

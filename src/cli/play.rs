@@ -2,39 +2,108 @@
 
 use std::env;
 use std::io::{self, IsTerminal, Write};
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::arguments::{FidelityChoice, Play, STANDARD_INPUT};
-use super::data_folder::data_folder;
+use clap::{Args, ValueHint};
+
+use super::machine::{data_folder, today};
+use super::options::{Look, Place, STANDARD_INPUT, choice, fidelity, frames};
+use super::parse::Takes;
 use super::recording::RecordingFile;
-use super::today::today;
-use super::{Error, config, level, own_maps};
+use super::{Error, config, level};
 use crate::app;
 use crate::app::store::Store;
 use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin, Settings};
 use crate::game::{Header, LevelName, Rules};
 use crate::render::DynCaster;
-use crate::terminal::{self, locale_without_utf8, take_keys_from_terminal};
+use crate::terminal::{self, Fidelity, locale_without_utf8, take_keys_from_terminal};
 use crate::tui::GlyphSet;
 use crate::world::Difficulty;
+
+/// Play; without MAP, from the title screen
+///
+/// Plays in the terminal. "?" shows the keys, and Ctrl-C leaves. What you have reached is kept in the folder for data
+/// files, or in the one that `CELLCASTER_DATA` names. Over SSH it takes "ssh -t HOST cellcaster".
+#[derive(Args, Debug)]
+#[command(after_long_help = EXAMPLES)]
+pub(crate) struct Play {
+    /// How hard MAP or the endless game is [default: as chosen in the game, or normal]
+    #[arg(long, value_name = "LEVEL", value_parser = choice::<Difficulty>())]
+    difficulty: Option<Difficulty>,
+    /// Play the floors of the day, which are the same for all, at normal difficulty; the first try counts
+    #[arg(long, conflicts_with_all = ["endless", "map", "generate", "watch", "difficulty"])]
+    daily: bool,
+    /// Play floor after floor, each harder than the one before
+    #[arg(long, conflicts_with_all = ["map", "generate", "watch"])]
+    endless: bool,
+    /// The settings [default: cellcaster/config.toml in the folder for configuration files]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    config: Option<PathBuf>,
+    /// At most N frames a second, from 1 to 240 [default: 30]
+    #[arg(long = "fps", value_name = "N", value_parser = frames)]
+    frames_per_second: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) look: Look,
+    /// How exact colours are while something moves: as the link allows (auto), exact, high, low, or how far they may be
+    /// off, from 0 to 255 [default: auto]
+    #[arg(long, value_name = "LEVEL", value_parser = fidelity_or_auto)]
+    fidelity: Option<AutoFidelity>,
+    /// Show frames and bytes a second, round trip and fidelity
+    #[arg(long)]
+    stats: bool,
+    /// Load the map anew whenever its file, or a PNG that it uses, changes
+    #[arg(long)]
+    watch: bool,
+    /// Write FILE.cast, which is what the terminal is sent, as asciicast v3; or FILE.script, which is what you do, for
+    /// replay and wire
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    record: Option<PathBuf>,
+    /// Let --record replace a file
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    place: Place,
+}
+
+/// The examples in the help.
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  cellcaster
+  cellcaster play --generate maze --seed 7
+  cellcaster play --daily
+  cellcaster my.toml --colors 256
+  cellcaster play my.toml --watch
+  ssh -t host cellcaster
+  cellcaster --record walk.script && cellcaster replay walk.script > walk.cast";
+
+/// A fidelity; `None` if the link to the terminal decides.
+type AutoFidelity = Option<Fidelity>;
+
+fn fidelity_or_auto(text: &str) -> Result<AutoFidelity, Takes> {
+    match text {
+        "auto" => Ok(None),
+        _ => fidelity(text)
+            .map(Some)
+            .map_err(|_| Takes("auto, exact, high, low or a number up to 255")),
+    }
+}
 
 /// Plays until the player quits.
 pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let opening = opening(&options)?;
-    let level = match options.generated {
-        None => level::name(options.map.as_deref()),
+    let level = match options.place.generate {
+        None => level::name(options.place.map.as_deref()),
         Some(_) => None,
     };
+    let Look { cell_aspect, glyphs, filter, view, .. } = options.look;
     let configuration = config::load(options.config)?.configuration;
-    let frames_per_second = match options.frames_per_second {
-        Some(frames) => frames.get(),
-        None => configuration.frames_per_second,
-    };
+    let frames_per_second = options.frames_per_second.unwrap_or(configuration.frames_per_second);
     let usual = Configuration::default().frames_per_second;
     let given = Given {
-        glyphs: origin(options.glyphs.is_some(), configuration.glyphs.is_some()),
-        depth: origin(options.depth.is_some(), configuration.colors.is_some()),
+        glyphs: origin(glyphs.is_some(), configuration.glyphs.is_some()),
+        depth: origin(view.depth.is_some(), configuration.colors.is_some()),
         frame_time: origin(
             options.frames_per_second.is_some(),
             configuration.frames_per_second != usual,
@@ -43,21 +112,21 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     let settings = Settings {
         bindings: configuration.bindings,
         frame_time: Duration::from_secs(1) / frames_per_second.get(),
-        field_of_view: options.field_of_view.unwrap_or(configuration.field_of_view),
-        cell_aspect: options.cell_aspect,
-        glyphs: options.glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
-        depth: options.depth.or(configuration.colors),
+        field_of_view: view.field_of_view.unwrap_or(configuration.field_of_view),
+        cell_aspect,
+        glyphs: glyphs.or(configuration.glyphs).unwrap_or_else(glyphs_of_locale),
+        depth: view.depth.or(configuration.colors),
         caster: caster.clone(),
-        filter: options.filter.unwrap_or_default(),
-        fidelity: options.fidelity.map_or(configuration.fidelity, FidelityChoice::fixed),
-        shows_stats: options.shows_stats,
+        filter,
+        fidelity: options.fidelity.unwrap_or(configuration.fidelity),
+        shows_stats: options.stats,
         difficulty: options.difficulty,
         minimap: configuration.minimap,
         mouse: configuration.mouse,
         given,
     };
     let file = options.record.as_deref();
-    let file = file.map(|path| RecordingFile::create(path, options.overwrites)).transpose()?;
+    let file = file.map(|path| RecordingFile::create(path, options.force)).transpose()?;
     let (store, damage) = match data_folder() {
         Some(folder) => Store::open(&folder),
         None => (Store::in_memory(), None),
@@ -119,11 +188,15 @@ fn glyphs_of_locale() -> GlyphSet {
 /// The title, unless the options say what to play. A script is about one level, so that recording
 /// one begins with the first level.
 fn opening(options: &Play) -> Result<Opening, Error> {
-    if options.is_daily || options.is_endless {
-        return descent_of(options);
+    if options.daily {
+        return Ok(Opening::Daily(offers()));
+    }
+    if options.endless {
+        return Ok(Opening::Endless(offers()));
     }
     let records_script = options.record.as_deref().is_some_and(RecordingFile::is_script);
-    let says_what = options.map.is_some() || options.generated.is_some() || options.watches;
+    let says_what =
+        options.place.map.is_some() || options.place.generate.is_some() || options.watch;
     if says_what || records_script {
         return Ok(Opening::Levels(Box::new(levels(options)?)));
     }
@@ -136,43 +209,29 @@ fn offers() -> Offers {
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();
     let (today, seed) = today();
     Offers {
-        maps: Some(Box::new(move || own_maps::find(&folders))),
-        load: Some(Box::new(|path| own_maps::load(Path::new(path)))),
+        maps: Some(Box::new(move || level::find_maps(&folders))),
+        load: Some(Box::new(|path| level::load_own(Path::new(path)))),
         today: Some(today),
         seed,
     }
 }
 
-/// The daily run or an endless game.
-fn descent_of(options: &Play) -> Result<Opening, Error> {
-    let name = if options.is_daily { "--daily" } else { "--endless" };
-    let others = [
-        (options.is_daily && options.is_endless, "--endless"),
-        (options.map.is_some(), "MAP"),
-        (options.generated.is_some(), "--generate"),
-        (options.watches, "--watch"),
-        (options.is_daily && options.difficulty.is_some(), "--difficulty"),
-    ];
-    if let Some((_, other)) = others.into_iter().find(|(is_given, _)| *is_given) {
-        return Err(Error::mistake(format!("{name} goes without {other}: leave one of them out")));
-    }
-    Ok(if options.is_daily { Opening::Daily(offers()) } else { Opening::Endless(offers()) })
-}
-
 /// The levels to play. If the map is on standard input, keys then come from the terminal.
 fn levels(options: &Play) -> Result<Levels, Error> {
-    if options.watches {
+    if options.watch {
         if options.record.as_deref().is_some_and(RecordingFile::is_script) {
             return Err(Error::mistake(
                 "a script is about a map that stays as it is, and --watch loads it anew: leave one \
                  of them out, or record a .cast",
             ));
         }
-        let (level, mut watch) = level::watch(options.map.as_deref(), options.generated)?;
+        let (level, mut watch) = level::watch(&options.place)?;
         return Ok(Levels::changing(level, move || watch.change()));
     }
-    let levels = level::load_or_generate(options.map.as_deref(), options.generated)?;
-    if options.map.as_ref().is_some_and(|map| map == STANDARD_INPUT) && !io::stdin().is_terminal() {
+    let levels = level::load_or_generate(&options.place)?;
+    if options.place.map.as_ref().is_some_and(|map| map == STANDARD_INPUT)
+        && !io::stdin().is_terminal()
+    {
         take_keys_from_terminal().map_err(|_| {
             Error::mistake(
                 "standard input held the map, and there is no terminal to take keys from: name a \

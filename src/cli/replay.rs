@@ -1,46 +1,107 @@
-//! `cellcaster replay`: plays a script off screen into a recording.
+//! `cellcaster replay`: plays a script off screen, into a recording or into a report about what it achieves.
 
 use std::cell::Cell;
+use std::fmt::{self, Write as _};
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
-use std::path::Path;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 
+use clap::{Args, ValueHint};
 use crossterm::cursor::{Hide, Show};
 use crossterm::queue;
 use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
 use ratatui::backend::Backend;
 use ratatui::buffer::Buffer;
+use ratatui::layout::Size;
 
-use super::arguments::Replay;
 use super::asciicast::Asciicast;
 use super::external::External;
+use super::options::{Place, View, fidelity, frames, window};
 use super::output_file::OutputFile;
-use super::{Error, level, script, verify};
+use super::{Error, level};
 use crate::app;
 use crate::app::Settings;
-use crate::game::Script;
-use crate::terminal::CellWriter;
+use crate::app::store::{DescentRun, replayed};
+use crate::app::time::{of_steps, tenths};
+use crate::game::{Game, Header, LevelName, Outcome, Rules, Script};
+use crate::terminal::{CellWriter, Fidelity};
+use crate::world::World;
+
+/// Play a script off screen, and write it as asciicast, or check what it achieves
+///
+/// A script is lines such as "2.5 s forward run" or "12 steps turn-left open"; "stand" is nothing, a name in square brackets begins a
+/// section, and # a comment. Lines at its top may name the game: "level cellar", "difficulty hard" and "seed 7"; a level
+/// may also be a map file, or "floor 1" of an endless game, which goes on with the floors below. MAP takes precedence.
+/// play --record writes such a script.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  cellcaster replay walk.script > walk.cast
+  cellcaster replay walk.script my.toml --size 120x40 --cast walk.cast
+  cellcaster replay walk.script --verify")]
+pub(crate) struct Replay {
+    /// What is played
+    #[arg(value_hint = ValueHint::FilePath)]
+    script: PathBuf,
+    /// Say level, time, treasure and rank instead; the exit status is 0 if the script reaches an exit, else 1
+    #[arg(long, conflicts_with = "generate")]
+    verify: bool,
+    /// Where to write [default: standard output]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    cast: Option<PathBuf>,
+    /// The size of the window in cells, with sides up to 1000 and up to 200000 cells
+    #[arg(long, value_name = "COLSxROWS", default_value = "80x24", value_parser = window)]
+    size: Size,
+    /// At most N frames a second, from 1 to 240
+    #[arg(long = "fps", value_name = "N", default_value = "30", value_parser = frames)]
+    frames_per_second: NonZeroU32,
+    #[command(flatten)]
+    view: View,
+    /// How exact colours are while something moves: exact, high, low, or how far they may be off, from 0 to 255
+    #[arg(long, value_name = "LEVEL", default_value = "exact", value_parser = fidelity)]
+    fidelity: Fidelity,
+    #[command(flatten)]
+    place: Place,
+}
+
+/// A walk through the built-in level with the most features, for commands without a script.
+pub const SHOWCASE: Showcase =
+    Showcase { level: "citadel", script: include_str!("../../maps/showcase.script") };
+
+/// A compiled-in script, and its built-in level.
+pub struct Showcase {
+    /// The built-in level that it is played in.
+    pub level: &'static str,
+    script: &'static str,
+}
+
+impl Showcase {
+    /// The parsed script.
+    pub fn script(&self) -> Result<Script, Error> {
+        Ok(Script::parse(self.script, "showcase.script")?)
+    }
+}
 
 /// Writes the recording that `options` request.
 pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     if is_room_recording(&options.script) {
-        let words = [Some(options.script.clone().into_os_string()), options.map.clone()];
+        let words = [Some(options.script.clone().into_os_string()), options.place.map.clone()];
         return External::room_replay(words.into_iter().flatten()).run();
     }
-    let script = script::load(&options.script)?;
-    if options.verifies {
-        return verify::run(options, &script);
+    let script = load(&options.script)?;
+    if options.verify {
+        return verify(options, &script);
     }
-    let levels = level::of_script(options.map.as_deref(), options.generated, script.header())?;
+    let levels = level::of_script(&options.place, script.header())?;
     let settings = Settings {
-        field_of_view: options.field_of_view,
-        depth: Some(options.depth),
+        field_of_view: options.view.field_of_view.unwrap_or_default(),
+        depth: Some(options.view.depth.unwrap_or_default()),
         ..Settings::default()
     };
-    let size = options.size.cells();
-    let mut replay = app::Replay::new(levels, settings, size);
+    let mut replay = app::Replay::new(levels, settings, options.size);
     match &options.cast {
         None => write(&mut replay, &script, options, BufWriter::new(io::stdout().lock()))
             .map_err(|error| Error::of_output(&error)),
@@ -50,20 +111,38 @@ pub(crate) fn run(options: &Replay) -> Result<(), Error> {
     }
 }
 
+/// The largest size of a script in bytes, more than a week of play. A larger file is not read to
+/// its end.
+const LONGEST: u64 = 1 << 26;
+
+/// The script in a file.
+pub fn load(path: &Path) -> Result<Script, Error> {
+    let name = path.display().to_string();
+    let mut content = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut content));
+    match read {
+        Err(error) => Err(Error::mistake(format!("{name} can't be read: {error}"))),
+        Ok(length) if length as u64 == LONGEST => {
+            Err(Error::mistake(format!("{name} is too long for a script")))
+        }
+        Ok(_) => Ok(Script::from_bytes(content, &name)?),
+    }
+}
+
 fn write(
     replay: &mut app::Replay,
     script: &Script,
     options: &Replay,
     output: impl Write,
 ) -> io::Result<()> {
-    let size = options.size.cells();
+    let size = options.size;
     let now = Rc::new(Cell::new(Duration::ZERO));
     let mut screen = Screen { asciicast: Asciicast::begin(output, size)?, now: Rc::clone(&now) };
     screen.send(|bytes| queue!(bytes, EnterAlternateScreen, Hide))?;
     let mut writer = CellWriter::new(screen, size);
     writer.set_fidelity(options.fidelity);
     let mut before = Buffer::empty(size.into());
-    let frames_per_second = options.frames_per_second.get();
+    let frames_per_second = options.frames_per_second;
     replay.play(script, frames_per_second, |frame, _, picture| {
         now.set(Duration::from_secs(frame) / frames_per_second.get());
         writer.draw(before.diff(picture).into_iter())?;
@@ -109,4 +188,96 @@ fn is_room_recording(path: &Path) -> bool {
     path.is_file()
         && File::open(path).is_ok_and(|mut file| file.read_exact(&mut beginning).is_ok())
         && beginning == BEGINNING
+}
+
+/// Writes what `script` achieves in the level that `options` or its header name.
+///
+/// # Errors
+/// With exit status 1 if it does not reach an exit.
+fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
+    let (name, world) = verified_level(options, script.header())?;
+    let rules = script.header().rules();
+    let floor = script.header().level.as_ref().and_then(LevelName::floor);
+    let (report, wins) = match floor.filter(|_| options.place.map.is_none()) {
+        Some(floor) => descend(&name, floor, world, rules, script),
+        None => play(&name, world, rules, script),
+    };
+    io::stdout().write_all(report.as_bytes()).map_err(|error| Error::of_output(&error))?;
+    if wins { Ok(()) } else { Err(Error::failed()) }
+}
+
+/// The level that the options name, or else the header; and its name.
+fn verified_level(options: &Replay, header: &Header) -> Result<(String, World), Error> {
+    match (&options.place.map, &header.level) {
+        (Some(map), _) => Ok((map.display().to_string(), level::load_grid(Some(map))?)),
+        (None, Some(named)) => {
+            let level = level::load_named(named, header.rules().seed)?;
+            Ok((named.as_str().to_owned(), level::grid_of(level, named.as_str())?))
+        }
+        (None, None) => Err(Error::mistake(
+            "the script does not name its level: name it after the script, as in \
+             \"cellcaster replay walk.script cellar --verify\"",
+        )),
+    }
+}
+
+/// A report about the script in one level, and whether it reaches the exit.
+fn play(name: &str, world: World, rules: Rules, script: &Script) -> (String, bool) {
+    let game = replayed(world, rules, script);
+    let mut report = Report::about(name, game.world().title(), rules);
+    report.tell_outcome(&game);
+    let tally = game.tally();
+    let par = game.world().par();
+    let par_time = par.map(|par| tenths(par.into()));
+    let par_time = par_time.map_or(String::new(), |par| format!(", par {par}"));
+    report.line("time", format!("{} ({} steps{par_time})", of_steps(tally.steps), tally.steps));
+    report.line("treasure", format!("{} of {}", tally.treasure.found, tally.treasure.total));
+    report.line("secrets", format!("{} of {}", tally.secrets.found, tally.secrets.total));
+    report.line("alarms", tally.alarms);
+    report.line("deaths", tally.deaths);
+    report.line("stunned", tally.stunned);
+    if game.is_finished() {
+        report.line("rank", tally.rank(par));
+    }
+    (report.0, game.is_finished())
+}
+
+/// A report about the script in a descent from `floor` on, and whether it reaches an exit.
+fn descend(name: &str, floor: u32, first: World, rules: Rules, script: &Script) -> (String, bool) {
+    let DescentRun { game, reached } = DescentRun::replayed(floor, first, rules, script);
+    let mut report = Report::about(name, "", rules);
+    report.tell_outcome(&game);
+    report.line("floors", reached.floors);
+    report.line("time", format!("{} ({} steps)", of_steps(reached.steps), reached.steps));
+    report.line("treasure", reached.treasure);
+    (report.0, reached.floors > 0)
+}
+
+/// Lines of a name and a value.
+struct Report(String);
+
+impl Report {
+    fn about(name: &str, title: &str, rules: Rules) -> Self {
+        let mut report = Self(String::new());
+        report.line("level", name.replace(char::is_control, "?"));
+        if !title.is_empty() {
+            report.line("title", title.replace(char::is_control, "?"));
+        }
+        report.line("difficulty", rules.difficulty.name());
+        report.line("seed", rules.seed);
+        report
+    }
+
+    fn tell_outcome(&mut self, game: &Game) {
+        let result = match game.outcome() {
+            Outcome::Won => "won".to_owned(),
+            Outcome::Dead { cause } => format!("dead: {cause}"),
+            Outcome::Playing => "not won".to_owned(),
+        };
+        self.line("result", result);
+    }
+
+    fn line(&mut self, name: &str, value: impl fmt::Display) {
+        _ = writeln!(self.0, "{name:<10} {value}");
+    }
 }

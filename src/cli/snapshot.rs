@@ -1,76 +1,130 @@
 //! `cellcaster snapshot`: one frame on standard output, without a terminal.
 //!
+//! With `--watch`, the frame is drawn again whenever the map changes. In a terminal, text is drawn in the same place each
+//! time, with faults over it. In any other output, pictures follow each other, and faults go to standard error. The
+//! terminal's modes are not changed, so that nothing has to be restored when Ctrl-C ends the program.
+//!
 //! The game's widget draws the cells. They are made and written in bands of rows, because 4096×4096
 //! cells at once would take most of a gigabyte.
 
-mod ansi;
-mod camera_remark;
-mod json;
-mod picture;
-mod png;
-mod text;
-mod watched;
+mod format;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
+use std::thread;
+use std::time::Duration;
 
+use clap::Args;
 use glam::DVec2;
-use ratatui::buffer::{Buffer, Cell};
+use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
-use ratatui::style::Color;
 
-use super::arguments::{Format, Generated, Snapshot};
+use self::format::Format;
+use super::options::{Look, Place, size, within};
+use super::parse::Takes;
 use super::{Error, level};
-use crate::color::Rgb;
-use crate::color::palette;
+use crate::fault::{Faults, printable, printable_lines};
 use crate::game::Game;
-use crate::generate::Site;
+use crate::generate::{Generator, Site};
 use crate::map::Level;
 use crate::render::{DynCaster, Renderable};
 use crate::space::{self, Elevation, Scene};
-use crate::tui::View;
-use crate::world::{Camera, Heading, World};
-use picture::Picture;
+use crate::tui::{FirstPerson, View};
+use crate::world::{Camera, Cell, FieldOfView, Heading, Pitch, TileKind, World};
+
+/// One frame to standard output
+///
+/// Draws what the game would show, without a terminal, the same bytes on every machine. Of a map of bodies, --eye and
+/// --pitch are as at its start where they are not given.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  cellcaster snapshot museum --format ansi
+  cellcaster snapshot my.toml --size 120x40 --format png > my.png
+  cellcaster snapshot my.toml --camera 2.5,3.5,90 --format json
+  cellcaster snapshot my.toml --format ansi --watch")]
+pub(crate) struct Snapshot {
+    /// The size of the picture in cells, from 1x1 to 4096x4096 [default: 80x24; with --watch, that of the window]
+    #[arg(long, value_name = "COLSxROWS", value_parser = size)]
+    size: Option<Size>,
+    /// Where to look from, in cells, and which way, in degrees: 0 is east, 90 south [default: the map's start]
+    #[arg(long, value_name = "X,Y,HEADING", value_parser = position_and_heading)]
+    camera: Option<(DVec2, Heading)>,
+    /// How high the eye is above floor level, in cells [default: 0.5]
+    #[arg(long, value_name = "HEIGHT", value_parser = eye)]
+    eye: Option<f64>,
+    /// Look down, from -30 degrees, or up, to 30 [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = pitch)]
+    pitch: Option<Pitch>,
+    #[command(flatten)]
+    pub(crate) look: Look,
+    /// How it is written: characters (text), with colours (ansi), a list of cells (json) or a picture of them (png)
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// Say how the frame is drawn and what it costs, in its place
+    #[arg(long)]
+    explain: bool,
+    /// Load the map anew whenever its file, or a PNG that it uses, changes
+    #[arg(long)]
+    watch: bool,
+    #[command(flatten)]
+    place: Place,
+}
+
+impl Snapshot {
+    fn size(&self) -> Size {
+        self.size.unwrap_or(Size::new(80, 24))
+    }
+
+    fn field_of_view(&self) -> FieldOfView {
+        self.look.view.field_of_view.unwrap_or_default()
+    }
+}
+
+fn position_and_heading(text: &str) -> Result<(DVec2, Heading), Takes> {
+    let camera = || {
+        let mut numbers = text.split(',').map(|number| number.trim().parse::<f64>().ok());
+        let position = DVec2::new(numbers.next()??, numbers.next()??);
+        let heading = Heading::from_degrees(numbers.next()??)?;
+        (position.is_finite() && numbers.next().is_none()).then_some((position, heading))
+    };
+    camera().ok_or(Takes("X,Y,HEADING, three finite numbers such as 2.5,3.5,90"))
+}
+
+fn eye(text: &str) -> Result<f64, Takes> {
+    within(text, |eye: &f64| eye.is_finite(), "a finite height in cells, such as 0.5")
+}
+
+fn pitch(text: &str) -> Result<Pitch, Takes> {
+    let pitch = text.parse().ok().and_then(Pitch::from_degrees);
+    pitch.ok_or(Takes("degrees from -30, down, to 30, up"))
+}
 
 /// The number of rows of cells made at a time: a multiple of the height of the dither pattern.
 const BAND: u16 = 64;
 
-/// A format for cells, row by row from the top.
-trait Writer {
-    fn write_row(&mut self, cells: &[Cell]) -> io::Result<()>;
-
-    /// Writes the part after the last row.
-    fn finish(self: Box<Self>) -> io::Result<()>;
-}
-
 /// Writes the frame that `options` request.
 pub(crate) fn run(options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
     let is_png = options.format == Format::Png && !options.explain;
-    if is_png && options.watches {
+    if is_png && options.watch {
         return Err(Error::mistake(
             "a PNG is one picture, and --watch draws several: leave one of them out",
         ));
     }
     if is_png && io::stdout().is_terminal() {
-        return Err(no_png_here("snapshot"));
+        return Err(Error::mistake(
+            "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
+             \"cellcaster snapshot --format png > picture.png\"",
+        ));
     }
-    if options.watches {
-        return watched::run(options, caster);
+    if options.watch {
+        return watch(options, caster);
     }
-    if let Some(generated) = options.generated {
-        let (world, camera) = generated_world(generated, &options)?;
-        let view = View::with_caster(caster.clone());
-        return output(Picture::new(&world, &camera, view, &options), &options)
+    if let Some(generator) = options.place.generate {
+        let (world, camera) = generated_world(generator, &options)?;
+        return output(&world, &camera, View::with_caster(caster.clone()), &options)
             .map_err(|error| Error::of_output(&error));
     }
-    draw(&level::load(options.map.as_deref())?, &options, caster)
-}
-
-/// The error of `command`, which writes a PNG, if the output is a terminal.
-pub fn no_png_here(command: &str) -> Error {
-    Error::mistake(format!(
-        "a PNG is no text, and standard output is a terminal: redirect it to a file, as in \
-         \"cellcaster {command} --format png > picture.png\""
-    ))
+    draw(&level::load(options.place.map.as_deref())?, &options, caster)
 }
 
 /// Draws the frame of `level`.
@@ -82,26 +136,26 @@ fn draw(level: &Level, options: &Snapshot, caster: &DynCaster) -> Result<(), Err
             let world = game.as_ref().map_or(&**world, Game::world);
             let camera = camera(world, options.camera, options);
             let view = View::with_caster(caster.clone());
-            output(Picture::new(world, &camera, view, options), options)
+            output(world, &camera, view, options)
         }
         Level::Space(scene) => {
             let camera = scene_camera(scene, options)?;
-            output(Picture::new(scene, &camera, View::default(), options), options)
+            output(scene, &camera, View::default(), options)
         }
     }
     .map_err(|error| Error::of_output(&error))
 }
 
 /// The part of a generated level around the camera, and the camera in it.
-fn generated_world(generated: Generated, options: &Snapshot) -> Result<(World, Camera), Error> {
+fn generated_world(generator: Generator, options: &Snapshot) -> Result<(World, Camera), Error> {
     let Some((position, heading)) = options.camera else {
-        let (_, world) = level::generate(generated, generated.start)?;
+        let (_, world) = level::generate(generator, &options.place, options.place.start)?;
         let camera = camera(&world, None, options);
         return Ok((world, camera));
     };
     let whole = position.floor();
     let site = Site { column: whole.x as i64, row: whole.y as i64 };
-    let (window, world) = level::generate(generated, Some(site))?;
+    let (window, world) = level::generate(generator, &options.place, Some(site))?;
     // This is exact: the sum of a cell's corner in the window and the fraction of the coordinate.
     let corner = window.cell(site).map_or(DVec2::ZERO, |cell| cell.center() - 0.5);
     let camera = camera(&world, Some((corner + (position - whole), heading)), options);
@@ -109,13 +163,13 @@ fn generated_world(generated: Generated, options: &Snapshot) -> Result<(World, C
 }
 
 fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) -> Camera {
-    let start = world.start_camera(options.field_of_view);
-    let camera =
-        place.and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view));
+    let start = world.start_camera(options.field_of_view());
+    let camera = place
+        .and_then(|(position, heading)| Camera::new(position, heading, options.field_of_view()));
     let camera = camera.unwrap_or(start);
     let camera = options.eye.and_then(|eye| camera.with_eye(eye)).unwrap_or(camera);
     let is_chosen = place.is_some() || options.eye.is_some();
-    if let Some(remark) = camera_remark::camera_remark(world, &camera).filter(|_| is_chosen) {
+    if let Some(remark) = camera_remark(world, &camera).filter(|_| is_chosen) {
         Error::mistake(remark).warn();
     }
     camera.with_pitch(options.pitch.unwrap_or_default())
@@ -123,44 +177,46 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
 
 /// Values that are not given, including the height, are those of the start.
 fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
-    let start = scene.start_camera(options.field_of_view);
+    let start = scene.start_camera(options.field_of_view());
     let (position, heading) =
         options.camera.unwrap_or((start.position().truncate(), start.heading));
     let position = position.extend(options.eye.unwrap_or(start.position().z));
     let elevation = options.pitch.and_then(|pitch| Elevation::from_degrees(pitch.degrees()));
-    let camera = space::Camera::new(position, heading, options.field_of_view);
+    let camera = space::Camera::new(position, heading, options.field_of_view());
     camera.map(|camera| camera.with_elevation(elevation.unwrap_or(start.elevation))).ok_or_else(
         || Error::mistake("--camera or --eye is further away than a map of bodies reaches"),
     )
 }
 
-fn output<S: Renderable>(mut picture: Picture<'_, S>, options: &Snapshot) -> io::Result<()> {
+/// Draws the view of `camera` into `scene` once, and converts it to cells band by band.
+fn output<S: Renderable>(
+    scene: &S,
+    camera: &S::Camera,
+    mut view: View<S>,
+    options: &Snapshot,
+) -> io::Result<()> {
+    let (size, look) = (options.size(), &options.look);
+    let aspect = look.cell_aspect.unwrap_or_default();
+    let widget = FirstPerson::new(scene, camera)
+        .glyphs(look.glyphs.unwrap_or_default())
+        .color_depth(look.view.depth.unwrap_or_default())
+        .cell_aspect(aspect)
+        .filter(look.filter);
     let output = io::stdout().lock();
     if options.explain {
         let mut output = BufWriter::new(output);
-        write!(output, "{}", picture.explain(size(options)))?;
+        if let Some(explanation) = widget.explain(size, &mut view) {
+            write!(output, "{explanation}")?;
+        }
         return output.flush();
     }
-    picture.draw(size(options));
-    write(&picture, options, output)
-}
-
-fn size(options: &Snapshot) -> Size {
-    options.size.unwrap_or_default().cells()
-}
-
-fn write<S: Renderable>(
-    picture: &Picture<'_, S>,
-    options: &Snapshot,
-    output: impl Write + 'static,
-) -> io::Result<()> {
-    let size = size(options);
-    let mut writer = writer(options, size, output)?;
+    widget.draw(size, &mut view);
+    let mut writer = options.format.writer(size, aspect, output)?;
     let mut band = Buffer::default();
     for first_row in (0..size.height).step_by(usize::from(BAND)) {
         let area = Rect::new(0, 0, size.width, BAND.min(size.height - first_row));
         band.resize(area);
-        picture.paint(first_row, area, &mut band);
+        widget.paint(&view, first_row, area, &mut band);
         for cells in band.content.chunks_exact(usize::from(size.width)) {
             writer.write_row(cells)?;
         }
@@ -168,25 +224,112 @@ fn write<S: Renderable>(
     writer.finish()
 }
 
-fn writer(
-    options: &Snapshot,
-    size: Size,
-    output: impl Write + 'static,
-) -> io::Result<Box<dyn Writer>> {
-    Ok(match options.format {
-        Format::Text => Box::new(text::Text::new(BufWriter::new(output))),
-        Format::Ansi => Box::new(ansi::Ansi::new(BufWriter::new(output))),
-        Format::Json => Box::new(json::Json::new(BufWriter::new(output), size)?),
-        // It has a buffer of its own, and reports no error of one behind it.
-        Format::Png => Box::new(png::Png::new(output, size, options.cell_aspect)?),
+/// A camera may be anywhere, and its picture is drawn. But a position inside a wall is probably a mistake: a sentence about a `camera` that is off the map or inside a solid cell; `None` elsewhere.
+fn camera_remark(world: &World, camera: &Camera) -> Option<String> {
+    let (grid, position) = (world.grid(), camera.position());
+    let is_on_map = (0.0..f64::from(grid.width())).contains(&position.x)
+        && (0.0..f64::from(grid.height())).contains(&position.y);
+    if !is_on_map {
+        let (columns, rows) = (grid.width(), grid.height());
+        return Some(format!("the camera is off the map, which has {columns}×{rows} cells"));
+    }
+    let cell = Cell::at(position);
+    let tile = world.tile_in(cell)?;
+    let (eye, floor, ceiling) = (camera.eye(), tile.heights.floor(), tile.heights.ceiling());
+    if tile.gaps().any(|gap| gap.holds(eye)) {
+        return None;
+    }
+    Some(if matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_)) {
+        "the camera is inside a wall".to_owned()
+    } else if eye < floor {
+        format!("the camera is below the floor: the eye at a height of {eye}, the floor at {floor}")
+    } else {
+        format!(
+            "the camera is inside what hangs overhead: the eye at a height of {eye}, the ceiling at {ceiling}"
+        )
     })
 }
 
-/// The colour that represents `color` outside a terminal; `None` for the terminal's default.
-fn rgb(color: Color) -> Option<Rgb> {
-    match color {
-        Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
-        Color::Indexed(index) => Some(palette::of_256(index)),
-        _ => None,
+/// The interval between checks for changes.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Draws the frame, and draws it again after each change, until the program is ended.
+fn watch(mut options: Snapshot, caster: &DynCaster) -> Result<(), Error> {
+    let (mut level, mut watch) = level::watch(&options.place)?;
+    let output = Output::of(&options);
+    output.show(&level, &mut options, caster)?;
+    loop {
+        thread::sleep(INTERVAL);
+        match watch.change() {
+            Some(Ok(changed)) => {
+                level = changed;
+                output.show(&level, &mut options, caster)?;
+            }
+            Some(Err(faults)) => output.report(faults)?,
+            None if output.has_another_size(&options) => {
+                output.show(&level, &mut options, caster)?;
+            }
+            None => {}
+        }
     }
+}
+
+/// The output of the pictures.
+struct Output {
+    /// Whether the output is a terminal, where all pictures have the same place.
+    is_terminal: bool,
+    /// Whether pictures have the size of the window.
+    fits_window: bool,
+}
+
+impl Output {
+    fn of(options: &Snapshot) -> Self {
+        let is_text = matches!(options.format, Format::Text | Format::Ansi) || options.explain;
+        let is_terminal = is_text && io::stdout().is_terminal();
+        Self { is_terminal, fits_window: is_terminal && options.size.is_none() }
+    }
+
+    fn show(&self, level: &Level, options: &mut Snapshot, caster: &DynCaster) -> Result<(), Error> {
+        if self.fits_window {
+            options.size = window();
+        }
+        if self.is_terminal {
+            write("\x1b[2J\x1b[H")?;
+        }
+        draw(level, options, caster)
+    }
+
+    fn has_another_size(&self, options: &Snapshot) -> bool {
+        self.fits_window && window() != options.size
+    }
+
+    fn report(&self, faults: Faults) -> Result<(), Error> {
+        if !self.is_terminal || !io::stderr().is_terminal() {
+            Error::from(faults).warn();
+            return Ok(());
+        }
+        // At the top of the picture. The cursor stays below the picture.
+        write("\x1b7\x1b[H")?;
+        let report = printable_lines(&faults.to_string());
+        let room = window().map_or(10, |size| usize::from(size.height) / 2).max(1);
+        for line in report.lines().take(room) {
+            _ = write!(io::stderr(), "\x1b[2K{line}\r\n");
+        }
+        if report.lines().count() > room {
+            _ = write!(io::stderr(), "\x1b[2K{}\r\n", printable(&faults.summary()));
+        }
+        write("\x1b8")
+    }
+}
+
+/// The size of the window, less one row for the cursor.
+fn window() -> Option<Size> {
+    let (columns, rows) = crossterm::terminal::size().ok()?;
+    Some(Size::new(columns.clamp(1, 4096), rows.clamp(2, 4096) - 1))
+}
+
+fn write(text: &str) -> Result<(), Error> {
+    let mut output = io::stdout().lock();
+    let written = output.write_all(text.as_bytes()).and_then(|()| output.flush());
+    written.map_err(|error| Error::of_output(&error))
 }

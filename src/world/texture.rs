@@ -5,7 +5,7 @@
 //! 1983), each half the size of the one before: distant surfaces use a level whose texels are about
 //! as large as pixels.
 //!
-//! A built-in texture is painted when a texel is first read, and the mip levels are made when one of
+//! A built-in texture is decoded when a texel is first read, and the mip levels are made when one of
 //! them is. So a level begins without the textures that it does not show, and rays without any.
 //! Rejected: making all of them with the world, which took nine tenths of the instructions of a first
 //! frame.

@@ -8,7 +8,6 @@
 mod areas;
 mod features;
 mod fixed_point;
-mod instructions;
 mod motion;
 mod pictures;
 mod ray_tables;
@@ -17,18 +16,15 @@ mod reference;
 mod report;
 mod sets;
 mod table;
-mod timing;
 mod trial;
 
 pub use areas::shimmer;
-pub use instructions::{RAYS, SEED};
 pub use motion::Integrator;
 pub use pictures::{Gallery, Reference};
-pub use ray_tables::{all_methods, is_measured};
+pub use ray_tables::{RAYS, SEED, all_methods, is_measured};
 pub use rays::{adversarial_ray, random_ray};
 pub use reference::{Rational, Truth, cast};
 pub use report::{Part, Plan, RaySource, report, set_names};
 pub use sets::{Set, ordinary, plain, sets};
-pub use table::{Column, Diagram, Row, Table, Value};
-pub use timing::Timing;
+pub use table::{Column, Diagram, Row, Table, Timing, Value};
 pub use trial::{Errors, Trial};

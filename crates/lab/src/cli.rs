@@ -1,24 +1,56 @@
 //! The command line of the laboratory.
 
 mod accuracy;
-mod arguments;
 mod bench;
 mod plot;
+mod table;
 mod wire;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use arguments::{Arguments, Command};
-use cellcaster::cli::{Error, exit_code, parse, run_with_caster};
+use cellcaster::cli::{Error, exit_code, parse, run_with_casters};
+use clap::{Args, Parser, Subcommand};
 
 use crate::casters::Method;
 #[cfg(target_os = "linux")]
 use crate::load;
 
+/// Measurements of Cellcaster
+#[derive(Debug, Parser)]
+#[command(name = "cellcaster-lab", version, max_term_width = 80)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Accuracy(accuracy::Accuracy),
+    Bench(bench::Bench),
+    Wire(wire::Wire),
+    #[cfg(target_os = "linux")]
+    Load(load::Load),
+    /// The game's command of this name, with a caster to compare
+    #[command(disable_help_flag = true)]
+    Cast(Forwarded),
+    /// The game's command of this name, with a caster to compare
+    #[command(disable_help_flag = true)]
+    Snapshot(Forwarded),
+    /// The game's command of this name, with a caster to compare
+    #[command(disable_help_flag = true)]
+    Play(Forwarded),
+}
+
+/// The arguments of a command that the game has, too.
+#[derive(Args, Debug)]
+struct Forwarded {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<OsString>,
+}
+
 /// Runs the command that `words` request, and returns the exit status. The first word is the program's own name.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let words = caster_last(words.into_iter().collect());
     let command = match parse::parse::<Arguments>(words) {
         Ok(Some(arguments)) => arguments.command,
         Ok(None) => return ExitCode::SUCCESS,
@@ -30,67 +62,18 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Wire(options) => wire::run(&options),
         #[cfg(target_os = "linux")]
         Command::Load(options) => load::run(&options),
-        Command::Cast(words) => return forward("cast", words.words),
-        Command::Snapshot(words) => return forward("snapshot", words.words),
-        Command::Play(words) => return forward("play", words.words),
+        Command::Cast(forwarded) => return forward("cast", forwarded),
+        Command::Snapshot(forwarded) => return forward("snapshot", forwarded),
+        Command::Play(forwarded) => return forward("play", forwarded),
     })
 }
 
-/// The words with the command first, as in `--caster dda snapshot`, and `play` where none is named.
-fn caster_last(mut words: Vec<OsString>) -> Vec<OsString> {
-    let is_caster =
-        |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--caster"));
-    if !words.get(1).is_some_and(is_caster) {
-        return words;
-    }
-    let count = if words[1] == "--caster" { 2 } else { 1 };
-    let caster: Vec<OsString> = words.drain(1..words.len().min(1 + count)).collect();
-    let is_command = |word: &OsString| ["cast", "snapshot", "play"].iter().any(|name| word == name);
-    if !words.get(1).is_some_and(is_command) {
-        words.insert(1, "play".into());
-    }
-    words.extend(caster);
-    words
-}
-
-/// Runs a command of the game with the caster that the words name.
-fn forward(command: &str, words: Vec<OsString>) -> ExitCode {
-    let (method, words) = match without_caster(words) {
-        Ok(parts) => parts,
-        Err(error) => return exit_code(Err(error)),
-    };
-    let words = ["cellcaster", command].into_iter().map(OsString::from).chain(words);
-    run_with_caster(words, &method.caster())
-}
-
-/// The method that the last `--caster` names, and the other words.
-fn without_caster(words: Vec<OsString>) -> Result<(Method, Vec<OsString>), Error> {
-    let (mut method, mut others) = (Method::default(), Vec::new());
-    let mut words = words.into_iter();
-    while let Some(word) = words.next() {
-        let value = match word.to_str() {
-            Some("--") => {
-                others.push(word);
-                others.extend(words);
-                break;
-            }
-            Some("--caster") => words.next().unwrap_or_default(),
-            Some(text) => {
-                if let Some(value) = text.strip_prefix("--caster=") {
-                    value.into()
-                } else {
-                    others.push(word);
-                    continue;
-                }
-            }
-            None => {
-                others.push(word);
-                continue;
-            }
-        };
-        let value = value.to_string_lossy();
-        method =
-            value.parse().map_err(|error| Error::mistake(format!("--caster {value}: {error}")))?;
-    }
-    Ok((method, others))
+/// Runs a command of the game with the casters of the laboratory.
+fn forward(command: &str, forwarded: Forwarded) -> ExitCode {
+    let words = ["cellcaster", command].into_iter().map(OsString::from).chain(forwarded.words);
+    run_with_casters(words, |name| {
+        let method: Method =
+            name.parse().map_err(|error| Error::mistake(format!("--caster {name}: {error}")))?;
+        Ok(method.caster())
+    })
 }

@@ -27,11 +27,9 @@ mod client;
 #[path = "../../server/tests/support/lamp.rs"]
 mod lamp;
 mod plan;
-mod process;
 mod report;
 mod server;
 mod soak;
-mod sshd;
 #[path = "../../server/tests/support/wanderer.rs"]
 mod wanderer;
 
@@ -45,9 +43,8 @@ use tokio::time::sleep;
 
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
-use process::Usage;
 use report::{Report, Tally};
-use server::{ServerProcess, Setup};
+use server::{ServerProcess, Setup, Usage, between, pin, start_sshd};
 
 /// The time between two connections.
 const PAUSE: Duration = Duration::from_millis(25);
@@ -74,7 +71,7 @@ fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
     }
     let servers = start(plan)?;
     if servers.len() == 1 {
-        process::pin(std::process::id(), 1);
+        pin(std::process::id(), 1);
     }
     let runtime = Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(play(plan, &servers))
@@ -82,7 +79,7 @@ fn measure(plan: &Load) -> Result<(), Box<dyn std::error::Error>> {
 
 fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> {
     if plan.uses_sshd {
-        return Ok(vec![sshd::start(&plan.program())?]);
+        return Ok(vec![start_sshd(&plan.program())?]);
     }
     let (program, options) = (plan.program(), plan.server_options());
     let setup = |number| Setup {
@@ -129,8 +126,8 @@ async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std:
         plan.sessions,
         megabytes(&after)
     );
-    Report::new(&tallies, plan.seconds, &process::between(&before, &after)).print();
-    plan.print_others(&process::between(&others_before, &others_after));
+    Report::new(&tallies, plan.seconds, &between(&before, &after)).print();
+    plan.print_others(&between(&others_before, &others_after));
     Ok(())
 }
 

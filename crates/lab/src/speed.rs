@@ -8,17 +8,16 @@
 //! pixels.
 
 mod classic;
-mod crowd;
 mod drawing;
-mod ground;
 mod growth;
 
 pub use classic::{Classic, ClassicFloor};
-pub use crowd::Vista;
 pub(crate) use drawing::median;
 pub use drawing::{DrawingRow, SIZES, Scene, measure_drawing};
-pub use ground::{Ground, crossing_rays};
-pub use growth::{CROWDS, CrowdRow, Growth, MapRow, Measured, SIDES, USUAL_SIDE, measure_growth};
+pub use growth::{
+    CROWDS, CrowdRow, Ground, Growth, MapRow, Measured, SIDES, USUAL_SIDE, Vista, crossing_rays,
+    measure_growth,
+};
 
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;

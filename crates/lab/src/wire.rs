@@ -10,10 +10,7 @@
 //!
 //! The first frame paints everything with any encoder, and is reported separately.
 
-mod compression;
-mod difference;
 mod encoder;
-mod encoder_run;
 mod glyph_sets;
 mod palettes;
 mod pipeline;
@@ -29,10 +26,9 @@ use cellcaster::app::Replay;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::terminal::Fidelity;
-use encoder::{Encoder, Extensions, Stock, Writer};
-use encoder_run::EncoderRun;
+use encoder::{Encoder, EncoderRun, Extensions, Stock, Writer};
 
-pub use encoder_run::{Bytes, Compressed, Part, Seen};
+pub use encoder::{Bytes, Compressed, EncoderReport, Part, Seen};
 pub use glyph_sets::{GlyphRow, report_glyphs};
 pub use palettes::{PalettePlan, PaletteRow, report_palettes};
 pub use pipeline::{PipelineRow, measure_pipeline};
@@ -60,20 +56,6 @@ pub struct Report {
     /// Ratatui's encoder, then Cellcaster's at each fidelity, and then Cellcaster's at each
     /// fidelity with repeated characters and a defined palette.
     pub encoders: Vec<EncoderReport>,
-}
-
-/// The results of one encoder.
-#[derive(Clone, Debug)]
-pub struct EncoderReport {
-    /// The name: `stock`, a fidelity, or a fidelity and `+`, which means with repeated characters
-    /// and a defined palette.
-    pub name: String,
-    /// The size of the first frame, in bytes.
-    pub first_frame: usize,
-    /// The named sections of the script, in order. Sections with the same name are one.
-    pub sections: Vec<Part>,
-    /// All frames but the first.
-    pub all: Part,
 }
 
 /// Plays the script of `plan` and measures.

@@ -1,31 +1,18 @@
-//! The built-in sprites, drawn with characters or computed when one is first shown.
+//! The built-in sprites: sheets of `maps/art`.
 //!
-//! They have few texels, a dark outline, and light from the upper left, so that they can be told
-//! apart at a height of ten pixels. A drawing is text, so that changes to it can be reviewed,
-//! unlike those of a picture file.
+//! They have few texels, a dark outline, and light from the upper left, so that they can be told apart at a
+//! height of ten pixels.
 
-mod figure;
-mod finds;
-mod fixtures;
 mod frame;
-mod furniture;
-mod guard;
-mod model;
 mod player;
-mod portal;
-mod stores;
-mod traveller;
-mod treasure;
-mod weapons;
-
-use std::num::NonZeroU32;
 
 use super::{Anchor, Facings, FrameTime, Sprite, SpriteHeight};
 use crate::color::Rgb;
-use crate::world::{GuardKind, Lamp, Light, Reach, Texture};
+use crate::world::art::{Art, art};
+use crate::world::{Lamp, Light, Reach};
 pub use frame::{CheckpointFrame, GuardFrame, LeverFrame, PlayerFrame, SpikesFrame};
-pub use traveller::PlayerColor;
-pub(crate) use traveller::player;
+pub use player::PlayerColor;
+pub(crate) use player::player;
 
 /// The names that maps may use for ornaments. Games also use sprites of guards, of finds and of what
 /// flies, which [`named`] knows.
@@ -45,208 +32,136 @@ pub(crate) const PLAYER_HEIGHT: f64 = 0.68;
 
 /// The built-in sprite of that name; `None` if there is none.
 pub fn named(name: &str) -> Option<Sprite> {
-    let design = match name {
-        "bolt" => weapons::bolt(),
-        "checkpoint" => fixtures::checkpoint(),
-        "coins" => finds::coins(),
-        "crown" => finds::crown(),
-        "cup" => finds::cup(),
-        "dart" => weapons::dart(),
-        "darts" => weapons::darts(),
-        "flask" => weapons::flask(),
-        "flasks" => weapons::flasks(),
-        "heart" => finds::heart(),
-        "lever" => fixtures::lever(),
-        "note" => finds::note(),
-        "pebble" => finds::pebble(),
-        "pebbles" => finds::pebbles(),
-        "smoke" => weapons::smoke(),
-        "spikes" => fixtures::spikes(),
-        "star" => weapons::star(),
-        "banner" => stores::banner(),
-        "books" => stores::books(),
-        "brazier" => stores::brazier(),
-        "chest" => stores::chest(),
-        "crate" => stores::crate_of_boards(),
-        "barrel" => furniture::barrel(),
-        "bones" => treasure::bones(),
-        "column" => furniture::column(),
-        "lamp" => furniture::lamp(),
-        "plant" => furniture::plant(),
-        "statue" => figure::statue(),
-        "table" => furniture::table(),
-        "torch" => furniture::torch(),
-        EXIT => portal::portal(),
-        KEY => treasure::key(),
-        PLAYER => player::player(),
-        _ => guard::guard(GuardKind::ALL.into_iter().find(|kind| kind.name() == name)?),
-    };
-    design.sprite()
+    DESIGNS.iter().find(|design| design.art.name == name)?.recolored(|color| color)
 }
 
-/// The definition of a sprite.
+/// All of them but the players.
+const DESIGNS: &[Design] = &[
+    Design::figure(art!("archer"), 0.82, 8),
+    Design { anchor: Anchor::Ceiling, ..Design::standing(art!("banner"), 0.7) },
+    Design { blocks: true, ..Design::standing(art!("barrel"), 0.58) },
+    Design { facings: Facings::Four, ..Design::standing(art!("bolt"), 0.14) },
+    Design::standing(art!("bones"), 0.26),
+    Design::standing(art!("books"), 0.2),
+    Design {
+        frames: 4,
+        animated: 3,
+        seconds: 0.15,
+        blocks: true,
+        shines: 0.7,
+        ..Design::standing(art!("brazier"), 0.6)
+    },
+    Design { frames: 2, animated: 1, ..Design::standing(art!("checkpoint"), 0.8) },
+    Design { blocks: true, ..Design::standing(art!("chest"), 0.38) },
+    Design::standing(art!("coins"), 0.15),
+    Design { blocks: true, ..Design::standing(art!("column"), 1.0) },
+    Design { blocks: true, ..Design::standing(art!("crate"), 0.55) },
+    Design::standing(art!("crown"), 0.3),
+    Design::standing(art!("cup"), 0.26),
+    Design { facings: Facings::Four, ..Design::standing(art!("dart"), 0.08) },
+    Design::standing(art!("darts"), 0.24),
+    Design::standing(art!("flask"), 0.15),
+    Design::standing(art!("flasks"), 0.24),
+    Design::standing(art!("heart"), 0.26),
+    Design::figure(art!("hound"), 0.48, 8),
+    Design { frames: 4, animated: 4, seconds: 0.35, ..Design::standing(art!("key"), 0.3) },
+    Design {
+        frames: 3,
+        animated: 2,
+        seconds: 0.25,
+        anchor: Anchor::Ceiling,
+        shines: 0.7,
+        ..Design::standing(art!("lamp"), 0.42)
+    },
+    Design { shines: 0.7, ..Design::figure(art!("lantern"), 0.9, 8) },
+    Design { frames: 2, animated: 1, ..Design::standing(art!("lever"), 0.5) },
+    Design::figure(art!("listener"), 0.9, 8),
+    Design::standing(art!("note"), 0.3),
+    Design::standing(art!("pebble"), 0.1),
+    Design::standing(art!("pebbles"), 0.16),
+    Design::standing(art!("plant"), 0.6),
+    Design { facings: Facings::Four, ..Design::standing(art!("player"), 0.68) },
+    Design {
+        frames: 4,
+        animated: 4,
+        seconds: 0.15,
+        shines: 0.3,
+        ..Design::standing(art!("portal"), 0.9)
+    },
+    Design { frames: 4, animated: 4, seconds: 0.25, ..Design::standing(art!("smoke"), 0.9) },
+    Design { frames: 3, animated: 1, ..Design::standing(art!("spikes"), 0.5) },
+    Design { frames: 2, animated: 2, seconds: 0.3, ..Design::standing(art!("star"), 0.2) },
+    Design { facings: Facings::Four, blocks: true, ..Design::standing(art!("statue"), 0.85) },
+    Design { blocks: true, ..Design::standing(art!("table"), 0.42) },
+    Design {
+        frames: 4,
+        animated: 3,
+        seconds: 0.15,
+        shines: 0.6,
+        ..Design::standing(art!("torch"), 0.72)
+    },
+    Design::figure(art!("warden"), 1.0, 8),
+];
+
+/// A player as others see them, in the colour of the dye.
+const TRAVELLER: Design = Design::figure(art!("traveller"), 0.76, 6);
+
+/// A sheet, and how a world shows it.
 struct Design {
-    pictures: Vec<Texture>,
+    art: Art,
+    frames: u32,
     facings: Facings,
     /// The time of each frame.
     seconds: f64,
-    /// The number of frames that time goes through; `None` for all.
-    animated: Option<usize>,
+    /// The number of frames that time goes through.
+    animated: usize,
     anchor: Anchor,
     /// In cells.
     height: f64,
     blocks: bool,
-    /// What it adds to the light in its cell, from 0 to 1.
+    /// The light that it adds in its cell, from 0 to 1.
     shines: f64,
 }
 
 impl Design {
-    /// The sprite; `None` if the pictures are not as many as their facings need.
-    fn sprite(self) -> Option<Sprite> {
-        let Self { pictures, facings, seconds, animated, anchor, height, blocks, shines } = self;
-        let mut sprite = Sprite::new(pictures, facings)?.with_frame_time(FrameTime::new(seconds)?);
-        if let Some(animated) = animated {
-            sprite = sprite.with_animated_frames(animated);
+    /// A sheet of one picture that stands on the floor and does not block.
+    const fn standing(art: Art, height: f64) -> Self {
+        Self {
+            art,
+            frames: 1,
+            facings: Facings::One,
+            seconds: 0.2,
+            animated: 1,
+            anchor: Anchor::Floor,
+            height,
+            blocks: false,
+            shines: 0.0,
         }
-        sprite.anchor = anchor;
-        sprite.height = SpriteHeight::new(height)?;
-        sprite.blocks = blocks;
-        sprite.lamp = Light::new(shines)
+    }
+
+    /// A sheet of a body from eight sides, with that number of poses.
+    const fn figure(art: Art, height: f64, poses: u32) -> Self {
+        Self { frames: poses, facings: Facings::Eight, ..Self::standing(art, height) }
+    }
+
+    /// The sprite, with each colour replaced by `color` of it.
+    fn recolored(
+        &self,
+        color: impl Fn(Rgb) -> Rgb + Copy + Send + Sync + 'static,
+    ) -> Option<Sprite> {
+        let pictures = self.art.pictures(self.frames, self.facings.count(), color);
+        let mut sprite = Sprite::new(pictures, self.facings)?
+            .with_frame_time(FrameTime::new(self.seconds)?)
+            .with_animated_frames(self.animated);
+        sprite.anchor = self.anchor;
+        sprite.height = SpriteHeight::new(self.height)?;
+        sprite.blocks = self.blocks;
+        sprite.lamp = Light::new(self.shines)
             .filter(|&light| light != Light::NONE)
             .map(|light| Lamp { light, reach: Reach::default() });
         Some(sprite)
     }
-
-    /// Pictures with one facing that stand on the floor and do not block.
-    fn standing(height: f64, pictures: Vec<Texture>) -> Self {
-        let (facings, anchor) = (Facings::One, Anchor::Floor);
-        let (animated, blocks, shines) = (None, false, 0.0);
-        Self { pictures, facings, seconds: 0.2, animated, anchor, height, blocks, shines }
-    }
 }
-
-/// The colours of characters; all other characters are transparent.
-type Palette = [(char, Rgb)];
-
-/// The picture that lines of characters draw, all of one length.
-fn drawn(lines: &[&'static str], palette: &'static Palette) -> Texture {
-    character_picture(lines, palette, false)
-}
-
-/// The mirror image of a drawing.
-fn mirrored(lines: &[&'static str], palette: &'static Palette) -> Texture {
-    character_picture(lines, palette, true)
-}
-
-fn character_picture(
-    lines: &[&'static str],
-    palette: &'static Palette,
-    is_mirrored: bool,
-) -> Texture {
-    let (width, height) = (lines[0].chars().count(), lines.len());
-    let lines = lines.to_vec();
-    painted_by(width as u32, height as u32, move || {
-        let rows: Vec<Vec<char>> = lines.iter().map(|line| line.chars().collect()).collect();
-        move |x, y| {
-            let (x, row) = (x as usize, &rows[y as usize]);
-            let character = row.get(if is_mirrored { row.len() - 1 - x } else { x })?;
-            palette.iter().find(|(known, _)| known == character).map(|&(_, color)| color)
-        }
-    })
-}
-
-/// The picture whose texel at `(x, y)` is `paint(x, y)`, transparent where that is `None`.
-fn painted(
-    width: u32,
-    height: u32,
-    paint: impl Fn(i32, i32) -> Option<Rgb> + Clone + Send + Sync + 'static,
-) -> Texture {
-    painted_by(width, height, move || paint.clone())
-}
-
-/// The picture as [`painted`] by the function that `painter` returns when a texel is first read.
-fn painted_by<P: Fn(i32, i32) -> Option<Rgb>>(
-    width: u32,
-    height: u32,
-    painter: impl Fn() -> P + Send + Sync + 'static,
-) -> Texture {
-    const CLEAR: (Rgb, u8) = (Rgb::BLACK, 0);
-    let side = |side| NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN);
-    Texture::on_demand(side(width), side(height), true, move || {
-        let paint = painter();
-        move |x, y| paint(x as i32, y as i32).map_or(CLEAR, |color| (color, u8::MAX))
-    })
-}
-
-/// The colour of outlines.
-const INK: Rgb = Rgb::new(0x1c, 0x18, 0x20);
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The sprites that only a game uses, but for guards.
-    const OF_GAMES: [&str; 19] = [
-        EXIT,
-        KEY,
-        "bolt",
-        "checkpoint",
-        "coins",
-        "crown",
-        "cup",
-        "dart",
-        "darts",
-        "flask",
-        "flasks",
-        "heart",
-        "lever",
-        "note",
-        "pebble",
-        "pebbles",
-        "smoke",
-        "spikes",
-        "star",
-    ];
-
-    fn all() -> impl Iterator<Item = (&'static str, Sprite)> {
-        let names = NAMES.iter().copied().chain(OF_GAMES);
-        names.map(|name| (name, named(name).unwrap_or_else(|| panic!("{name} is drawn"))))
-    }
-
-    #[test]
-    fn every_picture_shows_something_and_leaves_something_clear() {
-        for (name, sprite) in all() {
-            for picture in sprite.pictures.iter() {
-                let texels = (0..picture.width())
-                    .flat_map(|x| (0..picture.height()).map(move |y| picture.texel(x, y).1));
-                let shown = texels.filter(|&alpha| alpha > 0).count() as u32;
-                let area = picture.width() * picture.height();
-                assert!((area / 8..area).contains(&shown), "{name}: {shown} of {area}");
-            }
-        }
-        assert_eq!(named("dragon"), None);
-    }
-
-    #[test]
-    fn frames_that_a_game_selects_are_not_animated() {
-        let frames = |name| {
-            let sprite = named(name).unwrap();
-            (sprite.animated_frames(), sprite.frames())
-        };
-        assert_eq!((frames("lamp"), frames("torch")), ((2, 3), (3, 4)));
-        assert_eq!((frames("checkpoint"), frames("lever")), ((1, 2), (1, 2)));
-        assert_eq!((frames("spikes"), frames("smoke")), ((1, 3), (4, 4)));
-    }
-
-    #[test]
-    fn all_pictures_of_a_sprite_are_of_one_size_and_differ() {
-        for (name, sprite) in all() {
-            let first = &sprite.pictures[0];
-            for (index, picture) in sprite.pictures.iter().enumerate() {
-                let size = (picture.width(), picture.height());
-                assert_eq!(size, (first.width(), first.height()), "{name}");
-                assert!(!sprite.pictures[..index].contains(picture), "{name}: {index}");
-            }
-        }
-    }
-}
+mod tests;

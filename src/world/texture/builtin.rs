@@ -1,108 +1,61 @@
-//! The built-in textures, computed when one is first shown.
+//! The built-in textures: sheets of `maps/art`.
 //!
-//! All are 64 texels square and lit from the upper left. Each is a function from a texel's position
-//! to its colour, in integers only, so that it is the same on every machine. They tile horizontally
-//! without a seam, and vertically except for `plaster`, which has a rail and a skirting board, and
-//! `fence`, which stands on the ground. `grate` and `fence` have holes.
+//! All are 64 texels square and lit from the upper left. They tile horizontally without a seam, and
+//! vertically except for `plaster`, which has a rail and a skirting board, and `fence`, which stands on the
+//! ground. `grate` and `fence` have holes.
 //!
-//! Features are large and noise is faint: a wall is rarely more than thirty pixels high in a
-//! terminal, where noise shimmers and costs bytes. Compiled-in picture files were refused: they
-//! would be larger than this code, and changes to them could not be reviewed.
-
-mod block;
-mod facing;
-mod hedge;
-mod masonry;
-mod metal;
-mod noise;
-mod panorama;
-mod shade;
-mod timber;
-
-use std::num::NonZeroU32;
+//! Features are large and noise is faint: a wall is rarely more than thirty pixels high in a terminal, where
+//! noise shimmers and costs bytes.
 
 use super::Texture;
-use crate::color::Rgb;
+use crate::world::art::{Art, art};
 
 /// The names of the built-in textures.
 pub const NAMES: &[&str] = &names();
 
 /// The built-in texture `name`; `None` if there is none.
 pub fn named(name: &str) -> Option<Texture> {
-    let (_, painter) = PAINTERS.iter().find(|(known, _)| *known == name)?;
-    Some(match *painter {
-        Painter::Solid(paint) => Texture::on_demand(SIDE_LENGTH, SIDE_LENGTH, false, move || {
-            move |x, y| (paint(x as i32, y as i32), OPAQUE)
-        }),
-        Painter::WithHoles(paint) => {
-            Texture::on_demand(SIDE_LENGTH, SIDE_LENGTH, true, move || {
-                move |x, y| paint(x as i32, y as i32).map_or((HOLE, CLEAR), |color| (color, OPAQUE))
-            })
-        }
-    })
+    let art = TEXTURES.iter().find(|art| art.name == name)?;
+    Some(art.texture(WITH_HOLES.contains(&name)))
 }
 
 /// The names of the built-in panoramas.
-pub const PANORAMAS: &[&str] = &["hills"];
+pub const PANORAMAS: &[&str] = &[HILLS.name];
 
 /// The built-in panorama `name`; `None` if there is none.
 pub fn panorama(name: &str) -> Option<Texture> {
-    const WIDTH: NonZeroU32 = NonZeroU32::new(panorama::WIDTH as u32).expect("it is not 0");
-    const HEIGHT: NonZeroU32 = NonZeroU32::new(panorama::HEIGHT as u32).expect("it is not 0");
-    (name == PANORAMAS[0]).then(|| {
-        Texture::on_demand(WIDTH, HEIGHT, false, || {
-            let paint = panorama::hills();
-            move |x, y| (paint(x as i32, y as i32), OPAQUE)
-        })
-    })
+    (name == HILLS.name).then(|| HILLS.texture(false))
 }
 
-/// The number of texels along each side.
-const SIDE: i32 = SIDE_LENGTH.get() as i32;
-const SIDE_LENGTH: NonZeroU32 = NonZeroU32::new(64).expect("64 is not 0");
-
-/// The function from a texel `(x, y)`, both from 0 up to [`SIDE`], to its colour.
-#[derive(Clone, Copy)]
-enum Painter {
-    Solid(fn(i32, i32) -> Rgb),
-    /// A texture with holes, for which the function returns `None`.
-    WithHoles(fn(i32, i32) -> Option<Rgb>),
-}
-
-/// The colour of holes if a wall has such a texture.
-const HOLE: Rgb = Rgb::new(0x1c, 0x1e, 0x22);
-const CLEAR: u8 = 0;
-const OPAQUE: u8 = u8::MAX;
-
-const PAINTERS: [(&str, Painter); 16] = [
-    ("brick", Painter::Solid(masonry::brick)),
-    ("stone", Painter::Solid(masonry::stone)),
-    ("moss", Painter::Solid(masonry::moss)),
-    ("wood", Painter::Solid(timber::wood)),
-    ("oak", Painter::Solid(timber::oak)),
-    ("metal", Painter::Solid(metal::metal)),
-    ("tile", Painter::Solid(facing::tile)),
-    ("flagstone", Painter::Solid(masonry::flagstone)),
-    ("plaster", Painter::Solid(facing::plaster)),
-    ("sandstone", Painter::Solid(masonry::sandstone)),
-    ("hedge", Painter::Solid(hedge::hedge)),
-    ("marble", Painter::Solid(facing::marble)),
-    ("jamb", Painter::Solid(metal::jamb)),
-    ("grate", Painter::WithHoles(metal::grate)),
-    ("fence", Painter::WithHoles(timber::fence)),
-    ("coffer", Painter::Solid(facing::coffer)),
+const TEXTURES: [Art; 16] = [
+    art!("brick"),
+    art!("stone"),
+    art!("moss"),
+    art!("wood"),
+    art!("oak"),
+    art!("metal"),
+    art!("tile"),
+    art!("flagstone"),
+    art!("plaster"),
+    art!("sandstone"),
+    art!("hedge"),
+    art!("marble"),
+    art!("jamb"),
+    art!("grate"),
+    art!("fence"),
+    art!("coffer"),
 ];
 
-/// The difference of two positions, the shorter way around the texture.
-fn wrapped(difference: i32) -> i32 {
-    (difference + SIDE / 2).rem_euclid(SIDE) - SIDE / 2
-}
+const WITH_HOLES: [&str; 2] = ["grate", "fence"];
 
-const fn names() -> [&'static str; PAINTERS.len()] {
-    let mut names = [""; PAINTERS.len()];
+/// Three ranges of hills under a morning sky, 512 texels around and 64 from the horizon up.
+const HILLS: Art = art!("hills");
+
+const fn names() -> [&'static str; TEXTURES.len()] {
+    let mut names = [""; TEXTURES.len()];
     let mut index = 0;
     while index < names.len() {
-        names[index] = PAINTERS[index].0;
+        names[index] = TEXTURES[index].name;
         index += 1;
     }
     names
@@ -114,6 +67,10 @@ mod tests {
     use std::fmt::Write;
 
     use super::*;
+    use crate::color::Rgb;
+    use crate::rng::hash;
+
+    const SIDE: i32 = 64;
 
     /// The texels of the texture `name`, column by column.
     fn columns(name: &str) -> Vec<Vec<Rgb>> {
@@ -209,7 +166,7 @@ mod tests {
         for name in NAMES {
             let texture = named(name).unwrap();
             let texels = || (0..64).flat_map(|x| (0..64).map(move |y| (x, y)));
-            let holes = texels().filter(|&(x, y)| texture.texel(x, y).1 == CLEAR).count();
+            let holes = texels().filter(|&(x, y)| texture.texel(x, y).1 == 0).count();
             if ["grate", "fence"].contains(name) {
                 assert!((64 * 64 / 3..64 * 64 * 3 / 4).contains(&holes), "{name}: {holes}");
                 assert!(texture.has_alpha(), "{name}");
@@ -220,33 +177,39 @@ mod tests {
     }
 
     #[test]
-    fn textures_are_the_same_on_every_machine() {
+    fn every_texel_is_as_painted() {
         let mut list = String::new();
-        for name in NAMES {
-            let columns = columns(name);
-            let fingerprint = columns.iter().flatten().fold(0, |sum, texel| {
-                let [red, green, blue] = texel.channels().map(i32::from);
-                noise::hash(red << 16 | green << 8 | blue, 0, sum)
-            });
-            writeln!(list, "{name:9} {} {fingerprint:08x}", named(name).unwrap().mean()).unwrap();
+        for name in NAMES.iter().chain(PANORAMAS) {
+            let texture = named(name).or_else(|| panorama(name)).unwrap();
+            let texels =
+                (0..texture.width()).flat_map(|x| (0..texture.height()).map(move |y| (x, y)));
+            let print = hash(
+                0,
+                texels.map(|(x, y)| {
+                    let (color, alpha) = texture.texel(x, y);
+                    u64::from(u32::from_be_bytes([color.red(), color.green(), color.blue(), alpha]))
+                }),
+            );
+            writeln!(list, "{name:9} {} {print:016x}", texture.mean()).unwrap();
         }
         insta::assert_snapshot!(list, @r"
-        brick     #a4614c fc4b38eb
-        stone     #787b84 2057e56f
-        moss      #607454 5c82026b
-        wood      #855b36 1ed0e4e3
-        oak       #926231 34f64b78
-        metal     #636e7a a98a0733
-        tile      #789590 8701390b
-        flagstone #7b6f61 98697f34
-        plaster   #bba88c d8e05a63
-        sandstone #ba9661 e42eb514
-        hedge     #447535 0f990761
-        marble    #c1c4ca ed3037a3
-        jamb      #75767a bf2e1ee8
-        grate     #56585c bce9d347
-        fence     #6a5c47 bfff9378
-        coffer    #a39884 12742fe1
+        brick     #a4614c c8b9508f43b5652a
+        stone     #787b84 c6098b938bfa14d5
+        moss      #607454 414ed3c702ca3819
+        wood      #855b36 6ad9a9106206a536
+        oak       #926231 be913f1172cd03f4
+        metal     #636e7a a250a28157a705f3
+        tile      #789590 03ac29c5d8b3684d
+        flagstone #7b6f61 54cad51b0ffe02e7
+        plaster   #bba88c d346000bfb851299
+        sandstone #ba9661 f3f11a2fc70d3f19
+        hedge     #447535 55406f1161c05273
+        marble    #c1c4ca a4ff234cbc0ebb81
+        jamb      #75767a 1a2b91bb0efb0410
+        grate     #56585c 978e68d5fc596def
+        fence     #6a5c47 caec2b706ec57302
+        coffer    #a39884 bdf5aa933325c8c2
+        hills     #90a8bb 72f4b0c000fadcdd
         ");
     }
 }

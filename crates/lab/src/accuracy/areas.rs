@@ -13,26 +13,24 @@
 //! one plane of walls. *Crawl* is the change from frame to frame that the truth does not have: the
 //! mean of |change shown − true change| while the camera turns and walks slowly.
 
-mod cells;
-mod differences;
-#[cfg(test)]
-mod gains;
-mod truth;
-
+use std::num::NonZeroU32;
 use std::time::Instant;
 
-use ratatui::layout::Size;
+use font8x8::{BASIC_FONTS, BLOCK_FONTS, UnicodeFonts};
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::{Rect, Size};
+use ratatui::style::Color;
+use ratatui::widgets::StatefulWidget;
 
 use super::pictures::cameras;
-use super::table::{Column, Diagram, Row, Table, Value};
-use super::timing::time_in_rounds;
-use cellcaster::color::palette::ColorDepth;
-use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::tui::GlyphSet;
+use super::table::{Column, Diagram, Row, Table, Value, time_in_rounds};
+use cellcaster::cast::Side;
+use cellcaster::color::Rgb;
+use cellcaster::color::palette::{ColorDepth, of_256};
+use cellcaster::color::srgb::{encoded, linear};
+use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surface};
+use cellcaster::tui::{FirstPerson, GlyphSet, View};
 use cellcaster::world::{Camera, World};
-use cells::Window;
-use differences::Differences;
-use truth::Truth;
 
 /// What a window shows a picture by.
 #[derive(Clone, Copy, Debug)]
@@ -231,10 +229,212 @@ pub fn shimmer(world: &World, camera: &Camera, size: FrameSize, filter: Filter) 
     sum as f64 / count.max(1) as f64
 }
 
+// What the cells of a window look like.
+
+/// A window that shows pictures.
+struct Window {
+    glyphs: GlyphSet,
+    depth: ColorDepth,
+    filter: Filter,
+    view: View,
+    buffer: Buffer,
+}
+
+impl Window {
+    /// A window of `size` cells.
+    fn new(size: Size, glyphs: GlyphSet, depth: ColorDepth, filter: Filter) -> Self {
+        let buffer = Buffer::empty(Rect::from(size));
+        Self { glyphs, depth, filter, view: View::default(), buffer }
+    }
+
+    /// Draws and paints the view of `camera`.
+    fn show(&mut self, world: &World, camera: &Camera) {
+        let Self { glyphs, depth, filter, view, buffer } = self;
+        let widget =
+            FirstPerson::new(world, camera).glyphs(*glyphs).color_depth(*depth).filter(*filter);
+        widget.render(buffer.area, buffer, view);
+    }
+
+    /// The mean light of each half of a cell in sRGB, from 0 to 255, row by row of halves.
+    fn halves(&self) -> Vec<[f64; 3]> {
+        let rows = self.buffer.content.chunks(usize::from(self.buffer.area.width).max(1));
+        rows.flat_map(|cells| {
+            [0, 1].into_iter().flat_map(move |half| cells.iter().map(move |cell| light(cell, half)))
+        })
+        .collect()
+    }
+}
+
+/// The mean light of the upper half of a cell, which is 0, or of the lower half.
+fn light(cell: &Cell, half: usize) -> [f64; 3] {
+    const DOTS: f64 = 32.0;
+    let character = cell.symbol().chars().next().unwrap_or(' ');
+    let glyph = BASIC_FONTS.get(character).or_else(|| BLOCK_FONTS.get(character));
+    let rows = glyph.unwrap_or_default();
+    let dots: u32 = rows[4 * half..4 * (half + 1)].iter().map(|row| row.count_ones()).sum();
+    let share = f64::from(dots) / DOTS;
+    let [text, ground] = [rgb(cell.fg), rgb(cell.bg)];
+    if share == 0.0 || share == 1.0 {
+        let color = if share == 0.0 { ground } else { text };
+        return color.channels().map(f64::from);
+    }
+    let [text, ground] = [text, ground].map(linear);
+    std::array::from_fn(|channel| {
+        255.0 * encoded(share * text[channel] + (1.0 - share) * ground[channel])
+    })
+}
+
+fn rgb(color: Color) -> Rgb {
+    match color {
+        Color::Rgb(red, green, blue) => Rgb::new(red, green, blue),
+        Color::Indexed(index) => of_256(index),
+        _ => Rgb::BLACK,
+    }
+}
+
+// The mean light over each half of a cell.
+
+/// The factor by which the larger picture is wider and higher.
+const SCALE: u32 = 8;
+
+/// The halves of a window's cells, row by row.
+struct Truth {
+    halves: Vec<Half>,
+}
+
+/// The upper or the lower half of a cell.
+#[derive(Clone, Copy)]
+struct Half {
+    /// The mean light in sRGB, not rounded, from 0 to 255.
+    color: [f64; 3],
+    /// Whether its samples show more than one surface.
+    is_at_edge: bool,
+}
+
+/// What a sample shows: a surface, and for walls the line of the grid that they stand on.
+type Shown = (Option<Surface>, Option<(Side, u32)>);
+
+impl Truth {
+    /// The view of `camera` in a window of `size` cells.
+    fn new(world: &World, camera: &Camera, size: Size) -> Self {
+        let (width, height) = (u32::from(size.width), 2 * u32::from(size.height));
+        let scaled = |side: u32| NonZeroU32::new(side * SCALE).unwrap_or(NonZeroU32::MIN);
+        let scaled = FrameSize { width: scaled(width), height: scaled(height) };
+        let mut renderer = Renderer::new();
+        renderer.set_filter(Filter::Nearest);
+        renderer.keep_surfaces(true);
+        let mut frame = Frame::new(scaled, PixelAspect::SQUARE);
+        renderer.render(world, camera, &mut frame);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Self { halves: places.map(|(x, y)| half(&renderer, &frame, x, y)).collect() }
+    }
+}
+
+fn half(renderer: &Renderer, frame: &Frame, x: u32, y: u32) -> Half {
+    let samples = || {
+        let rows = SCALE * y..SCALE * (y + 1);
+        rows.flat_map(|y| (SCALE * x..SCALE * (x + 1)).map(move |x| (x, y)))
+    };
+    let mut light = [0.0; 3];
+    for (x, y) in samples() {
+        for (sum, channel) in light.iter_mut().zip(linear(frame.pixel(x, y))) {
+            *sum += channel;
+        }
+    }
+    let first = shown(renderer, SCALE * x, SCALE * y);
+    Half {
+        color: light.map(|sum| 255.0 * encoded(sum / f64::from(SCALE * SCALE))),
+        is_at_edge: samples().any(|(x, y)| shown(renderer, x, y) != first),
+    }
+}
+
+fn shown(renderer: &Renderer, x: u32, y: u32) -> Shown {
+    let surface = renderer.surface(x, y);
+    let is_wall = matches!(surface, Some(Surface::WallX | Surface::WallY));
+    let hit = renderer.columns().get(x as usize).and_then(|column| column.hit);
+    let line = hit.filter(|_| is_wall).map(|hit| match hit.side {
+        Side::X => (hit.side, hit.cell.column),
+        Side::Y => (hit.side, hit.cell.row),
+    });
+    (surface, line)
+}
+
+// How far pictures are from the truth, summed over the halves of their cells.
+
+/// A difference that is easily seen, of 255.
+const FAR: f64 = 24.0;
+
+/// Sums over halves of cells; where there are two, of textures and of edges.
+#[derive(Clone, Debug, Default)]
+struct Differences {
+    pixels: [u64; 2],
+    errors: [f64; 2],
+    far: u64,
+    worst: f64,
+    moved: [u64; 2],
+    changes: [f64; 2],
+}
+
+impl Differences {
+    /// Adds a picture of a camera that stands still.
+    fn add_still(&mut self, truth: &Truth, picture: &[[f64; 3]]) {
+        for (half, shown) in truth.halves.iter().zip(picture) {
+            let differences: [f64; 3] =
+                std::array::from_fn(|channel| (shown[channel] - half.color[channel]).abs());
+            let largest = differences.into_iter().fold(0.0, f64::max);
+            let place = usize::from(half.is_at_edge);
+            self.pixels[place] += 1;
+            self.errors[place] += differences.iter().sum::<f64>() / 3.0;
+            self.far += u64::from(largest > FAR);
+            self.worst = self.worst.max(largest);
+        }
+    }
+
+    /// Adds the change from one picture to the next.
+    fn add_motion(&mut self, truths: [&Truth; 2], pictures: [&[[f64; 3]]; 2]) {
+        let halves = truths[0].halves.iter().zip(&truths[1].halves);
+        for ((one, other), (before, after)) in halves.zip(pictures[0].iter().zip(pictures[1])) {
+            let place = usize::from(one.is_at_edge || other.is_at_edge);
+            let change: f64 = (0..3)
+                .map(|channel| {
+                    let shown = after[channel] - before[channel];
+                    (shown - (other.color[channel] - one.color[channel])).abs()
+                })
+                .sum();
+            self.moved[place] += 1;
+            self.changes[place] += change / 3.0;
+        }
+    }
+
+    /// The figures of the table, without the time.
+    fn values(&self) -> Vec<Value> {
+        let mean = |sum: f64, count: u64| sum / count.max(1) as f64;
+        let pixels = self.pixels.iter().sum();
+        let share = |count: u64| Value::Share(count as f64 / u64::max(pixels, 1) as f64);
+        let means = |sums: [f64; 2], counts: [u64; 2]| {
+            let both = mean(sums[0] + sums[1], counts[0] + counts[1]);
+            [both, mean(sums[1], counts[1]), mean(sums[0], counts[0])].map(Value::Number)
+        };
+        let [error, at_edges, of_textures] = means(self.errors, self.pixels);
+        let mut values = vec![
+            Value::Count(pixels),
+            error,
+            share(self.far),
+            Value::Number(self.worst),
+            share(self.pixels[1]),
+            at_edges,
+            of_textures,
+        ];
+        values.extend(means(self.changes, self.moved));
+        values
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use cellcaster::map;
+    use cellcaster::map::builtin;
 
     fn room(wall: &str, floor: &str) -> World {
         let text = format!(
@@ -277,6 +477,41 @@ mod tests {
         let [mip, nearest] = [Filter::Mip, Filter::Nearest].map(|filter| values(&world, filter));
         for (mip, nearest) in mip.into_iter().zip(nearest) {
             assert!(mip < nearest && mip > 0.1, "{mip} {nearest}");
+        }
+    }
+
+    #[test]
+    fn a_half_block_lights_one_half() {
+        let mut cell = Cell::default();
+        cell.set_char('▀').set_fg(Color::Rgb(200, 10, 0)).set_bg(Color::Indexed(16));
+        assert_eq!((light(&cell, 0), light(&cell, 1)), ([200.0, 10.0, 0.0], [0.0; 3]));
+        cell.set_char(' ').set_bg(Color::Rgb(7, 8, 9));
+        assert_eq!((light(&cell, 0), light(&cell, 1)), ([7.0, 8.0, 9.0], [7.0, 8.0, 9.0]));
+    }
+
+    #[test]
+    fn a_letter_lights_a_part() {
+        let mut cell = Cell::default();
+        cell.set_char('#').set_fg(Color::Rgb(255, 255, 255)).set_bg(Color::Rgb(0, 0, 0));
+        let [red, green, blue] = light(&cell, 0);
+        assert!(red == green && green == blue && red > 100.0 && red < 255.0, "{red}");
+    }
+
+    #[test]
+    fn areas_have_little_more_than_half_the_error_and_crawl_of_mip_levels() {
+        let level = builtin::LEVELS.iter().find(|level| level.name == "museum");
+        let world = level.unwrap().world().unwrap();
+        let shown = [Filter::Area, Filter::Mip].map(|filter| (DISPLAYS[0], filter));
+        for size in [Size::new(80, 24), Size::new(160, 45)] {
+            let mut all = [Differences::default(), Differences::default()];
+            for camera in cameras(&world, 1).take(CAMERAS) {
+                compare(&world, &way(camera)[..2], size, &shown, &mut all);
+            }
+            let [area, mip] = all.map(|differences| differences.values());
+            for (index, most) in [(1, 0.55), (7, 0.65)] {
+                let [area, mip]: [f64; 2] = [&area, &mip].map(|it| it[index].number().unwrap());
+                assert!(0.0 < area && area < most * mip, "{index} in {size}: {area} {mip}");
+            }
         }
     }
 }

@@ -4,18 +4,26 @@
 //! ray meets a shape, by another caster where a picture has heights, by a copy of the room where it
 //! has mirrors, from the definition where a colour has light.
 
-mod colors;
-mod fidelity;
 mod light;
 mod rays;
 mod scenes;
 mod solids;
 
+use std::hint::black_box;
 use std::time::Instant;
 
-use super::table::{Column, Row, Table, Value};
-use super::timing::time_in_rounds;
-use cellcaster::world::World;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
+use ratatui::style::Color;
+
+use super::table::{Column, Row, Table, Value, time_in_rounds};
+use cellcaster::color::Rgb;
+use cellcaster::color::lab::Lab;
+use cellcaster::color::oklab::Oklab;
+use cellcaster::color::palette::{nearest_of_16, nearest_of_256, of_256};
+use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::{FirstPerson, View};
+use cellcaster::world::{Camera, FieldOfView, World};
 
 /// The errors of a feature.
 struct Feature {
@@ -40,8 +48,8 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     features.extend(solids::features(seed));
     features.extend(scenes::features(seed));
     features.extend(light::features());
-    features.extend(colors::features());
-    features.extend(fidelity::features(world));
+    features.extend(color_features());
+    features.extend(fidelity_features(world));
     let times = time_in_rounds(features.len(), rounds, |index| {
         let Feature { work, cases, .. } = &mut features[index];
         let start = Instant::now();
@@ -87,6 +95,137 @@ impl Feature {
             time,
         ]
     }
+}
+
+// Palettes: the distance of the nearest colour, and whether it is the nearest.
+
+/// Every fifteenth value of each channel.
+const STEP: usize = 15;
+
+fn color_features() -> Vec<Feature> {
+    vec![
+        palette("palette of 256", 16..=255, nearest_of_256),
+        palette("palette of 16", 0..=15, nearest_of_16),
+    ]
+}
+
+/// A colour is wrong if another index is nearer in Oklab, in which the palette is searched. The
+/// errors are those of the colours that are shown, in ΔE of CIE76, of which 2.3 is just seen.
+fn palette(
+    name: &'static str,
+    indices: std::ops::RangeInclusive<u8>,
+    nearest: fn(Rgb) -> u8,
+) -> Feature {
+    let values = || (0..=255_u8).step_by(STEP);
+    let colors: Vec<Rgb> = values()
+        .flat_map(|red| {
+            values().flat_map(move |green| values().map(move |blue| Rgb::new(red, green, blue)))
+        })
+        .collect();
+    let mut errors = Vec::new();
+    let mut wrong = 0;
+    for &color in &colors {
+        let distance = |index: u8| Oklab::from(of_256(index)).distance_squared(&Oklab::from(color));
+        let chosen = nearest(color);
+        wrong += usize::from(indices.clone().any(|index| distance(index) < distance(chosen)));
+        errors.push(Lab::from(of_256(chosen)).distance(Lab::from(color)));
+    }
+    let cases = colors.len();
+    let work = move || {
+        for &color in &colors {
+            black_box(nearest(black_box(color)));
+        }
+    };
+    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
+    Feature { name, figure: "colour", unit: "ΔE", cases, wrong, errors, work }
+}
+
+// Fidelity: the colours that a terminal shows while the camera moves, compared with those that were
+// drawn.
+
+const WINDOW: Size = Size::new(80, 24);
+const FRAMES: usize = 24;
+/// Between frames, in radians: a turn of a player at 30 frames a second.
+const TURN: f64 = 0.05;
+/// The difference that is just seen, in ΔE.
+const SEEN: f64 = 2.3;
+
+fn fidelity_features(world: &World) -> Vec<Feature> {
+    [
+        ("fidelity: exact", Fidelity::EXACT),
+        ("fidelity: high", Fidelity::HIGH),
+        ("fidelity: low", Fidelity::LOW),
+    ]
+    .into_iter()
+    .map(|(name, fidelity)| fidelity_feature(name, fidelity, world))
+    .collect()
+}
+
+/// A colour is wrong if its difference is seen. The errors are of all colours.
+fn fidelity_feature(name: &'static str, fidelity: Fidelity, world: &World) -> Feature {
+    let mut camera = world.start_camera(FieldOfView::default());
+    let mut view = View::default();
+    let mut writer = writer(fidelity);
+    let mut drawn = Buffer::empty(Rect::from(WINDOW));
+    let mut errors = Vec::new();
+    let mut cameras = Vec::new();
+    for _ in 0..FRAMES {
+        show(world, &camera, &mut view, &mut writer);
+        FirstPerson::new(world, &camera).paint(&view, 0, drawn.area, &mut drawn);
+        for (y, row) in (0..).zip(drawn.content.chunks(usize::from(WINDOW.width))) {
+            for (x, cell) in (0..).zip(row) {
+                let wanted = halves(cell.symbol(), cell.fg, cell.bg);
+                let shown = writer.shown_colors(x, y).unwrap_or(wanted);
+                errors
+                    .extend(wanted.into_iter().zip(shown).map(|(one, other)| distance(one, other)));
+            }
+        }
+        cameras.push(camera);
+        camera.heading = camera.heading.turned(TURN);
+    }
+    let wrong = errors.iter().filter(|&&error| error > SEEN).count();
+    let cases = errors.len();
+    let world = world.clone();
+    let work = move || {
+        let mut writer = self::writer(fidelity);
+        for camera in &cameras {
+            show(&world, camera, &mut view, &mut writer);
+        }
+    };
+    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
+    Feature { name, figure: "colour of half a cell", unit: "ΔE", cases, wrong, errors, work }
+}
+
+fn writer(fidelity: Fidelity) -> CellWriter<Vec<u8>> {
+    let mut writer = CellWriter::new(Vec::new(), WINDOW);
+    writer.set_fidelity(fidelity);
+    writer
+}
+
+/// Draws the view of `camera`, and encodes it.
+fn show(world: &World, camera: &Camera, view: &mut View, writer: &mut CellWriter<Vec<u8>>) {
+    let picture = FirstPerson::new(world, camera);
+    picture.draw(WINDOW, view);
+    writer.draw_frame(|screen| picture.paint(view, 0, Rect::from(WINDOW), screen));
+    writer.output_mut().clear();
+}
+
+/// The colours of the upper and the lower half of a cell with a half block or a space.
+fn halves(symbol: &str, text: Color, ground: Color) -> [Color; 2] {
+    match symbol {
+        "▀" => [text, ground],
+        "▄" => [ground, text],
+        "█" => [text, text],
+        _ => [ground, ground],
+    }
+}
+
+fn distance(one: Color, other: Color) -> f64 {
+    let lab = |color| match color {
+        Color::Rgb(red, green, blue) => Lab::from(Rgb::new(red, green, blue)),
+        _ => Lab::from(Rgb::BLACK),
+    };
+    lab(one).distance(lab(other))
 }
 
 #[cfg(test)]

@@ -17,8 +17,8 @@ use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
 use super::plan::Load;
-use super::process::between;
 use super::report::percentile;
+use super::server::between;
 
 const STREAM: &str = "CELLCASTER_LOAD";
 const CHECKPOINTS: &str = "CELLCASTER_LOAD_CHECKPOINTS";

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::process::Usage;
+use super::server::Usage;
 
 /// Play by real SSH sessions on one server or several, and print what they cost
 #[derive(Args, Debug)]

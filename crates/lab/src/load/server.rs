@@ -1,15 +1,15 @@
 //! The server as a process of its own.
 
+use std::collections::BTreeMap;
 use std::error::Error;
-use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::{SocketAddr, TcpListener};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::available_parallelism;
-
-use super::process::Usage;
+use std::time::{Duration, Instant};
+use std::{fs, thread};
 
 /// A server that runs until this is dropped.
 pub(crate) struct ServerProcess {
@@ -102,4 +102,133 @@ impl Drop for ServerProcess {
         _ = self.child.wait();
         _ = fs::remove_dir_all(&self.folder);
     }
+}
+
+// What processes have used, from `/proc`.
+
+/// What a process and all its descendants have used.
+#[derive(Debug)]
+pub(crate) struct Usage {
+    pub(crate) processor: Duration,
+    /// Proportional set size: a page that several processes share counts once in all.
+    pub(crate) megabytes: f64,
+}
+
+/// What the kernel tells about one process.
+struct Stat {
+    parent: u32,
+    processor: Duration,
+}
+
+impl Usage {
+    pub(crate) fn of(root: u32) -> Self {
+        let stats = stats();
+        let mut processes = vec![root];
+        let mut next = 0;
+        while let Some(&process) = processes.get(next) {
+            next += 1;
+            processes.extend(stats.iter().filter(|it| it.1.parent == process).map(|it| it.0));
+        }
+        let processor =
+            processes.iter().filter_map(|it| stats.get(it)).map(|it| it.processor).sum();
+        let kilobytes: u64 = processes.iter().filter_map(|&it| kilobytes(it)).sum();
+        Self { processor, megabytes: (kilobytes as f64 / 102.4).round() / 10.0 }
+    }
+}
+
+/// The time that each process has used between two measurements of the same processes.
+pub(crate) fn between(before: &[Usage], after: &[Usage]) -> Vec<Duration> {
+    let pairs = before.iter().zip(after);
+    pairs.map(|(before, after)| after.processor.saturating_sub(before.processor)).collect()
+}
+
+fn stats() -> BTreeMap<u32, Stat> {
+    let Ok(entries) = fs::read_dir("/proc") else { return BTreeMap::new() };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    names.filter_map(|name| name.parse().ok()).filter_map(|it| Some((it, stat(it)?))).collect()
+}
+
+fn stat(process: u32) -> Option<Stat> {
+    let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
+    // User and system time, and those of children that have ended, in hundredths of a second.
+    let ticks: u64 = fields.get(11..15)?.iter().filter_map(|it| it.parse::<u64>().ok()).sum();
+    Some(Stat {
+        parent: fields.get(1)?.parse().ok()?,
+        processor: Duration::from_millis(ticks * 10),
+    })
+}
+
+fn kilobytes(process: u32) -> Option<u64> {
+    let text = fs::read_to_string(format!("/proc/{process}/smaps_rollup")).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("Pss:"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// Keeps a process on one processor.
+pub(crate) fn pin(process: u32, processor: u32) {
+    let arguments = ["-apc".to_owned(), processor.to_string(), process.to_string()];
+    _ = Command::new("taskset").args(arguments).stdout(Stdio::null()).status();
+}
+
+// OpenSSH's server, with one process of the game for each session.
+
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Starts a server whose only command is the game on the level on which visitors of the other server
+/// walk.
+pub(crate) fn start_sshd(program: &str) -> Result<ServerProcess, Box<dyn Error>> {
+    let folder = folder(0)?;
+    // Where sshd is started by root, it wants this to exist.
+    _ = fs::create_dir_all("/run/sshd");
+    for key in ["host_key", "user_key"] {
+        let file = folder.join(key);
+        Command::new("ssh-keygen")
+            .args(["-q", "-t", "ed25519", "-N", "", "-f"])
+            .arg(file)
+            .status()?;
+    }
+    let port = TcpListener::bind(("127.0.0.1", 0))?.local_addr()?.port();
+    let program = fs::canonicalize(program)?;
+    fs::write(folder.join("config"), configuration(&folder, &program, port))?;
+    let child = Command::new("taskset")
+        .args(["-c", "0", "/usr/sbin/sshd", "-D", "-e", "-f"])
+        .arg(folder.join("config"))
+        .stdin(Stdio::null())
+        .stderr(fs::File::create(folder.join("log"))?)
+        .spawn()?;
+    let server = ServerProcess {
+        child,
+        address: ([127, 0, 0, 1], port).into(),
+        metrics: None,
+        access: Access::Key { user: user()?, file: folder.join("user_key") },
+        folder,
+    };
+    wait_for(port)?;
+    Ok(server)
+}
+
+fn user() -> Result<String, Box<dyn Error>> {
+    Ok(String::from_utf8(Command::new("id").arg("-un").output()?.stdout)?.trim().to_owned())
+}
+
+fn wait_for(port: u16) -> Result<(), Box<dyn Error>> {
+    let deadline = Instant::now() + PATIENCE;
+    while TcpStream::connect(("127.0.0.1", port)).is_err() {
+        if Instant::now() > deadline {
+            return Err("sshd does not listen".into());
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    Ok(())
+}
+
+fn configuration(folder: &Path, program: &Path, port: u16) -> String {
+    let (folder, program) = (folder.display(), program.display());
+    format!(
+        "ListenAddress 127.0.0.1\nPort {port}\nHostKey {folder}/host_key\n\
+         AuthorizedKeysFile {folder}/user_key.pub\nPidFile none\nUsePAM no\nStrictModes no\n\
+         PermitRootLogin yes\nMaxStartups 1000\nAcceptEnv COLORTERM\nSetEnv HOME={folder}\n\
+         ForceCommand {program} museum\n"
+    )
 }

@@ -36,6 +36,16 @@ pub enum Scene {
     Walls,
 }
 
+impl Scene {
+    /// The name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Planes => "planes",
+            Self::Walls => "walls",
+        }
+    }
+}
+
 /// The sizes of the pictures: those of terminals, from 80×24 to 320×100 cells, then larger ones.
 pub const SIZES: [FrameSize; 8] = [
     size(80, 48),

@@ -5,12 +5,13 @@
 //! the work is repeated, and the first repetition is not counted: a game stays in one map, which is
 //! then in the caches.
 
+use std::fmt::Write;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use glam::{DVec2, Vec2Swizzles};
+
 use super::drawing::{median, seconds, size};
-use super::ground::RAYS;
-use super::{Ground, Vista, crossing_rays};
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
@@ -176,6 +177,179 @@ fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = M
     let measured =
         move |(index, seconds)| Measured { seconds, ratio: seconds / bases[index / size] };
     times.into_iter().enumerate().map(measured)
+}
+
+// Open maps of any size, and rays across them.
+
+/// The contents of an open map, besides the walls around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Nothing.
+    Hall,
+    /// A pillar in one cell of 4096.
+    Plain,
+}
+
+/// The number of rays cast in a map.
+pub(crate) const RAYS: u32 = 256;
+
+impl Ground {
+    /// All grounds.
+    pub const ALL: [Self; 2] = [Self::Hall, Self::Plain];
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hall => "hall",
+            Self::Plain => "plain",
+        }
+    }
+
+    /// The text of the map of `side` × `side` cells; `side` is at least 4.
+    pub fn map(self, side: u32) -> String {
+        let last = side - 1;
+        let mut text = String::from("grid = '''\n");
+        text.reserve(side as usize * (side as usize + 1));
+        for row in 0..side {
+            text.extend((0..side).map(|column| {
+                let is_edge = row == 0 || column == 0 || row == last || column == last;
+                match self {
+                    _ if is_edge => '#',
+                    Self::Plain if is_pillar(column, row) => '#',
+                    _ if (column, row) == (1, side / 2) => '@',
+                    _ => '.',
+                }
+            }));
+            text.push('\n');
+        }
+        // Writing to a string cannot fail.
+        _ = writeln!(text, "'''\n[tiles]\n'#'.wall = 'brick'\n[things]\n'@'.start = 0");
+        text
+    }
+
+    /// The same map, parsed.
+    ///
+    /// # Panics
+    /// Panics if a map cannot have this size.
+    pub fn world(self, side: u32) -> World {
+        map::parse_str(&self.map(side)).expect("the map is sound, but for its size")
+    }
+}
+
+/// Whether a plain has a pillar there: one in each block of 64 × 64 cells, at or near its middle.
+fn is_pillar(column: u32, row: u32) -> bool {
+    let (within, block) = (|place: u32| place % 64, |place: u32| place / 64);
+    let moved = |by: u32| 16 + (block(column) * 37 + block(row) * 101 + by * 53) % 32;
+    (within(column), within(row)) == (moved(0), moved(1))
+}
+
+/// Rays that cross a map of `side` × `side` cells, half of them along rows and half along columns.
+/// On a plain, pillars stop some of them.
+///
+/// # Panics
+/// Never: their directions are not zero.
+pub fn crossing_rays(side: u32) -> Vec<Ray> {
+    let ray = |index: u32| {
+        let share = f64::from(index) / f64::from(RAYS);
+        let start = DVec2::new(1.5, f64::from(side) * (0.45 + 0.1 * share));
+        let direction = DVec2::new(1.0, 0.8 * (share * 7.3).fract() - 0.4);
+        if index.is_multiple_of(2) { (start, direction) } else { (start.yx(), direction.yx()) }
+    };
+    let cast = |index| {
+        let (start, direction) = ray(index);
+        Ray::new(start, direction).expect("both are finite, and it goes somewhere")
+    };
+    (0..RAYS).map(cast).collect()
+}
+
+// Crowded maps: the same things in view, with few or many others elsewhere.
+
+/// The visible part of a map: a hall with about sixty plants. The rest of the map is full of
+/// plants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vista {
+    /// A hall along the axes. The other things are outside the rectangle that contains the view.
+    Straight,
+    /// A diagonal hall. Ten thousand other things are inside the rectangle that contains the view.
+    Diagonal,
+}
+
+/// The least side of a map with room for the longest hall.
+const SHORTEST_SIDE: u32 = 100;
+
+impl Vista {
+    /// All vistas.
+    pub const ALL: [Self; 2] = [Self::Straight, Self::Diagonal];
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Straight => "straight",
+            Self::Diagonal => "diagonal",
+        }
+    }
+
+    /// A map with this hall and `count` things, including those in view.
+    ///
+    /// # Panics
+    /// Panics if `count` is less than the number of things in view, or more than the map has room
+    /// for.
+    pub fn world(self, count: usize) -> World {
+        let side = SHORTEST_SIDE.max((count as f64).sqrt() as u32 + 10);
+        let places = || (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
+        let in_view = places().filter(|&(column, row)| self.is_plant(column, row)).count();
+        let mut elsewhere = count - in_view;
+        let mut grid = String::new();
+        for (column, row) in places() {
+            if column == 0 {
+                grid.push('\n');
+            }
+            grid.push(match (column, row) {
+                (1, 1) => '@',
+                _ if self.is_plant(column, row) => 'p',
+                _ if self.holds(column, row) => '.',
+                _ if self.is_beside(column, row) || elsewhere == 0 => '#',
+                _ => {
+                    elsewhere -= 1;
+                    'p'
+                }
+            });
+        }
+        assert_eq!(elsewhere, 0, "there is room for all things");
+        let text = format!(
+            "grid = '''{grid}\n'''\ntiles.'#'.wall = 'brick'\n\
+             things = {{ '@'.start = {}, 'p'.sprite = 'plant' }}\n",
+            self.heading()
+        );
+        map::parse_str(&text).expect("the map is sound, but for its size")
+    }
+
+    /// The player's heading in degrees, at the cell (1, 1).
+    fn heading(self) -> u32 {
+        match self {
+            Self::Straight => 25,
+            Self::Diagonal => 45,
+        }
+    }
+
+    fn holds(self, column: u32, row: u32) -> bool {
+        match self {
+            Self::Straight => (1..=24).contains(&column) && (1..=12).contains(&row),
+            Self::Diagonal => {
+                let is_on_map = |place| (1..SHORTEST_SIDE - 2).contains(&place);
+                is_on_map(column) && is_on_map(row) && column.abs_diff(row) <= 1
+            }
+        }
+    }
+
+    fn is_plant(self, column: u32, row: u32) -> bool {
+        self.holds(column, row) && (column + 2 * row).is_multiple_of(5)
+    }
+
+    fn is_beside(self, column: u32, row: u32) -> bool {
+        let around = |place: u32| place.saturating_sub(1)..=place + 1;
+        around(row).any(|row| around(column).any(|column| self.holds(column, row)))
+    }
 }
 
 #[cfg(test)]

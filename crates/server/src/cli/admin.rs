@@ -17,7 +17,7 @@ use crate::ops::admin::{
     AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
 };
 use cellcaster::cli::Error;
-use cellcaster::cli::data_folder::data_folder;
+use cellcaster::cli::machine::data_folder;
 use cellcaster::rng;
 
 /// Does the action, and writes what came of it.

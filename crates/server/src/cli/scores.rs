@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use cellcaster::app::parts::of_steps;
 use cellcaster::cli::Error;
-use cellcaster::cli::data_folder::data_folder;
+use cellcaster::cli::machine::data_folder;
 use cellcaster::game::STEPS_PER_SECOND;
 use serde_json::{Value, json};
 use unicode_width::UnicodeWidthStr;

@@ -25,7 +25,7 @@ use crate::sessions::visitors::Visitors;
 use crate::ssh::Server;
 use crate::ssh::host_key::HostKey;
 use cellcaster::cli::Error;
-use cellcaster::cli::data_folder::data_folder;
+use cellcaster::cli::machine::data_folder;
 use configuration::Configuration;
 use signals::{Hangups, Signals};
 

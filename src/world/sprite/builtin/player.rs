@@ -1,113 +1,103 @@
-//! The player, as seen in a mirror: a traveller with a hat and a cloak.
+//! Players as others see them: a traveller with a broad hat and a cape, in eight colours.
+//!
+//! One sheet shows them all: its cloth is painted with a dye, which each colour replaces. The pictures are made
+//! once for a process, because a host begins games all the time.
 
-use super::{Design, INK, PLAYER_HEIGHT, Palette, drawn, mirrored};
+use std::sync::OnceLock;
+
+use serde::{Deserialize, Serialize};
+
+use super::TRAVELLER;
 use crate::color::Rgb;
-use crate::world::sprite::Facings;
+use crate::world::Sprite;
 
-/// The player's figure. Its eyes are at the height of the camera.
-pub(crate) fn player() -> Design {
-    const FRONT: [&str; 24] = [
-        "................",
-        ".....kkkkkk.....",
-        "....kHHHHhhk....",
-        "....kHHHHhhk....",
-        "..kkkYYYYyykkk..",
-        ".kHHHHHHHHhhhhk.",
-        "..kkkkkkkkkkkk..",
-        "....kFeFFefk....",
-        "....kFFFFffk....",
-        ".....kFFFfk.....",
-        "...kkkCFfckkk...",
-        "..kCCCCYyCccck..",
-        ".kCCCkCCCCkccck.",
-        ".kCCkCCCCccckck.",
-        ".kCCkCCCCccckck.",
-        ".kCCkLLYYLLlkck.",
-        ".kFfkCCCCccckFk.",
-        "..kkkCCCCccckk..",
-        "...kCCCCCcccck..",
-        "...kCCCCCcccck..",
-        "...kkTTkkTTtkk..",
-        "....kTtkkTtk....",
-        "...kBBbkkBBbk...",
-        "...kkkkkkkkkk...",
-    ];
-    const BACK: [&str; 24] = [
-        "................",
-        ".....kkkkkk.....",
-        "....kHHHHhhk....",
-        "....kHHHHhhk....",
-        "..kkkYYYYyykkk..",
-        ".kHHHHHHHHhhhhk.",
-        "..kkkkkkkkkkkk..",
-        "....kTTTTttk....",
-        "....kTTTTttk....",
-        ".....kTTttk.....",
-        "...kkkCCCckkk...",
-        "..kCCCCCCCccck..",
-        ".kCCCCCCCCccccck",
-        ".kCCCCCCCCccccck",
-        ".kCCCCCCCCccccck",
-        ".kCCCCCCCCccccck",
-        ".kCCCCCCCCccccck",
-        "..kCCCCCCCcccck.",
-        "..kCCCCCCCcccck.",
-        "..kCCCCCCCcccck.",
-        "...kkTTkkTTtkk..",
-        "....kTtkkTtk....",
-        "...kBBbkkBBbk...",
-        "...kkkkkkkkkk...",
-    ];
-    const SIDE: [&str; 24] = [
-        "................",
-        ".....kkkkkk.....",
-        "....kHHHHhhk....",
-        "....kHHHHhhk....",
-        "...kkYYYYyykk...",
-        ".kkHHHHHHHhhhkk.",
-        "..kkkkkkkkkkkk..",
-        "....kFeFFTtk....",
-        "....kFFFFTtk....",
-        ".....kFFfTk.....",
-        ".....kkCCckk....",
-        "....kCCCCcck....",
-        "....kCCCCccck...",
-        "....kCCkCccck...",
-        "....kCCkCcccck..",
-        "....kLLkLlccck..",
-        "....kCFfkcccck..",
-        "....kCkkCccccck.",
-        "....kCCCCccccck.",
-        "....kCCCCccccck.",
-        ".....kTTttkkkk..",
-        ".....kTTttk.....",
-        "....kBBBbbk.....",
-        "....kkkkkkk.....",
-    ];
-    let pictures = vec![
-        drawn(&FRONT, COLORS),
-        mirrored(&SIDE, COLORS),
-        drawn(&BACK, COLORS),
-        drawn(&SIDE, COLORS),
-    ];
-    Design { facings: Facings::Four, ..Design::standing(PLAYER_HEIGHT, pictures) }
+/// The colour of a player's hat, cape and tunic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum PlayerColor {
+    /// Red.
+    Red,
+    /// Sky blue.
+    Sky,
+    /// Yellow.
+    Yellow,
+    /// Violet.
+    Violet,
+    /// Green.
+    Green,
+    /// Pink.
+    Pink,
+    /// Orange.
+    Orange,
+    /// Dark blue.
+    Blue,
 }
 
-const COLORS: &Palette = &[
-    ('k', INK),
-    ('H', Rgb::new(0x70, 0x4c, 0x30)),
-    ('h', Rgb::new(0x4c, 0x34, 0x20)),
-    ('Y', Rgb::new(0xe0, 0xb8, 0x50)),
-    ('y', Rgb::new(0xa8, 0x84, 0x34)),
-    ('F', Rgb::new(0xe8, 0xb8, 0x90)),
-    ('f', Rgb::new(0xb8, 0x88, 0x64)),
-    ('e', Rgb::new(0x20, 0x20, 0x28)),
-    ('C', Rgb::new(0x34, 0x78, 0x60)),
-    ('c', Rgb::new(0x20, 0x50, 0x44)),
-    ('L', Rgb::new(0x58, 0x38, 0x20)),
-    ('l', Rgb::new(0x40, 0x28, 0x18)),
-    ('T', Rgb::new(0x58, 0x44, 0x34)),
-    ('t', Rgb::new(0x40, 0x30, 0x28)),
-    ('B', Rgb::new(0x48, 0x34, 0x28)),
-    ('b', Rgb::new(0x30, 0x24, 0x1c)),
-];
+impl PlayerColor {
+    /// All colours, in the order in which they are easiest to tell apart.
+    pub const ALL: [Self; 8] = [
+        Self::Red,
+        Self::Sky,
+        Self::Yellow,
+        Self::Violet,
+        Self::Green,
+        Self::Pink,
+        Self::Orange,
+        Self::Blue,
+    ];
+
+    /// The name on the screen and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Red => "red",
+            Self::Sky => "sky",
+            Self::Yellow => "yellow",
+            Self::Violet => "violet",
+            Self::Green => "green",
+            Self::Pink => "pink",
+            Self::Orange => "orange",
+            Self::Blue => "blue",
+        }
+    }
+
+    /// The colour with that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|color| color.name() == name)
+    }
+
+    /// The colour in full light.
+    pub const fn rgb(self) -> Rgb {
+        match self {
+            Self::Red => Rgb::new(0xe0, 0x20, 0x28),
+            Self::Sky => Rgb::new(0x40, 0xd8, 0xf0),
+            Self::Yellow => Rgb::new(0xfc, 0xe8, 0x30),
+            Self::Violet => Rgb::new(0xb0, 0x38, 0xe0),
+            Self::Green => Rgb::new(0x28, 0xc0, 0x40),
+            Self::Pink => Rgb::new(0xff, 0x98, 0xd0),
+            Self::Orange => Rgb::new(0xff, 0x88, 0x10),
+            Self::Blue => Rgb::new(0x20, 0x38, 0xd8),
+        }
+    }
+}
+
+/// The sprite of a player of that colour.
+pub(crate) fn player(color: PlayerColor) -> Option<Sprite> {
+    static SPRITES: OnceLock<[Option<Sprite>; PlayerColor::ALL.len()]> = OnceLock::new();
+    let sprites = SPRITES.get_or_init(|| {
+        PlayerColor::ALL.map(|color| TRAVELLER.recolored(move |texel| dyed(texel, color)))
+    });
+    sprites[color as usize].clone()
+}
+
+/// The red and the blue of dyed cloth in full light. No other colour of the sheet is without green.
+const DYE: u8 = 0xd8;
+
+/// A colour of the sheet, with the dye of that colour.
+fn dyed(texel: Rgb, color: PlayerColor) -> Rgb {
+    let [across, none, down] = texel.channels().map(u32::from);
+    if none > 0 || across == 0 {
+        return texel;
+    }
+    let [red, green, blue] = color.rgb().channels().map(u32::from);
+    let share = |channel: u32, of: u32| (channel * of / u32::from(DYE)).min(255) as u8;
+    Rgb::new(share(red, across), share(green, across.midpoint(down)), share(blue, down))
+}

@@ -4,7 +4,7 @@ use std::env;
 use std::fs;
 use std::thread::available_parallelism;
 
-use cellcaster::cli::today::today;
+use cellcaster::cli::machine::today;
 
 /// The origin of a report.
 pub(crate) struct Run {

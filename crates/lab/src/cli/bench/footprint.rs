@@ -13,7 +13,7 @@ use ratatui::layout::Size;
 use super::begin;
 use crate::speed::median;
 use cellcaster::cli::Error;
-use cellcaster::cli::script::SHOWCASE;
+use cellcaster::cli::replay::SHOWCASE;
 use cellcaster::game::{Intents, STEPS_PER_SECOND};
 use cellcaster::terminal::CellWriter;
 

@@ -1,18 +1,12 @@
 //! Three plots of the report on one page, with logarithmic axes.
 
-use std::io::{self, Write};
-
+use cellcaster::color::Rgb;
 use ratatui::layout::Size;
 
 use super::{Report, WINDOWS};
-use crate::cli::plot::{self, Align, Axis, Mark, Page, PlotColor};
+use crate::cli::plot::{Align, Axis, BLUE, Chart, GRAY, GREEN, ORANGE, Page};
 use crate::speed::{DrawingRow, Ground, SIDES, Scene};
 use crate::wire::PipelineRow;
-
-/// Writes the page as an SVG file.
-pub(crate) fn write(report: &Report, output: &mut impl Write) -> io::Result<()> {
-    plot::write_svg(&page(report), output)
-}
 
 /// The width and the height of a plot.
 const PLOT: (f64, f64) = (350.0, 310.0);
@@ -21,10 +15,18 @@ const LEFT: f64 = 60.0;
 const RIGHT: f64 = 75.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
-/// The approximate maximum number of labelled powers of ten.
-const MOST_TICKS: usize = 6;
 /// The distance between lines of text.
 const LINE: f64 = 14.0;
+
+/// The plots as an SVG file.
+pub(crate) fn svg(report: &Report) -> String {
+    let plots = [drawing(report), rays(report), pipeline(report)];
+    let mut page = Page::default();
+    for (index, plot) in plots.iter().enumerate() {
+        plot.draw(PLOT.0 * index as f64, &mut page);
+    }
+    page.svg((PLOT.0 * plots.len() as f64, PLOT.1), "")
+}
 
 /// A plot of several lines over common ticks.
 struct Plot {
@@ -38,16 +40,8 @@ struct Plot {
 /// One line of a plot.
 struct Line {
     name: String,
-    color: PlotColor,
+    color: Rgb,
     points: Vec<(f64, f64)>,
-}
-
-fn page(report: &Report) -> Page {
-    let plots = [drawing(report), rays(report), pipeline(report)];
-    let width = PLOT.0 * plots.len() as f64;
-    let marks =
-        plots.iter().enumerate().flat_map(|(index, plot)| plot.marks(PLOT.0 * index as f64));
-    Page { width, height: PLOT.1, marks: marks.collect(), description: String::new() }
 }
 
 fn drawing(report: &Report) -> Plot {
@@ -68,9 +62,9 @@ fn drawing(report: &Report) -> Plot {
             .map(|row| (place(row), row.size.width.to_string()))
             .collect(),
         lines: vec![
-            line("classic", PlotColor::Blue, |row| row.classic),
-            line("ours", PlotColor::Orange, |row| row.ours),
-            line("fill", PlotColor::Gray, |row| row.fill),
+            line("classic", BLUE, |row| row.classic),
+            line("ours", ORANGE, |row| row.ours),
+            line("fill", GRAY, |row| row.fill),
         ],
     }
 }
@@ -85,13 +79,12 @@ fn rays(report: &Report) -> Plot {
         title: "Rays: ns a ray",
         across: "open cells before it",
         ticks: SIDES.map(|side| (f64::from(side), side.to_string())).into(),
-        lines: vec![line(Ground::Plain, PlotColor::Blue), line(Ground::Hall, PlotColor::Orange)],
+        lines: vec![line(Ground::Plain, BLUE), line(Ground::Hall, ORANGE)],
     }
 }
 
 fn pipeline(report: &Report) -> Plot {
-    const COLORS: [PlotColor; 4] =
-        [PlotColor::Blue, PlotColor::Orange, PlotColor::Green, PlotColor::Gray];
+    const COLORS: [Rgb; 4] = [BLUE, ORANGE, GREEN, GRAY];
     let encoders = report.pipeline.iter().filter(|row| row.size == WINDOWS[0]);
     let lines = encoders.zip(COLORS).map(|(PipelineRow { encoder, .. }, color)| {
         let rows = report.pipeline.iter().filter(|row| row.encoder == *encoder);
@@ -109,56 +102,40 @@ fn pipeline(report: &Report) -> Plot {
 }
 
 impl Plot {
-    /// The marks of the plot at this `offset` from the left edge of the page.
-    fn marks(&self, offset: f64) -> Vec<Mark> {
+    /// Draws the plot at this `offset` from the left edge of the page.
+    fn draw(&self, offset: f64, page: &mut Page) {
         let points = || self.lines.iter().flat_map(|line| &line.points);
-        let (x_axis, y_axis) = (
-            Axis::between(points().map(|point| point.0)),
-            Axis::around(points().map(|point| point.1)),
-        );
-        let (left, right) = (offset + LEFT, offset + PLOT.0 - RIGHT);
-        let (top, bottom) = (TOP, PLOT.1 - BOTTOM);
-        let x = |value| left + x_axis.share(value) * (right - left);
-        let y = |value| bottom - y_axis.share(value) * (bottom - top);
-        let text = |at, align, text: &str| Mark::Text { at, align, text: text.to_owned() };
-        let mut marks = vec![
-            text((left, top - LINE), Align::Start, self.title),
-            text((f64::midpoint(left, right), bottom + 2.8 * LINE), Align::Middle, self.across),
-        ];
+        let chart = Chart {
+            left: offset + LEFT,
+            right: offset + PLOT.0 - RIGHT,
+            top: TOP,
+            bottom: PLOT.1 - BOTTOM,
+            across: Axis::between(points().map(|point| point.0)),
+            up: Axis::around(points().map(|point| point.1)),
+        };
+        page.text((chart.left, chart.top - LINE), Align::Start, self.title);
+        let middle = f64::midpoint(chart.left, chart.right);
+        page.text((middle, chart.bottom + 2.8 * LINE), Align::Middle, self.across);
         for (value, label) in &self.ticks {
-            let x = x(*value);
-            marks.push(Mark::Line { from: (x, top), to: (x, bottom), color: PlotColor::Pale });
-            marks.push(text((x, bottom + 1.3 * LINE), Align::Middle, label));
+            chart.tick_across(*value, label, 1.3 * LINE, page);
         }
-        for power in y_axis.powers(MOST_TICKS) {
-            let value = 10_f64.powi(power);
-            marks.push(Mark::Line {
-                from: (left, y(value)),
-                to: (right, y(value)),
-                color: PlotColor::Pale,
-            });
-            marks.push(text((left - 8.0, y(value) + 4.0), Align::End, &value.to_string()));
+        for value in chart.up.powers().map(|power| 10_f64.powi(power)) {
+            chart.tick_up(value, &value.to_string(), page);
         }
-        for line in &self.lines {
-            let places = || line.points.iter().map(|point| (x(point.0), y(point.1)));
-            let segments = places().zip(places().skip(1));
-            marks.extend(segments.map(|(from, to)| Mark::Line { from, to, color: line.color }));
-            marks.extend(places().map(|at| Mark::Dot { at, radius: 5.0, color: line.color }));
-        }
-        let ends = self.lines.iter().filter_map(|line| Some((y(line.points.last()?.1), line)));
-        marks.extend(names(ends.collect(), right + 10.0));
-        marks
+        self.lines.iter().for_each(|line| chart.series(&line.points, line.color, page));
+        let ends =
+            self.lines.iter().filter_map(|line| Some((chart.at(*line.points.last()?).1, line)));
+        put_names(ends.collect(), chart.right + 10.0, page);
     }
 }
 
 /// The names of lines beside their ends, from the top, without overlaps.
-fn names(mut ends: Vec<(f64, &Line)>, x: f64) -> Vec<Mark> {
+fn put_names(mut ends: Vec<(f64, &Line)>, x: f64, page: &mut Page) {
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut free = f64::NEG_INFINITY;
-    let name = |(end, line): (f64, &Line)| {
+    for (end, line) in ends {
         let y = free.max(end);
         free = y + LINE;
-        Mark::Text { at: (x, y + 4.0), align: Align::Start, text: line.name.clone() }
-    };
-    ends.into_iter().map(name).collect()
+        page.text((x, y + 4.0), Align::Start, &line.name);
+    }
 }

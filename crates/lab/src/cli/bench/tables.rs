@@ -1,11 +1,9 @@
 //! The report as tables.
 
-use std::time::Duration;
-
 use super::footprint::{FIRST_WINDOW, GAME_WINDOW, STARTS};
-use super::table::Table;
-use super::{LINKS, Report, frames_per_second, share_of_stock};
-use crate::speed::{CROWDS, Ground, Measured, SIDES, Scene, USUAL_SIDE, Vista};
+use super::{LINKS, Report, frames_per_second, milliseconds, share_of_stock};
+use crate::cli::table::Table;
+use crate::speed::{CROWDS, Ground, Measured, SIDES, USUAL_SIDE, Vista};
 
 /// All tables, in reading order.
 pub(crate) fn of(report: &Report) -> Vec<Table> {
@@ -21,12 +19,8 @@ pub(crate) fn of(report: &Report) -> Vec<Table> {
 
 fn drawing(report: &Report) -> Table {
     let rows = report.drawing.iter().map(|row| {
-        let scene = match row.scene {
-            Scene::Planes => "planes",
-            Scene::Walls => "walls",
-        };
         vec![
-            scene.to_owned(),
+            row.scene.name().to_owned(),
             format!("{}x{}", row.size.width, row.size.height),
             format!("{:.2}", row.ours),
             format!("{:.2}", row.classic),
@@ -87,7 +81,7 @@ fn maps(report: &Report) -> Table {
         };
         let frames = Ground::ALL.map(|ground| times(of(ground).map(|row| row.frame), 1e6));
         let plain = of(Ground::Plain);
-        let loading = known(plain.map(|row| milliseconds(row.loading)));
+        let loading = known(plain.map(|row| format!("{:.1}", milliseconds(row.loading))));
         let bytes = known(plain.map(|row| format!("{:.2}", row.bytes_a_cell)));
         labelled(&side, &[frames.as_flattened(), &[loading, bytes]].concat())
     });
@@ -155,7 +149,7 @@ fn pipeline(report: &Report) -> Table {
 fn footprint(report: &Report) -> Table {
     let footprint = &report.footprint;
     let window = |size: ratatui::layout::Size| format!("{}x{}", size.width, size.height);
-    let milliseconds = |time| format!("{} ms", milliseconds(time));
+    let start_up = |time| format!("{:.1} ms", milliseconds(time));
     let row = |what: &str, is: Option<String>| vec![what.to_owned(), known(is)];
     Table {
         title: "Footprint",
@@ -168,7 +162,7 @@ fn footprint(report: &Report) -> Table {
         columns: words(["what", "is"]),
         labels: 1,
         rows: vec![
-            row("start, to the first frame", footprint.start_up.map(milliseconds)),
+            row("start, to the first frame", footprint.start_up.map(start_up)),
             row("size of the program", footprint.program.map(mebibytes)),
             row("peak memory", footprint.memory.map(mebibytes)),
         ],
@@ -193,10 +187,6 @@ fn times(measured: Option<Measured>, parts: f64) -> [String; 2] {
 /// The figure, or a dash if it is unknown.
 fn known(figure: Option<String>) -> String {
     figure.unwrap_or_else(|| "–".to_owned())
-}
-
-fn milliseconds(time: Duration) -> String {
-    format!("{:.1}", time.as_secs_f64() * 1e3)
 }
 
 fn mebibytes(bytes: u64) -> String {

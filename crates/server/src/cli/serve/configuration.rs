@@ -12,7 +12,8 @@ use crate::ops::logging::{Logging, events};
 use crate::rooms::maps::{HostMaps, MapsError};
 use cellcaster::app::store::private;
 use cellcaster::cli::Error;
-use cellcaster::cli::config::{LARGEST, configuration_file};
+use cellcaster::cli::config::LARGEST;
+use cellcaster::cli::machine::configuration_file;
 
 /// Where the configuration comes from.
 pub(crate) struct Configuration {

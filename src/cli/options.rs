@@ -1,0 +1,179 @@
+//! Options that several commands share, and parsers of their values.
+
+use std::ffi::OsString;
+use std::num::NonZeroU32;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+use ratatui::layout::Size;
+
+use super::parse::Takes;
+use crate::app::parts::Choice;
+use crate::color::palette::ColorDepth;
+use crate::generate::{Extent, Generator, Site};
+use crate::render::Filter;
+use crate::terminal::Fidelity;
+use crate::tui::{CellAspect, GlyphSet};
+use crate::world::FieldOfView;
+
+/// The name for a map on standard input.
+pub(crate) const STANDARD_INPUT: &str = "-";
+
+/// The names of the commands.
+pub(crate) const COMMANDS: [&str; 10] = [
+    "play",
+    "snapshot",
+    "cast",
+    "check",
+    "levels",
+    "config",
+    "replay",
+    "completions",
+    "man",
+    "help",
+];
+
+/// The level of a command: a map, or a generated level.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct Place {
+    /// A map file, "-" for standard input, or a built-in level, as "cellcaster levels" lists them
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) map: Option<OsString>,
+    /// Generate a level in place of MAP
+    #[arg(long, value_name = "KIND", value_parser = named(Generator::ALL.map(Generator::name), Generator::named))]
+    #[arg(conflicts_with = "map")]
+    pub(crate) generate: Option<Generator>,
+    /// The seed of the generated level [default: 1]
+    #[arg(long, value_name = "N", value_parser = seed, requires = "generate")]
+    pub(crate) seed: Option<u64>,
+    /// Generate a level with walls around it, and an exit [default: without an end]
+    #[arg(long, value_name = "COLSxROWS", value_parser = extent, requires = "generate")]
+    pub(crate) level_size: Option<Extent>,
+    /// The cell of the generated level to start at [default: the first corner]
+    #[arg(long, value_name = "COLUMN,ROW", value_parser = site, requires = "generate")]
+    pub(crate) start: Option<Site>,
+}
+
+/// How a picture is seen and drawn; the command decides what is not given.
+#[derive(Args, Debug)]
+pub(crate) struct Look {
+    /// The height of a cell over its width, from 0.1 to 10 [default: 2; when playing, what the terminal says]
+    #[arg(long, value_name = "RATIO", value_parser = cell_aspect)]
+    pub(crate) cell_aspect: Option<CellAspect>,
+    /// What a cell shows: two pixels (half), four (quadrant), six (sextant) or eight (octant) in two colours, one as a
+    /// character (ascii), or one as a character for its brightness (ramp) [default: half]
+    #[arg(long, value_name = "SET", value_parser = choice::<GlyphSet>())]
+    pub(crate) glyphs: Option<GlyphSet>,
+    /// How pixels are computed: from textures averaged where they are far (mip), from raw texels (nearest), or from all
+    /// that they cover, with smooth edges (area)
+    #[arg(long, value_name = "FILTER", default_value = Filter::default().name(), value_parser = filter())]
+    pub(crate) filter: Filter,
+    /// How walls are found: exact, or with cellcaster-lab dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP
+    #[arg(long, value_name = "METHOD", default_value = EXACT)]
+    pub(crate) caster: String,
+    #[command(flatten)]
+    pub(crate) view: View,
+}
+
+/// The view and the colours of any picture.
+#[derive(Args, Debug)]
+pub(crate) struct View {
+    /// The field of view from left to right, above 0 and below 180 degrees [default: 66]
+    #[arg(long = "fov", value_name = "DEG", value_parser = field_of_view)]
+    pub(crate) field_of_view: Option<FieldOfView>,
+    /// How many colours there are [default: true; when playing, what the terminal has]
+    #[arg(long = "colors", value_name = "DEPTH", value_parser = choice::<ColorDepth>())]
+    pub(crate) depth: Option<ColorDepth>,
+}
+
+/// The method of casting that this program has.
+pub(crate) const EXACT: &str = "exact";
+
+/// A value with one of these names, which completions know.
+pub(crate) fn named<T: Clone + Send + Sync + 'static>(
+    names: impl IntoIterator<Item = &'static str>,
+    named: fn(&str) -> Option<T>,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names)
+        .try_map(move |name| named(&name).ok_or(Takes("one of the values in the help")))
+}
+
+/// A value of a setting that is one of a few.
+pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    named(T::ALL.iter().map(|&(_, name, _)| name), T::named)
+}
+
+pub(crate) fn filter() -> impl TypedValueParser<Value = Filter> {
+    named(Filter::ALL.map(Filter::name), |name| {
+        Filter::ALL.into_iter().find(|filter| filter.name() == name)
+    })
+}
+
+/// The value of `text`, if it `fits`.
+pub fn within<T: FromStr>(
+    text: &str,
+    fits: impl Fn(&T) -> bool,
+    takes: &'static str,
+) -> Result<T, Takes> {
+    text.parse().ok().filter(fits).ok_or(Takes(takes))
+}
+
+/// The frames in a second.
+pub fn frames(text: &str) -> Result<NonZeroU32, Takes> {
+    within(text, |frames: &NonZeroU32| frames.get() <= 240, "a whole number from 1 to 240")
+}
+
+/// Any seed.
+pub fn seed(text: &str) -> Result<u64, Takes> {
+    within(text, |_| true, "a whole number from 0 to 18446744073709551615")
+}
+
+/// The size of a picture.
+pub(crate) fn size(text: &str) -> Result<Size, Takes> {
+    let size = pair(text, 'x')
+        .filter(|&(columns, rows)| (1..=4096).contains(&columns) && (1..=4096).contains(&rows));
+    let size = size.map(|(columns, rows)| Size::new(columns, rows));
+    size.ok_or(Takes("COLSxROWS from 1x1 to 4096x4096, such as 80x24"))
+}
+
+/// As [`size`], but for a window: it is drawn for each frame of a game, and several buffers of it are in memory. The limit
+/// is that of a window of 800×250 cells.
+pub fn window(text: &str) -> Result<Size, Takes> {
+    let is_window = |it: &Size| {
+        it.width.max(it.height) <= 1000 && u32::from(it.width) * u32::from(it.height) <= 200_000
+    };
+    let size = size(text).ok().filter(is_window);
+    size.ok_or(Takes("COLSxROWS with sides up to 1000 and up to 200000 cells, such as 120x40"))
+}
+
+/// Exact colours, or how far they may be off.
+pub fn fidelity(text: &str) -> Result<Fidelity, Takes> {
+    within(text, |_| true, "exact, high, low or a number up to 255")
+}
+
+fn field_of_view(text: &str) -> Result<FieldOfView, Takes> {
+    let view = text.parse().ok().and_then(FieldOfView::from_degrees);
+    view.ok_or(Takes("degrees above 0 and below 180"))
+}
+
+fn cell_aspect(text: &str) -> Result<CellAspect, Takes> {
+    let aspect = text.parse().ok().and_then(CellAspect::new);
+    aspect.ok_or(Takes("the height of a cell over its width, from 0.1 to 10"))
+}
+
+fn extent(text: &str) -> Result<Extent, Takes> {
+    let extent = pair(text, 'x').and_then(|(columns, rows)| Extent::new(columns, rows));
+    extent.ok_or(Takes("COLSxROWS from 8x8 to 1000000000x1000000000, such as 64x64"))
+}
+
+fn site(text: &str) -> Result<Site, Takes> {
+    let site = pair(text, ',').map(|(column, row)| Site { column, row });
+    site.ok_or(Takes("COLUMN,ROW, the cell to start at, such as 1000000,-1000000"))
+}
+
+/// Two numbers with `between` between them.
+fn pair<T: FromStr>(text: &str, between: char) -> Option<(T, T)> {
+    let (first, second) = text.split_once(between)?;
+    Some((first.trim().parse().ok()?, second.trim().parse().ok()?))
+}
