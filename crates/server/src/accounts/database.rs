@@ -28,6 +28,17 @@ pub(crate) enum Database {
     Failing(StoreFailure),
 }
 
+/// What statements see of transactions that run at the same time.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Isolation {
+    /// Each statement is by itself, and may as well run twice.
+    None,
+    /// A transaction whose statements each see what others have kept until then.
+    Committed,
+    /// A transaction as if there were no other.
+    Serializable,
+}
+
 /// Runs statements, in a transaction or outside of one.
 pub(crate) trait Statements {
     /// Runs a statement, and returns the number of rows that it changed.
@@ -62,14 +73,9 @@ impl Database {
     /// Those of `act`.
     pub(crate) fn once<T, E: From<StoreFailure>>(
         &mut self,
-        mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E> {
-        match self {
-            Self::File(connection) => act(connection),
-            Self::Server(server) => server.once(act),
-            #[cfg(test)]
-            Self::Failing(failure) => Err(failure.clone().into()),
-        }
+        self.run(Isolation::None, act)
     }
 
     /// Runs a transaction, which is undone if `act` fails. Transactions have the effect of one after the other.
@@ -80,12 +86,7 @@ impl Database {
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E> {
-        match self {
-            Self::File(connection) => sqlite::change(connection, act),
-            Self::Server(server) => server.change(act),
-            #[cfg(test)]
-            Self::Failing(failure) => Err(failure.clone().into()),
-        }
+        self.run(Isolation::Serializable, act)
     }
 
     /// Runs a transaction each of whose statements sees what others have kept until then, and waits for transactions
@@ -97,11 +98,19 @@ impl Database {
         &mut self,
         act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
     ) -> Result<T, StoreFailure> {
+        self.run(Isolation::Committed, act)
+    }
+
+    fn run<T, E: From<StoreFailure>>(
+        &mut self,
+        isolation: Isolation,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
         match self {
-            Self::File(connection) => sqlite::change(connection, act),
-            Self::Server(server) => server.change_rows(act),
+            Self::File(connection) => sqlite::run(connection, isolation, act),
+            Self::Server(server) => server.run(isolation, act),
             #[cfg(test)]
-            Self::Failing(failure) => Err(failure.clone()),
+            Self::Failing(failure) => Err(failure.clone().into()),
         }
     }
 }

@@ -42,7 +42,7 @@ use tokio_postgres::{Client, Config, Error, NoTls, Statement};
 
 use self::tls::Tls;
 use super::StoreFailure;
-use super::database::{Row, SCHEMA, Statements, VERSION};
+use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The most time that a call takes.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -88,17 +88,6 @@ pub(crate) struct Server {
     session: Option<Session>,
     /// When a connection could not be made, and why.
     refused: Option<(Instant, StoreFailure)>,
-}
-
-/// How statements are run.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    /// A statement by itself, which may as well run twice.
-    Repeatable,
-    /// A transaction whose statements each see what others have kept until then.
-    Committed,
-    /// A transaction as if there were no other.
-    Serializable,
 }
 
 /// How a database is reached.
@@ -165,33 +154,10 @@ impl Server {
         Ok(Self { address, is_to_read, runtime: Some(runtime), session: None, refused: None })
     }
 
-    /// See [`once`](super::database::Database::once).
-    pub(crate) fn once<T, E: From<StoreFailure>>(
+    /// Runs statements, and runs them again after a conflict or the loss of the connection.
+    pub(crate) fn run<T, E: From<StoreFailure>>(
         &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Kind::Repeatable, act)
-    }
-
-    /// See [`change`](super::database::Database::change).
-    pub(crate) fn change<T, E: From<StoreFailure>>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Kind::Serializable, act)
-    }
-
-    /// See [`change_rows`](super::database::Database::change_rows).
-    pub(crate) fn change_rows<T>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
-    ) -> Result<T, StoreFailure> {
-        self.run(Kind::Committed, act)
-    }
-
-    fn run<T, E: From<StoreFailure>>(
-        &mut self,
-        kind: Kind,
+        isolation: Isolation,
         mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
     ) -> Result<T, E> {
         let deadline = Instant::now() + PATIENCE;
@@ -199,10 +165,10 @@ impl Server {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             let call = self.call(left)?;
-            let result = match kind {
-                Kind::Repeatable => act(&call),
-                Kind::Committed => in_transaction(&call, "READ COMMITTED", &mut act),
-                Kind::Serializable => in_transaction(&call, "SERIALIZABLE", &mut act),
+            let result = match isolation {
+                Isolation::None => act(&call),
+                Isolation::Committed => in_transaction(&call, "READ COMMITTED", &mut act),
+                Isolation::Serializable => in_transaction(&call, "SERIALIZABLE", &mut act),
             };
             let failure = match result {
                 Ok(value) => return Ok(value),
@@ -218,12 +184,12 @@ impl Server {
                     return Err(failure);
                 }
                 Some(Fault::Conflict) if conflicts < MOST_CONFLICTS => {
-                    self.undo(kind);
+                    self.undo(isolation);
                     thread::sleep(wait(conflicts));
                     conflicts += 1;
                 }
                 Some(Fault::Conflict | Fault::Full | Fault::Refused) | None => {
-                    self.undo(kind);
+                    self.undo(isolation);
                     return Err(failure);
                 }
             }
@@ -232,8 +198,8 @@ impl Server {
 
     /// Ends a transaction that has failed. If that fails, too, the connection is given up, and the
     /// transaction with it.
-    fn undo(&mut self, kind: Kind) {
-        if kind == Kind::Repeatable {
+    fn undo(&mut self, isolation: Isolation) {
+        if isolation == Isolation::None {
             return;
         }
         let is_undone = self.call(UNDO_PATIENCE).is_ok_and(|call| call.batch("ROLLBACK").is_ok());

@@ -29,7 +29,7 @@ use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, params_from_iter};
 
 use super::StoreFailure;
-use super::database::{Row, SCHEMA, Statements, VERSION};
+use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The mark of the file in its header, "Cell".
 const APPLICATION: i32 = 0x4365_6c6c;
@@ -321,11 +321,15 @@ pub(crate) fn make_tables(connection: &mut Connection) -> rusqlite::Result<()> {
     transaction.commit()
 }
 
-/// Runs a transaction.
-pub(crate) fn change<T, E: From<StoreFailure>>(
+/// Runs statements, in a transaction if they are to be isolated. SQLite's transactions run one after the other.
+pub(crate) fn run<T, E: From<StoreFailure>>(
     connection: &mut Connection,
+    isolation: Isolation,
     mut act: impl FnMut(&dyn Statements) -> Result<T, E>,
 ) -> Result<T, E> {
+    if isolation == Isolation::None {
+        return act(connection);
+    }
     // A transaction that begins by reading could not wait for another one that writes.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate);
     let transaction = transaction.map_err(StoreFailure::from)?;

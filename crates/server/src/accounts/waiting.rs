@@ -40,8 +40,6 @@ const MOST_AGE: u64 = 7 * 24 * 60 * 60;
 pub struct WaitingResults {
     file: PathBuf,
     results: Vec<WaitingResult>,
-    /// Each as a line of the file.
-    lines: Vec<String>,
     /// Whether the file has the same.
     is_saved: bool,
 }
@@ -103,8 +101,7 @@ impl WaitingResults {
         let read: Vec<_> = text.lines().map(WaitingResult::parse).collect();
         let is_damaged = read.iter().any(Option::is_none);
         let results: Vec<WaitingResult> = read.into_iter().flatten().collect();
-        let lines = results.iter().map(WaitingResult::line).collect();
-        let mut waiting = Self { file, results, lines, is_saved: true };
+        let mut waiting = Self { file, results, is_saved: true };
         let sentence = is_damaged.then(|| waiting.put_aside()).transpose()?;
         Ok((waiting, sentence))
     }
@@ -124,13 +121,11 @@ impl WaitingResults {
     /// # Errors
     /// If too many wait.
     pub fn add(&mut self, result: WaitingResult) -> Result<(), StoreFailure> {
-        let line = result.line();
-        let bytes: usize = self.lines.iter().map(String::len).sum();
-        if self.results.len() >= MOST_RESULTS || bytes + line.len() > MOST_BYTES {
+        let bytes = self.content().len() + result.line().len();
+        if self.results.len() >= MOST_RESULTS || bytes > MOST_BYTES {
             return Err(StoreFailure::new("too many results wait for the store"));
         }
         self.results.push(result);
-        self.lines.push(line);
         self.is_saved = false;
         Ok(())
     }
@@ -148,7 +143,6 @@ impl WaitingResults {
         let late = result.record(store, world, now);
         if !matches!(late, Late::Refused(_) | Late::NotNow) {
             self.results.remove(index);
-            self.lines.remove(index);
             self.is_saved = false;
         }
         Some(late)
@@ -167,7 +161,7 @@ impl WaitingResults {
     }
 
     fn replace(&self) -> io::Result<()> {
-        if self.lines.is_empty() {
+        if self.results.is_empty() {
             return match Real.remove(&self.file) {
                 Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
                 _ => Ok(()),
@@ -175,10 +169,15 @@ impl WaitingResults {
         }
         let new = self.file.with_extension("new");
         let written = private::create_file(&new)
-            .and_then(|()| Real.write(&new, self.lines.concat().as_bytes()))
+            .and_then(|()| Real.write(&new, self.content().as_bytes()))
             .and_then(|()| Real.rename(&new, &self.file));
         // A part of a file takes room on a full disk.
         written.inspect_err(|_| _ = Real.remove(&new))
+    }
+
+    /// The text of the file.
+    fn content(&self) -> String {
+        self.results.iter().map(WaitingResult::line).collect()
     }
 
     /// Puts a file aside of which a part can't be read; a sentence about it.
