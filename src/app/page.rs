@@ -74,7 +74,8 @@ pub struct Pages<P, C> {
     behind: Vec<(P, Menu<C>)>,
     /// The help, if it is shown.
     pub help: HelpScroll,
-    pending: PendingKey,
+    /// A key that answers the question on the page if it does not repeat until a certain time.
+    pending: Option<(Key, Duration)>,
     shown_since: Duration,
 }
 
@@ -86,7 +87,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
             menu: Menu::new(""),
             behind: Vec::new(),
             help: HelpScroll::default(),
-            pending: PendingKey::default(),
+            pending: None,
             shown_since: Duration::ZERO,
         }
     }
@@ -117,7 +118,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
     fn enter(&mut self, page: P, menu: Menu<C>, now: Duration) {
         (self.page, self.menu) = (page, menu);
         self.shown_since = now;
-        self.pending.forget();
+        self.pending = None;
     }
 
     /// Replaces the menu, after something that it shows has changed. The selected choice stays selected if it
@@ -138,7 +139,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         held: &HeldKeys<Key>,
         now: Duration,
     ) -> Effect {
-        self.pending.forget();
+        self.pending = None;
         match self.page.kind() {
             Kind::Help if self.help.scroll(key) => Effect::Redraw,
             Kind::Leaving => self.press_to_answer(key, press, bindings, now),
@@ -188,13 +189,18 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
         bindings: &Bindings,
         now: Duration,
     ) -> Effect {
-        let key = self.pending.press(key, press, now);
-        key.map_or(Effect::None, |key| self.answer(key, bindings))
+        match press {
+            Press::Fresh => return self.answer(key, bindings),
+            Press::Unclear => self.pending = Some((key, now + REPETITION)),
+            Press::Repeat => {}
+        }
+        Effect::None
     }
 
     /// The effect of a pending key that did not repeat until `now`.
     pub fn settle(&mut self, bindings: &Bindings, now: Duration) -> Effect {
-        self.pending.settle(now).map_or(Effect::None, |key| self.answer(key, bindings))
+        let settled = self.pending.take_if(|(_, until)| *until <= now);
+        settled.map_or(Effect::None, |(key, _)| self.answer(key, bindings))
     }
 
     fn answer(&mut self, key: Key, bindings: &Bindings) -> Effect {
@@ -215,7 +221,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
 
     /// The time until which a key is pending.
     pub fn pending_until(&self) -> Option<Duration> {
-        self.pending.until()
+        self.pending.map(|(_, until)| until)
     }
 }
 
@@ -233,34 +239,3 @@ pub fn is_answerable(held: &HeldKeys<Key>, shown_since: Duration, now: Duration)
 
 /// The longest interval between repetitions.
 const REPETITION: Duration = Duration::from_millis(150);
-
-/// A key that answers the question on the screen if it does not repeat until a certain time.
-#[derive(Clone, Copy, Debug, Default)]
-struct PendingKey(Option<(Key, Duration)>);
-
-impl PendingKey {
-    /// Handles a press of `key` at `now`. Returns the key if it answers the question at once.
-    fn press(&mut self, key: Key, press: Press, now: Duration) -> Option<Key> {
-        match press {
-            Press::Fresh => return Some(key),
-            Press::Unclear => self.0 = Some((key, now + REPETITION)),
-            Press::Repeat => {}
-        }
-        None
-    }
-
-    /// Returns the key if it did not repeat until `now`.
-    fn settle(&mut self, now: Duration) -> Option<Key> {
-        self.0.take_if(|(_, until)| *until <= now).map(|(key, _)| key)
-    }
-
-    /// Forgets the key: another one was pressed, or another question is asked.
-    fn forget(&mut self) {
-        self.0 = None;
-    }
-
-    /// The time until which the key is pending.
-    fn until(self) -> Option<Duration> {
-        self.0.map(|(_, until)| until)
-    }
-}

@@ -5,10 +5,10 @@
 //!
 //! Rejected: serde. It stops at the first fault of a file, writes no comments, and knows no page.
 
+use std::fmt::Write;
 use std::num::NonZeroU32;
 
 use toml::de::DeValue;
-use toml_writer::{ToTomlValue as _, TomlStringBuilder};
 
 use crate::app::bindings::Preset;
 use crate::color::palette::ColorDepth;
@@ -26,6 +26,16 @@ pub struct Setting<C: 'static> {
     pub about: &'static str,
     /// The value.
     pub value: &'static dyn Field<C>,
+}
+
+impl<C> Setting<C> {
+    pub(crate) const fn new(
+        key: &'static str,
+        about: &'static str,
+        value: &'static dyn Field<C>,
+    ) -> Self {
+        Self { key, about, value }
+    }
 }
 
 /// The value of a setting in `C`.
@@ -368,6 +378,20 @@ fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
 }
 
 /// `text` as a TOML string.
+///
+/// Rejected: toml_writer, which escapes some characters in another way, so that kept files would change.
 pub fn toml_string(text: &str) -> String {
-    TomlStringBuilder::new(text).as_basic().to_toml_value()
+    let mut string = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => string.extend(['\\', character]),
+            character if character.is_control() => {
+                // Writing to a string never fails.
+                _ = write!(string, "\\u{:04x}", u32::from(character));
+            }
+            character => string.push(character),
+        }
+    }
+    string.push('"');
+    string
 }

@@ -44,14 +44,10 @@ impl AsMut<Preferences> for Choices {
 /// The settings of a game that is played, with their labels.
 impl<C: AsMut<Choices> + Clone> Setting<C> {
     /// Whether the mouse turns the player.
-    pub const MOUSE: Self = Self {
-        key: "mouse",
-        about: "Mouse turns",
-        value: &At(|it: &mut C| &mut it.as_mut().mouse),
-    };
+    pub const MOUSE: Self =
+        Self::new("mouse", "Mouse turns", &At(|it: &mut C| &mut it.as_mut().mouse));
     /// The content of the map.
-    pub const MAP: Self =
-        Self { key: "minimap", about: "Map", value: &At(|it: &mut C| &mut it.as_mut().map) };
+    pub const MAP: Self = Self::new("minimap", "Map", &At(|it: &mut C| &mut it.as_mut().map));
 }
 
 /// The rows in their order on the page.

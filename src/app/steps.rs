@@ -77,7 +77,7 @@ impl App {
             (0..steps).for_each(|_| ghost.step());
         }
         if let Some(game) = self.game.grid() {
-            self.watch.look(game);
+            self.watch.look_at(game, PlayerId::FIRST);
         }
         self.controls.held.step();
         self.pointer.passed(steps);
@@ -116,29 +116,16 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// A watch that begins with the state of `game`.
+    /// A watch that begins with the state of the player of `game`.
     pub(crate) fn begin(game: Option<&Game>) -> Self {
-        let mut watch = Self::default();
-        if let Some(game) = game {
-            watch.look(game);
-        }
-        watch.silenced()
+        game.map_or_else(Self::default, |game| Self::of(game, PlayerId::FIRST))
     }
 
     /// A watch that begins with the state of `player` in `game`.
     pub fn of(game: &Game, player: PlayerId) -> Self {
         let mut watch = Self::default();
         watch.look_at(game, player);
-        watch.silenced()
-    }
-
-    fn silenced(self) -> Self {
-        Self { rings: false, ..self }
-    }
-
-    /// Looks at the state after a step.
-    pub(crate) fn look(&mut self, game: &Game) {
-        self.look_at(game, PlayerId::FIRST);
+        Self { rings: false, ..watch }
     }
 
     /// Looks at the state of `player` after a step.

@@ -7,18 +7,7 @@ use crate::game::STEP;
 /// Formats minutes and seconds.
 pub fn whole_seconds(seconds: f64) -> impl Display {
     let seconds = seconds as u64;
-    WholeSeconds { minutes: seconds / 60, seconds: seconds % 60 }
-}
-
-struct WholeSeconds {
-    minutes: u64,
-    seconds: u64,
-}
-
-impl Display for WholeSeconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{:02}", self.minutes, self.seconds)
-    }
+    fmt::from_fn(move |f| write!(f, "{}:{:02}", seconds / 60, seconds % 60))
 }
 
 /// Formats minutes, seconds and tenths.

@@ -99,8 +99,9 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
         }
     }
     let command_name = command.get_name();
-    let argument = text(error, ContextKind::InvalidArg)
-        .or_else(|| text(error, ContextKind::InvalidSubcommand))
+    let argument = [ContextKind::InvalidArg, ContextKind::InvalidSubcommand]
+        .iter()
+        .find_map(|&kind| text(error, kind))
         .unwrap_or_default();
     let name = name_of(argument);
     let value = text(error, ContextKind::InvalidValue).unwrap_or_default();
@@ -126,9 +127,9 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
             None => first_line(error),
         },
         ErrorKind::InvalidValue => {
-            let choices = match error.get(ContextKind::ValidValue) {
-                Some(ContextValue::Strings(choices)) if !choices.is_empty() => one_of(choices),
-                _ => argument.split_once(' ').map_or("a value", |(_, value)| value).to_owned(),
+            let choices = match texts(error, ContextKind::ValidValue) {
+                [] => argument.split_once(' ').map_or("a value", |(_, value)| value).to_owned(),
+                choices => one_of(choices),
             };
             if value.is_empty() {
                 format!("{name} takes {choices}, and nothing follows it")
@@ -150,28 +151,19 @@ fn sentence(error: &clap::Error, program: &Command, words: &[OsString]) -> Strin
         ErrorKind::ArgumentConflict if text(error, ContextKind::InvalidSubcommand).is_some() => {
             surplus(argument)
         }
-        ErrorKind::MissingSubcommand => match error.get(ContextKind::ValidSubcommand) {
-            Some(ContextValue::Strings(names)) => {
-                format!("{argument} takes one of {}", names.join(", "))
-            }
-            _ => format!("a command is missing; {help}"),
-        },
+        ErrorKind::MissingSubcommand => {
+            let commands = texts(error, ContextKind::ValidSubcommand).join(", ");
+            format!("{argument} takes one of {commands}")
+        }
         ErrorKind::MissingRequiredArgument => {
-            let missing = match error.get(ContextKind::InvalidArg) {
-                Some(ContextValue::Strings(names)) => names.join(" and "),
-                _ => "a command".to_owned(),
-            };
+            let missing = texts(error, ContextKind::InvalidArg).join(" and ");
             format!("{command_name} needs {missing}; {help}")
         }
         ErrorKind::ArgumentConflict => {
-            let other = match error.get(ContextKind::PriorArg) {
-                Some(ContextValue::String(name)) => name_of(name).to_owned(),
-                Some(ContextValue::Strings(names)) => {
-                    names.iter().map(|name| name_of(name)).collect::<Vec<_>>().join(" and ")
-                }
-                _ => "another argument".to_owned(),
-            };
-            format!("{name} goes without {other}: leave one of them out")
+            let others = texts(error, ContextKind::PriorArg).iter().map(String::as_str);
+            let others = others.chain(text(error, ContextKind::PriorArg)).map(name_of);
+            let others = others.collect::<Vec<_>>().join(" and ");
+            format!("{name} goes without {others}: leave one of them out")
         }
         ErrorKind::TooManyValues => format!("{name} takes no value, and \"{value}\" is one"),
         _ => first_line(error),
@@ -196,6 +188,13 @@ fn text(error: &clap::Error, kind: ContextKind) -> Option<&str> {
     match error.get(kind)? {
         ContextValue::String(text) => Some(text),
         _ => None,
+    }
+}
+
+fn texts(error: &clap::Error, kind: ContextKind) -> &[String] {
+    match error.get(kind) {
+        Some(ContextValue::Strings(texts)) => texts,
+        _ => &[],
     }
 }
 

@@ -2,18 +2,17 @@
 //!
 //! The stream is divided into complete units first, and only whole units are interpreted. So an
 //! answer never becomes typed text, however the bytes arrive, and an unknown unit is dropped at its
-//! end.
+//! end. A unit is a character, a control sequence or a string: the division knows the forms of ECMA-48
+//! but not their meanings, so that it always finds the start of the next unit, and never waits for bytes
+//! that would complete an unknown one.
 //!
 //! Rejected: dividing by a parser of keys. The known ones keep a buffer for ever after a complete report that they do
 //! not know.
-
-mod unit;
 
 use std::time::Duration;
 
 use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
-use self::unit::{Cutter, Kind, Rest};
 use super::event::{MouseButton, MouseEventKind, MouseReport};
 use super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::known::{Known, known};
@@ -30,56 +29,6 @@ pub(crate) enum Input {
     Focus(bool),
     /// The terminal has answered a query.
     Answer(Answer),
-}
-
-/// A decoder of a stream of bytes.
-#[derive(Debug, Default)]
-pub(crate) struct Decoder {
-    cutter: Cutter,
-}
-
-impl Decoder {
-    /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
-    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
-        for byte in bytes {
-            self.cutter
-                .push(*byte, &mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
-        }
-    }
-
-    /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
-    pub(crate) fn patience(&self) -> Option<Duration> {
-        /// Longer than the gaps within a sequence, shorter than a noticeable delay.
-        const KEY: Duration = Duration::from_millis(50);
-        /// This is certainly a sequence, but the link may be slow.
-        const SEQUENCE: Duration = Duration::from_secs(1);
-        match self.cutter.rest() {
-            Rest::Nothing => None,
-            Rest::PerhapsKey => Some(KEY),
-            Rest::Sequence => Some(SEQUENCE),
-        }
-    }
-
-    /// Ends the wait: an escape without more bytes is the Escape key.
-    pub(crate) fn give_up(&mut self, mut take: impl FnMut(Input)) {
-        self.cutter.give_up(&mut |kind, unit| meaning(kind, unit).into_iter().for_each(&mut take));
-    }
-}
-
-fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
-    match kind {
-        Kind::ControlSequence if unit.starts_with(b"\x1b[<") => {
-            mouse_report(unit).map(Input::Mouse)
-        }
-        Kind::MouseBytes => mouse_bytes(unit).map(Input::Mouse),
-        Kind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
-            Some(Input::Focus(unit.ends_with(b"I")))
-        }
-        Kind::ControlSequence if is_report(unit) => report(unit).map(Input::Answer),
-        Kind::Key | Kind::ControlSequence => key_event(unit).map(Input::Key),
-        Kind::DeviceControl => device_control(unit).map(Input::Answer),
-        Kind::OtherString => string_answer(unit).map(Input::Answer),
-    }
 }
 
 /// An answer of the terminal.
@@ -101,6 +50,272 @@ pub(crate) enum Answer {
     Repeats,
     /// An entry of the terminal's palette has this colour, in 16 bits a channel.
     PaletteEntry([u16; 3]),
+}
+
+/// A decoder of a stream of bytes.
+#[derive(Debug, Default)]
+pub(crate) struct Decoder {
+    state: State,
+    /// The incomplete unit, as far as it has arrived.
+    unit: Vec<u8>,
+    is_too_long: bool,
+}
+
+/// The kinds of unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A character, possibly after an escape; an escape alone; or a function key in `ESC O`.
+    Key,
+    /// `ESC [` up to its final byte.
+    ControlSequence,
+    /// `ESC [ M` and three bytes.
+    MouseBytes,
+    /// `ESC P` up to its terminator.
+    DeviceControl,
+    /// Any other string, such as a window's title.
+    OtherString,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    /// Between units.
+    #[default]
+    Ground,
+    /// Inside a character that lacks this number of bytes.
+    Character { missing: u8 },
+    /// After an escape.
+    Escape,
+    /// After `ESC O`.
+    SingleShift,
+    /// After `ESC [`.
+    ControlSequenceStart,
+    /// Inside a control sequence.
+    ControlSequence,
+    /// After `ESC [ [`, which the Linux console sends before a letter.
+    ConsoleKey,
+    /// After `ESC [ M`, before this number of bytes.
+    MouseBytes { missing: u8 },
+    /// Inside a string.
+    String(Kind),
+    /// Inside a string, after an escape that may start its terminator.
+    StringEscape(Kind),
+}
+
+/// The effect of a byte on the unit before it.
+enum Step {
+    /// The byte belongs to the unit, which continues in this state.
+    Continue(State),
+    /// The byte completes the unit.
+    Complete(Kind),
+    /// The byte and the unit are dropped.
+    Abandon,
+    /// The unit is incomplete and dropped; the byte starts the next unit.
+    Restart,
+    /// The unit is incomplete and dropped; an escape and the byte start the next unit.
+    RestartEscaped,
+    /// The byte is an escape after an escape: the first one was the key, and this one starts the
+    /// next unit.
+    Split,
+}
+
+/// The maximum length of a unit. Keys take a dozen bytes and answers a few dozen; longer units are
+/// dropped.
+const LONGEST_UNIT: usize = 256;
+
+/// The length of an escape and the character that identifies a sequence.
+const INTRODUCER_LENGTH: usize = 2;
+
+const ESCAPE: u8 = 0x1b;
+const BELL: u8 = 0x07;
+
+impl Decoder {
+    /// Decodes the next `bytes` of the stream, and calls `take` with each complete input.
+    pub(crate) fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(Input)) {
+        for byte in bytes {
+            self.push(*byte, &mut take);
+        }
+    }
+
+    /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
+    pub(crate) fn patience(&self) -> Option<Duration> {
+        /// Longer than the gaps within a sequence, shorter than a noticeable delay.
+        const KEY: Duration = Duration::from_millis(50);
+        /// This is certainly a sequence, but the link may be slow.
+        const SEQUENCE: Duration = Duration::from_secs(1);
+        match self.state {
+            State::Ground => None,
+            _ if self.may_be_key() => Some(KEY),
+            _ => Some(SEQUENCE),
+        }
+    }
+
+    /// Ends the wait: an escape without more bytes is the Escape key, and any other incomplete unit is
+    /// dropped.
+    pub(crate) fn give_up(&mut self, mut take: impl FnMut(Input)) {
+        if self.may_be_key() {
+            meaning(Kind::Key, &self.unit).into_iter().for_each(&mut take);
+        }
+        self.reset();
+    }
+
+    /// Whether the incomplete unit is an escape, or one and a character: the start of a sequence, or a key
+    /// by itself.
+    fn may_be_key(&self) -> bool {
+        match self.state {
+            State::Escape | State::SingleShift | State::ControlSequenceStart => true,
+            State::String(_) => self.unit.len() == INTRODUCER_LENGTH,
+            _ => false,
+        }
+    }
+
+    /// Adds one byte, and calls `take` with the input that it completes, if any.
+    fn push(&mut self, byte: u8, take: &mut impl FnMut(Input)) {
+        match step(self.state, byte) {
+            Step::Continue(next) => {
+                self.state = next;
+                self.store(byte);
+            }
+            Step::Complete(kind) => {
+                self.store(byte);
+                if !self.is_too_long {
+                    meaning(kind, &self.unit).into_iter().for_each(take);
+                }
+                self.reset();
+            }
+            Step::Abandon => self.reset(),
+            Step::Restart => {
+                self.reset();
+                self.push(byte, take);
+            }
+            Step::RestartEscaped => {
+                self.reset();
+                self.push(ESCAPE, take);
+                self.push(byte, take);
+            }
+            Step::Split => {
+                meaning(Kind::Key, &[ESCAPE]).into_iter().for_each(&mut *take);
+                self.reset();
+                self.push(byte, take);
+            }
+        }
+    }
+
+    fn store(&mut self, byte: u8) {
+        if self.unit.len() < LONGEST_UNIT {
+            self.unit.push(byte);
+        } else {
+            self.is_too_long = true;
+        }
+    }
+
+    fn reset(&mut self) {
+        self.state = State::Ground;
+        self.unit.clear();
+        self.is_too_long = false;
+    }
+}
+
+fn step(state: State, byte: u8) -> Step {
+    match state {
+        State::Ground => between_units(byte),
+        State::Character { missing } => in_character(missing, byte),
+        State::Escape => after_escape(byte),
+        State::SingleShift | State::ConsoleKey => before_last_of_key(byte),
+        State::ControlSequenceStart if byte == b'[' => Step::Continue(State::ConsoleKey),
+        State::ControlSequenceStart if byte == b'M' => {
+            Step::Continue(State::MouseBytes { missing: 3 })
+        }
+        State::MouseBytes { missing } => in_mouse_bytes(missing, byte),
+        State::ControlSequenceStart | State::ControlSequence => in_control_sequence(byte),
+        State::String(kind) => in_string(kind, byte),
+        State::StringEscape(kind) if byte == b'\\' => Step::Complete(kind),
+        State::StringEscape(_) => Step::RestartEscaped,
+    }
+}
+
+fn between_units(byte: u8) -> Step {
+    match byte {
+        ESCAPE => Step::Continue(State::Escape),
+        0x80.. => character_start(byte),
+        _ => Step::Complete(Kind::Key),
+    }
+}
+
+fn character_start(byte: u8) -> Step {
+    match byte {
+        0xc2..=0xdf => Step::Continue(State::Character { missing: 1 }),
+        0xe0..=0xef => Step::Continue(State::Character { missing: 2 }),
+        0xf0..=0xf4 => Step::Continue(State::Character { missing: 3 }),
+        _ => Step::Abandon,
+    }
+}
+
+fn in_character(missing: u8, byte: u8) -> Step {
+    match (missing, byte) {
+        (1, 0x80..=0xbf) => Step::Complete(Kind::Key),
+        (_, 0x80..=0xbf) => Step::Continue(State::Character { missing: missing - 1 }),
+        _ => Step::Restart,
+    }
+}
+
+fn after_escape(byte: u8) -> Step {
+    match byte {
+        ESCAPE => Step::Split,
+        b'O' => Step::Continue(State::SingleShift),
+        b'[' => Step::Continue(State::ControlSequenceStart),
+        b'P' => Step::Continue(State::String(Kind::DeviceControl)),
+        b']' | b'_' | b'^' | b'X' => Step::Continue(State::String(Kind::OtherString)),
+        0x80.. => character_start(byte),
+        _ => Step::Complete(Kind::Key),
+    }
+}
+
+fn before_last_of_key(byte: u8) -> Step {
+    match byte {
+        b' '..=b'~' => Step::Complete(Kind::Key),
+        _ => Step::Restart,
+    }
+}
+
+fn in_control_sequence(byte: u8) -> Step {
+    match byte {
+        b' '..=b'?' => Step::Continue(State::ControlSequence),
+        b'@'..=b'~' => Step::Complete(Kind::ControlSequence),
+        _ => Step::Restart,
+    }
+}
+
+fn in_mouse_bytes(missing: u8, byte: u8) -> Step {
+    match (missing, byte) {
+        (_, ..b' ') => Step::Restart,
+        (1, _) => Step::Complete(Kind::MouseBytes),
+        _ => Step::Continue(State::MouseBytes { missing: missing - 1 }),
+    }
+}
+
+fn in_string(kind: Kind, byte: u8) -> Step {
+    match byte {
+        ESCAPE => Step::Continue(State::StringEscape(kind)),
+        BELL => Step::Complete(kind),
+        b' '..=b'~' | 0x80.. => Step::Continue(State::String(kind)),
+        _ => Step::Restart,
+    }
+}
+
+fn meaning(kind: Kind, unit: &[u8]) -> Option<Input> {
+    match kind {
+        Kind::ControlSequence if unit.starts_with(b"\x1b[<") => {
+            mouse_report(unit).map(Input::Mouse)
+        }
+        Kind::MouseBytes => mouse_bytes(unit).map(Input::Mouse),
+        Kind::ControlSequence if matches!(unit, b"\x1b[I" | b"\x1b[O") => {
+            Some(Input::Focus(unit.ends_with(b"I")))
+        }
+        Kind::ControlSequence if is_report(unit) => report(unit).map(Input::Answer),
+        Kind::Key | Kind::ControlSequence => key_event(unit).map(Input::Key),
+        Kind::DeviceControl => device_control(unit).map(Input::Answer),
+        Kind::OtherString => string_answer(unit).map(Input::Answer),
+    }
 }
 
 /// Whether `unit`, a control sequence, has the form of a report, which no key has.

@@ -159,8 +159,7 @@ impl Session {
     /// # Errors
     /// If a write to the terminal fails, or a panic in another thread has given the terminal back.
     pub fn draw(&mut self, render: impl FnOnce(&mut Screen)) -> Result<(), Error> {
-        let drawn = self.try_draw(render);
-        self.unless_shutting_down(drawn)
+        self.send_frame(|protocol| protocol.draw(render))
     }
 
     /// Shows the last frame more exactly, unless it is exact. Waits as [`Session::draw`] does.
@@ -168,8 +167,7 @@ impl Session {
     /// # Errors
     /// As [`Session::draw`].
     pub fn refine(&mut self) -> Result<(), Error> {
-        let refined = self.try_refine();
-        self.unless_shutting_down(refined)
+        self.send_frame(Protocol::refine)
     }
 
     /// Rings the terminal's bell with the next frame.
@@ -265,28 +263,19 @@ impl Session {
         size
     }
 
-    fn try_draw(&mut self, render: impl FnOnce(&mut Screen)) -> io::Result<()> {
-        if self.wait_until_ready()? {
-            self.protocol.draw(render);
-            self.send()?;
-        }
-        Ok(())
-    }
-
-    fn try_refine(&mut self) -> io::Result<()> {
-        if self.wait_until_ready()? {
-            self.protocol.refine();
-            self.send()?;
-        }
-        Ok(())
-    }
-
-    fn unless_shutting_down(&self, done: io::Result<()>) -> Result<(), Error> {
-        match done {
-            Ok(()) => Ok(()),
+    /// Sends the frame that `draw` draws, once the terminal is ready for it.
+    fn send_frame(&mut self, draw: impl FnOnce(&mut Protocol)) -> Result<(), Error> {
+        let sent = self.wait_until_ready().and_then(|is_ready| {
+            if !is_ready {
+                return Ok(());
+            }
+            draw(&mut self.protocol);
+            self.send()
+        });
+        match sent {
             // Standard error leads to the same terminal, which may never accept a message.
             Err(_) if self.guard.is_shutting_down() => Ok(()),
-            Err(error) => Err(Error::while_doing("drawing a frame")(error)),
+            sent => sent.map_err(Error::while_doing("drawing a frame")),
         }
     }
 

@@ -80,54 +80,30 @@ pub(crate) const PREFERENCES: [Setting<Preferences>; 9] = [
 /// The preferences in all that contains them, with their labels on a settings page.
 impl<C: AsMut<Preferences> + Clone> Setting<C> {
     /// Whether a dot marks the middle of the picture.
-    pub const CROSSHAIR: Self = Self {
-        key: "crosshair",
-        about: "Crosshair",
-        value: &At(|it: &mut C| &mut it.as_mut().crosshair),
-    };
+    pub const CROSSHAIR: Self =
+        Self::new("crosshair", "Crosshair", &At(|it: &mut C| &mut it.as_mut().crosshair));
     /// Whether a strip shows the directions.
-    pub const COMPASS: Self = Self {
-        key: "compass",
-        about: "Compass",
-        value: &At(|it: &mut C| &mut it.as_mut().compass),
-    };
+    pub const COMPASS: Self =
+        Self::new("compass", "Compass", &At(|it: &mut C| &mut it.as_mut().compass));
     /// Whether the terminal's bell rings at sounds.
-    pub const BELL: Self = Self {
-        key: "bell",
-        about: "Bell when noticed or hurt",
-        value: &At(|it: &mut C| &mut it.as_mut().bell),
-    };
+    pub const BELL: Self =
+        Self::new("bell", "Bell when noticed or hurt", &At(|it: &mut C| &mut it.as_mut().bell));
     /// Whether the best run walks along.
-    pub const GHOST: Self = Self {
-        key: "ghost",
-        about: "Ghost of the best run",
-        value: &At(|it: &mut C| &mut it.as_mut().ghost),
-    };
+    pub const GHOST: Self =
+        Self::new("ghost", "Ghost of the best run", &At(|it: &mut C| &mut it.as_mut().ghost));
     /// The difficulty of new games.
-    pub const DIFFICULTY: Self = Self {
-        key: "difficulty",
-        about: "Difficulty",
-        value: &At(|it: &mut C| &mut it.as_mut().difficulty),
-    };
+    pub const DIFFICULTY: Self =
+        Self::new("difficulty", "Difficulty", &At(|it: &mut C| &mut it.as_mut().difficulty));
     /// The glyph set.
-    pub const GLYPHS: Self = Self {
-        key: "glyphs",
-        about: "Characters",
-        value: &At(|it: &mut C| &mut it.as_mut().glyphs),
-    };
+    pub const GLYPHS: Self =
+        Self::new("glyphs", "Characters", &At(|it: &mut C| &mut it.as_mut().glyphs));
     /// The colour depth.
     pub const COLORS: Self =
-        Self { key: "colors", about: "Colours", value: &At(|it: &mut C| &mut it.as_mut().colors) };
+        Self::new("colors", "Colours", &At(|it: &mut C| &mut it.as_mut().colors));
     /// How pictures are changed for the player's eyes.
-    pub const CORRECTION: Self = Self {
-        key: "correction",
-        about: "Picture",
-        value: &At(|it: &mut C| &mut it.as_mut().correction),
-    };
+    pub const CORRECTION: Self =
+        Self::new("correction", "Picture", &At(|it: &mut C| &mut it.as_mut().correction));
     /// The most frames per second.
-    pub const FRAME_RATE: Self = Self {
-        key: "fps",
-        about: "Frames a second",
-        value: &At(|it: &mut C| &mut it.as_mut().frames_per_second),
-    };
+    pub const FRAME_RATE: Self =
+        Self::new("fps", "Frames a second", &At(|it: &mut C| &mut it.as_mut().frames_per_second));
 }

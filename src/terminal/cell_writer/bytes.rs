@@ -6,7 +6,7 @@
 //! it was written, and processors stall on that.
 
 use std::hint::select_unpredictable;
-use std::io;
+use std::io::{self, Write as _};
 
 /// A growing sequence of bytes.
 #[derive(Debug, Default)]
@@ -257,13 +257,15 @@ impl<'a> Definitions<'a> {
         Self { bytes, count: 0 }
     }
 
-    pub(crate) fn push(&mut self, entry: u8, channels: [u8; 3]) {
+    /// Adds `;n;#rrggbb`.
+    pub(crate) fn push(&mut self, entry: u8, [red, green, blue]: [u8; 3]) {
         if self.count.is_multiple_of(AT_ONCE) {
             self.end_sequence();
             self.bytes.push_text(b"\x1b]4");
         }
         self.count += 1;
-        push_definition(entry, channels, self.bytes);
+        // Memory accepts every byte.
+        _ = write!(self.bytes, ";{entry};#{red:02x}{green:02x}{blue:02x}");
     }
 
     pub(crate) fn end(mut self) {
@@ -274,19 +276,6 @@ impl<'a> Definitions<'a> {
         if self.count > 0 {
             self.bytes.push_text(b"\x07");
         }
-    }
-}
-
-/// `;n;#rrggbb`.
-fn push_definition(entry: u8, channels: [u8; 3], bytes: &mut Bytes) {
-    const DIGITS: &[u8; 16] = b"0123456789abcdef";
-    let decimal = [b'0' + entry / 100, b'0' + entry / 10 % 10, b'0' + entry % 10];
-    let digits = &decimal[usize::from(entry < 100)..];
-    bytes.push_text(b";");
-    bytes.push_text(digits);
-    bytes.push_text(b";#");
-    for channel in channels {
-        bytes.push_text(&[channel >> 4, channel & 15].map(|digit| DIGITS[usize::from(digit)]));
     }
 }
 
