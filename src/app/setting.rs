@@ -379,7 +379,7 @@ fn next<T: Copy>(values: &[T], is_it: impl Fn(&T) -> bool, forward: bool) -> T {
 
 /// `text` as a TOML string.
 ///
-/// Rejected: toml_writer, which escapes some characters in another way, so that kept files would change.
+/// Rejected: `toml_writer`, which escapes some characters in another way, so that kept files would change.
 pub fn toml_string(text: &str) -> String {
     let mut string = String::from("\"");
     for character in text.chars() {

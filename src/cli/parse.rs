@@ -82,9 +82,8 @@ fn command_first(program: &Command, mut words: Vec<OsString>) -> Vec<OsString> {
 
 /// Whether `word` is an option of any command whose value is the next word.
 fn takes_the_next_word(program: &Command, word: &str) -> bool {
-    let mut options = program
-        .get_arguments()
-        .chain(program.get_subcommands().flat_map(|command| command.get_arguments()));
+    let mut options =
+        program.get_arguments().chain(program.get_subcommands().flat_map(Command::get_arguments));
     word.strip_prefix("--").is_some_and(|name| {
         options.any(|it| it.get_long() == Some(name) && it.get_action().takes_values())
     })

@@ -28,6 +28,7 @@ use crate::world::Difficulty;
 /// files, or in the one that `CELLCASTER_DATA` names. Over SSH it takes "ssh -t HOST cellcaster".
 #[derive(Args, Debug)]
 #[command(after_long_help = EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 pub(crate) struct Play {
     /// How hard MAP or the endless game is [default: as chosen in the game, or normal]
     #[arg(long, value_name = "LEVEL", value_parser = choice::<Difficulty>())]

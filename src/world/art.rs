@@ -108,12 +108,10 @@ impl Sheet {
     /// The colour and alpha of a texel inside the sheet.
     fn texel(&self, x: u32, y: u32) -> (Rgb, u8) {
         let index = y as usize * self.width + x as usize;
-        match &self.palette {
-            Some(palette) => palette[usize::from(self.samples[index])],
-            None => {
-                let [red, green, blue] = [0, 1, 2].map(|channel| self.samples[3 * index + channel]);
-                (Rgb::new(red, green, blue), u8::MAX)
-            }
+        if let Some(palette) = &self.palette {
+            return palette[usize::from(self.samples[index])];
         }
+        let [red, green, blue] = [0, 1, 2].map(|channel| self.samples[3 * index + channel]);
+        (Rgb::new(red, green, blue), u8::MAX)
     }
 }

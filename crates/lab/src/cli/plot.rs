@@ -3,6 +3,8 @@
 //! The background of every page is white, so that it looks the same on a light and on a dark page. Rejected: a charting
 //! library. Labels that avoid each other and quartiles as bars take more code with one than without.
 
+use std::fmt::{self, Write};
+
 use cellcaster::color::Rgb;
 
 /// A page that grows by marks. Positions are relative to the top left corner.
@@ -52,18 +54,18 @@ impl Page {
     /// Adds a straight line.
     pub(crate) fn line(&mut self, from: Point, to: Point, color: Rgb) {
         let width = if color == PALE { 1 } else { 2 };
-        self.marks += &format!(
+        self.add(format_args!(
             "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{color}\" \
              stroke-width=\"{width}\"/>\n",
             from.0, from.1, to.0, to.1
-        );
+        ));
     }
 
     /// Adds a dot with a white edge, so that a smaller one before it is seen.
     pub(crate) fn dot(&mut self, (x, y): Point, radius: f64, color: Rgb) {
-        self.marks += &format!(
+        self.add(format_args!(
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{color}\" stroke=\"#ffffff\"/>\n"
-        );
+        ));
     }
 
     /// Adds a text.
@@ -74,8 +76,13 @@ impl Page {
             Align::End => "end",
         };
         let text = escaped(text);
-        self.marks +=
-            &format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n");
+        self.add(format_args!(
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n"
+        ));
+    }
+
+    fn add(&mut self, mark: fmt::Arguments<'_>) {
+        self.marks.write_fmt(mark).expect("a string takes any text");
     }
 }
 
@@ -122,7 +129,9 @@ impl Chart {
         for pair in points.windows(2) {
             page.line(self.at(pair[0]), self.at(pair[1]), color);
         }
-        points.iter().for_each(|&point| page.dot(self.at(point), 5.0, color));
+        for &point in points {
+            page.dot(self.at(point), 5.0, color);
+        }
     }
 }
 

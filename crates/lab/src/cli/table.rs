@@ -87,9 +87,12 @@ pub(crate) fn write_line(
     fields: impl IntoIterator<Item = String>,
     output: &mut impl Write,
 ) -> io::Result<()> {
-    let quoted = |field: String| match field.contains([',', '"']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field,
+    let quoted = |field: String| {
+        if field.contains([',', '"']) {
+            format!("\"{}\"", field.replace('"', "\"\""))
+        } else {
+            field
+        }
     };
     writeln!(output, "{}", fields.into_iter().map(quoted).collect::<Vec<_>>().join(","))
 }

@@ -22,7 +22,7 @@ use super::{AccountId, Name, StoreFailure, UnixTime, sqlite};
 /// The database of a store.
 pub(crate) enum Database {
     File(Connection),
-    Server(Server),
+    Server(Box<Server>),
     /// Answers every call with this failure.
     #[cfg(test)]
     Failing(StoreFailure),

@@ -79,7 +79,7 @@ impl HostStore {
             let Lease { room, host, epoch, .. } = lease;
             (index.to_string(), json!({ "room": room, "host": host, "epoch": epoch }))
         });
-        let held = serde_json::Value::from(Map::from_iter(held)).to_string();
+        let held = serde_json::Value::from(held.collect::<Map<_, _>>()).to_string();
         let rows = self.database.once(|it| it.rows(sql, params![held]))?;
         let renewed = rows.iter().map(|row| Ok((row.get(0)?, row.get(1)?, row.count(2)?)));
         let renewed: BTreeSet<(String, String, u64)> =

@@ -60,7 +60,7 @@ impl HostStore {
     /// # Errors
     /// If the server can't be reached, or the database is of another version or of another program.
     pub fn connect(address: &str) -> Result<Self, StoreFailure> {
-        Ok(Self { database: Database::Server(Server::open(address)?) })
+        Ok(Self { database: Database::Server(Box::new(Server::open(address)?)) })
     }
 
     /// The store at an address to read from. `None` if there is none. All methods that change something fail.
@@ -69,7 +69,7 @@ impl HostStore {
     /// If the server can't be reached, or the database is of another version.
     pub fn connect_to_read(address: &str) -> Result<Option<Self>, StoreFailure> {
         let server = Server::open_to_read(address)?;
-        Ok(server.map(|server| Self { database: Database::Server(server) }))
+        Ok(server.map(|server| Self { database: Database::Server(Box::new(server)) }))
     }
 
     /// Brings the store into the form in which it rests while no host runs.
@@ -77,10 +77,10 @@ impl HostStore {
     /// # Errors
     /// If it can't be written. Nothing is lost then.
     pub fn checkpoint(&mut self) -> Result<(), StoreFailure> {
-        match &self.database {
-            Database::File(connection) => Ok(sqlite::checkpoint(connection)?),
-            _ => Ok(()),
+        if let Database::File(connection) = &self.database {
+            sqlite::checkpoint(connection)?;
         }
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! `cellcaster-server scores`: the leaderboards of a host.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use cellcaster::app::parts::of_steps;
@@ -55,7 +56,8 @@ fn table((board, scores): &(LevelBoard, Vec<LevelScore>)) -> String {
     let mut push = |place: &str, name: &str, time: &str, rank: &str| {
         // A name may be wider than it has characters.
         let blanks = " ".repeat(Name::MOST_COLUMNS.saturating_sub(name.width()));
-        text.push_str(&format!("{place:>4}  {name}{blanks}  {time:<8}  {rank}\n"));
+        writeln!(text, "{place:>4}  {name}{blanks}  {time:<8}  {rank}")
+            .expect("a string takes any text");
     };
     push("", "name", "time", "rank");
     for (place, score) in (1..).zip(scores) {

@@ -27,12 +27,15 @@ pub(crate) struct LeaseWorker {
 /// The answer to a call; an error if it was not accepted.
 pub(crate) type Reply<T> = oneshot::Receiver<Result<T, StoreFailure>>;
 
+/// A call for a host of a name.
+type Act = dyn FnOnce(&mut HostStore, &str) + Send;
+
 /// A call to the thread.
 pub(crate) enum Call {
     /// To renew a lease, together with the other renewals that wait.
     Renew(Lease, oneshot::Sender<Result<bool, StoreFailure>>),
-    /// To do something else, and to answer it, for a host of that name.
-    Act(Box<dyn FnOnce(&mut HostStore, &str) + Send>),
+    /// To do something else, and to answer it.
+    Act(Box<Act>),
 }
 
 impl LeaseWorker {

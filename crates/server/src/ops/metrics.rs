@@ -91,7 +91,7 @@ type Label = [(&'static str, &'static str); 1];
 /// The upper bounds of the histograms' buckets, in seconds. A frame takes less than a millisecond, a step of a room is
 /// one of 0.016667, and above 0.05 a player feels the delay of a key.
 const BOUNDS: [f64; 15] = [
-    0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.016667, 0.025, 0.05, 0.1, 0.25, 0.5,
+    0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.016_667, 0.025, 0.05, 0.1, 0.25, 0.5,
     1.0, 2.5,
 ];
 const CHECK_RESULTS: [&str; 2] = ["different", "equal"];
@@ -253,12 +253,15 @@ impl RoomFigures {
 #[derive(Debug)]
 struct Rooms(Vec<(u32, Arc<RoomFigures>)>);
 
+/// The name, the help and the figure of a room.
+type RoomFigure<F> = (&'static str, &'static str, fn(&RoomFigures) -> &F);
+
 impl Collector for Rooms {
     fn encode(&self, mut page: DescriptorEncoder<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return Ok(());
         }
-        let gauges: [(_, _, fn(&RoomFigures) -> &Gauge); 3] = [
+        let gauges: [RoomFigure<Gauge>; 3] = [
             ("room_members", "Members of a room, on all hosts.", |it| &it.members),
             ("room_watchers", "Visitors of this host who watch a room.", |it| &it.watchers),
             ("room_writes", "Whether this host writes the log of a room.", |it| &it.writes),
@@ -269,7 +272,7 @@ impl Collector for Rooms {
                 figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
             }
         }
-        let counters: [(_, _, fn(&RoomFigures) -> &Counter); 2] = [
+        let counters: [RoomFigure<Counter>; 2] = [
             ("room_steps", "Steps that a room has taken on this host.", |it| &it.steps),
             ("room_entries", "Entries of the log of a room.", |it| &it.entries),
         ];

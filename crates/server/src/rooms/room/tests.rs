@@ -280,7 +280,9 @@ fn a_recording_is_played_again() {
         Command::Intents { seen: 0, intents: runs },
     ];
     let entries = commands.map(|command| Entry { step: 0, member: MemberId(1), command });
-    entries.iter().for_each(|entry| room.apply(entry));
+    for entry in &entries {
+        room.apply(entry);
+    }
     while !room.is_over() {
         room.advance();
     }
