@@ -37,7 +37,11 @@ impl std::error::Error for Takes {}
 /// One sentence about the first mistake.
 pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Option<P>, Error> {
     let program = lenient(P::command());
-    let words = command_first(&program, words.into_iter().collect());
+    let mut words = command_first(&program, words.into_iter().collect());
+    if words.get(1).is_some_and(|word| word == "help") {
+        // clap's command has no help about itself.
+        words.retain(|word| word != "--help" && word != "-h");
+    }
     let matches = program.clone().try_get_matches_from(&words);
     match matches.and_then(|matches| P::from_arg_matches(&matches)) {
         Ok(arguments) => Ok(Some(arguments)),
