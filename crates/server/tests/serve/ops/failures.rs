@@ -122,6 +122,10 @@ fn start_and_end(data: &Path, traced: Option<&Traced>) -> u32 {
 #[test]
 fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
     let before = host_that_has_run();
+    // While this store is open, its last change is in the log beside the file, as after a crash. The host copies it.
+    let mut open = HostStore::open(&before).unwrap();
+    let other = AccountKey::new([8; 32]);
+    open.create_account(&other, &Name::new("Jon").unwrap(), UnixTime::new(1_795_300_001)).unwrap();
     let start = |failure: Option<&Failure>| {
         let data = copied(&before);
         let traced = Traced::new(&data, &paths(&data), failure);
@@ -130,6 +134,7 @@ fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
         let account = store.account(&KEY).unwrap();
         let account = account.unwrap_or_else(|| panic!("{failure:?} lost the account"));
         assert_eq!(store.bests(account.id).unwrap().len(), 1, "{failure:?}");
+        assert!(store.account(&other).unwrap().is_some(), "{failure:?} lost the other account");
         let key = |folder: &Path| fs::read(folder.join("host_key")).unwrap();
         assert!(key(&data) == key(&before), "{failure:?} changed the key of the host");
         (traced, process)
