@@ -34,7 +34,7 @@ const RIGHT_END: &str = "C";
 const LETTER_END: &str = "u";
 
 /// Plays a level without guards, in which walks can go anywhere.
-const PLAY: &str = concat!("play ", env!("CARGO_MANIFEST_DIR"), "/tests/maps/citadel.toml");
+const PLAY: &str = concat!("play ", env!("CARGO_MANIFEST_DIR"), "/../../tests/maps/citadel.toml");
 
 /// A link such as a phone has on a train.
 const SLOW: Link = Link {
