@@ -114,7 +114,7 @@ const TO_A_ROOM_WITH_A_MOUSE: &[(&str, &str)] = &[
     ("Mouse turns", "\x1b[B"),
     ("Mouse turns", "\r"),
     ("Mouse turns", "\x7f"),
-    ("Open a room", "\r"),
+    ("Open a room", "1"),
     ("Go in", "\r"),
     ("comes in.", ""),
 ];
