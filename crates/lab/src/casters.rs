@@ -2,7 +2,7 @@
 //!
 //! | method | finds the hit by | source |
 //! |---|---|---|
-//! | [`Exact`](cellcaster::cast::Exact) | lines in their true order: integers, and longer integers where those cannot decide | [`cellcaster::cast`] |
+//! | [`Exact`] | lines in their true order: integers, and longer integers where those cannot decide | [`cellcaster::cast`] |
 //! | [`Dda`] | lines in order, in double precision | Lode Vandevenne, "Raycasting II" |
 //! | [`Dda32`] | the same in single precision | the same |
 //! | [`Accumulate`] | a running sum of distances | Lode Vandevenne, "Raycasting" |
@@ -12,7 +12,7 @@
 //!
 //! All but the exact caster treat doors, glass, masks and shapes as walls, and only the exact
 //! caster keeps the rules of [`cellcaster::cast`] for every ray. Each method is one type
-//! that implements [`Caster`](cellcaster::cast::Caster); a [`Method`] is chosen by name.
+//! that implements [`Caster`]; a [`Method`] is chosen by name.
 //!
 //! A [`Method`] is not a caster. Code that needs no speed gets a caster from [`Method::caster`], which is called through a
 //! pointer. Code that measures times passes a [`Visitor`], whose loop is compiled for each caster: a pointer that is

@@ -1,6 +1,6 @@
 //! A room: a game that several people play, as a deterministic state machine.
 //!
-//! A room changes by the entries of its [log](log) and by steps, and by nothing else: the header of a round, its
+//! A room changes by the entries of its [log] and by steps, and by nothing else: the header of a round, its
 //! entries and the number of steps give the room, bit for bit, on every machine. It has no clock, no thread and no
 //! connection. The [sequencer](crate::rooms::sequencer) decides in which step an entry takes effect.
 //!
@@ -8,7 +8,7 @@
 //! step before. Rejected: a lock around the game, since one slow picture would delay everybody's step.
 //!
 //! A member with an account may return from another host, so their place is kept: when their host is gone they stand
-//! still, for [`AWAY`](member::AWAY) at most. Each return has a token, by which hosts know who plays for the member
+//! still, for [`AWAY`] at most. Each return has a token, by which hosts know who plays for the member
 //! now: a host that was cut off may still think that it does.
 
 mod catalog;
