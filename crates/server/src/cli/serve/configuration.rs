@@ -110,6 +110,6 @@ impl Configuration {
 fn refused(error: MapsError) -> Error {
     match error {
         MapsError::Sentence(sentence) => Error::mistake(sentence),
-        MapsError::Report(text) => Error::report_of(text),
+        MapsError::Report(text) => Error::report_of(&text),
     }
 }
