@@ -3,81 +3,60 @@
 //! The state has neither a terminal nor a clock. Keys and times are arguments, so that a [`Replay`]
 //! can play it off screen. [`play`] is the main loop, which has both.
 
-mod banner;
-mod bindings;
 mod controls;
-mod descents;
 mod detection;
 mod draw;
-mod help;
-mod hud;
-mod keys;
 mod levels;
-mod map_panel;
-mod menu;
-mod mouse;
 mod page;
-mod panels;
 mod picture;
 mod played;
 mod recording;
-mod replay;
 mod results;
 mod run;
 mod saved;
 mod screen;
 pub(crate) mod setting;
 mod settings;
-mod settings_page;
-mod stats;
-mod status;
-mod steps;
+pub(crate) mod status;
 pub mod store;
-pub(crate) mod time;
 mod title;
 
 /// The parts of the program that the sessions of a server use, too.
 pub mod parts {
-    pub use crate::app::banner::draw as draw_banner;
-    pub use crate::app::bindings::{Action, Preset};
-    pub use crate::app::controls::{Clock, Controls, KeyContext};
+    pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
-    pub use crate::app::map_panel::MapPanel;
-    pub use crate::app::menu::Menu;
-    pub use crate::app::mouse::Pointer;
-    pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
-    pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
-    pub use crate::app::picture::{DrawOptions, Overlay, TerminalLook, widened};
+    pub use crate::app::page::{
+        Effect, Kind, Menu, Page, Pages, is_answerable, is_too_small, leaving, message,
+        picture_and_status, too_small,
+    };
+    pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
+    pub use crate::app::run::Watch;
     pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
-    pub use crate::app::settings_page::{Choices, settings_menu};
-    pub use crate::app::stats::{Meter, Stats};
-    pub use crate::app::status::{HealthSigns, Part, StatusLine, hint};
-    pub use crate::app::steps::Watch;
-    pub use crate::app::time::{of_steps, tenths, whole_seconds};
+    pub use crate::app::settings::{Choices, settings_menu};
+    pub use crate::app::status::{
+        HealthSigns, Meter, Part, Stats, StatusLine, hint, of_steps, tenths, whole_seconds,
+    };
+    pub use crate::app::title::draw_banner;
 }
 
 use std::time::Duration;
 
-pub use bindings::Bindings;
-use controls::{Clock, Controls};
+pub use controls::Bindings;
+use controls::{Clock, Controls, Pointer};
 use detection::Detection;
 pub use levels::Levels;
 use levels::{Course, LevelNumber, Reload, Stage};
-use map_panel::MapPanel;
-use mouse::Pointer;
 use page::Pages;
-use picture::TerminalLook;
+use picture::{MapPanel, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views};
-pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder};
-pub use replay::Replay;
+pub use recording::{Recording, Replay};
 use results::LevelResult;
+use run::Watch;
 pub use run::{Farewell, Opening, play};
 use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
-use stats::Stats;
-use status::StatusLine;
-use steps::Watch;
+use status::{Stats, StatusLine};
 use store::{Reached, Store};
 use title::{Demo, TmuxOrder};
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};

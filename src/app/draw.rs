@@ -13,14 +13,14 @@ use std::time::Duration;
 
 use ratatui::layout::{Rect, Size};
 
-use crate::app::bindings::{Action, Bindings};
+use crate::app::controls::{Action, Bindings};
 use crate::app::picture::{DrawOptions, Overlay};
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::Screen;
+use crate::app::status::whole_seconds;
 use crate::app::status::{HealthSigns, Part, hint};
-use crate::app::time::whole_seconds;
-use crate::app::{App, Shown, banner, panels};
+use crate::app::{App, Shown, page, title};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
 use crate::tui::canvas::Canvas;
@@ -41,11 +41,11 @@ impl App {
         go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
     ) -> bool {
         let area = Rect::from(window);
-        if panels::is_too_small(area) {
+        if page::is_too_small(area) {
             return true;
         }
         self.show_ghost();
-        let [picture, _] = panels::picture_and_status(area);
+        let [picture, _] = page::picture_and_status(area);
         let (options, screen, bindings) =
             (self.draw_options(), self.screen(), &self.settings.bindings);
         let go_on = &mut || go_on(screen, bindings);
@@ -55,10 +55,10 @@ impl App {
     /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
     pub(crate) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
-        if panels::is_too_small(area) {
-            return panels::too_small(canvas);
+        if page::is_too_small(area) {
+            return page::too_small(canvas);
         }
-        let [picture, status] = panels::picture_and_status(area);
+        let [picture, status] = page::picture_and_status(area);
         self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
@@ -79,10 +79,10 @@ impl App {
                 self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
             Screen::Leaving => {
-                panels::leaving(canvas, picture, bindings, self.effect_of_leaving());
+                page::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
             Screen::Title => {
-                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth());
+                let below = title::draw_banner(canvas, picture, self.settings.glyphs, self.depth());
                 self.pages.menu.draw(canvas, below);
             }
             _ => self.pages.menu.draw(canvas, picture),
@@ -217,7 +217,7 @@ impl App {
     }
 
     /// The number of steps until that change; `None` for never.
-    pub(crate) fn steps_to_animation(&self) -> Option<u64> {
+    fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
         Some(steps.round().max(0.0) as u64)
     }

@@ -3,11 +3,11 @@
 
 use crate::app::App;
 use crate::app::levels::Stage;
-use crate::app::menu::Menu;
+use crate::app::page::Menu;
 use crate::app::recording::{RunLog, ScriptCursor};
 use crate::app::screen::Choice;
+use crate::app::status::{tenths, whole_seconds};
 use crate::app::store::{Improved, Run};
-use crate::app::time::{tenths, whole_seconds};
 use crate::game::{Game, Header, LevelName, Outcome, Rank, STEP, Script, Share, Tally};
 use crate::map::builtin;
 

@@ -9,13 +9,13 @@
 //! a checksum of the map alone. It would not notice a change of the rules, and would reject a map in
 //! which only a comment has changed.
 
-use super::descents::{date_of, save_of_descent};
-use super::menu::Menu;
+use super::levels::{date_of, save_of_descent};
+use super::page::Menu;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
+use super::run::Watch;
 use super::screen::{Choice, capitalized};
-use super::steps::Watch;
-use super::time::whole_seconds;
+use super::status::whole_seconds;
 use super::{App, Levels, Screen};
 use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};

@@ -31,24 +31,20 @@
 //! locked while the game runs. The second game would keep nothing.
 
 pub mod home;
-mod names;
-pub(crate) mod preferences;
 pub mod private;
 mod progress;
-mod results;
 mod text;
 
 use std::path::Path;
 
 use home::{Home, LARGEST_SCRIPT};
-pub use names::map_key;
-pub use names::name_in_map_key;
-pub use preferences::Preferences;
+pub use progress::{
+    Best, Descent, DescentRun, Improved, MOST_SAVES, NotSaved, Reached, Run, Save, SaveId,
+    SavedGame, map_key, name_in_map_key, replayed,
+};
 use progress::{Change, Progress};
-pub use progress::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
-pub use results::{Best, Improved, Reached, Run};
-pub use results::{DescentRun, replayed};
 
+pub use crate::app::setting::Preferences;
 use crate::world::Difficulty;
 
 /// One player's store: a folder, or memory.
@@ -107,7 +103,7 @@ impl Store {
     pub fn script(&self, level: &str, difficulty: Difficulty) -> Option<String> {
         self.text_in(|progress| {
             let best = progress.best(level, difficulty)?;
-            Some(names::of_run(level, difficulty, best.tally.steps))
+            Some(progress::of_run(level, difficulty, best.tally.steps))
         })
     }
 
