@@ -13,8 +13,8 @@ use std::time::Duration;
 
 use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
+use super::event::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::event::{MouseButton, MouseEventKind, MouseReport};
-use super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::known::{Known, known};
 use super::sequence;
 

@@ -15,20 +15,17 @@
 //! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a
 //! thread for each of them.
 
-mod changes;
-
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::backend::Backend;
 
-pub(crate) use self::changes::Changes;
-use self::changes::KeyFlags;
 use super::event::{MouseReport, MouseUnits};
 use super::flow::{Flow, Request};
 use super::input::{Answer, Decoder, Input};
 use super::known::{Colors, Known};
+use super::sequence::{Changes, KeyFlags};
 use super::{
     CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Options, Phase, QuitReason,
     Screen, TmuxClient, WindowSize, sequence,
