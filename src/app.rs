@@ -45,19 +45,17 @@ pub use controls::Bindings;
 use controls::{Clock, Controls, Pointer};
 use detection::Detection;
 pub use levels::Levels;
-use levels::{Course, LevelNumber, Reload, Stage};
 use page::Pages;
 use picture::{MapPanel, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views};
 use recording::{Ghost, RunLog, ScriptRecorder};
 pub use recording::{Recording, Replay};
-use results::LevelResult;
 use run::Watch;
 pub use run::{Farewell, Opening, play};
 use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 use status::{Stats, StatusLine};
-use store::{Reached, Store};
+use store::{Improved, Reached, Store};
 use title::{Demo, TmuxOrder};
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
@@ -74,13 +72,11 @@ struct Shown {
     figures: Vec<Figure>,
 }
 
+#[derive(Default)]
 struct App {
-    later_levels: Box<dyn Iterator<Item = Stage>>,
-    /// The level that is played, to begin it again.
-    stage: Stage,
+    /// The level that is played, and those after it.
+    levels: Levels,
     game: Played,
-    level: LevelNumber,
-    course: Course,
     /// How far a descent came.
     reached: Reached,
     difficulty: Difficulty,
@@ -91,8 +87,8 @@ struct App {
     log: RunLog,
     /// The best run of the level.
     ghost: Option<Ghost>,
-    /// The result of the level that was won last.
-    result: Option<LevelResult>,
+    /// The improvement by the level that was won last, once it is recorded.
+    improved: Option<Improved>,
     /// A line about the game that was left.
     left: Option<String>,
     store: Store,
@@ -131,96 +127,54 @@ struct App {
     tmux_order: TmuxOrder,
     /// Records the player's intents.
     script: Option<ScriptRecorder>,
-    /// The source of changes of the level.
-    reload: Option<Reload>,
 }
 
 impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
-        let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes, course } = levels;
-        let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
+        let game = levels.stage.begin(Difficulty::default()).unwrap_or_default();
         Self {
-            later_levels: rest,
-            stage: first,
-            level: number,
-            course,
-            reached: Reached::default(),
-            machine_time: None,
-            difficulty,
             goal: Goal::of(&game, settings.minimap),
-            notice: None,
             map: MapPanel::new(settings.minimap),
-            game,
-            log: RunLog::default(),
-            ghost: None,
-            result: None,
-            left: None,
-            store: Store::in_memory(),
-            watch: Watch::default(),
-            earlier: 0.0,
-            pages: Pages::new(Screen::Playing),
-            offers: None,
-            own_maps: Vec::new(),
-            demo: None,
-            terminal: TerminalLook::default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             pointer: Pointer::new(settings.mouse),
+            levels,
+            game,
             settings,
-            controls: Controls::default(),
-            now: Duration::ZERO,
-            has_left: false,
-            clock: Clock::default(),
-            shown: None,
-            is_interrupted: false,
-            animates_at: None,
-            stats: None,
-            status: StatusLine::default(),
-            detection: Detection::default(),
-            tmux_order: TmuxOrder::default(),
-            script: None,
-            reload: changes.map(Reload::from),
+            ..Self::default()
         }
     }
 
     /// The first of `levels`, or else the title, with what `store` keeps.
     fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+        let mut app = Self { store, ..Self::new(Levels::default(), settings) };
         match opening {
             Opening::Levels(levels) => {
-                let usual = store.preferences().difficulty;
-                let difficulty = settings.difficulty.unwrap_or(usual);
-                let mut app = Self::new(Levels::nothing(), settings);
-                app.store = store;
-                app.difficulty = difficulty;
+                app.difficulty = app.usual_difficulty();
                 app.begin(*levels);
-                app
             }
-            Opening::Title(offers) => {
-                let mut app = Self::offering(offers, settings, store);
-                app.show_title();
-                app
-            }
+            Opening::Title(offers) => app.offer(offers),
             Opening::Daily(offers) => {
-                let mut app = Self::offering(offers, settings, store);
-                app.show_title();
+                app.offer(offers);
                 app.open(Screen::Daily);
-                app
             }
             Opening::Endless(offers) => {
-                let mut app = Self::offering(offers, settings, store);
+                app.offers = Some(offers);
                 app.begin_endless();
-                app
             }
         }
+        app
     }
 
-    /// An app with a title to return to.
-    fn offering(offers: Offers, settings: Settings, store: Store) -> Self {
-        let mut app = Self::new(Levels::nothing(), settings);
-        app.store = store;
-        app.offers = Some(offers);
-        app
+    /// Shows the title with these offers.
+    fn offer(&mut self, offers: Offers) {
+        self.offers = Some(offers);
+        self.show_title();
+    }
+
+    /// The difficulty of levels that are played without a choice of one.
+    fn usual_difficulty(&self) -> Difficulty {
+        self.settings.difficulty.unwrap_or(self.store.preferences().difficulty)
     }
 
     /// Handles a new size or new properties of the terminal.

@@ -67,55 +67,58 @@ pub enum MapChange {
 }
 
 impl Action {
-    /// Every action with its name in a file and a short description.
-    pub(crate) const ALL: [(&'static str, &'static str, Self); 42] = [
-        ("forward", "walk", Self::Want(Intent::Forward)),
-        ("back", "walk back", Self::Want(Intent::Back)),
-        ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft)),
-        ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight)),
-        ("turn-left", "turn left", Self::Want(Intent::TurnLeft)),
-        ("turn-right", "turn right", Self::Want(Intent::TurnRight)),
-        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft)),
-        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight)),
-        ("about-face", "turn around", Self::Want(Intent::AboutFace)),
-        ("walk-on", "keep walking", Self::ToggleWalkOn),
-        ("run", "run while held", Self::Want(Intent::Run)),
-        ("open", "open or use", Self::Want(Intent::Open)),
-        ("jump", "jump, or open", Self::Want(Intent::Jump)),
-        ("duck", "duck while held", Self::Want(Intent::Duck)),
-        ("strike", "strike", Self::Want(Intent::Strike)),
-        ("throw", "throw a pebble", Self::Want(Intent::Throw)),
-        ("shoot", "shoot a dart", Self::Want(Intent::Shoot)),
-        ("smoke", "throw smoke", Self::Want(Intent::Smoke)),
-        ("lamp", "light, put out", Self::Want(Intent::Lamp)),
-        ("look-up", "look up", Self::Want(Intent::LookUp)),
-        ("look-down", "look down", Self::Want(Intent::LookDown)),
-        ("look-ahead", "look ahead", Self::Want(Intent::LookAhead)),
-        ("toggle-run", "run, on and off", Self::ToggleRun),
-        ("toggle-duck", "duck, on and off", Self::ToggleDuck),
-        ("mouse", "turn by mouse", Self::ToggleMouse),
-        ("minimap", "map", Self::ToggleMinimap),
-        ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger)),
-        ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller)),
-        ("map-north", "move it north", Self::ChangeMap(MapChange::North)),
-        ("map-south", "move it south", Self::ChangeMap(MapChange::South)),
-        ("map-west", "move it west", Self::ChangeMap(MapChange::West)),
-        ("map-east", "move it east", Self::ChangeMap(MapChange::East)),
-        ("map-center", "map around you", Self::ChangeMap(MapChange::Center)),
-        ("help", "this help", Self::ToggleHelp),
-        ("pause", "pause", Self::TogglePause),
-        ("wider", "wider view", Self::WidenView),
-        ("narrower", "narrower view", Self::NarrowView),
-        ("crosshair", "crosshair", Self::ToggleCrosshair),
-        ("compass", "compass", Self::ToggleCompass),
-        ("ghost", "best run", Self::ToggleGhost),
-        ("stats", "frames and link", Self::ToggleStats),
-        ("leave", "leave", Self::Leave),
+    /// Every action with its name in a file, a short description, and its keys on a QWERTY keyboard.
+    pub(crate) const ALL: [(&'static str, &'static str, Self, &'static [Key]); 42] = [
+        ("forward", "walk", Self::Want(Intent::Forward), &[Key::Char('w'), Key::Up]),
+        ("back", "walk back", Self::Want(Intent::Back), &[Key::Char('s'), Key::Down]),
+        ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft), &[Key::Char('a')]),
+        ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight), &[Key::Char('d')]),
+        ("turn-left", "turn left", Self::Want(Intent::TurnLeft), &[Key::Left]),
+        ("turn-right", "turn right", Self::Want(Intent::TurnRight), &[Key::Right]),
+        // These letters are on the same keys in nearly all layouts.
+        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft), &[Key::Char('u')]),
+        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight), &[Key::Char('o')]),
+        ("about-face", "turn around", Self::Want(Intent::AboutFace), &[Key::Char('b')]),
+        ("walk-on", "keep walking", Self::ToggleWalkOn, &[Key::Char('g')]),
+        ("run", "run while held", Self::Want(Intent::Run), &[Key::Shift]),
+        ("open", "open or use", Self::Want(Intent::Open), &[Key::Char('e')]),
+        ("jump", "jump, or open", Self::Want(Intent::Jump), &[Key::Char(' ')]),
+        // Rejected: Control. With another key held, it is a command to the terminal.
+        ("duck", "duck while held", Self::Want(Intent::Duck), &[Key::Char('c')]),
+        ("strike", "strike", Self::Want(Intent::Strike), &[Key::Char('f')]),
+        ("throw", "throw a pebble", Self::Want(Intent::Throw), &[Key::Char('t')]),
+        ("shoot", "shoot a dart", Self::Want(Intent::Shoot), &[Key::Char('n')]),
+        ("smoke", "throw smoke", Self::Want(Intent::Smoke), &[Key::Char('y')]),
+        ("lamp", "light, put out", Self::Want(Intent::Lamp), &[Key::Char('l')]),
+        ("look-up", "look up", Self::Want(Intent::LookUp), &[Key::PageUp]),
+        ("look-down", "look down", Self::Want(Intent::LookDown), &[Key::PageDown]),
+        ("look-ahead", "look ahead", Self::Want(Intent::LookAhead), &[Key::Home]),
+        ("toggle-run", "run, on and off", Self::ToggleRun, &[Key::Char('r')]),
+        ("toggle-duck", "duck, on and off", Self::ToggleDuck, &[Key::Char('x')]),
+        ("mouse", "turn by mouse", Self::ToggleMouse, &[Key::Char('v')]),
+        ("minimap", "map", Self::ToggleMinimap, &[Key::Char('m'), Key::Tab]),
+        // As on a number pad.
+        ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger), &[Key::Char('9')]),
+        ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller), &[Key::Char('3')]),
+        ("map-north", "move it north", Self::ChangeMap(MapChange::North), &[Key::Char('8')]),
+        ("map-south", "move it south", Self::ChangeMap(MapChange::South), &[Key::Char('2')]),
+        ("map-west", "move it west", Self::ChangeMap(MapChange::West), &[Key::Char('4')]),
+        ("map-east", "move it east", Self::ChangeMap(MapChange::East), &[Key::Char('6')]),
+        ("map-center", "map around you", Self::ChangeMap(MapChange::Center), &[Key::Char('5')]),
+        ("help", "this help", Self::ToggleHelp, &[Key::Char('?')]),
+        ("pause", "pause", Self::TogglePause, &[Key::Char('p')]),
+        ("wider", "wider view", Self::WidenView, &[Key::Char('+'), Key::Char('=')]),
+        ("narrower", "narrower view", Self::NarrowView, &[Key::Char('-')]),
+        ("crosshair", "crosshair", Self::ToggleCrosshair, &[Key::Char('.')]),
+        ("compass", "compass", Self::ToggleCompass, &[Key::Char(',')]),
+        ("ghost", "best run", Self::ToggleGhost, &[Key::Char('0')]),
+        ("stats", "frames and link", Self::ToggleStats, &[Key::Char('i')]),
+        ("leave", "leave", Self::Leave, &[Key::Char('q'), Key::Escape]),
     ];
 
     /// The action with that name.
     pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(.., action)| action)
+        Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(_, _, action, _)| action)
     }
 
     /// Whether the actions exclude each other.
@@ -135,10 +138,7 @@ impl Bindings {
     /// The keys of every action with a short description, in the order of [`Action::ALL`].
     #[cfg(feature = "cli")]
     pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
-        Action::ALL.into_iter().map(|(_, does, action)| {
-            let keys: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
-            (keys.join(" "), does)
-        })
+        Action::ALL.into_iter().map(|(_, does, action, _)| (self.key_names(action), does))
     }
 
     /// Replaces the keys of the actions in `rebound` by `bound`. Keys in `bound` are removed from
@@ -159,7 +159,7 @@ impl Bindings {
 
     /// Sorts the keys by their actions.
     fn in_order(mut self) -> Self {
-        let index = |action| Action::ALL.iter().position(|&(.., known)| known == action);
+        let index = |action| Action::ALL.iter().position(|&(_, _, known, _)| known == action);
         sort::by_key(&mut self.keys, |&(_, action)| index(action));
         self
     }
@@ -174,6 +174,12 @@ impl Bindings {
     pub fn resolve(&self, event: KeyEvent) -> KeyEvent {
         let base = event.base.filter(|_| self.action(event.key).is_none());
         KeyEvent { key: base.unwrap_or(event.key), ..event }
+    }
+
+    /// The names of the keys of `action`, between blanks.
+    pub(crate) fn key_names(&self, action: Action) -> String {
+        let names: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
+        names.join(" ")
     }
 
     /// The keys of `action`, in the order in which they were bound.
@@ -193,35 +199,26 @@ pub enum Preset {
     Hjkl,
 }
 
-/// The keys that differ between presets.
-struct Letters {
-    forward: char,
-    back: char,
-    strafe_left: char,
-    leave: char,
-    lamp: char,
-    /// Further keys that turn left and right, besides the arrows.
-    turns: Option<[char; 2]>,
-}
-
 impl Preset {
     /// The bindings for that keyboard.
     pub(crate) fn bindings(self) -> Bindings {
-        let qwerty = Letters {
-            forward: 'w',
-            back: 's',
-            strafe_left: 'a',
-            leave: 'q',
-            lamp: 'l',
-            turns: None,
+        let turns = [('h', Intent::TurnLeft), ('l', Intent::TurnRight)];
+        // The letters that replace others, and further keys.
+        let (letters, further): (&[(char, char)], &[(char, Intent)]) = match self {
+            Self::Qwerty => (&[], &[]),
+            Self::Azerty => (&[('w', 'z'), ('a', 'q'), ('q', 'a')], &[]),
+            Self::Hjkl => (&[('w', 'k'), ('s', 'j'), ('l', 'z')], &turns),
         };
-        Bindings::with_letters(&match self {
-            Self::Qwerty => qwerty,
-            Self::Azerty => Letters { forward: 'z', strafe_left: 'q', leave: 'a', ..qwerty },
-            Self::Hjkl => {
-                Letters { forward: 'k', back: 'j', lamp: 'z', turns: Some(['h', 'l']), ..qwerty }
-            }
-        })
+        let on_keyboard = |key| {
+            let own = letters.iter().find(|&&(usual, _)| key == Key::Char(usual));
+            own.map_or(key, |&(_, own)| Key::Char(own))
+        };
+        let bound = |(.., action, keys): (_, _, Action, &'static [Key])| {
+            keys.iter().map(move |&key| (on_keyboard(key), action))
+        };
+        let further = further.iter().map(|&(key, intent)| (Key::Char(key), Action::Want(intent)));
+        Bindings { keys: Action::ALL.into_iter().flat_map(bound).chain(further).collect() }
+            .in_order()
     }
 }
 
@@ -229,68 +226,6 @@ impl Default for Bindings {
     /// The bindings for QWERTY keyboards.
     fn default() -> Self {
         Preset::default().bindings()
-    }
-}
-
-impl Bindings {
-    fn with_letters(letters: &Letters) -> Self {
-        let mut keys = vec![
-            (Key::Char(letters.forward), Action::Want(Intent::Forward)),
-            (Key::Up, Action::Want(Intent::Forward)),
-            (Key::Char(letters.back), Action::Want(Intent::Back)),
-            (Key::Down, Action::Want(Intent::Back)),
-            (Key::Char(letters.strafe_left), Action::Want(Intent::StrafeLeft)),
-            (Key::Char('d'), Action::Want(Intent::StrafeRight)),
-            (Key::Left, Action::Want(Intent::TurnLeft)),
-            (Key::Right, Action::Want(Intent::TurnRight)),
-            // These letters are on the same keys in nearly all layouts.
-            (Key::Char('u'), Action::Want(Intent::FineLeft)),
-            (Key::Char('o'), Action::Want(Intent::FineRight)),
-            (Key::Char('b'), Action::Want(Intent::AboutFace)),
-            (Key::Char('g'), Action::ToggleWalkOn),
-            (Key::Shift, Action::Want(Intent::Run)),
-            (Key::Char(' '), Action::Want(Intent::Jump)),
-            (Key::Char('e'), Action::Want(Intent::Open)),
-            // Rejected: Control. With another key held, it is a command to the terminal.
-            (Key::Char('c'), Action::Want(Intent::Duck)),
-            (Key::Char('f'), Action::Want(Intent::Strike)),
-            (Key::Char('t'), Action::Want(Intent::Throw)),
-            (Key::Char('n'), Action::Want(Intent::Shoot)),
-            (Key::Char('y'), Action::Want(Intent::Smoke)),
-            (Key::Char(letters.lamp), Action::Want(Intent::Lamp)),
-            (Key::PageUp, Action::Want(Intent::LookUp)),
-            (Key::PageDown, Action::Want(Intent::LookDown)),
-            (Key::Home, Action::Want(Intent::LookAhead)),
-            (Key::Char('r'), Action::ToggleRun),
-            (Key::Char('x'), Action::ToggleDuck),
-            (Key::Char('v'), Action::ToggleMouse),
-            (Key::Char('m'), Action::ToggleMinimap),
-            (Key::Tab, Action::ToggleMinimap),
-            // As on a number pad.
-            (Key::Char('9'), Action::ChangeMap(MapChange::Larger)),
-            (Key::Char('3'), Action::ChangeMap(MapChange::Smaller)),
-            (Key::Char('8'), Action::ChangeMap(MapChange::North)),
-            (Key::Char('2'), Action::ChangeMap(MapChange::South)),
-            (Key::Char('4'), Action::ChangeMap(MapChange::West)),
-            (Key::Char('6'), Action::ChangeMap(MapChange::East)),
-            (Key::Char('5'), Action::ChangeMap(MapChange::Center)),
-            (Key::Char('?'), Action::ToggleHelp),
-            (Key::Char('p'), Action::TogglePause),
-            (Key::Char('+'), Action::WidenView),
-            (Key::Char('='), Action::WidenView),
-            (Key::Char('-'), Action::NarrowView),
-            (Key::Char('i'), Action::ToggleStats),
-            (Key::Char('.'), Action::ToggleCrosshair),
-            (Key::Char(','), Action::ToggleCompass),
-            (Key::Char('0'), Action::ToggleGhost),
-            (Key::Char(letters.leave), Action::Leave),
-            (Key::Escape, Action::Leave),
-        ];
-        if let Some([left, right]) = letters.turns {
-            keys.push((Key::Char(left), Action::Want(Intent::TurnLeft)));
-            keys.push((Key::Char(right), Action::Want(Intent::TurnRight)));
-        }
-        Self { keys }.in_order()
     }
 }
 
@@ -620,7 +555,7 @@ mod tests {
     #[test]
     fn every_action_has_a_key_in_every_preset() {
         for preset in [Preset::Qwerty, Preset::Azerty, Preset::Hjkl] {
-            for (name, _, action) in Action::ALL {
+            for (name, _, action, _) in Action::ALL {
                 assert!(preset.bindings().keys(action).next().is_some(), "{name} in {preset:?}");
             }
         }

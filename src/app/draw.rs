@@ -91,9 +91,10 @@ impl App {
 
     fn draw_status(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let signs = HealthSigns::for_picture(self.settings.glyphs, self.depth());
-        let Self { game, goal, notice, level, map, controls, pointer, settings, .. } = self;
-        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
-        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        let Self { game, goal, notice, levels, map, controls, pointer, settings, .. } = self;
+        let (grid, level) = (game.grid(), levels.number);
+        let player = grid.and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = grid.filter(|game| game.is_mission()).zip(player);
         let notice = notice.as_ref().filter(|notice| notice.is_shown());
         let stats = self.stats.as_ref().filter(|_| settings.shows_stats);
         self.status.rewrite(|line| {
@@ -106,13 +107,13 @@ impl App {
                 level.write_short(short)?;
                 write!(long, "{level}")?;
             }
-            if let Some(site) = game.site() {
+            if let Some(site) = grid.and_then(Game::site) {
                 line.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
             }
             let lamp = mission.is_some_and(|(_, player)| player.lamp_is_lit());
             line.write_modes(controls.toggles, pointer.is_on(), lamp)?;
-            line.write_keys(game.keys())?;
-            if let (None, Some(message)) = (notice, game.message()) {
+            line.write_keys(grid.into_iter().flat_map(Game::keys))?;
+            if let (None, Some(message)) = (notice, grid.and_then(Game::message)) {
                 line.both(Part::Notice, format_args!("{message}"))?;
             } else if let Some(goal) = notice.or(Some(goal)).filter(|goal| goal.is_shown()) {
                 let [short, long] = line.forms(Part::Notice);
@@ -122,7 +123,7 @@ impl App {
             if let Some(stats) = stats {
                 line.write_stats(stats)?;
             }
-            if let Some(share) = game.grid().and_then(|game| map.share_seen(game)) {
+            if let Some(share) = grid.and_then(|game| map.share_seen(game)) {
                 line.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
             }
             line.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
@@ -134,10 +135,17 @@ impl App {
     fn paint_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let options = self.draw_options();
         self.game.paint(&options, canvas, area, &self.views);
-        if self.demo.is_none() {
-            self.draw_map(canvas, area, &options);
-            self.draw_hud(canvas, area, &options);
+        if self.demo.is_some() {
+            return;
         }
+        let preferences = self.store.preferences();
+        let game = self.game.grid();
+        let overlay =
+            game.and_then(|game| Overlay::new(game, PlayerId::FIRST, &options, preferences));
+        let Some(overlay) = overlay else { return options.draw_middle(canvas, area) };
+        let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
+        overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
+        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
     }
 
     fn draw_options(&self) -> DrawOptions {
@@ -164,28 +172,6 @@ impl App {
         if let Some(game) = self.game.grid_mut() {
             game.show_guest(|sprite| ghost.figure(sprite).filter(|_| is_on));
         }
-    }
-
-    fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
-        let Some(overlay) = self.overlay(options) else {
-            return options.draw_middle(canvas, area);
-        };
-        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
-    }
-
-    fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
-        let preferences = self.store.preferences();
-        let Some(game) = self.game.grid() else { return };
-        if let Some(overlay) = Overlay::new(game, PlayerId::FIRST, options, preferences) {
-            let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
-            let overlay = overlay.with_ghost(ghost);
-            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid);
-        }
-    }
-
-    fn overlay<'a>(&'a self, options: &'a DrawOptions) -> Option<Overlay<'a>> {
-        let preferences = self.store.preferences();
-        Overlay::new(self.game.grid()?, PlayerId::FIRST, options, preferences)
     }
 }
 
@@ -228,7 +214,7 @@ impl App {
         let figures = self.figures_in_view().copied().collect();
         self.shown = Some(Shown { viewpoint, revision, figures });
         let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.views.next_change().map(|change| change.max(soonest));
+        self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));
     }
 
     /// The time at which the game changes without an event; `None` for never.

@@ -11,7 +11,7 @@
 //! try: its saved game is removed then, so that a death cannot be undone.
 
 use std::time::Duration;
-use std::{fmt, iter, mem};
+use std::{fmt, iter};
 
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Text};
@@ -33,25 +33,16 @@ use crate::space::Scene;
 use crate::tui::canvas::Canvas;
 use crate::world::Difficulty;
 
-/// The levels of a game, in order. Each but the first is created when it is reached.
+/// The level that is played, and those after it, in order. Each is created when it is reached.
 pub struct Levels {
-    pub(crate) first: Stage,
-    pub(crate) rest: Box<dyn Iterator<Item = Stage>>,
-    pub(crate) changes: Option<Changes>,
+    /// The level that is played, to begin it again.
+    pub(crate) stage: Stage,
+    rest: Box<dyn Iterator<Item = Stage>>,
+    /// The source of changes of the level.
+    pub(crate) reload: Option<Reload>,
     pub(crate) number: LevelNumber,
-    pub(crate) course: Course,
-}
-
-/// The course that levels belong to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) enum Course {
-    /// Levels that are tried again until they are won.
-    #[default]
-    Levels,
-    /// A descent, which ends with the player.
-    Endless,
-    /// The descent of a day, such as 20261122, and whether the try counts.
-    Daily { date: u32, counts: bool },
+    /// The kind of the descent, which ends with the player; `None` for levels, which are tried again until they are won.
+    pub(crate) descent: Option<Descent>,
 }
 
 /// A level before it begins. It can begin any number of times.
@@ -96,10 +87,10 @@ impl Levels {
         Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
-    /// The floors of the descent with that seed, without an end.
-    pub(crate) fn descent(seed: u64, course: Course) -> Self {
+    /// The floors of the descent with that seed, without an end. The seed of a daily run is its date.
+    pub(crate) fn descent(seed: u64, kind: Descent) -> Self {
         let stage = move |number| Stage::Floor { seed, number };
-        Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
+        Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
     /// One level that may change during the game. `changes` is called a few times a second. If the
@@ -108,7 +99,8 @@ impl Levels {
         level: Level,
         changes: impl FnMut() -> Option<Result<Level, Faults>> + 'static,
     ) -> Self {
-        Self { changes: Some(Box::new(changes)), ..Self::new(level, iter::empty()) }
+        let reload = Reload { changes: Box::new(changes), next_check: INTERVAL, fault: None };
+        Self { reload: Some(reload), ..Self::new(level, iter::empty()) }
     }
 
     /// Sets the number of the first level, counted from 1, and the number of levels.
@@ -117,28 +109,20 @@ impl Levels {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
     }
 
-    /// No level.
-    pub(crate) fn nothing() -> Self {
-        Self::staged(Stage::nothing(), iter::empty())
+    fn staged(stage: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
+        let number = LevelNumber { number: 1, of: None };
+        Self { stage, rest: Box::new(rest), number, reload: None, descent: None }
     }
+}
 
-    fn staged(first: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
-        Self {
-            first,
-            rest: Box::new(rest),
-            number: LevelNumber { number: 1, of: None },
-            changes: None,
-            course: Course::default(),
-        }
+impl Default for Levels {
+    /// A level in which there is nothing.
+    fn default() -> Self {
+        Self::staged(Stage::Level(Level::Space(Scene::default())), iter::empty())
     }
 }
 
 impl Stage {
-    /// A level in which there is nothing.
-    pub(crate) fn nothing() -> Self {
-        Self::Level(Level::Space(Scene::default()))
-    }
-
     /// The name under which results of the level are kept, if they are.
     pub(crate) fn name(&self) -> Option<&str> {
         match self {
@@ -171,20 +155,9 @@ impl Stage {
             }
         })
     }
-
-    /// Replaces the level by a changed one.
-    pub(crate) fn change(&mut self, level: Level) {
-        *self = Self::Level(level);
-    }
 }
 
 impl LevelNumber {
-    /// The number of the next level.
-    #[must_use]
-    pub(crate) fn next(self) -> Self {
-        Self { number: self.number + 1, ..self }
-    }
-
     /// Whether there are several levels, as far as known.
     pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
@@ -223,30 +196,28 @@ impl App {
 
     /// Begins the first of `levels`.
     pub(crate) fn set_up(&mut self, levels: Levels) {
-        let Levels { first, rest, number, changes, course } = levels;
-        let Some(game) = first.begin(self.difficulty) else { return };
-        self.later_levels = rest;
-        self.level = number;
-        self.reload = changes.map(Reload::from);
+        let Some(game) = levels.stage.begin(self.difficulty) else { return };
+        self.levels = levels;
         self.earlier = 0.0;
-        self.course = course;
         self.reached = Reached::default();
         self.demo = None;
         self.log = RunLog::default();
-        self.begin_level(first, game);
+        self.begin_level(game);
         self.tell_whether_it_counts();
     }
 
     /// Begins the next level. After the last one comes the end.
     pub(crate) fn next_level(&mut self) {
-        let Some(stage) = self.later_levels.next() else { return self.show(Screen::End) };
-        let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
+        let stage = self.levels.rest.next();
+        let begun = stage.and_then(|stage| Some((stage.begin(self.difficulty)?, stage)));
+        let Some((game, stage)) = begun else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
-        self.level = self.level.next();
+        self.levels.number.number += 1;
+        self.levels.stage = stage;
         if !self.is_descent() {
             self.log = RunLog::default();
         }
-        self.begin_level(stage, game);
+        self.begin_level(game);
         self.ask_about_saved();
     }
 
@@ -259,10 +230,9 @@ impl App {
 
     /// Returns to the start of the level.
     pub(crate) fn begin_again(&mut self) {
-        let Some(game) = self.stage.begin(self.difficulty) else { return };
+        let Some(game) = self.levels.stage.begin(self.difficulty) else { return };
         self.log = RunLog::default();
-        let stage = mem::replace(&mut self.stage, Stage::nothing());
-        self.begin_level(stage, game);
+        self.begin_level(game);
     }
 
     /// Goes on from the last checkpoint after a death.
@@ -287,25 +257,22 @@ impl App {
     /// Shows the title, over a level that plays itself.
     pub(crate) fn show_title(&mut self) {
         self.script = None;
-        self.reload = None;
+        self.levels.reload = None;
         self.ghost = None;
         match Demo::begin() {
             Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
-            None => self.game = Played::nothing(),
+            None => self.game = Played::default(),
         }
         self.release_keys();
         self.show(Screen::Title);
     }
 
-    fn begin_level(&mut self, stage: Stage, game: Played) {
-        self.ghost = match (self.best_run(&stage), game.grid()) {
-            (Some(cursor), Some(game)) => Some(Ghost::new(game.clone(), cursor)),
-            _ => None,
-        };
+    fn begin_level(&mut self, game: Played) {
+        let best_run = self.best_run().zip(game.grid());
+        self.ghost = best_run.map(|(cursor, game)| Ghost::new(game.clone(), cursor));
         self.watch = Watch::begin(game.grid());
-        self.stage = stage;
         self.game = game;
-        self.result = None;
+        self.improved = None;
         self.notice = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
@@ -317,35 +284,26 @@ impl App {
 /// The time between two checks.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Returns the level or its faults, if it has changed.
-pub(crate) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
-
 /// The source of changes, and the faults of the last one.
 pub(crate) struct Reload {
-    changes: Changes,
+    /// Returns the level or its faults, if it has changed.
+    changes: Box<dyn FnMut() -> Option<Result<Level, Faults>>>,
     next_check: Duration,
     fault: Option<String>,
-}
-
-impl Reload {
-    pub(crate) fn from(changes: Changes) -> Self {
-        Self { changes, next_check: INTERVAL, fault: None }
-    }
 }
 
 impl App {
     /// Checks for a change when it is time, and continues in the changed level.
     pub(crate) fn reload(&mut self, now: Duration) {
-        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
-            return;
-        };
+        let due = self.levels.reload.as_mut().filter(|reload| now >= reload.next_check);
+        let Some(reload) = due else { return };
         reload.next_check = now + INTERVAL;
         match (reload.changes)() {
             None => {}
             Some(Ok(level)) => {
                 reload.fault = None;
                 self.game = self.game.begun_again_in(level.clone());
-                self.stage.change(level);
+                self.levels.stage = Stage::Level(level);
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
                 if self.shows_result() {
@@ -362,12 +320,12 @@ impl App {
 
     /// The time of the next check; `None` for never.
     pub(crate) fn next_reload(&self) -> Option<Duration> {
-        self.reload.as_ref().map(|reload| reload.next_check)
+        self.levels.reload.as_ref().map(|reload| reload.next_check)
     }
 
     /// Draws the faults of the level, if any, over the bottom of the picture.
     pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
-        let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
+        let fault = self.levels.reload.as_ref().and_then(|reload| reload.fault.as_ref());
         let Some(fault) = fault else { return };
         let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));
         let height = (lines.len() as u16).saturating_add(2).min(picture.height);
@@ -413,8 +371,9 @@ impl App {
     pub(crate) fn begin_daily(&mut self) {
         let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
         let counts = self.store.begin_daily(date);
+        let kind = if counts { Descent::Daily } else { Descent::Practice };
         self.difficulty = Difficulty::default();
-        self.set_up(Levels::descent(date.into(), Course::Daily { date, counts }));
+        self.set_up(Levels::descent(date.into(), kind));
         self.ask_about_saved();
     }
 
@@ -423,40 +382,18 @@ impl App {
         let Some(offers) = self.offers.as_mut() else { return };
         let seed = offers.seed;
         offers.seed = seed.wrapping_add(1);
-        let usual = self.store.preferences().difficulty;
-        self.difficulty = self.settings.difficulty.unwrap_or(usual);
-        self.begin(Levels::descent(seed, Course::Endless));
+        self.difficulty = self.usual_difficulty();
+        self.begin(Levels::descent(seed, Descent::Endless));
     }
 
     /// Says at the start of a daily run whether the try counts.
     fn tell_whether_it_counts(&mut self) {
-        let (text, short) = match self.course {
-            Course::Daily { counts: true, .. } => ("Daily run: this try counts", "This try counts"),
-            Course::Daily { counts: false, .. } => (PRACTICE, "Practice"),
-            Course::Levels | Course::Endless => return,
+        let (text, short) = match self.levels.descent {
+            Some(Descent::Daily) => ("Daily run: this try counts", "This try counts"),
+            Some(Descent::Practice) => (PRACTICE, "Practice"),
+            Some(Descent::Endless) | None => return,
         };
         self.goal = Goal::new(text, short);
-    }
-
-    /// The kind of the descent; `None` for levels.
-    pub(crate) fn descent(&self) -> Option<Descent> {
-        match self.course {
-            Course::Levels => None,
-            Course::Endless => Some(Descent::Endless),
-            Course::Daily { counts: true, .. } => Some(Descent::Daily),
-            Course::Daily { counts: false, .. } => Some(Descent::Practice),
-        }
-    }
-
-    /// The descent of that kind and seed, from its first floor on. The seed of a daily run is its date.
-    pub(crate) fn descent_of(kind: Descent, seed: u64) -> Option<Levels> {
-        let course = match kind {
-            Descent::Endless => Course::Endless,
-            Descent::Daily | Descent::Practice => {
-                Course::Daily { date: seed.try_into().ok()?, counts: kind == Descent::Daily }
-            }
-        };
-        Some(Levels::descent(seed, course))
     }
 
     /// Counts the floor whose exit the player has just reached.
@@ -468,45 +405,39 @@ impl App {
 
     /// Whether the level belongs to a descent.
     pub(crate) fn is_descent(&self) -> bool {
-        self.course != Course::Levels
+        self.levels.descent.is_some()
     }
 
     /// Records a floor that was won.
     pub(crate) fn record_floor(&mut self) {
         let Some(game) = self.game.grid() else { return };
-        let script = self.run_script(game);
+        let (date, script) = (u32::try_from(game.rules().seed), self.run_script(game));
         self.count_floor();
-        match self.course {
-            Course::Daily { date, counts: true } => {
-                self.store.record_daily(date, self.reached, script);
-            }
-            Course::Endless => _ = self.store.record_descent(self.reached, script),
-            Course::Levels | Course::Daily { counts: false, .. } => {}
+        match (self.levels.descent, date) {
+            (Some(Descent::Daily), Ok(date)) => self.store.record_daily(date, self.reached, script),
+            (Some(Descent::Endless), _) => self.store.record_descent(self.reached, script),
+            _ => {}
         }
     }
 
     /// The lines about how far the descent came.
-    pub(crate) fn descent_lines(&self) -> Vec<String> {
-        let mut lines = vec![described(self.reached)];
-        if let Course::Daily { counts: false, .. } = self.course {
-            lines.push(PRACTICE.to_owned());
-        }
-        lines
+    pub(crate) fn descent_lines(&self) -> impl Iterator<Item = String> {
+        let is_practice = self.levels.descent == Some(Descent::Practice);
+        [described(self.reached)].into_iter().chain(is_practice.then(|| PRACTICE.to_owned()))
     }
 
     /// Adds the descents to the title's menu.
     pub(crate) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
         let Some(offers) = &self.offers else { return menu };
-        let menu = match offers.today {
-            Some(date) => {
-                let tried = self.store.daily(date);
-                let tried = tried.map_or_else(String::new, short);
-                menu.entry_with("Daily run", tried, Choice::Open(Screen::Daily))
-            }
-            None => menu,
-        };
-        let best = self.store.best_descent().map_or_else(String::new, short);
-        menu.entry_with("Endless", best, Choice::Endless)
+        let reached = |reached: Option<Reached>| reached.map_or_else(String::new, short);
+        let daily = offers.today.map(|date| {
+            ("Daily run", reached(self.store.daily(date)), Choice::Open(Screen::Daily))
+        });
+        menu.entries(daily).entry_with(
+            "Endless",
+            reached(self.store.best_descent()),
+            Choice::Endless,
+        )
     }
 }
 

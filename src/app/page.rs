@@ -92,12 +92,18 @@ pub struct Pages<P, C> {
     shown_since: Duration,
 }
 
+impl<P: Page + Default, C: Copy + PartialEq> Default for Pages<P, C> {
+    fn default() -> Self {
+        Self::new(P::default())
+    }
+}
+
 impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
     /// A page without a menu.
     pub fn new(page: P) -> Self {
         Self {
             page,
-            menu: Menu::new(""),
+            menu: Menu::default(),
             behind: Vec::new(),
             help: HelpScroll::default(),
             pending: None,
@@ -124,7 +130,7 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
 
     /// Returns to the page from which this one was opened, or to `home`.
     pub fn close(&mut self, home: P, now: Duration) {
-        let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::new("")));
+        let (page, menu) = self.behind.pop().unwrap_or_else(|| (home, Menu::default()));
         self.enter(page, menu, now);
     }
 
@@ -327,23 +333,28 @@ const MARK: &str = "> ";
 /// The least number of columns between a label and its value.
 const GAP: usize = 2;
 
+impl<C> Default for Menu<C> {
+    fn default() -> Self {
+        let (title, text, entries) = (String::new(), Vec::new(), Vec::new());
+        Self { title, text, entries, selected: 0, first: 0, page: 0 }
+    }
+}
+
 impl<C: Copy> Menu<C> {
     /// A menu without entries.
     pub fn new(title: impl Into<String>) -> Self {
-        Self {
-            title: title.into(),
-            text: Vec::new(),
-            entries: Vec::new(),
-            selected: 0,
-            first: 0,
-            page: 0,
-        }
+        Self { title: title.into(), ..Self::default() }
     }
 
     /// Adds a line of text above the entries.
     pub fn line(mut self, text: impl Into<String>) -> Self {
         self.text.push(text.into());
         self
+    }
+
+    /// Adds lines of text above the entries.
+    pub fn lines(self, lines: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        lines.into_iter().fold(self, Self::line)
     }
 
     /// Adds an entry.
@@ -360,6 +371,16 @@ impl<C: Copy> Menu<C> {
     ) -> Self {
         self.entries.push(Entry { label: label.into(), value: value.into(), choice });
         self
+    }
+
+    /// Adds entries with their labels, values and choices.
+    pub fn entries<L: Into<String>, V: Into<String>>(
+        self,
+        entries: impl IntoIterator<Item = (L, V, C)>,
+    ) -> Self {
+        entries
+            .into_iter()
+            .fold(self, |menu, (label, value, choice)| menu.entry_with(label, value, choice))
     }
 
     /// Selects the entry with that index, or the last one.
@@ -593,12 +614,12 @@ const TOGETHER: [(&[Action], &str); 4] = [
 
 /// The keys of all actions with a short description each, in the order of [`Action::ALL`].
 fn described(bindings: &Bindings) -> Vec<(String, &'static str)> {
-    let line = |(_, does, action): (_, &'static str, Action)| {
+    let line = |(_, does, action, _): (_, &'static str, Action, _)| {
         let Some((actions, does)) = TOGETHER.iter().find(|group| group.0.contains(&action)) else {
-            return Some((key_names(bindings, action), does));
+            return Some((bindings.key_names(action), does));
         };
         let is_first = actions.first() == Some(&action);
-        let keys = actions.iter().map(|&action| key_names(bindings, action));
+        let keys = actions.iter().map(|&action| bindings.key_names(action));
         is_first.then(|| (keys.collect::<Vec<_>>().join(" ").trim().to_owned(), *does))
     };
     Action::ALL.into_iter().filter_map(line).collect()
@@ -717,11 +738,6 @@ pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text)
     let inside = framed(canvas, area, title);
     let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);
-}
-
-pub(crate) fn key_names(bindings: &Bindings, action: Action) -> String {
-    let names: Vec<String> = bindings.keys(action).map(|key| key.to_string()).collect();
-    names.join(" ")
 }
 
 /// Wraps `text` into lines of up to `width` characters, between words, and within words that are

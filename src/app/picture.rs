@@ -154,7 +154,6 @@ pub struct Overlay<'a> {
     player: PlayerView<'a>,
     options: &'a DrawOptions,
     preferences: Preferences,
-    ghost: Option<MapMark>,
 }
 
 impl<'a> Overlay<'a> {
@@ -165,12 +164,7 @@ impl<'a> Overlay<'a> {
         options: &'a DrawOptions,
         preferences: Preferences,
     ) -> Option<Self> {
-        Some(Self { game, player: game.seen_by(player)?, options, preferences, ghost: None })
-    }
-
-    /// Sets the ghost on the map.
-    pub(crate) fn with_ghost(self, ghost: Option<MapMark>) -> Self {
-        Self { ghost, ..self }
+        Some(Self { game, player: game.seen_by(player)?, options, preferences })
     }
 
     /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
@@ -194,15 +188,16 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Draws the map with its panel, if it is shown. `view` has drawn the picture.
+    /// Draws the map with its panel, and perhaps a ghost, if it is shown. `view` has drawn the picture.
     pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
         area: Rect,
         panel: &mut MapPanel,
         view: &View,
+        ghost: Option<MapMark>,
     ) {
-        let Self { game, player, options, ghost, .. } = self;
+        let Self { game, player, options, .. } = self;
         let camera = &player.camera(options.field_of_view);
         panel.explore(game, camera, area.width);
         if !panel.is_shown {
@@ -214,7 +209,7 @@ impl<'a> Overlay<'a> {
         let others = others.map(|it| MapMark { position: it.position, heading: it.heading });
         let marks: Vec<MapMark> = guards.chain(others).collect();
         let map = panel.minimap(game, camera, view);
-        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(*ghost);
+        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(ghost);
         if let Some(place) = page::minimap(area, &map) {
             let inside = framed(canvas, place, "map");
             map.paint(inside, canvas);
@@ -550,7 +545,7 @@ fn strip(heading: Heading, width: usize) -> String {
 }
 
 /// The state of the minimap between frames.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct MapPanel {
     /// Whether the map is shown.
     pub is_shown: bool,
@@ -571,14 +566,7 @@ const MOVED_BY: f64 = 0.25;
 impl MapPanel {
     /// A panel with this content.
     pub fn new(display: MapDisplay) -> Self {
-        Self {
-            is_shown: display != MapDisplay::Off,
-            display,
-            explored: Explored::default(),
-            zoom: 0,
-            offset: DVec2::ZERO,
-            extent: DVec2::ZERO,
-        }
+        Self { is_shown: display != MapDisplay::Off, display, ..Self::default() }
     }
 
     /// The content of the map, as the settings page shows it.

@@ -28,7 +28,6 @@ use crate::app::controls::{self, Clock};
 use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
 use crate::app::picture::TerminalLook;
-use crate::app::played::Played;
 use crate::app::recording::Recording;
 use crate::app::screen::Screen;
 use crate::app::settings::Settings;
@@ -341,7 +340,7 @@ impl App {
         let Some(demo) = &mut self.demo else { return };
         match demo.next().filter(|_| !self.game.is_finished()) {
             Some(intents) => self.game.step(intents),
-            None => self.game = demo.rewind().unwrap_or_else(Played::nothing),
+            None => self.game = demo.rewind().unwrap_or_default(),
         }
     }
 
@@ -385,9 +384,9 @@ impl App {
     /// Shows the result if the level is won or the player is dead.
     fn follow_outcome(&mut self) {
         if self.game.is_finished() {
-            self.result = self.record_result();
+            self.improved = self.record_result();
             self.show(Screen::LevelDone);
-        } else if self.game.is_dead() {
+        } else if self.game.grid().is_some_and(Game::is_dead) {
             self.show(Screen::Dead);
         }
     }

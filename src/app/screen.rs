@@ -4,19 +4,19 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use crate::app::controls::{Action, KeyContext};
-use crate::app::page::{Effect, Kind, Menu, Page, key_names};
+use crate::app::page::{Effect, Kind, Menu, Page};
 use crate::app::picture::widened;
 use crate::app::status::{of_steps, whole_seconds};
 use crate::app::store::{Preferences, SaveId};
 use crate::app::{App, Levels};
-use crate::game::Intents;
+use crate::game::{Game, Intents};
 use crate::map::builtin;
 use crate::terminal::{Key, KeyEvent, MouseEvent};
 use crate::tui::Press;
 use crate::world::Difficulty;
 
 /// The panel on the picture. The effect of keys depends on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Screen {
     Title,
     /// The choice of a difficulty for a new game.
@@ -40,6 +40,7 @@ pub(crate) enum Screen {
     Settings,
     /// The question whether to tell tmux that its terminal shows 24-bit colours.
     Tmux,
+    #[default]
     Playing,
     Paused,
     Help,
@@ -182,7 +183,7 @@ impl App {
             Screen::Dead => self.death_menu(),
             Screen::LevelDone => self.level_done_menu(),
             Screen::End => self.end_menu(),
-            _ => Menu::new(""),
+            _ => Menu::default(),
         }
     }
 
@@ -247,28 +248,27 @@ impl App {
 
     fn title_menu(&self) -> Menu<Choice> {
         let menu = self
-            .with_continue(Menu::new(""))
+            .with_continue(Menu::default())
             .entry("New game", Choice::Open(Screen::NewGame))
             .entry("Levels", Choice::Open(Screen::Levels));
-        let menu = self.with_descents(menu);
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
-        let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
-        let menu = menu
+        self.with_descents(menu)
+            .entries(has_maps.then_some(("My maps", "", Choice::Open(Screen::Maps))))
             .entry("Settings", Choice::Open(Screen::Settings))
-            .entry("Help", Choice::Open(Screen::Help));
-        self.with_tmux_offer(menu).entry("Leave", Choice::Leave)
+            .entry("Help", Choice::Open(Screen::Help))
+            .entries(self.tmux_offer())
+            .entry("Leave", Choice::Leave)
     }
 
     /// The built-in levels, each with the best time and the best rank.
     fn level_menu(&self) -> Menu<Choice> {
         let difficulty = self.store.preferences().difficulty;
-        let menu = Menu::new(format!("levels, {}", difficulty.name()))
-            .line("left and right: another difficulty");
-        let levels = builtin::LEVELS.iter().enumerate();
-        levels.fold(menu, |menu, (index, level)| {
-            let best = self.best_of(level.name, difficulty);
-            menu.entry_with(capitalized(level.name), best, Choice::Level(index))
-        })
+        Menu::new(format!("levels, {}", difficulty.name()))
+            .line("left and right: another difficulty")
+            .entries(builtin::LEVELS.iter().enumerate().map(|(index, level)| {
+                let best = self.best_of(level.name, difficulty);
+                (capitalized(level.name), best, Choice::Level(index))
+            }))
     }
 
     /// The best time and the best rank in the level that the store calls `name`.
@@ -293,24 +293,23 @@ impl App {
         if self.own_maps.is_empty() {
             return menu.line("There is no map file here. docs/maps.md says how to write one.");
         }
-        let maps = self.own_maps.iter().enumerate();
-        maps.fold(menu, |menu, (index, map)| {
+        menu.entries(self.own_maps.iter().enumerate().map(|(index, map)| {
             let best = self.best_of(&map.key, difficulty);
-            menu.entry_with(map.name.as_str(), best, Choice::Map(index))
-        })
+            (map.name.as_str(), best, Choice::Map(index))
+        }))
     }
 
     fn pause_menu(&self) -> Menu<Choice> {
-        let keys = key_names(&self.settings.bindings, Action::TogglePause);
-        let mut menu = Menu::new("paused").line(format!("{keys} goes on"));
-        menu = menu.line(self.goal.text());
-        menu = self.level_lines().into_iter().fold(menu, Menu::line);
-        menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
-        menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
-        menu = menu.entry("Continue", Choice::GoOn);
-        menu =
-            if self.is_descent() { menu } else { menu.entry("Restart the level", Choice::Restart) };
-        menu = menu
+        let keys = self.settings.bindings.key_names(Action::TogglePause);
+        let carried = self.game.grid().into_iter().flat_map(Game::keys);
+        let menu = Menu::new("paused")
+            .line(format!("{keys} goes on"))
+            .line(self.goal.text())
+            .lines(self.level_lines())
+            .line(whole_seconds(self.game.elapsed()).to_string())
+            .lines(carried.map(|key| format!("{key} key")))
+            .entry("Continue", Choice::GoOn)
+            .entries((!self.is_descent()).then_some(("Restart the level", "", Choice::Restart)))
             .entry("Settings", Choice::Open(Screen::Settings))
             .entry("Help", Choice::Open(Screen::Help));
         self.with_leaving(menu)
@@ -318,11 +317,8 @@ impl App {
 
     /// Adds the entries that end the game.
     pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
-        let menu = match &self.offers {
-            Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
-            None => menu,
-        };
-        menu.entry("Leave", Choice::Leave)
+        let title = self.offers.as_ref().map(|_| ("Leave to the title", "", Choice::ToTitle));
+        menu.entries(title).entry("Leave", Choice::Leave)
     }
 }
 
@@ -332,16 +328,9 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
         Difficulty::Normal => "guards call each other",
         Difficulty::Hard => "no checkpoints",
     };
-    let menu = Menu::new("new game");
-    let menu = Difficulty::ALL.into_iter().fold(menu, |menu, difficulty| {
-        menu.entry_with(
-            capitalized(difficulty.name()),
-            about(difficulty),
-            Choice::Begin(difficulty),
-        )
-    });
+    let entry = |it: Difficulty| (capitalized(it.name()), about(it), Choice::Begin(it));
     let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
-    menu.selecting(usual.unwrap_or(0))
+    Menu::new("new game").entries(Difficulty::ALL.map(entry)).selecting(usual.unwrap_or(0))
 }
 
 /// `text` with a capital letter at its start.
@@ -386,8 +375,8 @@ impl App {
     pub(crate) fn key_context(&self) -> KeyContext {
         KeyContext {
             plays: self.screen() == Screen::Playing,
-            is_airborne: self.game.is_airborne(),
-            flies: self.game.flies(),
+            is_airborne: self.game.grid().is_some_and(Game::is_airborne),
+            flies: self.game.grid().is_none(),
         }
     }
 

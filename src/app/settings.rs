@@ -359,7 +359,7 @@ impl fmt::Display for Configuration {
         writeln!(f, "# A key is one character or a name, such as \"up\", \"space\", \"f1\".")?;
         writeln!(f, "[{KEYS}]")?;
         let usual = self.preset.bindings();
-        for (name, does, action) in Action::ALL {
+        for (name, does, action, _) in Action::ALL {
             let keys = list(&self.bindings, action);
             let comment = if keys == list(&usual, action) { "# " } else { "" };
             writeln!(f, "{comment}{name} = {keys}  # {does}")?;
@@ -523,16 +523,13 @@ pub fn settings_menu<C: Copy>(
     has_card: bool,
     rows: impl Iterator<Item = (&'static str, String, C)>,
 ) -> Menu<C> {
-    let menu = Menu::new("settings").line("Enter or left and right change a setting.");
-    let menu = note.into_iter().fold(menu, Menu::line);
-    let menu = if has_card { with_card(menu) } else { menu };
-    rows.fold(menu, |menu, (label, value, choice)| menu.entry_with(label, value, choice))
-}
-
-fn with_card<C: Copy>(menu: Menu<C>) -> Menu<C> {
-    let menu = menu.line("Of these, the last smooth wedge is the best for you:");
-    let sets = GlyphSet::ALL.iter().filter(|(set, ..)| set.has_blocks());
-    sets.fold(menu, |menu, (set, _, name)| menu.line(format!("{name:·<12} {}", set.wedge())))
+    let sets = GlyphSet::ALL.iter().filter(|(set, ..)| has_card && set.has_blocks());
+    Menu::new("settings")
+        .line("Enter or left and right change a setting.")
+        .lines(note)
+        .lines(has_card.then_some("Of these, the last smooth wedge is the best for you:"))
+        .lines(sets.map(|(set, _, name)| format!("{name:·<12} {}", set.wedge())))
+        .entries(rows)
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ use crate::world::Difficulty;
 /// assert!(store.preferences().compass);
 /// assert_eq!(store.trouble(), None);
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Store {
     /// The state that the player sees: the file as last read, with all changes.
     progress: Progress,
@@ -84,13 +84,7 @@ impl Store {
 
     /// A store that ends with the program.
     pub fn in_memory() -> Self {
-        Self {
-            progress: Progress::default(),
-            pending: Vec::new(),
-            home: None,
-            damage: None,
-            trouble: None,
-        }
+        Self::default()
     }
 
     /// The best results in a level. `level` is the name of a built-in level, or the [key](map_key) of
@@ -109,8 +103,12 @@ impl Store {
 
     /// Records a run that reached the exit, and returns what it improved.
     pub fn record(&mut self, level: &str, difficulty: Difficulty, run: Run) -> Improved {
-        let improved = self.progress.improved_by(level, difficulty, &run);
-        if improved.any() {
+        let best = self.best(level, difficulty);
+        let improved = Improved {
+            time: best.is_none_or(|best| run.tally.steps < best.tally.steps),
+            rank: best.is_none_or(|best| run.rank > best.rank),
+        };
+        if improved.time || improved.rank {
             self.change(Change::Won { level: level.to_owned(), difficulty, run });
         }
         improved
@@ -118,7 +116,8 @@ impl Store {
 
     /// The levels that were won at a difficulty, in the order of their names.
     pub fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
-        self.progress.won(difficulty)
+        let levels = self.progress.bests.keys().filter(move |(_, at)| *at == difficulty);
+        levels.map(|(level, _)| level.as_str())
     }
 
     /// The saved games, the newest first.
@@ -205,13 +204,11 @@ impl Store {
         self.progress.descent
     }
 
-    /// Records a descent without an end and its script, and returns whether it is the best one.
-    pub fn record_descent(&mut self, reached: Reached, script: String) -> bool {
-        let is_best = self.progress.descent.is_none_or(|best| best < reached);
-        if is_best {
+    /// Records a descent without an end and its script, if it is the best one.
+    pub fn record_descent(&mut self, reached: Reached, script: String) {
+        if self.progress.descent.is_none_or(|best| best < reached) {
             self.change(Change::Descent { reached, script });
         }
-        is_best
     }
 
     /// A sentence about what is damaged or could not be kept, for the end of the game.

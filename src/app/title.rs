@@ -141,12 +141,9 @@ impl App {
         self.detection.tmux.as_ref().filter(|_| is_offered).and_then(TmuxClient::remedy)
     }
 
-    /// Adds the offer to the title.
-    pub(crate) fn with_tmux_offer(&self, menu: Menu<Choice>) -> Menu<Choice> {
-        match self.tmux_remedy() {
-            Some(_) => menu.entry("24-bit colours in tmux", Choice::Open(Screen::Tmux)),
-            None => menu,
-        }
+    /// The offer as an entry of the title.
+    pub(crate) fn tmux_offer(&self) -> Option<(&'static str, &'static str, Choice)> {
+        self.tmux_remedy().map(|_| ("24-bit colours in tmux", "", Choice::Open(Screen::Tmux)))
     }
 
     pub(crate) fn tmux_menu(&self) -> Menu<Choice> {

@@ -300,10 +300,11 @@ pub enum Phase {
 }
 
 /// The error of [`Key::from_str`]: no key has this name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownKey {
-    name: String,
-}
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{0:?} is not a key: write one character, such as \"w\", or a name, such as \"up\", \"space\" or \"f1\""
+)]
+pub struct UnknownKey(String);
 
 const LAST_FUNCTION_KEY: u8 = 35;
 
@@ -355,7 +356,7 @@ impl FromStr for Key {
 
     /// Parses a name or a single character, in upper or lower case.
     fn from_str(text: &str) -> Result<Self, UnknownKey> {
-        let unknown = || UnknownKey { name: text.to_owned() };
+        let unknown = || UnknownKey(text.to_owned());
         let mut characters = text.chars();
         if let (Some(only), None) = (characters.next(), characters.next()) {
             return if only.is_control() { Err(unknown()) } else { Ok(Self::typing(only)) };
@@ -372,19 +373,6 @@ impl FromStr for Key {
             .ok_or_else(unknown)
     }
 }
-
-impl fmt::Display for UnknownKey {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{:?} is not a key: write one character, such as \"w\", or a name, such as \"up\", \
-             \"space\" or \"f1\"",
-            self.name
-        )
-    }
-}
-
-impl std::error::Error for UnknownKey {}
 
 /// Letters, and the keys of a US keyboard at their places: of the Russian layout, with the
 /// different letters of the Ukrainian and Belarusian ones, and of the Greek layout.

@@ -101,7 +101,7 @@ pub(crate) const QUERY_FENCE: &str = "\x1b[c";
 pub(crate) struct Changes {
     pub(crate) key_flags: KeyFlags,
     /// The unit of mouse positions; `None` if the mouse is not reported.
-    mouse: Option<MouseUnits>,
+    pub(crate) mouse: Option<MouseUnits>,
     pub(crate) fences: Fences,
     /// Whether answers to status requests may arrive.
     pub(crate) awaits_statuses: bool,
@@ -122,11 +122,10 @@ pub(crate) enum KeyFlags {
 }
 
 impl Changes {
-    /// Adds the sequences that take the screen, which is the alternate one, without a cursor, and that enable the
+    /// The sequences that take the screen, which is the alternate one, without a cursor, and that enable the
     /// reports.
-    pub(crate) fn push_start(&mut self, text: &mut String) {
-        text.push_str(&of(EnterAlternateScreen));
-        text.push_str(&of(Hide));
+    pub(crate) fn start(&mut self) -> String {
+        let mut text = of(EnterAlternateScreen) + &of(Hide);
         // Long lines are cut, so that a narrower window does not scroll.
         text.push_str(&of(DisableLineWrap));
         text.push_str(RESET_STYLE);
@@ -135,13 +134,12 @@ impl Changes {
             text.push_str(PUSH_KEY_FLAGS);
             self.key_flags = KeyFlags::Pushed;
         }
-        push_mouse(text, None, self.mouse);
+        text + &mouse_change(None, self.mouse)
     }
 
-    /// Sets whether and in which unit the mouse is reported.
-    pub(crate) fn change_mouse(&mut self, mouse: Option<MouseUnits>, text: &mut String) {
-        push_mouse(text, self.mouse, mouse);
-        self.mouse = mouse;
+    /// Sets whether and in which unit the mouse is reported, and returns the sequences for it.
+    pub(crate) fn change_mouse(&mut self, mouse: Option<MouseUnits>) -> String {
+        mouse_change(std::mem::replace(&mut self.mouse, mouse), mouse)
     }
 
     /// The sequences that undo all changes, in reverse order, but leave the alternate screen. If
@@ -154,8 +152,7 @@ impl Changes {
             self.fences.sent(now);
             self.awaits_statuses = false;
         }
-        push_end_of_screen(&mut text);
-        text
+        text + &end_of_screen()
     }
 
     /// The same sequences for a terminal that does not read, some of whose input was discarded before
@@ -169,9 +166,8 @@ impl Changes {
             key_flags = KeyFlags::Unset;
         }
         self.push_end_of_reports(key_flags, &mut text);
-        push_end_of_screen(&mut text);
         self.fences.forget();
-        text
+        text + &end_of_screen()
     }
 
     /// Records that no keyboard flags of the program were sent: they need not be undone.
@@ -196,7 +192,7 @@ impl Changes {
 
     /// Adds the sequences that disable the reports.
     fn push_end_of_reports(&self, key_flags: KeyFlags, text: &mut String) {
-        push_mouse(text, self.mouse, None);
+        text.push_str(&mouse_change(self.mouse, None));
         if key_flags != KeyFlags::Unset {
             text.push_str(POP_KEY_FLAGS);
         }
@@ -208,29 +204,27 @@ impl Changes {
     /// do not count: few are sent, and waiting for a terminal that answers nothing takes a second.
     fn has_pending_reports(&self) -> bool {
         let has_frequent_reports = self.key_flags != KeyFlags::Unset || self.mouse.is_some();
-        has_frequent_reports || self.awaits_statuses || self.fences.are_answered()
+        has_frequent_reports || self.awaits_statuses || self.fences.are_answered
     }
 }
 
-fn push_end_of_screen(text: &mut String) {
-    text.push_str(&of(EnableLineWrap));
-    text.push_str(&of(Show));
+fn end_of_screen() -> String {
+    of(EnableLineWrap) + &of(Show)
 }
 
-/// Adds the sequences that change mouse reports from `before` to `mouse`.
-fn push_mouse(text: &mut String, before: Option<MouseUnits>, mouse: Option<MouseUnits>) {
-    match (before, mouse) {
-        (None, Some(_)) => text.push_str(ENABLE_MOUSE),
-        (Some(_), None) => text.push_str(DISABLE_MOUSE),
-        _ => {}
-    }
-    let [was_in_pixels, is_in_pixels] =
-        [before, mouse].map(|units| units == Some(MouseUnits::Pixels));
-    match (was_in_pixels, is_in_pixels) {
-        (false, true) => text.push_str(ENABLE_MOUSE_PIXELS),
-        (true, false) => text.push_str(DISABLE_MOUSE_PIXELS),
-        _ => {}
-    }
+/// The sequences that change mouse reports from `before` to `after`.
+fn mouse_change(before: Option<MouseUnits>, after: Option<MouseUnits>) -> String {
+    let reports = match (before, after) {
+        (None, Some(_)) => ENABLE_MOUSE,
+        (Some(_), None) => DISABLE_MOUSE,
+        _ => "",
+    };
+    let units = match [before, after].map(|units| units == Some(MouseUnits::Pixels)) {
+        [false, true] => ENABLE_MOUSE_PIXELS,
+        [true, false] => DISABLE_MOUSE_PIXELS,
+        _ => "",
+    };
+    [reports, units].concat()
 }
 
 /// How long to wait for the answer of a terminal that has never answered.
@@ -243,6 +237,7 @@ const TIMEOUT_AFTER_ANSWER: Duration = Duration::from_secs(5);
 pub(crate) struct Fences {
     open: u32,
     last_sent: Duration,
+    /// Whether the terminal has ever answered one.
     are_answered: bool,
 }
 
@@ -260,11 +255,6 @@ impl Fences {
     /// Expects no answer any more.
     pub(crate) fn forget(&mut self) {
         self.open = 0;
-    }
-
-    /// Whether the terminal has ever answered a fence.
-    fn are_answered(&self) -> bool {
-        self.are_answered
     }
 
     /// Whether a fence is unanswered.

@@ -7,7 +7,7 @@
 //! are not reserved with `%` in them, so their first letter is written that way.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Write};
+use std::fmt::Write;
 use std::mem;
 
 use crate::app::setting::Preferences;
@@ -62,15 +62,15 @@ pub struct SavedGame {
 pub struct SaveId(u64);
 
 /// The reason why a game is not saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSaved {
     /// [`MOST_SAVES`] other games are saved.
+    #[error("{MOST_SAVES} other games are saved, and no more are kept")]
     Full,
     /// Its script is longer than the longest script that is read.
+    #[error("it is longer than a game that can be kept")]
     TooLong,
 }
-
-impl std::error::Error for NotSaved {}
 
 /// The most games that are saved.
 pub const MOST_SAVES: usize = 100;
@@ -113,21 +113,6 @@ impl Progress {
         self.saves.retain(|entry| entry.save.id() != id);
     }
 
-    /// The improvement by a run.
-    pub(crate) fn improved_by(&self, level: &str, difficulty: Difficulty, run: &Run) -> Improved {
-        match self.best(level, difficulty) {
-            None => Improved { time: true, rank: true },
-            Some(best) => {
-                Improved { time: run.tally.steps < best.tally.steps, rank: run.rank > best.rank }
-            }
-        }
-    }
-
-    pub(crate) fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
-        let of_it = move |&&(_, at): &&(String, Difficulty)| at == difficulty;
-        self.bests.keys().filter(of_it).map(|(level, _)| level.as_str())
-    }
-
     /// The names of all scripts that it refers to.
     pub(crate) fn scripts(&self) -> impl Iterator<Item = String> {
         let runs = self
@@ -150,15 +135,6 @@ impl Save {
     }
 }
 
-impl fmt::Display for NotSaved {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Full => write!(f, "{MOST_SAVES} other games are saved, and no more are kept"),
-            Self::TooLong => f.write_str("it is longer than a game that can be kept"),
-        }
-    }
-}
-
 impl Descent {
     const NAMES: [(Self, &str); 3] =
         [(Self::Endless, "endless"), (Self::Daily, "daily"), (Self::Practice, "practice")];
@@ -169,12 +145,6 @@ impl Descent {
 
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(_, known)| *known == name).map(|&(kind, _)| kind)
-    }
-}
-
-impl SavedEntry {
-    pub(crate) fn of(game: &SavedGame) -> Self {
-        Self { save: game.save.clone(), script: of_saved(&game.script) }
     }
 }
 
@@ -222,7 +192,9 @@ impl Progress {
             Change::Won { level, difficulty, run } => {
                 self.add_best((level.clone(), *difficulty), Best::of(run));
             }
-            Change::Saved(game) => self.add_save(SavedEntry::of(game)),
+            Change::Saved(SavedGame { save, script }) => {
+                self.add_save(SavedEntry { save: save.clone(), script: of_saved(script) });
+            }
             Change::Removed(id) => self.remove_save(*id),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
             Change::Daily { date, reached, .. } => self.add_daily(*date, *reached),
@@ -281,13 +253,6 @@ pub struct Improved {
     pub time: bool,
     /// Whether it has a higher rank than all others.
     pub rank: bool,
-}
-
-impl Improved {
-    /// Whether it improved anything.
-    pub fn any(self) -> bool {
-        self.time || self.rank
-    }
 }
 
 /// How far a descent came. More floors are better, then more treasure, then fewer steps.
