@@ -1,8 +1,8 @@
 //! Accuracy: what is compared with a truth, and what each figure of a report costs.
 //!
 //! [`cast`] computes in rational arithmetic, and shares only the rules in [`cellcaster::cast`] with the
-//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`] and
-//! [`adversarial_ray`] generate any number of other rays from a seed. [`report`] compares and times,
+//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`]
+//! generates any number of other rays from a seed. [`report`] compares and times,
 //! and returns [tables](Table).
 
 mod areas;
@@ -13,10 +13,9 @@ mod rays;
 mod reference;
 mod sets;
 
-pub use areas::shimmer;
 pub use rays::{RAYS, SEED, all_methods, is_measured};
 pub use reference::{Truth, cast};
-pub use sets::{Set, adversarial_ray, ordinary, plain, random_ray, sets};
+pub use sets::{Set, ordinary, plain, random_ray, sets};
 
 use clap::{Args, ValueEnum};
 
@@ -95,11 +94,11 @@ fn steps_per_second(text: &str) -> Result<f64, Takes> {
 }
 
 /// The tables for `plan`; `None` if no set has the requested name. Rays and pictures are of `map`; without one, rays are of
-/// four ordinary scenes and of the stiff sets. `progress` is called with the completed fraction.
+/// four ordinary scenes and of the stiff sets. `progress` is called with each part before it begins.
 pub fn report(
     plan: &Plan,
     map: Option<&World>,
-    mut progress: impl FnMut(f64),
+    mut progress: impl FnMut(Part),
 ) -> Option<Vec<Table>> {
     let museum;
     let world = match map {
@@ -112,8 +111,8 @@ pub fn report(
     };
     let parts = if plan.parts.is_empty() { Part::value_variants() } else { &plan.parts };
     let mut tables = Vec::new();
-    for (index, part) in parts.iter().enumerate() {
-        progress(index as f64 / parts.len() as f64);
+    for &part in parts {
+        progress(part);
         match part {
             Part::Rays => tables.extend(ray_tables(plan, map)?),
             Part::Pictures => tables.push(areas::table(world, plan.seed, plan.rounds)),
@@ -124,7 +123,6 @@ pub fn report(
             Part::Features => tables.push(features::table(world, plan.seed, plan.rounds)),
         }
     }
-    progress(1.0);
     Some(tables)
 }
 
@@ -184,8 +182,8 @@ mod tests {
     #[test]
     fn a_part_has_a_row_for_each_method_and_a_value_for_each_column() {
         let world = builtin::LEVELS[0].world().unwrap();
-        let mut shares = Vec::new();
-        let tables = report(&plan(), Some(&world), |share| shares.push(share)).unwrap();
+        let mut parts = Vec::new();
+        let tables = report(&plan(), Some(&world), |part| parts.push(part)).unwrap();
         let names: Vec<&str> = tables.iter().map(|table| table.name).collect();
         assert_eq!(names, ["rays", "pixels"]);
         assert_eq!(tables[0].rows.len(), 2);
@@ -193,7 +191,7 @@ mod tests {
         for (table, row) in rows {
             assert_eq!(table.columns.len(), row.values.len(), "{}", table.name);
         }
-        assert!(shares.is_sorted() && shares.last() == Some(&1.0));
+        assert_eq!(parts, [Part::Rays]);
     }
 
     #[test]

@@ -9,9 +9,8 @@ use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::slice;
-use std::time::{Duration, Instant};
 
-use clap::{Args, ValueHint};
+use clap::{Args, ValueEnum, ValueHint};
 
 use crate::accuracy::{Plan, report, set_names};
 use crate::report::{Format, Origin, Report, Table, markdown};
@@ -43,9 +42,10 @@ pub(crate) struct Accuracy {
 /// Writes the report that `options` request.
 pub(crate) fn run(options: &Accuracy) -> Result<(), Error> {
     let map = options.map.as_ref().map(|map| level::load_grid(Some(map))).transpose()?;
-    let mut progress = Progress::new();
-    let tables = report(&options.plan, map.as_ref(), |share| progress.show(share));
-    progress.finish();
+    let tables = report(&options.plan, map.as_ref(), |part| {
+        show_progress(part.to_possible_value().as_ref().map_or("", |value| value.get_name()));
+    });
+    show_progress("");
     let tables = tables.ok_or_else(|| {
         let name = options.plan.set.as_deref().unwrap_or_default();
         Error::mistake(format!("there is no set \"{name}\"; there are {}", set_names().join(", ")))
@@ -104,39 +104,11 @@ fn replaced(page: &str, origin: &Origin, table: &Table) -> Option<String> {
     Some(format!("{before}{begin}\n{plot}\n{block}\n{sentence}\n\n{END}{after}"))
 }
 
-/// The time before the bar appears.
-const DELAY: Duration = Duration::from_secs(1);
-/// The width of the bar in columns.
-const WIDTH: usize = 40;
-
-/// A progress bar on standard error, if that is a terminal.
-struct Progress {
-    start: Instant,
-    is_watched: bool,
-    shown: Option<usize>,
-}
-
-impl Progress {
-    fn new() -> Self {
-        Self { start: Instant::now(), is_watched: io::stderr().is_terminal(), shown: None }
-    }
-
-    /// Shows the completed fraction, from 0 to 1, if it is time to draw.
-    fn show(&mut self, share: f64) {
-        let filled = (share * WIDTH as f64) as usize;
-        if self.is_watched && self.start.elapsed() > DELAY && self.shown != Some(filled) {
-            let (done, to_do) = ("#".repeat(filled), ".".repeat(WIDTH.saturating_sub(filled)));
-            // A bar that cannot be drawn is no reason to end the program.
-            let _ = write!(io::stderr(), "\r[{done}{to_do}]");
-            self.shown = Some(filled);
-        }
-    }
-
-    /// Removes the bar.
-    fn finish(self) {
-        if self.shown.is_some() {
-            let _ = write!(io::stderr(), "\r{}\r", " ".repeat(WIDTH + 2));
-        }
+/// Shows in a terminal on standard error which part is measured.
+fn show_progress(part: &str) {
+    if io::stderr().is_terminal() {
+        // A line that cannot be drawn is no reason to end the program.
+        _ = write!(io::stderr(), "\r{part:<20}\r");
     }
 }
 
