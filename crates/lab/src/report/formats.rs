@@ -105,17 +105,27 @@ pub fn markdown(table: &Table) -> String {
     line(&lines[0]) + &rule + &rows.iter().map(line).collect::<String>()
 }
 
-/// Writes a table for a terminal, followed by an empty line.
+/// Writes a table for a terminal, with an empty line after it and between problems of several rows.
 fn write_aligned(table: &Table, output: &mut impl Write) -> io::Result<()> {
     let (labels, lines) = cells(table);
     let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
     let widths: Vec<usize> = (0..lines[0].len()).map(|it| width(it).unwrap_or_default()).collect();
+    let problems = || table.rows.chunk_by(|one, other| one.keys[0] == other.keys[0]);
+    let is_grouped = problems().any(|rows| rows.len() > 1);
+    let ends = problems().scan(0, |end, rows| {
+        *end += rows.len();
+        Some(*end)
+    });
+    let ends: Vec<usize> = ends.filter(|&end| is_grouped && end < table.rows.len()).collect();
     writeln!(output, "{}: {}.\n", table.name, table.title)?;
-    for cells in &lines {
+    for (index, cells) in lines.iter().enumerate() {
         let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
             if column < labels { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
         writeln!(output, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())?;
+        if ends.contains(&index) {
+            writeln!(output)?;
+        }
     }
     writeln!(output)
 }
@@ -213,9 +223,9 @@ fn number(number: f64) -> String {
         "0".to_owned()
     } else if number >= f64::MAX {
         "inf".to_owned()
-    } else if (1000.0..100_000.0).contains(&number) {
+    } else if (1000.0..100_000.0).contains(&number.abs()) {
         format!("{number:.0}")
-    } else if (0.01..1000.0).contains(&number) {
+    } else if (0.01..1000.0).contains(&number.abs()) {
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -325,7 +335,7 @@ mod tests {
             Value::Share(0.1719),
             Value::Number(0.0),
             Value::Number(4.7e-17),
-            Value::Number(0.25),
+            Value::Number(-0.25),
             Value::Number(12.0),
             Value::Number(59_951.2),
             Value::Number(1e5),
@@ -335,7 +345,7 @@ mod tests {
         let texts = figures.map(figure).join(" | ");
         assert_eq!(
             texts,
-            "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | 0.25 | 12 | 59951 | 1.0e5 | inf | –"
+            "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | -0.25 | 12 | 59951 | 1.0e5 | inf | –"
         );
     }
 

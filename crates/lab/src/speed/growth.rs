@@ -57,12 +57,12 @@ pub(crate) fn measure_maps(time: Duration) -> Table {
         keys: ["", "ground", "side"],
         columns: headings([
             "cells",
-            "time, ns a ray",
-            "ratio of rays",
-            "time, µs a frame",
-            "ratio of frames",
-            "time, ms to read",
-            "bytes a cell",
+            "time, ns/ray",
+            "ray ratio",
+            "time, µs/frame",
+            "frame ratio",
+            "time, ms read",
+            "bytes/cell",
         ]),
         rows: rows.collect(),
         diagrams: vec![
@@ -91,7 +91,7 @@ pub(crate) fn measure_crowds(time: Duration) -> Table {
             CROWDS[0]
         ),
         keys: ["", "hall", "things"],
-        columns: headings(["number", "time, µs a frame", "ratio"]),
+        columns: headings(["number", "time, µs/frame", "ratio"]),
         rows: rows.collect(),
         diagrams: vec![Diagram { columns: [0, 1], range: Diagram::ALL }],
     }

@@ -45,9 +45,9 @@ pub(crate) fn measure_pipeline(time: Duration) -> Result<Table, Error> {
         columns: headings([
             "cells",
             "frames",
-            "time, µs a frame",
+            "time, µs/frame",
             "time/stock",
-            "bytes a frame",
+            "bytes",
             "1 Mbit/s",
             "10 Mbit/s",
             "100 Mbit/s",

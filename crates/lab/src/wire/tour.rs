@@ -189,17 +189,18 @@ pub fn report_palettes<'a>(
     levels.push(("all", means));
     let rows = levels.iter().flat_map(|(level, figures)| {
         METHODS.iter().zip(figures).map(move |((method, _), figures)| {
-            let mut values = figures.map(Value::Number);
-            values[4] = Value::Share(figures[4]);
-            Row::new([level, method, ""], values.into())
+            let [.., changes, bytes] = *figures;
+            let errors = figures[..4].iter().map(|error| Value::Number(1000.0 * error));
+            let values = errors.chain([Value::Share(changes), Value::Number(bytes)]).collect();
+            Row::new([level, method, ""], values)
         })
     });
     Table {
         name: "palettes",
         title: format!(
-            "{}×{} cells, {frames_per_second} frames a second. Errors in Oklab after a blur, of the first picture\n\
-             and of all; lightness: how much lighter than true colour; changes: the share of cells that\n\
-             change between block and shade from frame to frame",
+            "{}×{} cells, {frames_per_second} frames a second. Errors in thousandths in Oklab after a blur, of the first\n\
+             picture and of all; lightness: how much lighter than true colour; changes: the share of cells\n\
+             that change between block and shade from frame to frame",
             size.width, size.height
         ),
         keys: ["level", "method", ""],

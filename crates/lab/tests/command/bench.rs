@@ -15,7 +15,7 @@ fn one_run_gives_all_figures_and_plots_of_them() {
     has_every_encoder(&report);
     has_a_footprint(&report);
     let plot = fs::read_to_string(plot).unwrap();
-    for words in ["drawing", "classic", "3840", "ns a ray", "plain", "4096", "pipeline", "stock"] {
+    for words in ["drawing", "classic", "3840", "ns/ray", "plain", "4096", "pipeline", "stock"] {
         assert!(plot.contains(words), "no {words} in\n{plot}");
     }
 }
@@ -61,13 +61,13 @@ fn has_every_map(report: &Value) {
         let sides = numbers(maps, "ground", ground, "cells");
         assert_eq!(sides, [16, 64, 256, 1024, 4096]);
         let maps: Vec<&Value> = maps.iter().filter(|row| row["ground"] == ground).collect();
-        let ratios = (&maps[1]["ratio of rays"], &maps[1]["ratio of frames"]);
+        let ratios = (&maps[1]["ray ratio"], &maps[1]["frame ratio"]);
         assert_eq!(ratios, (&1.0.into(), &1.0.into()));
         for row in maps {
-            assert!(is_positive(&row["time, ns a ray"]), "{row}");
-            assert!(is_positive(&row["time, µs a frame"]), "{row}");
+            assert!(is_positive(&row["time, ns/ray"]), "{row}");
+            assert!(is_positive(&row["time, µs/frame"]), "{row}");
             // One byte is the content of a cell, another one is its distance to solid cells.
-            assert!(row["bytes a cell"].as_f64().unwrap() > 2.0, "{row}");
+            assert!(row["bytes/cell"].as_f64().unwrap() > 2.0, "{row}");
         }
     }
     for hall in ["straight", "diagonal"] {
@@ -83,15 +83,14 @@ fn has_every_encoder(report: &Value) {
             window.iter().map(|row| row["encoder"].as_str().unwrap()).collect();
         assert_eq!(encoders, ["stock", "exact", "high", "low"]);
         assert_eq!(window[0]["time/stock"], 1.0);
-        let bytes: Vec<f64> =
-            window.iter().map(|row| row["bytes a frame"].as_f64().unwrap()).collect();
+        let bytes: Vec<f64> = window.iter().map(|row| row["bytes"].as_f64().unwrap()).collect();
         let [stock, exact, high, low] = bytes[..] else { panic!("{bytes:?}") };
         assert!(stock > exact && exact > high && exact > low, "{bytes:?}");
         for row in window {
             let rate = |link: &str| row[link].as_f64().unwrap();
             let [slow, usual, fast] = ["1 Mbit/s", "10 Mbit/s", "100 Mbit/s"].map(rate);
             assert!(0.0 < slow && slow <= usual && usual <= fast);
-            assert!(row["frames"].as_u64().unwrap() >= 20 && is_positive(&row["time, µs a frame"]));
+            assert!(row["frames"].as_u64().unwrap() >= 20 && is_positive(&row["time, µs/frame"]));
         }
     }
     assert_eq!(pipeline.len(), 12);

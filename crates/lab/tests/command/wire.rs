@@ -138,23 +138,23 @@ fn shades_of_256_colours_look_like_true_colour() {
     for level in LEVELS.into_iter().chain(["all"]) {
         let of = |method, column| figure(&table, [level, method], column);
         for method in ["dots", "flat"] {
-            assert!(of(method, "first error") < 0.02, "{level} {method}");
-            assert!(of(method, "first chroma error") < 0.016, "{level} {method}");
-            assert!(of(method, "first lightness").abs() < 0.01, "{level} {method}");
+            assert!(of(method, "first error") < 20.0, "{level} {method}");
+            assert!(of(method, "first chroma error") < 16.0, "{level} {method}");
+            assert!(of(method, "first lightness").abs() < 10.0, "{level} {method}");
         }
         for method in ["dots", "flat", "unknown"] {
             assert!(of(method, "error") < 0.85 * of("nearest", "error"), "{level} {method}");
         }
     }
     let all = |column| figure(&table, ["all", "dots"], column);
-    assert!(all("first error") < 0.0135 && all("first chroma error") < 0.011, "{table:?}");
+    assert!(all("first error") < 13.5 && all("first chroma error") < 11.0, "{table:?}");
 }
 
 #[test]
 fn sixteen_colours_keep_the_brightness_of_a_dark_level() {
     let table = palettes(&["kennels"], ColorDepth::Indexed16, 2);
     let of = |method, column| figure(&table, ["kennels", method], column);
-    assert!(of("dots", "first lightness").abs() < 0.08, "{table:?}");
-    assert!(of("flat", "first lightness").abs() < 0.03, "{table:?}");
+    assert!(of("dots", "first lightness").abs() < 80.0, "{table:?}");
+    assert!(of("flat", "first lightness").abs() < 30.0, "{table:?}");
     assert!(of("flat", "error") < 0.6 * of("nearest", "error"), "{table:?}");
 }
