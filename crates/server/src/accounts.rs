@@ -23,8 +23,6 @@ mod account;
 mod ban;
 mod database;
 mod failure;
-#[cfg(any(test, fuzzing))]
-mod in_memory;
 mod lease;
 mod name;
 mod postgres;
@@ -33,7 +31,10 @@ mod rate;
 mod results;
 mod sqlite;
 mod store;
+#[cfg(any(test, fuzzing))]
+mod testing;
 mod waiting;
+pub(crate) mod worker;
 
 #[cfg(fuzzing)]
 #[doc(hidden)]

@@ -1,6 +1,5 @@
 //! From sockets to visitors.
 
-pub mod admission;
 mod client;
 mod connection;
 mod explanation;
@@ -11,15 +10,15 @@ mod hello;
 pub mod host_key;
 mod inbound;
 mod outbox;
-#[cfg(test)]
-mod pipe;
 mod server;
+#[cfg(test)]
+mod simulated;
 mod visitor;
 mod wire;
 
 pub use inbound::{Arrival, Inbound};
 pub use outbox::Outbox;
-#[cfg(test)]
-pub(crate) use pipe::{FarEnd, Parts, pipe};
 pub use server::Server;
+#[cfg(test)]
+pub(crate) use simulated::{FarEnd, Parts, pipe};
 pub use visitor::{Departure, Host, Link, Visitor};

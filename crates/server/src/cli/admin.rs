@@ -13,9 +13,8 @@ use unicode_width::UnicodeWidthStr;
 use super::arguments::{Admin, AdminAction};
 use super::host_store::{Database, failed};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
-use crate::ops::admin::{
-    AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
-};
+use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
+use crate::operator::socket::{AdminFailure, ask};
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
 use cellcaster::rng;

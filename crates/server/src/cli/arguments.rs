@@ -12,9 +12,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 use super::host_store::Database;
 use crate::accounts::{AccountKey, AddressPrefix};
-use crate::ops::admin::Target;
-use crate::ops::logging::LogFormat;
-use crate::sessions::visitors::SessionId;
+use crate::admin::Target;
+use crate::logging::LogFormat;
+use crate::visitors::SessionId;
 
 /// An SSH server in which people play Cellcaster together
 ///

@@ -15,15 +15,15 @@ use super::arguments::Serve;
 use super::host_store::{Database, failed};
 use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
 use crate::cluster::Cluster;
+use crate::config::Config;
+use crate::logging::{self, LogFormat, Logging};
+use crate::metrics::respond;
 #[cfg(unix)]
-use crate::ops::admin::AdminSocket;
-use crate::ops::config::Config;
-use crate::ops::logging::{LogFormat, Logging, events};
-use crate::ops::metrics::respond;
+use crate::operator::socket::AdminSocket;
 use crate::sessions::driver::{GameHost, HostParts};
-use crate::sessions::visitors::Visitors;
 use crate::ssh::Server;
 use crate::ssh::host_key::HostKey;
+use crate::visitors::Visitors;
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
 use configuration::Configuration;
@@ -83,7 +83,7 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     let server = Server::bind(config, key).await.map_err(cannot)?;
     let address = server.address().map_err(cannot)?;
     let logging = Logging::begin(format, &filter);
-    events::listening(address, &fingerprint);
+    logging::listening(address, &fingerprint);
 
     let host = HostParts::new(server.config(), server.metrics(), Visitors::default(), store);
     let host = host.map_err(|error| no_thread(&error))?;
@@ -97,7 +97,7 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
     let mut services = JoinSet::new();
     if let Some(listener) = metrics_listener {
-        events::metrics_listening(listener.local_addr().map_err(cannot)?);
+        logging::metrics_listening(listener.local_addr().map_err(cannot)?);
         services.spawn(respond(listener, server.metrics()));
     }
     let operator = host.operator(signals.drain());
@@ -114,7 +114,7 @@ async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Err
     }
     // Else the process might end before the socket is removed.
     services.shutdown().await;
-    events::ended();
+    logging::ended();
     Ok(())
 }
 

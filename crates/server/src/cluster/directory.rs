@@ -28,6 +28,7 @@ use super::message::{MemberWish, Record, to_bytes, version};
 use super::replica::{Beginning, MemberRequest, Replica};
 use super::visits::{ANNOUNCED, Visits};
 use crate::accounts::AccountKey;
+use crate::line::Line;
 use crate::lock::locked;
 use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 #[cfg(test)]
@@ -35,7 +36,6 @@ use crate::rooms::room::RoomView;
 use crate::rooms::room::{Header, MemberId, Mode};
 use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomWish};
-use crate::sessions::line::Line;
 use cellcaster::rng;
 
 /// The time without a change after which the record of a running room says that its host is gone.

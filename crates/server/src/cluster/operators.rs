@@ -20,7 +20,7 @@ use tokio::time::{Instant, sleep, timeout, timeout_at};
 use super::directory::SharedRooms;
 use super::host::shown_name;
 use crate::accounts::HostRow;
-use crate::ops::admin::{AdminReply, AdminRequest, HostInfo};
+use crate::admin::{AdminReply, AdminRequest, HostInfo};
 use cellcaster::app::store::name_in_map_key;
 
 /// The most time that other hosts have for their answers.

@@ -32,13 +32,13 @@ use tokio::time::{Instant, sleep_until};
 
 use super::bus::BusFault;
 use super::host::HostContext;
-use super::lease_worker::Reply;
+use super::leases::Reply;
 use super::message::{LogMessage, MemberWish, PeerMessage, Record, Token, to_bytes};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::Lease;
-use crate::ops::logging::events;
-use crate::ops::metrics::RoomFigures;
+use crate::logging;
+use crate::metrics::RoomFigures;
 use crate::rooms::room::MemberId;
 use crate::rooms::sequencer::{FAULT, RoomInterface, STEP, message as panic_message};
 use crate::rooms::summary::{RoomId, RoomRefusal};
@@ -407,7 +407,7 @@ impl Replica {
         let changes = match catch_unwind(AssertUnwindSafe(apply)) {
             Ok(changes) => changes,
             Err(panic) => {
-                events::room_failed(self.id.0, panic_message(&*panic));
+                logging::room_failed(self.id.0, panic_message(&*panic));
                 return self.interface.close(FAULT);
             }
         };

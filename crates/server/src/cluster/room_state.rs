@@ -164,8 +164,8 @@ impl RoomState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode};
-    use crate::sessions::line::Line;
     use cellcaster::game::PlayerColor;
     use cellcaster::game::stored::MOST_COUNT;
     use cellcaster::world::Difficulty;

@@ -21,10 +21,10 @@ use tokio::time::Instant;
 use super::message::{LogMessage, MemberWish, PeerMessage, Token};
 use super::room_state::RoomState;
 use crate::accounts::Lease;
+use crate::line::Line;
 use crate::rooms::room::{Command, Entry, MemberId, Room};
 use crate::rooms::sequencer::Inbox;
 use crate::rooms::summary::RoomRefusal;
-use crate::sessions::line::Line;
 use cellcaster::game::PlayerColor;
 
 /// How long a member may go unclaimed before they are marked away.

@@ -17,15 +17,15 @@ use tokio::sync::watch;
 use tokio::time::timeout;
 
 pub(crate) use self::recording::Recordings;
+use crate::config::Config;
+use crate::line::Line;
+use crate::load::Load;
 use crate::lock::locked;
-use crate::ops::config::Config;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
 pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use crate::sessions::line::Line;
-use crate::sessions::load::Load;
 use cellcaster::rng::SplitMix64;
 
 /// The time in which rooms end.
@@ -57,7 +57,7 @@ impl RoomLimits {
             most: config.rooms as usize,
             most_watchers: config.watchers as usize,
             closes_after: config.empty_room,
-            standing: config.standing.iter().map(|room| room.0.clone()).collect(),
+            standing: config.standing.clone(),
         }
     }
 }
@@ -264,7 +264,7 @@ impl Rooms {
     fn spawn(&self, new: NewRoom) {
         let NewRoom { id, room, interface } = new;
         let header = room.header();
-        events::room_opened(id.0, &header.level, header.mode.name());
+        logging::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
         let log = RoundLog::new(self.0.recordings.open(id), &room);
         let load = Arc::clone(&self.0.load);
@@ -275,9 +275,9 @@ impl Rooms {
             locked(&rooms.0.open, |open| open.rooms.remove(&id));
             rooms.publish();
             match ended {
-                Ok(()) => events::room_closed(id.0),
+                Ok(()) => logging::room_closed(id.0),
                 Err(panic) => {
-                    events::room_failed(id.0, panic);
+                    logging::room_failed(id.0, panic);
                     rooms.open_standing();
                 }
             }
@@ -296,7 +296,7 @@ impl Rooms {
         if ends && before.is_some_and(|before| !is_over(before.phase)) {
             let view = room.view();
             let winner = view.winner().map(|member| member.name.as_str());
-            events::round_ended(id.0, view.step, winner);
+            logging::round_ended(id.0, view.step, winner);
         }
         self.publish();
     }

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::accounts::{AccountId, HostStore, LevelBoard, StoreFailure};
+use crate::line::Line;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
-use crate::sessions::line::Line;
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
 use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
 

@@ -31,11 +31,11 @@ pub(crate) use self::log::{
 };
 use self::member::{AWAY, Member, looking_only};
 pub(crate) use self::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
-pub(crate) use self::mode::Mode;
+pub use self::mode::Mode;
 use self::mode::SECOND;
 use self::round::{Field, Round};
 pub(crate) use self::round::{Finish, Phase, Role, Standing};
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 

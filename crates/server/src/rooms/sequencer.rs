@@ -26,11 +26,11 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 pub(crate) use self::inbox::{CommandRefusal, Inbox, STEP};
 pub(crate) use self::round_log::{Changes, FinishedRun, Recording, RoundLog};
+use crate::load::Load;
+#[cfg(test)]
+use crate::load::Work;
 use crate::lock::locked;
 use crate::rooms::room::{Mode, Room, RoomView};
-use crate::sessions::load::Load;
-#[cfg(test)]
-use crate::sessions::load::Work;
 
 /// The most steps that follow at once after a delay.
 pub(crate) const MOST_CAUGHT_UP: u32 = 6;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::line::Line;
 use crate::rooms::room::{Mode, Phase, Room};
-use crate::sessions::line::Line;
 use cellcaster::world::Difficulty;
 
 /// The number of a room. It is not used again after the room is closed.
@@ -64,11 +64,11 @@ impl RoomSummary {
 
 /// A room that a visitor would like to open.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct RoomWish {
+pub struct RoomWish {
     /// The name of the level in the catalog.
-    pub(crate) level: String,
-    pub(crate) mode: Mode,
-    pub(crate) difficulty: Difficulty,
+    pub level: String,
+    pub mode: Mode,
+    pub difficulty: Difficulty,
 }
 
 /// The reason why somebody cannot be in a room.

@@ -17,7 +17,6 @@ mod login;
 mod results;
 #[cfg(test)]
 mod simulated;
-mod store_worker;
 mod visit;
 
 use std::io;
@@ -34,23 +33,23 @@ use self::login::NamesInUse;
 use self::results::Recorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
-use self::store_worker::StoreWorker;
 use self::visit::Driver;
+use crate::accounts::worker::StoreWorker;
 use crate::accounts::{HostStore, UnixTime, WaitingResults};
+use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
-use crate::ops::admin::{Operator, RoomRow};
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::metrics::Metrics;
+use crate::config::{Config, LiveConfig};
+use crate::line::Line;
+use crate::load::{Governor, Load};
+use crate::metrics::Metrics;
+use crate::operator::Operator;
 use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
 use crate::rooms::ghost::KeptRuns;
 use crate::rooms::maps::HostMaps;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::governor::Governor;
-use crate::sessions::line::Line;
-use crate::sessions::load::Load;
-use crate::sessions::visitors::Visitors;
 use crate::ssh::{Departure, Host, Link, Visitor};
+use crate::visitors::Visitors;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
 #[derive(Debug)]
@@ -84,6 +83,8 @@ struct Shared {
 /// The time between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
 /// The most time that the store has for its end.
+/// The most calls of the store that wait.
+const MOST_CALLS: usize = 256;
 const STORE_END: Duration = Duration::from_secs(10);
 
 /// The parts of a [`GameHost`], before it runs.
@@ -118,7 +119,7 @@ impl HostParts {
             catalog: Catalog::builtin(),
             recordings: Recordings::in_folder(live.get().recordings.clone()),
             load: Load::new(Arc::clone(&metrics)),
-            store: StoreWorker::start(store)?,
+            store: StoreWorker::start("store", MOST_CALLS, store)?,
             waiting: None,
             // Without random numbers from the system there would be no keys, either.
             seed: getrandom::u64().unwrap_or_default(),

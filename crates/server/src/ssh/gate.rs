@@ -8,13 +8,13 @@ use std::time::Duration;
 use tokio::sync::{oneshot, watch};
 use tokio::time::Instant;
 
-use super::admission::{Admission, Admitted, Outcome, Refusal, VisitId};
 use super::explanation::Explanations;
 use crate::accounts::{AccountKey, AddressPrefix};
+use crate::admission::{Admission, Admitted, Outcome, Refusal, VisitId};
+use crate::config::LiveConfig;
 use crate::lock::locked;
-use crate::ops::config::LiveConfig;
-use crate::ops::logging::{ConnectionEvent, Throttle};
-use crate::ops::metrics::Metrics;
+use crate::logging::{ConnectionEvent, Throttle};
+use crate::metrics::Metrics;
 use cellcaster::rng::SplitMix64;
 
 /// The way in.

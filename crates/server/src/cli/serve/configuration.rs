@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use super::signals::Hangups;
 use crate::cli::arguments::Serve;
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::logging::{Logging, events};
+use crate::config::{Config, LiveConfig};
+use crate::logging::{self, Logging};
 use crate::rooms::maps::{HostMaps, MapsError};
 use cellcaster::app::store::private;
 use cellcaster::cli::Error;
@@ -62,9 +62,9 @@ impl Configuration {
                 Ok(config) => {
                     logging.set_filter(&config.log);
                     let fixed = live.replace(config);
-                    events::reloaded(self.file.as_deref(), &fixed);
+                    logging::reloaded(self.file.as_deref(), &fixed);
                 }
-                Err(error) => error.to_string().lines().for_each(events::configuration_fault),
+                Err(error) => error.to_string().lines().for_each(logging::configuration_fault),
             }
         }
     }

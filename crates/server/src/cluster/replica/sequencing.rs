@@ -1,5 +1,6 @@
 //! The duties of the sequencer: the lease, the messages, the checkpoints.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::sync::oneshot::error::TryRecvError;
@@ -8,7 +9,7 @@ use tokio::time::Instant;
 use super::{Replica, is_due};
 use crate::accounts::Lease;
 use crate::cluster::bus::{BusFault, Key};
-use crate::cluster::lease_worker::LEASE_TIME;
+use crate::cluster::leases::LEASE_TIME;
 use crate::cluster::message::{PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
 use crate::rooms::sequencer::{MOST_CAUGHT_UP, STEP};
@@ -173,7 +174,7 @@ impl Replica {
         let is_broken = self.interface.inbox.is_closed();
         if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
             let is_empty = self.state.room().len() == 0;
-            let (leases, mut is_gone) = (self.context.leases.clone(), false);
+            let (context, mut is_gone) = (Arc::clone(&self.context), false);
             if is_broken || is_empty && !self.record.stands {
                 // A standing room is made again under its number, and others may go on with a room that is broken or
                 // was not removed.
@@ -190,6 +191,7 @@ impl Replica {
                 }
             }
             let lease = sequencer.lease();
+            let leases = &context.leases;
             _ = if is_gone { leases.forget(lease) } else { leases.release(lease) }.await;
             self.broadcast(&PeerMessage::Released).await;
         }

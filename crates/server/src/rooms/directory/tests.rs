@@ -3,9 +3,9 @@ use std::io;
 use tokio::runtime::Builder;
 
 use super::*;
-use crate::ops::logging::LogFormat;
-use crate::ops::logging::tests::logged;
-use crate::ops::metrics::Metrics;
+use crate::logging::LogFormat;
+use crate::logging::tests::logged;
+use crate::metrics::Metrics;
 use crate::rooms::room::{Entry, NAME_COLUMNS};
 use crate::rooms::sequencer::Recording;
 use cellcaster::game::PlayerColor;

@@ -15,7 +15,7 @@ use super::catalog::no_level;
 use super::member::Member;
 use super::{CHAT_COLUMNS, Catalog, Header, KeptPlace, MemberId, NAME_COLUMNS, Room, SAID, Said};
 use crate::accounts::printable;
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::game::PlayerColor;
 use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
 use cellcaster::rng;

@@ -38,7 +38,7 @@ use serde::{Deserialize, Serialize};
 
 use super::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 use super::mode::Mode;
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::cli::ROOM_RECORDING;
 use cellcaster::game::stored::bits;
 use cellcaster::game::{Intents, PlayerColor};

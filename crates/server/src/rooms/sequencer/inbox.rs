@@ -15,10 +15,10 @@ use tokio::sync::Notify;
 
 use super::round_log::FinishedRun;
 use crate::bucket::Bucket;
+use crate::line::Line;
 use crate::lock::locked;
 use crate::rooms::room::{Command, MemberId, Mode};
 use crate::rooms::summary::RoomRefusal;
-use crate::sessions::line::Line;
 use cellcaster::game::{PlayerColor, STEPS_PER_SECOND};
 
 /// The time of a step.

@@ -14,7 +14,7 @@ use super::results::Recorder;
 use super::{Shared, unix_time};
 use crate::accounts::{HostStore, Late, WaitingResults};
 use crate::lock::locked;
-use crate::ops::logging::events;
+use crate::logging;
 
 /// The time from one round to the next.
 const PERIOD: Duration = Duration::from_secs(2);
@@ -74,16 +74,16 @@ impl Recorder {
             }
             Some(Late::Recorded(account, run)) => {
                 let (level, steps) = (run.board().level(), run.tally().steps);
-                events::result_verified(account.name.as_str(), level, steps, run.rank().name());
+                logging::result_verified(account.name.as_str(), level, steps, run.rank().name());
                 let level = self.catalog.title(level);
                 let line = format!("your result in {level}, {}, is recorded now.", of_steps(steps));
                 self.visitors.say_to(&account.key, &line);
             }
             Some(Late::Refuted(result, reason)) => {
                 self.metrics.results(false).inc();
-                events::result_lost(&result.key, reason);
+                logging::result_lost(&result.key, reason);
             }
-            Some(Late::GivenUp(result, failure)) => events::result_lost(&result.key, failure),
+            Some(Late::GivenUp(result, failure)) => logging::result_lost(&result.key, failure),
         }
         Next::Recorded
     }
@@ -96,11 +96,11 @@ impl Recorder {
             // The store may lie on another disk.
             while matches!(self.record_late(store, 0), Next::Recorded) {}
             if let Err(failure) = locked(waiting, WaitingResults::save) {
-                events::store_failed(format!("results that wait are lost: {failure}"));
+                logging::store_failed(format!("results that wait are lost: {failure}"));
             }
         }
         if let Err(failure) = store.checkpoint() {
-            events::store_failed(failure);
+            logging::store_failed(failure);
         }
     }
 }

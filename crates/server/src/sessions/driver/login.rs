@@ -9,10 +9,10 @@ use crate::accounts::{
     Origin, Refusal, StoreFailure,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
+use crate::line::Line;
 use crate::lock::locked;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
-use crate::sessions::line::Line;
 use crate::ssh::{Departure, Visitor};
 use cellcaster::terminal::{Options, locale_without_utf8};
 
@@ -68,12 +68,12 @@ impl Shared {
             Ok(Ok(known)) => known,
             failed => {
                 self.metrics.store_errors.inc();
-                events::store_failed(format!("{failed:?}"));
+                logging::store_failed(format!("{failed:?}"));
                 return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
             }
         };
         if let Some(ban) = ban {
-            events::banned_visitor(address, &ban.target);
+            logging::banned_visitor(address, &ban.target);
             return Err((banned(&ban), Departure::REFUSED));
         }
         let offer = match &account {
@@ -188,7 +188,7 @@ impl Shared {
             }
             VisitRefusal::NotNow(failure) => {
                 self.metrics.store_errors.inc();
-                events::store_failed(failure);
+                logging::store_failed(failure);
                 (NOT_KNOWN.to_owned(), Departure::FAILED)
             }
         })

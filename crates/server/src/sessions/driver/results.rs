@@ -7,14 +7,14 @@ use crate::accounts::{
     Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedRun, WaitingResult,
     WaitingResults, verify_with,
 };
+use crate::line::Line;
 use crate::lock::locked;
-use crate::ops::logging::events;
-use crate::ops::metrics::Metrics;
+use crate::logging;
+use crate::metrics::Metrics;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use crate::rooms::sequencer::FinishedRun;
-use crate::sessions::line::Line;
 use crate::sessions::session::BoardRow;
-use crate::sessions::visitors::Visitors;
+use crate::visitors::Visitors;
 use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::Improved;
 use cellcaster::world::{Difficulty, World};
@@ -44,7 +44,7 @@ impl Recorder {
             Ok(run) => run,
             Err(reason) => {
                 self.metrics.results(false).inc();
-                events::result_refused(account.name.as_str(), &run.level, &reason);
+                logging::result_refused(account.name.as_str(), &run.level, &reason);
                 return format!("The result does not count. {reason}");
             }
         };
@@ -68,7 +68,7 @@ impl Recorder {
 
     pub(crate) fn failed(&self, failure: &StoreFailure) {
         self.metrics.store_errors.inc();
-        events::store_failed(failure);
+        logging::store_failed(failure);
     }
 
     /// What a run that was recorded has improved.
@@ -80,7 +80,7 @@ impl Recorder {
         improved: Improved,
     ) -> String {
         let (steps, rank) = (run.tally().steps, run.rank());
-        events::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
+        logging::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
         let what = if improved.time { "your best" } else { "not your best" };
         let what = format!("{}, rank {rank}: {what}.", of_steps(steps));
         let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
@@ -103,10 +103,10 @@ impl Recorder {
         });
         self.metrics.results_waiting.set(count as i64);
         for failure in [&added, &saved].into_iter().filter_map(|it| it.as_ref().err()) {
-            events::store_failed(failure);
+            logging::store_failed(failure);
         }
         if added.is_ok() {
-            events::result_waits(account.name.as_str(), run.board().level());
+            logging::result_waits(account.name.as_str(), run.board().level());
         }
         added.is_ok()
     }
@@ -132,7 +132,7 @@ pub(crate) fn board(
 ) -> Vec<BoardRow> {
     let Some(board) = LevelBoard::new(level, difficulty) else { return Vec::new() };
     let scores = store.level_scores(&board, MOST_ROWS).unwrap_or_else(|failure| {
-        events::store_failed(failure);
+        logging::store_failed(failure);
         Vec::new()
     });
     let row = |score: crate::accounts::LevelScore| {

@@ -19,20 +19,20 @@ use super::login::{self, Known, NameInUse};
 use super::{Shared, results};
 use crate::accounts::{Account, AccountKey, AccountSettings, Name, Origin};
 use crate::cluster::Entrant;
+use crate::line::Line;
+#[cfg(test)]
+use crate::load::Work;
 use crate::lock::locked;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::line::Line;
-#[cfg(test)]
-use crate::sessions::load::Work;
 use crate::sessions::session::{
     HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
 };
-use crate::sessions::visitors::{Notice, Presence};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
+use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
 use cellcaster::terminal::Options;
 use cellcaster::world::Difficulty;
@@ -425,7 +425,7 @@ impl Driver {
         }
         let line = login::line(&name);
         self.presence.set_name(name.as_str());
-        events::named(self.key.as_ref(), name.as_str());
+        logging::named(self.key.as_ref(), name.as_str());
         self.account = account.or(self.account.take());
         self.name = Some(name);
         SessionEvent::Named(Ok(line))
@@ -469,7 +469,7 @@ impl Driver {
                         ghosts,
                     }));
                 }
-                Err(failure) => events::store_failed(failure),
+                Err(failure) => logging::store_failed(failure),
             }
         });
     }
@@ -478,7 +478,7 @@ impl Driver {
         let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
         self.shared.store.run(move |store| {
             if let Err(failure) = store.set_settings(account, &settings) {
-                events::store_failed(failure);
+                logging::store_failed(failure);
             }
         });
     }

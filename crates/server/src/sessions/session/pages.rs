@@ -7,10 +7,10 @@
 use super::draw::COMPRESSION;
 use super::messages::{Request, Way};
 use super::ui::Ui;
+use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use crate::sessions::line::Line;
 use cellcaster::app::parts::{self, Kind, Menu, of_steps};
 use cellcaster::world::Difficulty;
 

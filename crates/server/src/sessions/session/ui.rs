@@ -9,9 +9,9 @@ use super::line_entry::LineEntry;
 use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
+use crate::line::Line;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::line::Line;
 use cellcaster::app::parts::{
     Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine, TerminalLook,
 };

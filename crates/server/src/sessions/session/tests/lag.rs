@@ -5,7 +5,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::*;
-use crate::ops::config::Config;
+use crate::config::Config;
 
 #[test]
 fn who_does_nothing_among_others_who_do_nothing_costs_no_bytes() {

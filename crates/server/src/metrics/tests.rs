@@ -1,8 +1,10 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use proptest::prelude::*;
+
 use super::*;
-use crate::ssh::admission::Refusal;
+use crate::admission::Refusal;
 
 /// The samples of a text, and a check of its form.
 fn samples(text: &str) -> BTreeMap<String, f64> {
@@ -101,4 +103,32 @@ fn a_duration_is_in_the_buckets_from_its_bound_on() {
         assert_eq!(sample(end), count, "{end}");
     }
     assert!((sample("sum") - 2.516_868_001).abs() < 1e-9);
+}
+
+fn status(request: &[u8]) -> String {
+    let response = response(request, || "figures\n".to_owned());
+    response.split(' ').nth(1).unwrap().to_owned()
+}
+
+#[test]
+fn one_page_is_served() {
+    for (request, expected) in [
+        ("GET /metrics HTTP/1.1\r\n\r\n", "200"),
+        ("GET /metrics HTTP/1.0\r\nHost: x\r\n\r\n", "200"),
+        ("GET / HTTP/1.1\r\n\r\n", "404"),
+        ("GET /metrics/../x HTTP/1.1\r\n\r\n", "404"),
+        ("POST /metrics HTTP/1.1\r\n\r\n", "405"),
+        ("GET /metrics\r\n\r\n", "400"),
+        ("GET /metrics HTTP/1.1\r\n", "400"),
+        ("", "400"),
+    ] {
+        assert_eq!(status(request.as_bytes()), expected, "{request:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_request_has_an_answer(request in any::<Vec<u8>>()) {
+        prop_assert!(["200", "400", "404", "405"].contains(&status(&request).as_str()));
+    }
 }

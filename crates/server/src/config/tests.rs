@@ -96,7 +96,7 @@ fn levels_of_rooms_are_checked_against_those_that_there_are() {
     let faults = Config::check_levels(text, "serve.toml", &levels).unwrap_err();
     insta::assert_snapshot!(faults);
     let rooms = Config::parse(text, "serve.toml").unwrap().standing;
-    let levels: Vec<&str> = rooms.iter().map(StandingRoom::level).collect();
+    let levels: Vec<&str> = rooms.iter().map(|room| room.level.as_str()).collect();
     assert_eq!(levels, ["cellar", "celar", "moss"]);
     assert!(Config::check_levels(text, "serve.toml", &levels).is_ok());
 }

@@ -3,27 +3,28 @@
 //! [`Metrics`] has a handle for each figure. Parts of the server add to it, and [`text`](Metrics::text) writes all of
 //! them, with those of the process. A responder on an address of its own answers `GET /metrics` with that text.
 
-mod responder;
-
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
 use std::time::Duration;
+use std::{fmt, io};
 
 use prometheus_client::collector::Collector;
-use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, prometheus_text};
+use prometheus_client::encoding::prometheus_text::{self, CONTENT_TYPE};
+use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric};
 use prometheus_client::metrics::MetricType;
 use prometheus_client::metrics::counter::{ConstCounter, Counter};
 use prometheus_client::metrics::family::Family;
 use prometheus_client::metrics::gauge::{ConstGauge, Gauge};
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::Registry;
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, copy, sink};
+use tokio::net::{TcpListener, TcpStream};
 use tokio::runtime::Handle;
 
+use crate::admission::Refusal;
 use crate::lock::locked;
-use crate::ssh::admission::Refusal;
-pub use responder::respond;
+use crate::service::serve_each;
 
 /// The figures of a server.
 #[derive(Debug)]
@@ -324,6 +325,57 @@ fn resident_bytes() -> Option<u64> {
     let size = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     let kilobytes: u64 = size.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes << 10)
+}
+
+/// The page of metrics is answered by hand, and not by a server library: a request of Prometheus is one line. Of a
+/// request, so many bytes are read.
+const MOST_BYTES: u64 = 4096;
+const TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Answers `GET /metrics` with the figures, until the future is dropped.
+pub async fn respond(listener: TcpListener, metrics: Arc<Metrics>) {
+    let answer = |stream| answer(stream, Arc::clone(&metrics));
+    serve_each(|context| listener.poll_accept(context), TIMEOUT, answer).await;
+}
+
+async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> {
+    let request = request(&mut stream).await?;
+    stream.write_all(response(&request, || metrics.text()).as_bytes()).await?;
+    stream.shutdown().await?;
+    // Closed with unread bytes, the connection would be reset, and the client might lose the answer.
+    copy(&mut stream, &mut sink()).await?;
+    Ok(())
+}
+
+/// The head of a request, or its first [`MOST_BYTES`].
+async fn request(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
+    let mut stream = BufReader::new(stream.take(MOST_BYTES));
+    let mut request = Vec::new();
+    while !ends(&request) && stream.read_until(b'\n', &mut request).await? > 0 {}
+    Ok(request)
+}
+
+fn ends(request: &[u8]) -> bool {
+    request.ends_with(b"\r\n\r\n")
+}
+
+fn response(request: &[u8], text: impl Fn() -> String) -> String {
+    let line = request.split(|&byte| byte == b'\r').next().unwrap_or_default();
+    let mut words = line.split(|&byte| byte == b' ');
+    let (method, target, version) = (words.next(), words.next(), words.next());
+    let is_http = version.is_some_and(|version| version.starts_with(b"HTTP/1."));
+    let (status, body) = match (method, target) {
+        _ if !ends(request) || !is_http => ("400 Bad Request", "no request of HTTP/1.1\n".into()),
+        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text()),
+        (Some(b"GET"), _) => ("404 Not Found", "the page is /metrics\n".into()),
+        _ => ("405 Method Not Allowed", "the method is GET\n".into()),
+    };
+    let allow = if status.starts_with("405") { "Allow: GET\r\n" } else { "" };
+    format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {CONTENT_TYPE}\r\n\
+         Content-Length: {}\r\n{allow}Connection: close\r\n\r\n{body}",
+        body.len()
+    )
 }
 
 #[cfg(test)]

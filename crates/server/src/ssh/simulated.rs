@@ -12,8 +12,8 @@ use super::Link;
 use super::inbound::{Inlet, inbound};
 use super::outbox::{Outbox, Passage};
 use super::wire::ByteLimits;
-use crate::ops::config::Config;
-use crate::ops::metrics::Metrics;
+use crate::config::Config;
+use crate::metrics::Metrics;
 use cellcaster::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones are the same end.

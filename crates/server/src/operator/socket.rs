@@ -11,9 +11,9 @@ use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
 
-use super::operator::Operator;
-use super::{AdminReply, AdminRequest};
-use crate::ops::serve_each;
+use super::Operator;
+use crate::admin::{AdminReply, AdminRequest};
+use crate::service::serve_each;
 use cellcaster::fault::printable_path;
 
 /// A socket at which an operator can ask. It is removed when this is dropped.

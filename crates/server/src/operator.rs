@@ -1,15 +1,18 @@
 //! What a request does: on this host, and on all hosts of a cluster.
 
+#[cfg(unix)]
+pub mod socket;
+
 use std::fmt;
 use std::sync::Arc;
 
 use tokio::sync::Notify;
 
-use super::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
+use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
 use crate::cluster::{OtherHosts, SharedRooms};
-use crate::ops::logging::events;
-use crate::sessions::line::Line;
-use crate::sessions::visitors::{Present, SessionId, Visitors};
+use crate::line::Line;
+use crate::logging;
+use crate::visitors::{Present, SessionId, Visitors};
 
 /// What an operator can see and change in a server. Clones are the same.
 #[derive(Clone)]
@@ -88,7 +91,7 @@ impl Operator {
                 None => AdminReply::Fault("there is nothing to say".to_owned()),
                 Some(line) => {
                     let count = self.visitors.say(line.as_str());
-                    events::said(count);
+                    logging::said(count);
                     AdminReply::Count(count)
                 }
             },
@@ -106,12 +109,12 @@ impl Operator {
         {
             let session = SessionId::parse(text).ok_or("a session is written as 3f9a-7")?;
             let count = usize::from(self.visitors.remove_session(session, sentence));
-            events::removed_session(session, count);
+            logging::removed_session(session, count);
             return Ok(count);
         }
         let target = target.to_ban()?;
         let count = self.visitors.remove(&target, sentence);
-        events::removed(&target, count, is_banned);
+        logging::removed(&target, count, is_banned);
         Ok(count)
     }
 
@@ -189,3 +192,6 @@ fn row(present: Present, host: Option<String>) -> VisitorRow {
         host,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::accounts::AccountKey;
-use crate::ssh::admission::{Outcome, Refusal};
+use crate::admission::{Outcome, Refusal};
 
 /// Keeps what is written.
 #[derive(Clone, Default)]
@@ -37,12 +37,12 @@ pub(crate) fn logged(format: LogFormat, filter: &str, act: impl FnOnce(&Logging)
 const EVIL: &str = "a\n2026 ERROR host: fault\u{1b}[2J\u{9b}2J\u{202e}\"";
 
 fn name_evilly(_: &Logging) {
-    events::named(Some(&AccountKey::new([1; 32])), EVIL);
-    events::room_opened(1, EVIL, "roam");
-    events::round_ended(1, 60, Some(EVIL));
-    events::result_refused(EVIL, EVIL, EVIL);
-    events::fault("record", EVIL);
-    events::configuration_fault(EVIL);
+    named(Some(&AccountKey::new([1; 32])), EVIL);
+    room_opened(1, EVIL, "roam");
+    round_ended(1, 60, Some(EVIL));
+    result_refused(EVIL, EVIL, EVIL);
+    fault("record", EVIL);
+    configuration_fault(EVIL);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn nothing_that_was_typed_is_more_than_a_field() {
 fn json_has_a_field_for_each_part() {
     let text = logged(LogFormat::Json, "info", |_| {
         let network = AddressPrefix::network_of("203.0.113.7".parse().unwrap());
-        events::connections(Some(network), ConnectionEvent::Refused(Refusal::Penalty), 4);
+        connections(Some(network), ConnectionEvent::Refused(Refusal::Penalty), 4);
     });
     let line: serde_json::Value = serde_json::from_str(&text).unwrap();
     for (field, value) in [
@@ -79,7 +79,7 @@ fn json_has_a_field_for_each_part() {
 fn addresses_are_logged_as_networks() {
     let text = logged(LogFormat::Text, "info", |_| {
         for address in ["203.0.113.7", "::ffff:203.0.113.7", "2001:db8:1:2:3:4:5:6"] {
-            events::authenticated(address.parse::<IpAddr>().unwrap(), None);
+            authenticated(address.parse::<IpAddr>().unwrap(), None);
         }
     });
     let networks: Vec<&str> = text.lines().filter_map(|line| line.split('"').nth(1)).collect();
@@ -89,9 +89,9 @@ fn addresses_are_logged_as_networks() {
 #[test]
 fn the_filter_has_a_level_for_each_topic_and_can_be_changed() {
     let one_each = || {
-        events::ended();
-        events::authenticated([192, 0, 2, 1].into(), None);
-        events::room_closed(1);
+        ended();
+        authenticated([192, 0, 2, 1].into(), None);
+        room_closed(1);
         tracing::warn!("without a topic");
         tracing::error!(target: "russh", "not of this program");
     };

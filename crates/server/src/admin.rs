@@ -11,16 +11,9 @@
 //!
 //! Rejected: a port of TCP with a password. Every user of the machine could reach it.
 
-mod operator;
-#[cfg(unix)]
-pub(crate) mod socket;
-
 use serde::{Deserialize, Serialize};
 
 use crate::accounts::{AccountKey, AddressPrefix, BanTarget, Name};
-pub use operator::Operator;
-#[cfg(unix)]
-pub use socket::{AdminFailure, AdminSocket, ask};
 
 /// What an operator asks.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -182,6 +175,3 @@ impl Target {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

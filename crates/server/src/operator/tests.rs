@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use tokio::sync::Notify;
 
 use super::*;
-use crate::sessions::visitors::{Notice, Visitors};
+use crate::admin::VisitorRow;
+use crate::visitors::{Notice, Visitors};
 
 fn operator(visitors: &Visitors) -> Operator {
     operator_with(visitors, Arc::default())

@@ -1,4 +1,4 @@
-//! Running a host: its configuration, its operator, its metrics and its log.
+//! The loop of a small service for the operator: the admin socket, the page of metrics.
 
 use std::future::{Future, poll_fn};
 use std::io;
@@ -8,18 +8,13 @@ use std::time::Duration;
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
-pub mod admin;
-pub mod config;
-pub mod logging;
-pub mod metrics;
-
 /// The connections that a service of the operator answers at a time. Further ones wait in the system's queue.
 const MOST_CONNECTIONS: usize = 8;
 /// The pause after a failed `accept`.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Answers each connection that `accept` returns, within `time`, until the future is dropped.
-async fn serve_each<S, P, A>(
+pub(crate) async fn serve_each<S, P, A>(
     mut accept: impl FnMut(&mut Context<'_>) -> Poll<io::Result<(S, P)>>,
     time: Duration,
     answer: impl Fn(S) -> A,
