@@ -33,6 +33,7 @@ use toml::de::{DeTable, DeValue};
 use crate::accounts::AccountRate;
 use crate::admission::Limits;
 use crate::logging::{LogFilter, UnknownLogFilter};
+use crate::rooms::directory::RoomLimits;
 use crate::rooms::room::Mode;
 use crate::rooms::summary::RoomWish;
 use cellcaster::app::parts::{Field, Setting, Value as _, reject_range, toml_string};
@@ -157,6 +158,16 @@ impl Config {
             }
         }
         self.check_room_count(document, faults);
+    }
+
+    /// The limits of rooms, and the standing rooms.
+    pub(crate) fn room_limits(&self) -> RoomLimits {
+        RoomLimits {
+            most: self.rooms as usize,
+            most_watchers: self.watchers as usize,
+            closes_after: self.empty_room,
+            standing: self.standing.clone(),
+        }
     }
 
     fn check_room_count(&self, document: &DeTable, faults: &FaultList) {

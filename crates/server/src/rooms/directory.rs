@@ -17,7 +17,6 @@ use tokio::sync::watch;
 use tokio::time::timeout;
 
 pub(crate) use self::recording::Recordings;
-use crate::config::Config;
 use crate::line::Line;
 use crate::load::Load;
 use crate::lock::locked;
@@ -48,18 +47,6 @@ pub(crate) struct RoomLimits {
     pub(crate) closes_after: Duration,
     /// The rooms that are always open.
     pub(crate) standing: Vec<RoomWish>,
-}
-
-impl RoomLimits {
-    /// The limits in a configuration.
-    pub(crate) fn of(config: &Config) -> Self {
-        Self {
-            most: config.rooms as usize,
-            most_watchers: config.watchers as usize,
-            closes_after: config.empty_room,
-            standing: config.standing.clone(),
-        }
-    }
 }
 
 #[derive(Debug)]
