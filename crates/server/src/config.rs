@@ -32,7 +32,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::accounts::AccountRate;
 use crate::admission::Limits;
-use crate::logging::{LogFilter, UnknownLogFilter};
+use crate::logging::LogFilter;
 use crate::rooms::directory::RoomLimits;
 use crate::rooms::room::Mode;
 use crate::rooms::summary::RoomWish;
@@ -673,7 +673,7 @@ fn folder(entry: &Entry<'_, '_>) -> Option<PathBuf> {
 
 fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {
     entry.string(LOG_EXAMPLE)?.parse().map_or_else(
-        |UnknownLogFilter(part)| {
+        |part: String| {
             let help = format!("write {LOG_EXAMPLE}; {}", LogFilter::GRAMMAR);
             entry.reject(format!("{} is no level of the log", quoted(&part)), "", help)
         },

@@ -59,17 +59,13 @@ const PROGRAM: &str = env!("CARGO_CRATE_NAME");
 /// let filter: LogFilter = "info,connections=warn".parse()?;
 /// assert_eq!(filter.to_string(), "info,connections=warn");
 /// assert!("info,conections=warn".parse::<LogFilter>().is_err());
-/// # Ok::<(), cellcaster_server::logging::UnknownLogFilter>(())
+/// # Ok::<(), String>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogFilter {
     level: LevelFilter,
     topics: Vec<(&'static str, LevelFilter)>,
 }
-
-/// A part of a text that is no part of a filter.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownLogFilter(pub String);
 
 /// Lets a few events a second through, and sums the others, so that a flood of connections is a few lines a second.
 ///
@@ -142,12 +138,13 @@ impl Default for LogFilter {
 }
 
 impl FromStr for LogFilter {
-    type Err = UnknownLogFilter;
+    /// The part that is no level.
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, UnknownLogFilter> {
+    fn from_str(text: &str) -> Result<Self, String> {
         let mut filter = Self::default();
         for part in text.split(',').map(str::trim) {
-            let unknown = || UnknownLogFilter(part.to_owned());
+            let unknown = || part.to_owned();
             match part.split_once('=') {
                 None => filter.level = level(part).ok_or_else(unknown)?,
                 Some((topic, name)) => {
@@ -173,14 +170,6 @@ impl Display for LogFilter {
         self.topics.iter().try_for_each(|(topic, level)| write!(f, ",{topic}={level}"))
     }
 }
-
-impl Display for UnknownLogFilter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} is no level of the log; a filter is {}", self.0, LogFilter::GRAMMAR)
-    }
-}
-
-impl std::error::Error for UnknownLogFilter {}
 
 impl Throttle {
     /// Logs an event of a client at `address`, at once or with the second.

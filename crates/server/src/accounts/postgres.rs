@@ -271,7 +271,7 @@ impl Server {
             Ok(Err(error)) => reason(&error),
             Err(_) => "no answer in time".to_owned(),
         };
-        let failure = StoreFailure::away(format!("{} can't be used: {why}", self.address.shown));
+        let failure = StoreFailure::Away(format!("{} can't be used: {why}", self.address.shown));
         self.refused = Some((Instant::now(), failure.clone()));
         Err(failure)
     }
@@ -298,7 +298,7 @@ impl Call<'_> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(Fault::Lost | Fault::Unknown) => {
                 self.fault.set(Some(Fault::Unknown));
-                StoreFailure::away(format!("{failure}; the last change may be kept or not"))
+                StoreFailure::Away(format!("{failure}; the last change may be kept or not"))
             }
             _ => failure,
         })
@@ -325,8 +325,8 @@ impl Call<'_> {
         self.fault.set(Some(fault));
         let sentence = format!("{} failed: {why}", self.shown);
         Err(match fault {
-            Fault::Lost | Fault::Unknown => StoreFailure::away(sentence),
-            Fault::Full => StoreFailure::full(sentence),
+            Fault::Lost | Fault::Unknown => StoreFailure::Away(sentence),
+            Fault::Full => StoreFailure::Full(sentence),
             Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
         })
     }

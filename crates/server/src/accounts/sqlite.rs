@@ -359,7 +359,7 @@ impl From<rusqlite::Error> for StoreFailure {
     fn from(error: rusqlite::Error) -> Self {
         let sentence = format!("the host's store failed: {error}");
         match error.sqlite_error_code() {
-            Some(ErrorCode::DiskFull) => Self::full(sentence),
+            Some(ErrorCode::DiskFull) => Self::Full(sentence),
             _ => Self::new(sentence),
         }
     }

@@ -358,7 +358,9 @@ impl From<AdminFailure> for Error {
             AdminFailure::NoServer(_) | AdminFailure::NotAllowed(_) => {
                 Self::mistake(failure.to_string())
             }
-            AdminFailure::Failed(..) => Self::machine(failure.to_string()),
+            AdminFailure::TimedOut(_) | AdminFailure::Failed(..) => {
+                Self::machine(failure.to_string())
+            }
         }
     }
 }

@@ -38,7 +38,7 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
         )
     })?;
-    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
+    let key = HostKey::open(&folder).map_err(Error::mistake)?;
     let database = Database::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
     let cluster = cluster(&options, &database)?;

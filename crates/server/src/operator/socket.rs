@@ -1,6 +1,5 @@
 //! The socket `admin.sock` of a data folder: the server's end, and the operator's.
 
-use std::fmt;
 use std::fs::{self, Permissions};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
@@ -8,6 +7,7 @@ use std::os::unix::net::UnixStream as BlockingStream;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use thiserror::Error;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
 
@@ -24,13 +24,21 @@ pub struct AdminSocket {
 }
 
 /// Why a server has not answered.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum AdminFailure {
     /// No server runs with this data folder.
+    #[error("no server runs with the data in {}", printable_path(.0))]
     NoServer(PathBuf),
     /// The socket belongs to another user.
+    #[error("{} belongs to another user: ask as that user, or as root", printable_path(.0))]
     NotAllowed(PathBuf),
+    /// The server was too slow.
+    #[error(
+        "the server at {} has not answered for {} s", printable_path(.0), CLIENT_TIMEOUT.as_secs()
+    )]
+    TimedOut(PathBuf),
     /// The connection failed.
+    #[error("the server at {} does not answer: {}", printable_path(.0), .1)]
     Failed(PathBuf, io::Error),
 }
 
@@ -120,6 +128,7 @@ pub fn ask(folder: &Path, request: &AdminRequest) -> Result<AdminReply, AdminFai
             AdminFailure::NoServer(folder.to_owned())
         }
         ErrorKind::PermissionDenied => AdminFailure::NotAllowed(socket),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => AdminFailure::TimedOut(socket),
         _ => AdminFailure::Failed(socket, error),
     })
 }
@@ -135,38 +144,6 @@ fn exchange(socket: &Path, request: &AdminRequest) -> io::Result<AdminReply> {
     BufReader::new(stream.take(MOST_REPLY)).read_until(b'\n', &mut reply)?;
     Ok(serde_json::from_slice(&reply)?)
 }
-
-impl fmt::Display for AdminFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoServer(folder) => {
-                write!(f, "no server runs with the data in {}", printable_path(folder))
-            }
-            Self::NotAllowed(socket) => {
-                write!(
-                    f,
-                    "{} belongs to another user: ask as that user, or as root",
-                    printable_path(socket)
-                )
-            }
-            Self::Failed(socket, error)
-                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) =>
-            {
-                let seconds = CLIENT_TIMEOUT.as_secs();
-                write!(
-                    f,
-                    "the server at {} has not answered for {seconds} s",
-                    printable_path(socket)
-                )
-            }
-            Self::Failed(socket, error) => {
-                write!(f, "the server at {} does not answer: {error}", printable_path(socket))
-            }
-        }
-    }
-}
-
-impl std::error::Error for AdminFailure {}
 
 fn socket_of(folder: &Path) -> PathBuf {
     folder.join("admin.sock")

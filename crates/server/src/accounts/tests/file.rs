@@ -190,7 +190,7 @@ fn a_full_disk_is_told_from_other_failures() {
     let script = "#".repeat(AccountSettings::MOST_BYTES);
     let settings = AccountSettings { configuration: script, ..AccountSettings::default() };
     let failure = store.set_settings(account.id, &settings).unwrap_err();
-    assert!(failure.is_full() && !failure.is_away(), "{failure}");
+    assert!(matches!(failure, StoreFailure::Full(_)), "{failure}");
     set(&store, 1_000_000);
     store.set_settings(account.id, &settings).unwrap();
 }

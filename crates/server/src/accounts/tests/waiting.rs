@@ -34,7 +34,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 
     let mut after = waiting(&folder);
     assert_eq!(after.len(), 2);
-    let mut away = HostStore::failing(StoreFailure::away("gone"));
+    let mut away = HostStore::failing(StoreFailure::Away("gone".into()));
     assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
     assert_eq!(after.len(), 2);
     for text in ["Bob", "Ada"] {
@@ -120,7 +120,7 @@ fn what_cannot_be_written_waits_in_memory_until_it_can() {
     assert!(results.save().is_err());
     assert_eq!(results.len(), 1);
     // A store that is full takes nothing, however long it lasts.
-    let mut full = HostStore::failing(StoreFailure::full("no room"));
+    let mut full = HostStore::failing(StoreFailure::Full("no room".into()));
     assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
     fs::create_dir_all(&folder.0).unwrap();
     results.save().unwrap();

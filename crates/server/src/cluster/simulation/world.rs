@@ -119,7 +119,7 @@ impl World {
                 world.pass(host).await;
                 if world.link(host).has_no_database {
                     sleep(PATIENCE).await;
-                    call(&mut HostStore::failing(StoreFailure::away("no database")));
+                    call(&mut HostStore::failing(StoreFailure::Away("no database".into())));
                     continue;
                 }
                 world.with(|inner| call(inner.store()));

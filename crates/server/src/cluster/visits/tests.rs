@@ -79,7 +79,7 @@ impl Database {
     fn run(&mut self, call: Call) {
         self.pass();
         if self.is_away {
-            let failure = StoreFailure::away("the database does not answer");
+            let failure = StoreFailure::Away("the database does not answer".into());
             call(&mut HostStore::failing(failure));
         } else {
             call(&mut self.store);

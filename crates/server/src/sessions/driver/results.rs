@@ -123,12 +123,14 @@ impl Recorder {
 
 /// What a player is told whose result waits because of `failure`.
 fn kept(failure: &StoreFailure) -> &'static str {
-    if failure.is_away() {
-        "The host can't reach its database; your result is kept and will be recorded."
-    } else if failure.is_full() {
-        "The host's disk is full; your result waits until there is room."
-    } else {
-        "The host can't record your result now; it is kept and will be recorded."
+    match failure {
+        StoreFailure::Away(_) => {
+            "The host can't reach its database; your result is kept and will be recorded."
+        }
+        StoreFailure::Full(_) => "The host's disk is full; your result waits until there is room.",
+        StoreFailure::Refused(_) => {
+            "The host can't record your result now; it is kept and will be recorded."
+        }
     }
 }
 

@@ -67,7 +67,7 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
     for _ in 0..3 {
         let start = Instant::now();
         let failure = store.account(&key(1)).unwrap_err();
-        assert!(failure.is_away());
+        assert!(matches!(failure, StoreFailure::Away(_)));
         let failure = failure.to_string();
         assert!(failure.contains("can't be used") && failure.lines().count() == 1, "{failure}");
         assert!(store.create_account(&key(2), &name("Bob"), at(0)).is_err());
@@ -79,7 +79,7 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
     assert_eq!(store.account(&key(1)).unwrap(), Some(ada));
     store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
     let refused = store.record(AccountId(99), &run("cellar", 9, Rank::Ghost), at(0)).unwrap_err();
-    assert!(!refused.is_away(), "{refused}");
+    assert!(!matches!(refused, StoreFailure::Away(_)), "{refused}");
 }
 
 #[test]
@@ -92,7 +92,8 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
         let start = Instant::now();
         let failure = store.note_visit(AccountId(1), at(1)).unwrap_err();
         assert!(
-            failure.is_away() && failure.to_string().ends_with("no answer in time"),
+            matches!(failure, StoreFailure::Away(_))
+                && failure.to_string().ends_with("no answer in time"),
             "{failure}"
         );
         let changed = store.create_account(&key(1), &name("Ada"), at(0));
