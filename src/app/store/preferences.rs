@@ -2,13 +2,16 @@
 
 use std::num::NonZeroU32;
 
+use serde::{Deserialize, Serialize};
+
 use crate::app::setting::{At, Setting};
 use crate::color::palette::ColorDepth;
 use crate::tui::{Correction, GlyphSet};
 use crate::world::Difficulty;
 
 /// The player's choices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Preferences {
     /// Whether a dot marks the middle of the picture.

@@ -61,7 +61,7 @@ pub(crate) trait Statements {
 pub(crate) struct Row(pub(crate) Vec<Value>);
 
 /// The version of the [tables](SCHEMA). Versions below it were never released.
-pub(crate) const VERSION: i64 = 5;
+pub(crate) const VERSION: i64 = 6;
 
 /// The tables, as SQLite takes them. `postgres` translates the types.
 pub(crate) const SCHEMA: &str = include_str!("schema.sql");
