@@ -21,7 +21,6 @@
 
 mod account;
 mod ban;
-mod database;
 mod failure;
 mod lease;
 mod name;
@@ -30,6 +29,7 @@ mod presence;
 mod rate;
 mod results;
 mod sqlite;
+mod statements;
 mod store;
 #[cfg(any(test, fuzzing))]
 mod testing;

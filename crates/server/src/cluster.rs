@@ -104,7 +104,7 @@ impl Cluster {
     ) -> SharedRooms {
         let Self { bus, leases, visits, notice, seed } = self;
         // A host has one name at most.
-        _ = load.metrics().host.set(shown_name(&notice.name).to_owned());
+        _ = load.metrics.host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
             begun: Instant::now(),
             bus,

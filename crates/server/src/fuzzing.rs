@@ -69,7 +69,7 @@ impl Hall {
         let mut rng = SplitMix64::new(seed);
         let mode = Mode::ALL[rng.below(Mode::ALL.len())];
         let suited: Vec<&String> =
-            catalog.names().iter().filter(|name| catalog.suits(name, mode)).collect();
+            catalog.names.iter().filter(|name| catalog.suits(name, mode)).collect();
         let level = suited[rng.below(suited.len())];
         let difficulty = [Difficulty::Easy, Difficulty::Normal, Difficulty::Hard][rng.below(3)];
         Self::of(Header::new(level, mode, difficulty, rng.bits()))

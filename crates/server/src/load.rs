@@ -25,7 +25,7 @@ use crate::metrics::{Metrics, cpu_time};
 /// Measurements that all rooms and sessions add to.
 #[derive(Debug)]
 pub(crate) struct Load {
-    metrics: Arc<Metrics>,
+    pub(crate) metrics: Arc<Metrics>,
     /// In microseconds: the sum of the delays of all steps since the last sample.
     lateness: AtomicU64,
     /// The number of those steps.
@@ -79,16 +79,11 @@ impl Load {
         }
     }
 
-    /// The figures of the server.
-    pub(crate) fn metrics(&self) -> &Metrics {
-        &self.metrics
-    }
-
     /// Notes by how much a step of a room was late.
     pub(crate) fn note_lateness(&self, lateness: Duration) {
         self.lateness.fetch_add(micros(lateness), Ordering::Relaxed);
         self.steps.fetch_add(1, Ordering::Relaxed);
-        self.metrics.step_lateness.observe(lateness.as_secs_f64());
+        self.metrics.step_lateness.observe(lateness);
     }
 
     /// What was measured in the last `time`, since the last call.

@@ -27,7 +27,7 @@ use crate::lock::locked;
 use crate::service::serve_each;
 
 /// The figures of a server.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Metrics {
     /// The name of the host in a cluster, which is then a label of every sample.
     pub host: OnceLock<String>,
@@ -56,11 +56,11 @@ pub struct Metrics {
     /// Steps of rooms that went on while the bus of the cluster did not answer.
     pub steps_alone: Counter,
     /// How late the steps of rooms are, in seconds.
-    pub step_lateness: Histogram,
+    pub step_lateness: Seconds,
     /// The time in which a frame is drawn and encoded, in seconds.
-    pub frame_time: Histogram,
+    pub frame_time: Seconds,
     /// The time from the arrival of a key to the departure of the frame that shows its effect, in seconds.
-    pub key_time: Histogram,
+    pub key_time: Seconds,
     results: Family<Label, Counter>,
     /// Results that wait for a store that is away.
     pub results_waiting: Gauge,
@@ -68,6 +68,10 @@ pub struct Metrics {
     pub store_errors: Counter,
     room_figures: Mutex<BTreeMap<u32, Weak<RoomFigures>>>,
 }
+
+/// A histogram of times.
+#[derive(Clone, Debug)]
+pub struct Seconds(pub(crate) Histogram);
 
 /// The figures of a room that a host of a cluster runs.
 #[derive(Debug, Default)]
@@ -148,6 +152,11 @@ impl Metrics {
     }
 
     fn register(&self, page: &mut Registry) {
+        // Figures that are still zero are samples, too.
+        Refusal::ALL.into_iter().for_each(|reason| drop(self.refused(reason)));
+        for is_good in [false, true] {
+            drop((self.results(is_good), self.checks(is_good)));
+        }
         let alone = "Steps of rooms that went on while the bus of the cluster did not answer";
         for (name, help, counter) in [
             ("connections_accepted", "Connections that were accepted", &self.accepted),
@@ -194,7 +203,7 @@ impl Metrics {
                 &self.key_time,
             ),
         ] {
-            page.register(name, help, histogram.clone());
+            page.register(name, help, histogram.0.clone());
         }
         if let Ok(runtime) = Handle::try_current() {
             let help = "Tasks: a few of the server, and some for each connection and room";
@@ -205,41 +214,16 @@ impl Metrics {
     }
 }
 
-impl Default for Metrics {
+impl Default for Seconds {
     fn default() -> Self {
-        let [step_lateness, frame_time, key_time] = [(); 3].map(|()| Histogram::new(BOUNDS));
-        let metrics = Self {
-            host: OnceLock::new(),
-            connections: Gauge::default(),
-            sessions: Gauge::default(),
-            accepted: Counter::default(),
-            refused: Family::default(),
-            held: Gauge::default(),
-            frames: Counter::default(),
-            frame_bytes: Counter::default(),
-            rooms: Gauge::default(),
-            members: Gauge::default(),
-            watchers: Gauge::default(),
-            entries: Counter::default(),
-            checks: Family::default(),
-            steps_alone: Counter::default(),
-            step_lateness,
-            frame_time,
-            key_time,
-            results: Family::default(),
-            results_waiting: Gauge::default(),
-            store_errors: Counter::default(),
-            room_figures: Mutex::default(),
-        };
-        // A counter is on the page before its first event, so that its growth can be seen.
-        for reason in Refusal::ALL {
-            metrics.refused(reason);
-        }
-        for is_good in [false, true] {
-            metrics.results(is_good);
-            metrics.checks(is_good);
-        }
-        metrics
+        Self(Histogram::new(BOUNDS))
+    }
+}
+
+impl Seconds {
+    /// Adds a time.
+    pub fn observe(&self, time: Duration) {
+        self.0.observe(time.as_secs_f64());
     }
 }
 

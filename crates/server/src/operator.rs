@@ -188,7 +188,7 @@ fn row(present: Present, host: Option<String>) -> VisitorRow {
         address: present.address.to_string(),
         key: present.key.map(|key| key.to_string()),
         room: present.room,
-        seconds: present.time.as_secs(),
+        seconds: present.since.elapsed().as_secs(),
         host,
     }
 }

@@ -10,13 +10,13 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::net::IpAddr;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
 
 use tokio::sync::Notify;
 use tokio::time::Instant;
 
 use crate::accounts::{AccountKey, BanTarget, Identity, Name};
+use crate::lock::locked;
 
 /// The visitors of a server. Clones share them.
 #[derive(Clone, Debug, Default)]
@@ -60,8 +60,8 @@ pub struct Present {
     pub key: Option<AccountKey>,
     /// The room that they are in, in a few words; `None` for the lobby.
     pub room: Option<String>,
-    /// For how long they have been here.
-    pub time: Duration,
+    /// When they came.
+    pub since: Instant,
 }
 
 #[derive(Debug)]
@@ -69,17 +69,7 @@ struct Table {
     run: u16,
     next: u64,
     /// In the order in which they came.
-    entries: BTreeMap<u64, Entry>,
-}
-
-#[derive(Debug)]
-struct Entry {
-    name: Option<Name>,
-    address: IpAddr,
-    key: Option<AccountKey>,
-    room: Option<String>,
-    since: Instant,
-    inbox: Arc<Inbox>,
+    entries: BTreeMap<u64, (Present, Arc<Inbox>)>,
 }
 
 #[derive(Debug, Default)]
@@ -128,87 +118,75 @@ impl Visitors {
     /// Adds a visitor.
     pub fn arrive(&self, address: IpAddr, key: Option<AccountKey>) -> Presence {
         let inbox = Arc::<Inbox>::default();
-        let (name, room, since) = (None, None, Instant::now());
-        let address = address.to_canonical();
-        let entry = Entry { name, address, key, room, since, inbox: inbox.clone() };
-        let number = self.with(|table| {
+        let number = locked(&self.0, |table| {
             let number = table.next;
             table.next += 1;
-            table.entries.insert(number, entry);
+            let (session, since) = (SessionId { run: table.run, number }, Instant::now());
+            let address = address.to_canonical();
+            let present = Present { session, name: None, address, key, room: None, since };
+            table.entries.insert(number, (present, inbox.clone()));
             number
         });
         Presence { number, visitors: self.clone(), inbox }
     }
 
-    /// All visitors, in the order in which they came.
+    /// Everybody, in the order in which they came.
     pub fn list(&self) -> Vec<Present> {
-        self.with(|table| {
-            let present = |(&number, entry): (&u64, &Entry)| {
-                entry.present(SessionId { run: table.run, number })
-            };
-            table.entries.iter().map(present).collect()
-        })
+        locked(&self.0, |table| table.entries.values().map(|it| it.0.clone()).collect())
     }
 
-    /// The number of visitors.
+    /// How many there are.
     pub fn count(&self) -> usize {
-        self.with(|table| table.entries.len())
+        locked(&self.0, |table| table.entries.len())
     }
 
-    /// Says a line to all visitors, and returns how many there are.
+    /// Says a line to everybody, and returns to how many.
     pub fn say(&self, line: &str) -> usize {
-        self.say_if(line, |_| true)
+        self.each(|_| true, |inbox| inbox.say(line))
     }
 
-    /// Says a line to those with a key.
+    /// Says a line to the visitors with a key.
     pub(crate) fn say_to(&self, key: &AccountKey, line: &str) {
-        self.say_if(line, |entry| entry.key.as_ref() == Some(key));
+        self.each(|it| it.key.as_ref() == Some(key), |inbox| inbox.say(line));
     }
 
-    /// Says a line to all visitors in a room.
+    /// Says a line to the visitors in a room.
     pub(crate) fn say_in(&self, room: &str, line: &str) {
-        self.say_if(line, |entry| entry.room.as_deref() == Some(room));
+        self.each(|it| it.room.as_deref() == Some(room), |inbox| inbox.say(line));
     }
 
-    fn say_if(&self, line: &str, is_meant: impl Fn(&Entry) -> bool) -> usize {
-        self.with(|table| {
-            let meant = table.entries.values().filter(|entry| is_meant(entry));
-            meant.map(|entry| entry.inbox.say(line)).count()
-        })
-    }
-
-    /// Ends the sessions of all visitors that a ban of `target` covers, with a sentence for them. Returns
-    /// how many there are.
+    /// Ends the sessions to which `target` applies with a sentence, and returns how many.
     pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
-        self.with(|table| {
-            let removed =
-                table.entries.values().filter(|entry| target.applies_to(&entry.identity()));
-            removed.map(|entry| entry.inbox.remove(sentence)).count()
-        })
+        let is_meant = |it: &Present| {
+            let (address, key, name) = (Some(it.address), it.key.as_ref(), it.name.as_ref());
+            target.applies_to(&Identity { address, key, name })
+        };
+        self.each(is_meant, |inbox| inbox.remove(sentence))
     }
 
-    /// Ends one session, with a sentence for the visitor. Returns whether it is one of this host.
+    /// Ends a session with a sentence, and returns whether there is one of that number.
     pub fn remove_session(&self, session: SessionId, sentence: &str) -> bool {
-        self.with(|table| {
-            let entry = table.entries.get(&session.number).filter(|_| table.run == session.run);
-            entry.map(|entry| entry.inbox.remove(sentence)).is_some()
-        })
+        self.each(|it| it.session == session, |inbox| inbox.remove(sentence)) > 0
     }
 
-    fn with<T>(&self, act: impl FnOnce(&mut Table) -> T) -> T {
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    /// Acts on the inboxes of some, and returns of how many.
+    fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&Inbox)) -> usize {
+        locked(&self.0, |table| {
+            let meant = table.entries.values().filter(|(present, _)| is_meant(present));
+            meant.map(|(_, inbox)| act(inbox)).count()
+        })
     }
 }
 
 impl Presence {
     /// Records the visitor's name: of an account, or chosen by a guest.
     pub fn set_name(&self, name: &str) {
-        self.change(|entry| entry.name = Some(Name::kept(name)));
+        self.change(|it| it.name = Some(Name::kept(name)));
     }
 
     /// Records the room that the visitor is in, in a few words; `None` for the lobby.
     pub fn set_room(&self, room: Option<String>) {
-        self.change(|entry| entry.room = room);
+        self.change(|it| it.room = room);
     }
 
     /// Waits for the next notice. It may be dropped before it is ready.
@@ -221,37 +199,22 @@ impl Presence {
         }
     }
 
-    fn change(&self, act: impl FnOnce(&mut Entry)) {
-        self.visitors.with(|table| table.entries.get_mut(&self.number).map(act));
+    fn change(&self, act: impl FnOnce(&mut Present)) {
+        locked(&self.visitors.0, |table| {
+            table.entries.get_mut(&self.number).map(|(present, _)| act(present))
+        });
     }
 }
 
 impl Drop for Presence {
     fn drop(&mut self) {
-        self.visitors.with(|table| table.entries.remove(&self.number));
-    }
-}
-
-impl Entry {
-    fn present(&self, session: SessionId) -> Present {
-        Present {
-            session,
-            name: self.name.clone(),
-            address: self.address,
-            key: self.key,
-            room: self.room.clone(),
-            time: self.since.elapsed(),
-        }
-    }
-
-    fn identity(&self) -> Identity<'_> {
-        Identity { address: Some(self.address), key: self.key.as_ref(), name: self.name.as_ref() }
+        locked(&self.visitors.0, |table| table.entries.remove(&self.number));
     }
 }
 
 impl Inbox {
     fn say(&self, line: &str) {
-        self.with(|notices| {
+        locked(&self.notices, |notices| {
             notices.lines.push_back(line.to_owned());
             let surplus = notices.lines.len().saturating_sub(MAX_LINES);
             notices.lines.drain(..surplus);
@@ -260,20 +223,16 @@ impl Inbox {
     }
 
     fn remove(&self, sentence: &str) {
-        self.with(|notices| notices.removed = Some(sentence.to_owned()));
+        locked(&self.notices, |notices| notices.removed = Some(sentence.to_owned()));
         self.changed.notify_one();
     }
 
     /// A removal comes before lines.
     fn take(&self) -> Option<Notice> {
-        self.with(|notices| {
+        locked(&self.notices, |notices| {
             let removed = notices.removed.take().map(Notice::Removed);
             removed.or_else(|| notices.lines.pop_front().map(Notice::Said))
         })
-    }
-
-    fn with<T>(&self, act: impl FnOnce(&mut Notices) -> T) -> T {
-        act(&mut self.notices.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 

@@ -42,7 +42,7 @@ use tokio_postgres::{Client, Config, Error, NoTls, Statement};
 
 use self::tls::Tls;
 use super::StoreFailure;
-use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
+use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The most time that a call takes.
 const PATIENCE: Duration = Duration::from_secs(5);

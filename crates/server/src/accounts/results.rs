@@ -1,6 +1,5 @@
 //! Results: the boards that they belong to, and the runs that count. The host plays the scripts of runs again.
 
-use std::cmp::Ordering;
 use std::sync::Arc;
 
 use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
@@ -145,25 +144,12 @@ impl LevelBoard {
     pub fn difficulty(&self) -> Difficulty {
         self.difficulty
     }
-}
 
-impl Ord for LevelBoard {
-    /// Built-in levels in their order come before maps by name, and easy before hard.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let rank = |board: &Self| {
-            let level = place(&board.level).unwrap_or(usize::MAX);
-            let difficulty = Difficulty::ALL.iter().position(|it| *it == board.difficulty);
-            (level, difficulty)
-        };
-        let [(level, difficulty), (other_level, other_difficulty)] = [rank(self), rank(other)];
-        let by_level = level.cmp(&other_level).then_with(|| self.level.cmp(&other.level));
-        by_level.then(difficulty.cmp(&other_difficulty))
-    }
-}
-
-impl PartialOrd for LevelBoard {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+    /// The key of a list of boards: built-in levels in their order come before maps by name, and easy before hard.
+    pub(crate) fn order(&self) -> (usize, Arc<str>, Option<usize>) {
+        let level = place(&self.level).unwrap_or(usize::MAX);
+        let difficulty = Difficulty::ALL.iter().position(|it| *it == self.difficulty);
+        (level, Arc::clone(&self.level), difficulty)
     }
 }
 

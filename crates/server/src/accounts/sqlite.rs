@@ -29,7 +29,7 @@ use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, params_from_iter};
 
 use super::StoreFailure;
-use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
+use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The mark of the file in its header, "Cell".
 const APPLICATION: i32 = 0x4365_6c6c;

@@ -6,14 +6,15 @@ use std::path::Path;
 use cellcaster::app::store::{Best, Improved};
 use cellcaster::game::Rank;
 use cellcaster::world::Difficulty;
-use rusqlite::params;
+use rusqlite::{Connection, params};
 use serde::Serialize;
 
 use super::ban::applying;
-use super::database::{Database, Row, Statements};
+
 use super::postgres::Server;
 use super::rate::milliseconds;
 use super::results::with_run;
+use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
     LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime,
@@ -23,6 +24,64 @@ use super::{
 /// What a host keeps.
 pub struct HostStore {
     pub(crate) database: Database,
+}
+
+/// A SQLite file, or a PostgreSQL server that several hosts share.
+pub(crate) enum Database {
+    File(Connection),
+    Server(Box<Server>),
+    /// Answers every call with this failure.
+    #[cfg(test)]
+    Failing(StoreFailure),
+}
+
+impl Database {
+    /// Runs statements that may as well run twice: they read, or set what they would set again.
+    ///
+    /// # Errors
+    /// Those of `act`.
+    pub(crate) fn once<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Isolation::None, act)
+    }
+
+    /// Runs a transaction, which is undone if `act` fails. Transactions have the effect of one after the other.
+    ///
+    /// # Errors
+    /// Those of `act`, and if the transaction can't be kept.
+    pub(crate) fn change<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Isolation::Serializable, act)
+    }
+
+    /// Runs a transaction each of whose statements sees what others have kept until then, and waits for transactions
+    /// that change the same row.
+    ///
+    /// # Errors
+    /// Those of `act`, and if the transaction can't be kept.
+    pub(crate) fn change_rows<T>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
+    ) -> Result<T, StoreFailure> {
+        self.run(Isolation::Committed, act)
+    }
+
+    fn run<T, E: From<StoreFailure>>(
+        &mut self,
+        isolation: Isolation,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        match self {
+            Self::File(connection) => sqlite::run(connection, isolation, act),
+            Self::Server(server) => server.run(isolation, act),
+            #[cfg(test)]
+            Self::Failing(failure) => Err(failure.clone().into()),
+        }
+    }
 }
 
 /// Opening a store.
@@ -111,25 +170,12 @@ impl HostStore {
         self.database.once(|it| it.row(&sql, values)?.as_ref().map(account).transpose())
     }
 
-    /// Creates the account of a key, whatever others were created.
+    /// Creates the account of a key, with a name. A new account counts for its `origin`, if there is one, unless it is
+    /// refused for another reason.
     ///
     /// # Errors
-    /// [`Refusal`].
+    /// A [`Refusal`]: for one, the name is taken or banned, or the network makes too many accounts.
     pub fn create_account(
-        &mut self,
-        key: &AccountKey,
-        name: &Name,
-        now: UnixTime,
-    ) -> Result<Account, Refusal> {
-        self.create_account_from(None, key, name, now)
-    }
-
-    /// Creates the account of a key, if its network has not made too many. An account that is refused for another
-    /// reason does not count.
-    ///
-    /// # Errors
-    /// [`Refusal`].
-    pub fn create_account_from(
         &mut self,
         origin: Option<&Origin>,
         key: &AccountKey,
@@ -320,7 +366,7 @@ impl HostStore {
         let bests = rows.iter().map(|row| Ok((board(row)?, best(row, 2)?)));
         let bests = bests.collect::<Result<Vec<_>, StoreFailure>>()?.into_iter();
         let mut bests: Vec<_> = bests.filter_map(|(board, best)| Some((board?, best))).collect();
-        bests.sort_by(|(one, _), (other, _)| one.cmp(other));
+        bests.sort_by_key(|(board, _)| board.order());
         Ok(bests)
     }
 
@@ -333,7 +379,7 @@ impl HostStore {
         let rows = self.database.once(|it| it.rows(sql, &[]))?;
         let known = rows.iter().map(board).collect::<Result<Vec<_>, _>>()?;
         let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
-        boards.sort();
+        boards.sort_by_key(LevelBoard::order);
         Ok(boards)
     }
 

@@ -11,10 +11,10 @@ use rusqlite::types::Value;
 use super::HostStore;
 #[cfg(test)]
 use super::StoreFailure;
-use super::database::Database;
 use super::sqlite::make_tables;
 #[cfg(fuzzing)]
 use super::sqlite::tables;
+use super::store::Database;
 
 impl HostStore {
     /// A store that ends with the program. Its clock stands still, and [passes](Self::pass) time when it is told to.

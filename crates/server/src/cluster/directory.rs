@@ -261,7 +261,7 @@ impl SharedRooms {
         let (state, record) = context.load_state(id).await?;
         let (requests, receiver) = mpsc::channel(MOST_REQUESTS);
         let closes_after = self.0.rooms.limits().closes_after;
-        let interface = RoomInterface::new(state.room(), record.stands, closes_after);
+        let interface = RoomInterface::new(&state.room, record.stands, closes_after);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
         let beginning = Beginning { id, record, interface, state, broadcasts, requests: receiver };
         tokio::spawn(Replica::new(Arc::clone(context), beginning).run());

@@ -70,7 +70,7 @@ impl SharedRooms {
         let context = self.context();
         HostInfo {
             visitors: context.visitors.count(),
-            rooms: Some(context.load.metrics().written_rooms()),
+            rooms: Some(context.load.metrics.written_rooms()),
             maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
             ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
         }

@@ -195,7 +195,7 @@ impl Replica {
         let Beginning { id, record, interface, state, broadcasts, requests } = beginning;
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
-        let figures = context.load.metrics().add_room(id.0);
+        let figures = context.load.metrics.add_room(id.0);
         Self {
             id,
             context,
@@ -254,7 +254,7 @@ impl Replica {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
-        self.figures.members.set(self.state.room().len() as i64);
+        self.figures.members.set(self.state.room.len() as i64);
         self.figures.watchers.set(self.interface.watchers() as i64);
         self.figures.writes.set(self.sequencer.is_some().into());
     }
@@ -368,14 +368,14 @@ impl Replica {
             Position::Later => return false,
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
-                    self.context.load.metrics().checks(true).inc();
+                    self.context.load.metrics.checks(true).inc();
                     self.figures.checks(true).inc();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
-                self.context.load.metrics().checks(false).inc();
+                self.context.load.metrics.checks(false).inc();
                 self.figures.checks(false).inc();
                 _ = self.restore().await;
                 return false;
@@ -401,7 +401,7 @@ impl Replica {
         let apply = || {
             interface.shown.replace(|| {
                 let changes = state.apply(number, message);
-                (state.room().view(), changes)
+                (state.room.view(), changes)
             })
         };
         let changes = match catch_unwind(AssertUnwindSafe(apply)) {
@@ -411,7 +411,7 @@ impl Replica {
                 return self.interface.close(FAULT);
             }
         };
-        self.context.load.metrics().entries.inc_by(changes.entries);
+        self.context.load.metrics.entries.inc_by(changes.entries);
         self.figures.entries.inc_by(changes.entries);
         self.figures.steps.inc_by(message.steps);
         if let Some(run) = changes.finished {
@@ -427,7 +427,7 @@ impl Replica {
             self.restore().await?;
         }
         loop {
-            let next = self.context.bus.read(self.id, self.state.number()).await?;
+            let next = self.context.bus.read(self.id, self.state.number).await?;
             let Some((number, bytes)) = next else { return Ok(()) };
             let Ok(message) = LogMessage::parse(&bytes) else {
                 tracing::error!(room = %self.id, number, "a message of a room cannot be read");
@@ -450,18 +450,18 @@ impl Replica {
         self.times.restored = Some(now);
         let loaded = self.context.load_state(self.id).await;
         let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
-        self.interface.shown.replace(|| (state.room().view(), ()));
+        self.interface.shown.replace(|| (state.room.view(), ()));
         self.state = state;
         self.is_diverged = false;
         // Its lease may have ended long ago.
-        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch());
+        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch);
         self.is_changed = true;
         Ok(())
     }
 
     /// Tells members when the room begins to wait, goes on alone, or goes on as usual.
     fn tell(&mut self, now: Instant) {
-        let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
+        let has_members = self.state.room.len() > 0 && !self.interface.inbox.seated().is_empty();
         let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
         let progress = match &self.alone {
             _ if waits => Progress::Waiting,
@@ -484,7 +484,7 @@ impl Replica {
         let has_work = self
             .sequencer
             .as_ref()
-            .is_some_and(|sequencer| self.state.room().len() > 0 || !sequencer.is_empty());
+            .is_some_and(|sequencer| self.state.room.len() > 0 || !sequencer.is_empty());
         let is_needed = has_work
             || !self.pending.is_empty()
             || !self.interface.inbox.seated().is_empty()

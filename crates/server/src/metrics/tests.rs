@@ -87,9 +87,9 @@ fn lines_of_a_cluster_have_the_host_and_those_of_a_room_its_number() {
 fn a_duration_is_in_the_buckets_from_its_bound_on() {
     let metrics = Metrics::default();
     for microseconds in [0, 100, 16_667, 2_500_001] {
-        metrics.key_time.observe(Duration::from_micros(microseconds).as_secs_f64());
+        metrics.key_time.observe(Duration::from_micros(microseconds));
     }
-    metrics.key_time.observe(Duration::from_nanos(100_001).as_secs_f64());
+    metrics.key_time.observe(Duration::from_nanos(100_001));
     let samples = samples(&metrics.text());
     let sample = |end: &str| samples[&format!("cellcaster_key_seconds_{end}")];
     for (end, count) in [

@@ -299,7 +299,7 @@ impl Rooms {
             let rooms = open.rooms.values().map(summary);
             let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
             let summaries: Arc<[RoomSummary]> = rooms.collect();
-            let metrics = self.0.load.metrics();
+            let metrics = &self.0.load.metrics;
             metrics.rooms.set(summaries.len() as i64);
             metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());
             metrics.watchers.set(summaries.iter().map(|room| room.watchers as i64).sum());

@@ -292,7 +292,7 @@ mod tests {
 
     fn account(store: &mut HostStore, number: u8, name: &str) -> Account {
         let key = AccountKey::new([number; 32]);
-        store.create_account(&key, &Name::new(name).unwrap(), UnixTime::new(7)).unwrap()
+        store.create_account(None, &key, &Name::new(name).unwrap(), UnixTime::new(7)).unwrap()
     }
 
     #[test]

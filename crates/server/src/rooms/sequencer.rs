@@ -153,7 +153,7 @@ impl Sequencer {
         });
         #[cfg(test)]
         self.load.spend(Work::Step);
-        self.load.metrics().entries.inc_by(changes.entries);
+        self.load.metrics.entries.inc_by(changes.entries);
         if let Some(run) = changes.finished {
             interface.inbox.finish(run);
         }

@@ -94,7 +94,7 @@ fn one_session_of_several_with_one_name_is_removed() {
     assert_eq!(next(&mut sessions[0]), None);
     assert_eq!(next(&mut sessions[1]), Some(Notice::Removed("go".to_owned())));
     // The same number in another run of a host is another session.
-    let of_other_run = SessionId { run: later.with(|table| table.run) ^ 1, number: 1 };
+    let of_other_run = SessionId { run: locked(&later.0, |table| table.run) ^ 1, number: 1 };
     assert!(!later.remove_session(of_other_run, "go"));
     assert_eq!(next(&mut other), None);
     for text in ["", "7", "-", "3f9a-", "3f9a-+7", "+f9a-7", "3f9-7", "3f9a-99999999999999999999"] {

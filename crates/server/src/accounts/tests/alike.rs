@@ -56,13 +56,13 @@ fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
     let of_failure = |_: StoreFailure| "failure";
     match call {
         Call::Create(number, text) => {
-            format!("{:?}", store.create_account(&key(*number), &name(NAMES[*text]), now))
+            format!("{:?}", store.create_account(None, &key(*number), &name(NAMES[*text]), now))
         }
         Call::CreateFrom(network, number, text) => {
             let rate = AccountRate { per_hour: 1, at_once: 1 };
             let origin = Origin::new([192, 0, *network, 7].into(), rate);
             let (key, name) = (key(*number), name(NAMES[*text]));
-            format!("{:?}", store.create_account_from(Some(&origin), &key, &name, now))
+            format!("{:?}", store.create_account(Some(&origin), &key, &name, now))
         }
         Call::Rename(id, text) => {
             format!("{:?}", store.rename(AccountId(*id), &name(NAMES[*text]), now))

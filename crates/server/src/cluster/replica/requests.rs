@@ -92,7 +92,7 @@ impl Replica {
     /// Notes which requests the log has granted, and fails those that are too old.
     fn settle_requests(&mut self, now: Instant) {
         let Self { pending, state, tokens, interface, .. } = self;
-        let room = state.room();
+        let room = &state.room;
         for granted in pending.extract_if(.., |pending| pending.granted(room).is_some()) {
             let Some(member) = granted.granted(room) else { continue };
             tokens.insert(member, granted.token);
@@ -142,7 +142,7 @@ impl Replica {
         let is_pending = |member: &MemberId| {
             self.pending.iter().any(|it| it.wish == MemberWish::Return(*member))
         };
-        let room = self.state.room();
+        let room = &self.state.room;
         let mut away = self.interface.inbox.seated();
         away.retain(|member| room.is_away(*member) && self.is_own(*member) && !is_pending(member));
         for member in away {
@@ -155,7 +155,7 @@ impl Replica {
     pub(crate) fn dismiss_lost(&mut self) {
         for member in self.interface.inbox.seated() {
             // The log has not let in numbers from the next one on yet.
-            if self.state.room().has_lost(member) || !self.is_own(member) {
+            if self.state.room.has_lost(member) || !self.is_own(member) {
                 self.interface.inbox.dismiss(member);
             }
         }
@@ -165,7 +165,7 @@ impl Replica {
 
     /// Whether nobody has returned to a member elsewhere, as far as the log is known.
     fn is_own(&self, member: MemberId) -> bool {
-        let token = self.state.room().kept_place(member).map_or(0, |kept| kept.token);
+        let token = self.state.room.kept_place(member).map_or(0, |kept| kept.token);
         token == self.tokens.get(&member).map_or(0, |token| token.0)
     }
 

@@ -49,7 +49,7 @@ impl Replica {
         match &self.sequencer {
             Some(sequencer) if self.leasing.renewing.is_none() => {
                 if self.is_next_second(now) {
-                    self.leasing.renewing = Some(leases.renew(sequencer.lease()));
+                    self.leasing.renewing = Some(leases.renew(&sequencer.lease));
                     self.times.leased = Some(now);
                 }
             }
@@ -61,7 +61,7 @@ impl Replica {
                 // A host that cannot write the log would keep the room from hosts that can.
                 if is_time && self.reaches_bus {
                     self.leasing.acquiring =
-                        Some(leases.acquire(&self.id.place(), self.state.epoch()));
+                        Some(leases.acquire(&self.id.place(), self.state.epoch));
                     self.times.leased = Some(now);
                 }
             }
@@ -78,7 +78,7 @@ impl Replica {
     /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
     async fn take_over(&mut self, lease: Lease) {
         let is_read = self.read().await.is_ok();
-        if self.state.epoch() >= lease.epoch {
+        if self.state.epoch >= lease.epoch {
             // The answer has come so late that others have had the room since.
             return;
         }
@@ -115,7 +115,7 @@ impl Replica {
             self.is_append_unknown = false;
         }
         let Some(sequencer) = &mut self.sequencer else { return };
-        if self.state.room().len() == 0 && sequencer.is_empty() {
+        if self.state.room.len() == 0 && sequencer.is_empty() {
             (self.times.stepped, self.times.moved) = (now, now);
             return;
         }
@@ -155,11 +155,11 @@ impl Replica {
     async fn keep_checkpoint(&mut self) -> Result<(), BusFault> {
         let bus = &self.context.bus;
         bus.put(Key::Checkpoint(self.id), self.state.checkpoint()).await?;
-        bus.drop_before(self.id, self.state.number()).await
+        bus.drop_before(self.id, self.state.number).await
     }
 
     async fn keep_record(&mut self, is_running: bool) -> Result<(), BusFault> {
-        let record = self.record.clone().next(self.state.room(), is_running);
+        let record = self.record.clone().next(&self.state.room, is_running);
         self.context.bus.put(Key::Room(self.id), to_bytes(&record)).await?;
         self.record = record;
         Ok(())
@@ -173,7 +173,7 @@ impl Replica {
         }
         let is_broken = self.interface.inbox.is_closed();
         if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
-            let is_empty = self.state.room().len() == 0;
+            let is_empty = self.state.room.len() == 0;
             let (context, mut is_gone) = (Arc::clone(&self.context), false);
             if is_broken || is_empty && !self.record.stands {
                 // A standing room is made again under its number, and others may go on with a room that is broken or
@@ -190,7 +190,7 @@ impl Replica {
                     _ = self.keep_record(!is_empty).await;
                 }
             }
-            let lease = sequencer.lease();
+            let lease = &sequencer.lease;
             let leases = &context.leases;
             _ = if is_gone { leases.forget(lease) } else { leases.release(lease) }.await;
             self.broadcast(&PeerMessage::Released).await;

@@ -103,7 +103,7 @@ pub(crate) fn choose_name(
     match (key, account) {
         (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
         (Some(key), None) => {
-            let account = store.create_account_from(Some(origin), &key, name, now);
+            let account = store.create_account(Some(origin), &key, name, now);
             account.map(Some).map_err(sentence)
         }
         (None, None) => match guest_may_use(store, name) {

@@ -214,7 +214,7 @@ impl Driver {
                     self.session.written(now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.observe(now.saturating_sub(key).as_secs_f64());
+                        self.shared.metrics.key_time.observe(now.saturating_sub(key));
                     }
                 }
                 DriverEvent::RoomsChanged => {
@@ -265,7 +265,7 @@ impl Driver {
             #[cfg(test)]
             self.shared.load.spend(Work::Frame);
             let time = self.shared.now().saturating_sub(now);
-            self.shared.metrics.frame_time.observe(time.as_secs_f64());
+            self.shared.metrics.frame_time.observe(time);
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {
             self.session.look_at(view);

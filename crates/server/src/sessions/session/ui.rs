@@ -280,7 +280,7 @@ impl Ui {
                 self.leave_room(Some(sentence));
             }
             SessionEvent::Board { level, difficulty, rows } => {
-                let asked = self.host.catalog.names().get(self.board.level);
+                let asked = self.host.catalog.names.get(self.board.level);
                 let is_asked = self.identity.preferences.difficulty == difficulty;
                 if asked == Some(&level) && is_asked {
                     self.board.rows = Some(rows);

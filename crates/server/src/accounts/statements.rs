@@ -1,4 +1,4 @@
-//! The database of a store: a SQLite file, or a PostgreSQL server that several hosts share.
+//! The statements of a store, in a SQLite file or on a PostgreSQL server that several hosts share.
 //!
 //! Rules:
 //!
@@ -13,20 +13,10 @@
 //! connection, and no way to read what is left of a damaged file. Two dialects would remain too. Also rejected: a trait
 //! with a method for each statement. Each database would repeat all of them, and they would drift apart.
 
+use rusqlite::ToSql;
 use rusqlite::types::{FromSql, FromSqlResult, ToSqlOutput, Value, ValueRef};
-use rusqlite::{Connection, ToSql};
 
-use super::postgres::Server;
-use super::{AccountId, Name, StoreFailure, UnixTime, sqlite};
-
-/// The database of a store.
-pub(crate) enum Database {
-    File(Connection),
-    Server(Box<Server>),
-    /// Answers every call with this failure.
-    #[cfg(test)]
-    Failing(StoreFailure),
-}
+use super::{AccountId, Name, StoreFailure, UnixTime};
 
 /// What statements see of transactions that run at the same time.
 #[derive(Clone, Copy, PartialEq)]
@@ -65,55 +55,6 @@ pub(crate) const VERSION: i64 = 6;
 
 /// The tables, as SQLite takes them. `postgres` translates the types.
 pub(crate) const SCHEMA: &str = include_str!("schema.sql");
-
-impl Database {
-    /// Runs statements that may as well run twice: they read, or set what they would set again.
-    ///
-    /// # Errors
-    /// Those of `act`.
-    pub(crate) fn once<T, E: From<StoreFailure>>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Isolation::None, act)
-    }
-
-    /// Runs a transaction, which is undone if `act` fails. Transactions have the effect of one after the other.
-    ///
-    /// # Errors
-    /// Those of `act`, and if the transaction can't be kept.
-    pub(crate) fn change<T, E: From<StoreFailure>>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        self.run(Isolation::Serializable, act)
-    }
-
-    /// Runs a transaction each of whose statements sees what others have kept until then, and waits for transactions
-    /// that change the same row.
-    ///
-    /// # Errors
-    /// Those of `act`, and if the transaction can't be kept.
-    pub(crate) fn change_rows<T>(
-        &mut self,
-        act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
-    ) -> Result<T, StoreFailure> {
-        self.run(Isolation::Committed, act)
-    }
-
-    fn run<T, E: From<StoreFailure>>(
-        &mut self,
-        isolation: Isolation,
-        act: impl FnMut(&dyn Statements) -> Result<T, E>,
-    ) -> Result<T, E> {
-        match self {
-            Self::File(connection) => sqlite::run(connection, isolation, act),
-            Self::Server(server) => server.run(isolation, act),
-            #[cfg(test)]
-            Self::Failing(failure) => Err(failure.clone().into()),
-        }
-    }
-}
 
 impl Row {
     /// The value of a column.
