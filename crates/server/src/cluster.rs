@@ -36,7 +36,6 @@ mod sequencer;
 mod simulation;
 mod visits;
 
-use std::fmt;
 use std::io;
 use std::sync::{Arc, Mutex};
 
@@ -48,7 +47,6 @@ pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::host::{HostContext, shown_name};
 use self::leases::{GATHERED, Leases, MOST_CALLS};
 use self::nats::NatsBus;
-pub(crate) use self::operators::OtherHosts;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
 use crate::accounts::worker::StoreWorker;
@@ -118,11 +116,5 @@ impl Cluster {
             ending: watch::Sender::new(false),
         };
         SharedRooms::new(Arc::new(context), rooms.clone(), standing)
-    }
-}
-
-impl fmt::Debug for Cluster {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cluster").finish_non_exhaustive()
     }
 }

@@ -3,13 +3,12 @@
 #[cfg(unix)]
 pub mod socket;
 
-use std::fmt;
 use std::sync::Arc;
 
 use tokio::sync::Notify;
 
-use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
-use crate::cluster::{OtherHosts, SharedRooms};
+use crate::admin::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
+use crate::cluster::SharedRooms;
 use crate::line::Line;
 use crate::logging;
 use crate::visitors::{Present, SessionId, Visitors};
@@ -56,7 +55,7 @@ impl Operator {
             && request.is_for_all_hosts()
             && !matches!(own, AdminReply::Fault(_))
         {
-            return merged(cluster, own, cluster.ask_others(request).await);
+            return cluster.merged(own, request).await;
         }
         own
     }
@@ -122,50 +121,6 @@ impl Operator {
     fn host(&self) -> Option<String> {
         self.cluster.as_ref().map(|cluster| cluster.own_info().host)
     }
-}
-
-impl fmt::Debug for Operator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Operator").field("visitors", &self.visitors).finish_non_exhaustive()
-    }
-}
-
-/// The answer of this host with those of the others.
-fn merged(cluster: &SharedRooms, own: AdminReply, others: OtherHosts) -> AdminReply {
-    let OtherHosts { replies, silent, seconds, mut remarks } = others;
-    let reply = match own {
-        AdminReply::Count(own) => {
-            let others = replies.into_values();
-            AdminReply::Count(others.fold(own, |sum, reply| match reply {
-                AdminReply::Count(count) => sum + count,
-                _ => sum,
-            }))
-        }
-        AdminReply::Visitors(mut rows) => {
-            for reply in replies.into_values() {
-                if let AdminReply::Visitors(others) = reply {
-                    rows.extend(others);
-                }
-            }
-            AdminReply::Visitors(rows)
-        }
-        AdminReply::Hosts(own) => {
-            let mut rows: Vec<HostInfo> = silent.into_values().collect();
-            let own = (cluster.own_name().to_owned(), AdminReply::Hosts(own));
-            for (name, reply) in replies.into_iter().chain([own]) {
-                let seconds = seconds.get(&name).copied().unwrap_or_default();
-                if let AdminReply::Hosts(hosts) = reply {
-                    rows.extend(hosts.into_iter().map(|row| HostInfo { seconds, ..row }));
-                }
-            }
-            rows.sort_by(|one, other| one.host.cmp(&other.host));
-            let differences = rows.iter().filter_map(|row| cluster.map_difference(row));
-            remarks.extend(differences);
-            AdminReply::Hosts(rows)
-        }
-        other => other,
-    };
-    AdminReply::AllHosts { reply: Box::new(reply), remarks }
 }
 
 /// The sentence for those who are sent away.

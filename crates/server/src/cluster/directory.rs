@@ -15,7 +15,6 @@
 //!   of date, and the room decides.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -407,12 +406,6 @@ impl SharedRooms {
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
         catalog.world(level)?;
         Some(Header::new(level, wish.mode, wish.difficulty, self.0.context.chance()))
-    }
-}
-
-impl fmt::Debug for SharedRooms {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SharedRooms").finish_non_exhaustive()
     }
 }
 

@@ -23,7 +23,7 @@ use std::num::NonZero;
 use std::sync::atomic::AtomicU32;
 use std::sync::{Arc, Mutex, Weak};
 use std::thread::available_parallelism;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use tokio::sync::{Notify, Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
@@ -34,7 +34,7 @@ use self::results::Recorder;
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
 use self::visit::Driver;
 use crate::accounts::worker::StoreWorker;
-use crate::accounts::{HostStore, UnixTime, WaitingResults};
+use crate::accounts::{HostStore, WaitingResults};
 use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
 use crate::config::{Config, LiveConfig};
@@ -281,10 +281,4 @@ async fn govern(shared: Weak<Shared>) {
         let sample = shared.load.sample(GOVERNED);
         shared.load.set_frame_time(governor.decide(sample, most));
     }
-}
-
-/// The time of the clock on the wall.
-fn unix_time() -> UnixTime {
-    let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    UnixTime::new(time.as_secs())
 }

@@ -3,10 +3,10 @@
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
-use super::{Shared, unix_time};
+use super::Shared;
 use crate::accounts::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
-    Origin, Refusal, StoreFailure,
+    Origin, Refusal, StoreFailure, UnixTime,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
@@ -50,7 +50,7 @@ impl Shared {
         let key = visitor.key;
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
-            let now = unix_time();
+            let now = UnixTime::now();
             let account = key.map(|key| store.account(&key)).transpose()?.flatten();
             let name = account.as_ref().map(|account| &account.name);
             let identity = Identity { address: Some(address), key: key.as_ref(), name };
@@ -98,7 +98,7 @@ pub(crate) fn choose_name(
     account: Option<AccountId>,
     name: &Name,
 ) -> Result<Option<Account>, String> {
-    let now = unix_time();
+    let now = UnixTime::now();
     let sentence = |refusal: Refusal| refusal.to_string();
     match (key, account) {
         (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
@@ -117,7 +117,7 @@ pub(crate) fn choose_name(
 fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
     let is_taken = store.account_named(name)?.is_some();
     let identity = Identity { name: Some(name), ..Identity::default() };
-    Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
+    Ok(!is_taken && store.ban_of(&identity, UnixTime::now())?.is_none())
 }
 
 fn banned(ban: &Ban) -> String {

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use tokio::time::sleep;
 
-use super::{Shared, unix_time};
+use super::Shared;
 use crate::accounts::{
     Account, AccountId, HostStore, Late, LevelBoard, LevelScore, StoreFailure, UnixTime,
     VerifiedRun, WaitingResult, WaitingResults, verify_with,
@@ -58,7 +58,7 @@ impl Recorder {
             }
         };
         self.metrics.results(true).inc();
-        let now = unix_time();
+        let now = UnixTime::now();
         match store.record(account.id, &run, now) {
             Ok(improved) => self.placed(store, account, &run, improved),
             Err(failure) => {
@@ -199,7 +199,7 @@ impl Recorder {
     fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
         let Some(waiting) = &self.waiting else { return Next::None };
         let (late, count) = locked(waiting, |waiting| {
-            let late = waiting.record(skipped, store, |name| self.world(name), unix_time());
+            let late = waiting.record(skipped, store, |name| self.world(name), UnixTime::now());
             if matches!(late, None | Some(Late::NotNow)) {
                 // The failure was logged when the first of them began to wait. It is tried again.
                 _ = waiting.save();
