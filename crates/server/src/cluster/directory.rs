@@ -24,7 +24,7 @@ use tokio::time::{Instant, interval, sleep, timeout};
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
 use super::message::{MemberWish, Record, to_bytes, version};
-use super::replica::{Beginning, MemberRequest, Replica};
+use super::replica::{MemberRequest, Replica};
 use super::visits::{ANNOUNCED, Visits};
 use crate::accounts::AccountKey;
 use crate::line::Line;
@@ -235,7 +235,7 @@ impl SharedRooms {
         for _ in 0..TRIES {
             let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            let request = MemberRequest { wish: wish.clone(), reply };
+            let request = (wish.clone(), reply);
             if handle.requests.send(request).await.is_err() {
                 continue;
             }
@@ -257,13 +257,14 @@ impl SharedRooms {
             return Ok(handle.clone());
         }
         let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
-        let (state, record) = context.load_state(id).await?;
+        let loaded = context.load_state(id).await?;
         let (requests, receiver) = mpsc::channel(MOST_REQUESTS);
         let closes_after = self.0.rooms.limits().closes_after;
-        let interface = RoomInterface::new(&state.room, record.stands, closes_after);
+        let interface = RoomInterface::new(&loaded.0.room, loaded.1.stands, closes_after);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
-        let beginning = Beginning { id, record, interface, state, broadcasts, requests: receiver };
-        tokio::spawn(Replica::new(Arc::clone(context), beginning).run());
+        let context = Arc::clone(context);
+        let replica = Replica::new(context, id, loaded, interface, broadcasts, receiver);
+        tokio::spawn(replica.run());
         replicas.insert(id, handle.clone());
         Ok(handle)
     }

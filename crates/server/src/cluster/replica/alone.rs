@@ -16,8 +16,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::sequencing::steps_due;
-use super::{Alone, Replica, SECOND, STANDSTILL};
+use super::{Alone, Replica, SECOND, STANDSTILL, steps_due};
 use crate::cluster::bus::BusFault;
 use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
