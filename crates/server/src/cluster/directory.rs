@@ -227,7 +227,7 @@ impl SharedRooms {
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
         let replicas = self.0.replicas.try_lock().ok()?;
         let handle = replicas.get(&id).filter(|handle| !handle.requests.is_closed())?;
-        handle.interface.shown.view()
+        handle.interface.view()
     }
 
     /// Becomes a member of a room.

@@ -404,7 +404,7 @@ impl Replica {
     fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
         let apply = || {
-            interface.shown.replace(|| {
+            interface.replace_view(|| {
                 let changes = state.apply(number, message);
                 (state.room.view(), changes)
             })
@@ -455,7 +455,7 @@ impl Replica {
         self.times.restored = Some(now);
         let loaded = self.context.load_state(self.id).await;
         let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
-        self.interface.shown.replace(|| (state.room.view(), ()));
+        self.interface.replace_view(|| (state.room.view(), ()));
         self.state = state;
         self.is_diverged = false;
         // Its lease may have ended long ago.
@@ -524,7 +524,10 @@ impl PendingRequest {
     }
 }
 
-/// Requests of visitors of this host to be members.
+/// Requests to be a member, from visitors of this host, and the seats of this host's members.
+///
+/// A request has a token, by which its answer is found. A request to return is granted once the log has the token,
+/// whichever host has written it.
 impl Replica {
     async fn receive_request(&mut self, (wish, reply): MemberRequest) {
         if let MemberWish::Return(member) = wish

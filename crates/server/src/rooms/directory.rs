@@ -255,7 +255,7 @@ impl Rooms {
         self.publish();
         let log = RoundLog::new(self.0.recordings.open(id), &room);
         let load = Arc::clone(&self.0.load);
-        let sequencer = Sequencer::new(room, log, interface, load);
+        let sequencer = Sequencer { room, log, interface, load };
         let rooms = self.clone();
         tokio::spawn(async move {
             let ended = sequencer.run(|room| rooms.change(id, room)).await;
@@ -334,7 +334,7 @@ impl Place {
     }
 
     fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
-        let closed = interface.shown.closed();
+        let closed = interface.closed();
         let seat = match role {
             Role::Member(member) => interface.inbox.seat_number(member),
             Role::Watcher(_) => None,
@@ -357,7 +357,7 @@ impl Place {
     /// The newest snapshot; `None` after a fault of the room.
     pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
         self.closed.mark_unchanged();
-        self.interface.shown.view()
+        self.interface.view()
     }
 
     /// Why the room is closed, if it is: a sentence.

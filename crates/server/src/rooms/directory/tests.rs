@@ -14,9 +14,7 @@ use cellcaster::world::Difficulty;
 impl Rooms {
     /// The newest snapshot of a room; `None` if there is no such room.
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        locked(&self.0.open, |open| {
-            open.rooms.get(&id).and_then(|room| room.interface.shown.view())
-        })
+        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.interface.view()))
     }
 
     /// Ends a room as a fault does.
