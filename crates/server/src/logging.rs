@@ -18,6 +18,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::{io, mem};
 
+use clap::ValueEnum;
 use tracing::{error, info, warn};
 use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::fmt::MakeWriter;
@@ -30,7 +31,7 @@ use crate::admission::{Outcome, Refusal};
 use crate::visitors::SessionId;
 
 /// The form of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
 pub enum LogFormat {
     /// For people: time, level, topic, event, fields.
     #[default]

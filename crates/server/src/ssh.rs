@@ -2,11 +2,9 @@
 
 mod client;
 mod connection;
-mod explanation;
 #[cfg(fuzzing)]
 pub(crate) mod fuzzing;
 mod gate;
-mod hello;
 pub mod host_key;
 mod inbound;
 mod outbox;

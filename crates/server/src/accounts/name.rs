@@ -80,36 +80,9 @@ const SCRIPTS: [Script; 10] = [
     Script::Bopomofo,
 ];
 /// Names that nobody may have.
-const RESERVED: [&str; 28] = [
-    "admin",
-    "administrator",
-    "all",
-    "anonymous",
-    "anybody",
-    "cellcaster",
-    "console",
-    "everybody",
-    "everyone",
-    "game",
-    "guard",
-    "host",
-    "lobby",
-    "mod",
-    "moderator",
-    "nobody",
-    "none",
-    "operator",
-    "owner",
-    "player",
-    "room",
-    "root",
-    "server",
-    "spectator",
-    "staff",
-    "support",
-    "system",
-    "you",
-];
+const RESERVED: &str = "admin administrator all anonymous anybody cellcaster console everybody everyone \
+    game guard host lobby mod moderator nobody none operator owner player room root \
+    server spectator staff support system you";
 /// The beginning of the names of guests.
 const GUEST: &str = "guest";
 /// Characters with a width that some terminals show as nothing, or that change what is beside them: the
@@ -158,7 +131,7 @@ impl Name {
         // Made once: that takes some thirty times as long as the keys of one name.
         static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| keys_of(GUEST));
         static WORDS: LazyLock<Vec<String>> =
-            LazyLock::new(|| RESERVED.iter().flat_map(|word| keys_of(word)).collect());
+            LazyLock::new(|| RESERVED.split(' ').flat_map(keys_of).collect());
         let is_guest = |key: &String| GUESTS.iter().any(|guest| key.starts_with(guest.as_str()));
         self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
     }

@@ -193,7 +193,7 @@ impl Room {
 
     /// The phase of the round.
     pub(crate) fn phase(&self) -> Phase {
-        self.round.phase()
+        self.round.phase
     }
 
     /// The game of the round.
@@ -293,8 +293,8 @@ impl Room {
         for id in finished {
             self.announce_finish(id);
         }
-        if self.standings.len() != self.round.standings().len() {
-            self.standings = self.round.standings().into();
+        if self.standings.len() != self.round.standings.len() {
+            self.standings = self.round.standings.as_slice().into();
         }
     }
 
@@ -317,7 +317,7 @@ impl Room {
             game: Arc::clone(&self.game),
             header: Arc::clone(&self.header),
             step: self.step,
-            phase: self.round.phase(),
+            phase: self.round.phase,
             begun: self.round.begun(),
             members: self.members.iter().map(member).collect(),
             acted: self.members.iter().map(|member| member.acted).collect(),

@@ -47,6 +47,10 @@ pub(crate) struct RoomInterface {
     pub(crate) inbox: Inbox,
     /// The newest snapshot.
     /// The newest snapshot. Locked during a step, so that those who look during it wait for the next one.
+    ///
+    /// The snapshot before is dropped before a step, so that the step copies the game only if a session draws from it at
+    /// that moment. Rejected: a `watch` channel of snapshots, which would keep the snapshot, so that each step would copy
+    /// the game.
     view: Mutex<Option<Arc<RoomView>>>,
     /// Why the room is closed. It is marked as changed with each snapshot, too.
     closed: watch::Sender<Option<Arc<str>>>,
@@ -242,7 +246,8 @@ pub(crate) trait Recording: Send {
     fn flush(&mut self) -> io::Result<()>;
 }
 
-/// The log of a round, by which a room takes its steps.
+/// The log of a round, by which a room takes its steps. It may be recorded: all entries of a step are, before they change
+/// the room.
 pub(crate) struct RoundLog {
     recording: Option<Box<dyn Recording>>,
     /// Whether a fault was reported, so that a full disk is reported once.
@@ -405,7 +410,14 @@ const MOST_INTENTS: usize = 8;
 /// The most arrivals and departures that wait, each of which takes effect in the next step.
 const MOST_MOVES: usize = 64;
 
-/// The commands of a room's members.
+/// The commands of a room's members, until the sequencer takes them.
+///
+/// Each member has a bounded queue of their own, so that a flood of one member's commands never delays those of
+/// another. Rejected: one queue for all members, since one of them could fill it. A member may say [`CHAT_BURST`]
+/// lines at once and show one emotion, and one of each a second.
+///
+/// Intents take effect in the order in which they came, one change in a step, so that a tap begins and ends in steps of
+/// its own. If [`MOST_INTENTS`] changes wait, the newest replaces the last one. Sessions limit the rate of changes.
 #[derive(Debug)]
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,

@@ -17,13 +17,11 @@ use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::client::{Begun, Client};
-use super::explanation;
-use super::gate::{Entry, Gate, Phase};
-use super::hello::Stage;
+use super::gate::{Entry, Gate, Phase, VERSION};
 use super::host_key::HostKey;
 use super::outbox::Passage;
 use super::visitor::Host;
-use super::wire::{ByteLimits, Line, Wire};
+use super::wire::{ByteLimits, Line, Stage, Wire};
 use crate::admission::Outcome;
 use crate::config::LiveConfig;
 use crate::logging::{self, ConnectionEvent};
@@ -273,7 +271,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     const COMPRESSION: &[compression::Name] = &[compression::NONE, compression::ZLIB_LEGACY];
     let methods = [MethodKind::PublicKey, MethodKind::KeyboardInteractive];
     server::Config {
-        server_id: SshId::Standard(Cow::Borrowed(explanation::VERSION)),
+        server_id: SshId::Standard(Cow::Borrowed(VERSION)),
         methods: MethodSet::from(methods.as_slice()),
         // There is nothing to guess.
         auth_rejection_time: Duration::ZERO,

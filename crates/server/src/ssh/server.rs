@@ -11,8 +11,7 @@ use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use super::connection::{self, ssh_config};
-use super::explanation::explain;
-use super::gate::{Gate, Phase};
+use super::gate::{Gate, Phase, explain};
 use super::host_key::HostKey;
 use super::visitor::Host;
 use crate::config::{Config, LiveConfig};
