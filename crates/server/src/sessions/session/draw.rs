@@ -151,7 +151,7 @@ impl Ui {
                 overhead::draw(canvas, area, &options, &player, room, &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
-                    overlay.draw_map(canvas, area, &mut stay.map, &view);
+                    overlay.draw_map(canvas, area, &mut stay.map, &view, None);
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }

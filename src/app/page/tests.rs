@@ -76,3 +76,62 @@ impl Selection {
         }
     }
 }
+
+fn shown_help(columns: u16, rows: u16, help: &mut HelpScroll) -> String {
+    let mut buffer = Buffer::empty(Rect::new(0, 0, columns, rows));
+    let note = "256 colours: your terminal did not offer more; see docs/terminals.md".to_owned();
+    let notes = [note].into_iter();
+    let keys = (&[][..], &Bindings::default());
+    help.draw(&mut buffer, Rect::new(0, 0, columns, rows), keys, notes);
+    let lines = buffer.content().chunks(columns.into());
+    lines.flat_map(|line| line.iter().map(Cell::symbol).chain(["\n"])).collect()
+}
+
+fn shows_words(seen: &str, line: &str) -> bool {
+    line.split_whitespace().all(|word| seen.contains(word))
+}
+
+#[test]
+fn every_line_can_be_reached_in_any_window() {
+    for (columns, rows) in [(80, 23), (32, 24), (64, 13), (200, 60), (60, 9), (20, 5)] {
+        let mut help = HelpScroll::default();
+        let mut seen = String::new();
+        loop {
+            let text = shown_help(columns, rows, &mut help);
+            assert!(text.contains("? closes"), "{columns} by {rows}:\n{text}");
+            seen.extend(text.chars().filter(|letter| !letter.is_whitespace() && *letter != '│'));
+            if help.first >= help.last() {
+                break;
+            }
+            help.first += help.page;
+        }
+        // Words longer than a line are broken.
+        let most = usize::from(columns - BORDERS - PADDING);
+        let shows = |text: &str| wrapped(text, most).iter().all(|line| shows_words(&seen, line));
+        for (_, does) in described(&Bindings::default()) {
+            assert!(shows(does), "{does}, {columns} by {rows}:\n{seen:?}");
+        }
+        assert!(shows("did not offer more; see docs/terminals.md"), "{columns} by {rows}");
+    }
+}
+
+#[test]
+fn a_help_that_fits_does_not_scroll() {
+    let mut help = HelpScroll::default();
+    let text = shown_help(80, 24, &mut help);
+    assert_eq!(help.last(), 0, "{text}");
+    assert!(!text.contains(" of "), "{text}");
+}
+
+#[test]
+fn lines_are_filled_to_the_width() {
+    for (text, width, lines) in [
+        ("", 5, &[""][..]),
+        ("one two three", 7, &["one two", "three"]),
+        ("one two three", 13, &["one two three"]),
+        ("abcdefgh i", 3, &["abc", "def", "gh", "i"]),
+        ("ä ö", 1, &["ä", "ö"]),
+    ] {
+        assert_eq!(wrapped(text, width), lines, "{text} in {width}");
+    }
+}

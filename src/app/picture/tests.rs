@@ -1,7 +1,8 @@
-use super::*;
-use crate::render::{FrameSize, PixelAspect};
 use ratatui::buffer::{Buffer, Cell};
 use std::collections::BTreeSet;
+
+use super::*;
+use crate::render::{FrameSize, PixelAspect};
 
 #[test]
 fn a_note_is_shown_whole_where_there_is_room() {
