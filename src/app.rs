@@ -3,82 +3,59 @@
 //! The state has neither a terminal nor a clock. Keys and times are arguments, so that a [`Replay`]
 //! can play it off screen. [`play`] is the main loop, which has both.
 
-mod banner;
-mod bindings;
 mod controls;
-mod descents;
 mod detection;
 mod draw;
-mod help;
-mod hud;
-mod keys;
 mod levels;
-mod map_panel;
-mod menu;
-mod mouse;
 mod page;
-mod panels;
 mod picture;
 mod played;
 mod recording;
-mod replay;
 mod results;
 mod run;
 mod saved;
 mod screen;
 pub(crate) mod setting;
 mod settings;
-mod settings_page;
-mod stats;
-mod status;
-mod steps;
+pub(crate) mod status;
 pub mod store;
-pub(crate) mod time;
 mod title;
 
 /// The parts of the program that the sessions of a server use, too.
 pub mod parts {
-    pub use crate::app::banner::draw as draw_banner;
-    pub use crate::app::bindings::{Action, Preset};
-    pub use crate::app::controls::{Clock, Controls, KeyContext};
+    pub use crate::app::controls::{Action, Clock, Controls, KeyContext, Pointer, Preset};
     pub use crate::app::detection::Detection;
-    pub use crate::app::map_panel::MapPanel;
-    pub use crate::app::menu::Menu;
-    pub use crate::app::mouse::Pointer;
-    pub use crate::app::page::{Effect, Kind, Page, Pages, is_answerable};
-    pub use crate::app::panels::{is_too_small, leaving, message, picture_and_status, too_small};
-    pub use crate::app::picture::{DrawOptions, Overlay, TerminalLook, widened};
+    pub use crate::app::page::{
+        Effect, Kind, Menu, Page, Pages, is_answerable, is_too_small, leaving, message,
+        picture_and_status, too_small,
+    };
+    pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
+    pub use crate::app::run::Watch;
     pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
-    pub use crate::app::settings_page::{Choices, settings_menu};
-    pub use crate::app::stats::{Meter, Stats};
-    pub use crate::app::status::{HealthSigns, Part, StatusLine, hint};
-    pub use crate::app::steps::Watch;
-    pub use crate::app::time::{of_steps, tenths, whole_seconds};
+    pub use crate::app::settings::{Choices, settings_menu};
+    pub use crate::app::status::{
+        HealthSigns, Meter, Part, Stats, StatusLine, hint, of_steps, tenths, whole_seconds,
+    };
+    pub use crate::app::title::draw_banner;
 }
 
 use std::time::Duration;
 
-pub use bindings::Bindings;
-use controls::{Clock, Controls};
+pub use controls::Bindings;
+use controls::{Clock, Controls, Pointer};
 use detection::Detection;
 pub use levels::Levels;
-use levels::{Course, LevelNumber, Reload, Stage};
-use map_panel::MapPanel;
-use mouse::Pointer;
 use page::Pages;
-use picture::TerminalLook;
+use picture::{MapPanel, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views};
-pub use recording::Recording;
 use recording::{Ghost, RunLog, ScriptRecorder};
-pub use replay::Replay;
-use results::LevelResult;
+pub use recording::{Recording, Replay};
+use run::Watch;
 pub use run::{Farewell, Opening, play};
 use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
-use stats::Stats;
-use status::StatusLine;
-use steps::Watch;
-use store::{Reached, Store};
+use status::{Stats, StatusLine};
+use store::{Improved, Reached, Store};
 use title::{Demo, TmuxOrder};
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
@@ -95,13 +72,11 @@ struct Shown {
     figures: Vec<Figure>,
 }
 
+#[derive(Default)]
 struct App {
-    later_levels: Box<dyn Iterator<Item = Stage>>,
-    /// The level that is played, to begin it again.
-    stage: Stage,
+    /// The level that is played, and those after it.
+    levels: Levels,
     game: Played,
-    level: LevelNumber,
-    course: Course,
     /// How far a descent came.
     reached: Reached,
     difficulty: Difficulty,
@@ -112,8 +87,8 @@ struct App {
     log: RunLog,
     /// The best run of the level.
     ghost: Option<Ghost>,
-    /// The result of the level that was won last.
-    result: Option<LevelResult>,
+    /// The improvement by the level that was won last, once it is recorded.
+    improved: Option<Improved>,
     /// A line about the game that was left.
     left: Option<String>,
     store: Store,
@@ -152,96 +127,54 @@ struct App {
     tmux_order: TmuxOrder,
     /// Records the player's intents.
     script: Option<ScriptRecorder>,
-    /// The source of changes of the level.
-    reload: Option<Reload>,
 }
 
 impl App {
     /// The first of `levels` at its start.
     fn new(levels: Levels, settings: Settings) -> Self {
-        let difficulty = Difficulty::default();
-        let Levels { first, rest, number, changes, course } = levels;
-        let game = first.begin(difficulty).unwrap_or_else(Played::nothing);
+        let game = levels.stage.begin(Difficulty::default()).unwrap_or_default();
         Self {
-            later_levels: rest,
-            stage: first,
-            level: number,
-            course,
-            reached: Reached::default(),
-            machine_time: None,
-            difficulty,
             goal: Goal::of(&game, settings.minimap),
-            notice: None,
             map: MapPanel::new(settings.minimap),
-            game,
-            log: RunLog::default(),
-            ghost: None,
-            result: None,
-            left: None,
-            store: Store::in_memory(),
-            watch: Watch::default(),
-            earlier: 0.0,
-            pages: Pages::new(Screen::Playing),
-            offers: None,
-            own_maps: Vec::new(),
-            demo: None,
-            terminal: TerminalLook::default(),
             views: Views::new(View::with_caster(settings.caster.clone())),
             pointer: Pointer::new(settings.mouse),
+            levels,
+            game,
             settings,
-            controls: Controls::default(),
-            now: Duration::ZERO,
-            has_left: false,
-            clock: Clock::default(),
-            shown: None,
-            is_interrupted: false,
-            animates_at: None,
-            stats: None,
-            status: StatusLine::default(),
-            detection: Detection::default(),
-            tmux_order: TmuxOrder::default(),
-            script: None,
-            reload: changes.map(Reload::from),
+            ..Self::default()
         }
     }
 
     /// The first of `levels`, or else the title, with what `store` keeps.
     fn opened(opening: Opening, settings: Settings, store: Store) -> Self {
+        let mut app = Self { store, ..Self::new(Levels::default(), settings) };
         match opening {
             Opening::Levels(levels) => {
-                let usual = store.preferences().difficulty;
-                let difficulty = settings.difficulty.unwrap_or(usual);
-                let mut app = Self::new(Levels::nothing(), settings);
-                app.store = store;
-                app.difficulty = difficulty;
+                app.difficulty = app.usual_difficulty();
                 app.begin(*levels);
-                app
             }
-            Opening::Title(offers) => {
-                let mut app = Self::offering(offers, settings, store);
-                app.show_title();
-                app
-            }
+            Opening::Title(offers) => app.offer(offers),
             Opening::Daily(offers) => {
-                let mut app = Self::offering(offers, settings, store);
-                app.show_title();
+                app.offer(offers);
                 app.open(Screen::Daily);
-                app
             }
             Opening::Endless(offers) => {
-                let mut app = Self::offering(offers, settings, store);
+                app.offers = Some(offers);
                 app.begin_endless();
-                app
             }
         }
+        app
     }
 
-    /// An app with a title to return to.
-    fn offering(offers: Offers, settings: Settings, store: Store) -> Self {
-        let mut app = Self::new(Levels::nothing(), settings);
-        app.store = store;
-        app.offers = Some(offers);
-        app
+    /// Shows the title with these offers.
+    fn offer(&mut self, offers: Offers) {
+        self.offers = Some(offers);
+        self.show_title();
+    }
+
+    /// The difficulty of levels that are played without a choice of one.
+    fn usual_difficulty(&self) -> Difficulty {
+        self.settings.difficulty.unwrap_or(self.store.preferences().difficulty)
     }
 
     /// Handles a new size or new properties of the terminal.

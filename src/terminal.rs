@@ -19,9 +19,7 @@ mod flow;
 #[cfg_attr(not(unix), expect(dead_code, reason = "signals, of which there are none, use it"))]
 mod guard;
 mod input;
-mod key;
 mod known;
-mod options;
 mod protocol;
 mod sequence;
 mod session;
@@ -40,11 +38,13 @@ use self::unsupported::{self as signals, self as unix};
 pub(crate) use self::cell_writer::{Bytes, Style};
 pub use self::cell_writer::{CellWriter, Screen};
 pub use self::error::Error;
-pub use self::event::{Event, MouseButton, MouseEvent, MouseEventKind, QuitReason, WindowSize};
+pub use self::event::{
+    Event, Key, KeyEvent, Modifiers, MouseButton, MouseEvent, MouseEventKind, Phase, QuitReason,
+    UnknownKey, WindowSize,
+};
 pub use self::fidelity::{Fidelity, UnknownFidelity};
 pub use self::guard::Recorder;
-pub use self::key::{Key, KeyEvent, Modifiers, Phase, UnknownKey};
-pub use self::options::{ColorSource, Detected, Options, locale_without_utf8};
+pub use self::known::{ColorSource, Detected, Options, locale_without_utf8};
 pub use self::protocol::Protocol;
 pub use self::session::Session;
 pub use self::tmux::TmuxClient;

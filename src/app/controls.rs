@@ -1,11 +1,233 @@
-//! Controls: converts time to steps, and keys to the intents of each step.
+//! Keys and the mouse as intents: the actions with the keys bound to them, the division of time into steps, and the
+//! pointer.
+//!
+//! The mouse turns and tilts the view, and its buttons open and jump. Terminals report the position of the pointer, not the motion of the mouse, so the player turns
+//! by the difference of two positions. At the left and the right edge of the window the pointer can
+//! go no further, and the player keeps turning while it rests there. That ends after one full turn,
+//! since terminals do not report that the pointer has left the window.
+//!
+//! Positions are converted to angles first, and then subtracted: rounding errors do not add up, and
+//! a pointer that returns to its position has turned the player by nothing.
 
 use std::time::Duration;
 
-use crate::app::bindings::{Action, Bindings};
-use crate::game::{Intent, Intents, STEP};
-use crate::terminal::{Key, KeyEvent, Phase};
+use crate::game::{Intent, Intents, Look, STEP, STEPS_PER_SECOND};
+use crate::sort;
+use crate::terminal::{Key, KeyEvent, MouseButton, MouseEvent, MouseEventKind, Phase};
 use crate::tui::{HeldKeys, Hold, Press, tap_steps, wanted};
+
+/// An action that a key can be bound to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Action {
+    /// Want something for as long as the key is held.
+    Want(Intent),
+    /// Run until the key is pressed again.
+    ToggleRun,
+    /// Duck until the key is pressed again.
+    ToggleDuck,
+    /// Turn and tilt by the mouse, or stop that.
+    ToggleMouse,
+    /// Walk until this key or a key to walk is pressed.
+    ToggleWalkOn,
+    /// Show or hide the minimap.
+    ToggleMinimap,
+    /// Show the minimap larger or smaller, or another part of it.
+    ChangeMap(MapChange),
+    /// Show or hide the keys.
+    ToggleHelp,
+    /// Pause, or continue.
+    TogglePause,
+    /// Widen the field of view.
+    WidenView,
+    /// Narrow the field of view.
+    NarrowView,
+    /// Show or hide the figures of frames and the link.
+    ToggleStats,
+    /// Show or hide a dot in the middle of the picture.
+    ToggleCrosshair,
+    /// Show or hide the compass.
+    ToggleCompass,
+    /// Show or hide the best run.
+    ToggleGhost,
+    /// Leave the game.
+    Leave,
+}
+
+/// A change of the minimap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MapChange {
+    Larger,
+    Smaller,
+    North,
+    South,
+    West,
+    East,
+    /// Show the player in the middle, at the usual size.
+    Center,
+}
+
+impl Action {
+    /// Every action with its name in a file, a short description, and its keys on a QWERTY keyboard.
+    pub(crate) const ALL: [(&'static str, &'static str, Self, &'static [Key]); 42] = [
+        ("forward", "walk", Self::Want(Intent::Forward), &[Key::Char('w'), Key::Up]),
+        ("back", "walk back", Self::Want(Intent::Back), &[Key::Char('s'), Key::Down]),
+        ("strafe-left", "strafe left", Self::Want(Intent::StrafeLeft), &[Key::Char('a')]),
+        ("strafe-right", "strafe right", Self::Want(Intent::StrafeRight), &[Key::Char('d')]),
+        ("turn-left", "turn left", Self::Want(Intent::TurnLeft), &[Key::Left]),
+        ("turn-right", "turn right", Self::Want(Intent::TurnRight), &[Key::Right]),
+        // These letters are on the same keys in nearly all layouts.
+        ("fine-left", "turn left by 5°", Self::Want(Intent::FineLeft), &[Key::Char('u')]),
+        ("fine-right", "turn right by 5°", Self::Want(Intent::FineRight), &[Key::Char('o')]),
+        ("about-face", "turn around", Self::Want(Intent::AboutFace), &[Key::Char('b')]),
+        ("walk-on", "keep walking", Self::ToggleWalkOn, &[Key::Char('g')]),
+        ("run", "run while held", Self::Want(Intent::Run), &[Key::Shift]),
+        ("open", "open or use", Self::Want(Intent::Open), &[Key::Char('e')]),
+        ("jump", "jump, or open", Self::Want(Intent::Jump), &[Key::Char(' ')]),
+        // Rejected: Control. With another key held, it is a command to the terminal.
+        ("duck", "duck while held", Self::Want(Intent::Duck), &[Key::Char('c')]),
+        ("strike", "strike", Self::Want(Intent::Strike), &[Key::Char('f')]),
+        ("throw", "throw a pebble", Self::Want(Intent::Throw), &[Key::Char('t')]),
+        ("shoot", "shoot a dart", Self::Want(Intent::Shoot), &[Key::Char('n')]),
+        ("smoke", "throw smoke", Self::Want(Intent::Smoke), &[Key::Char('y')]),
+        ("lamp", "light, put out", Self::Want(Intent::Lamp), &[Key::Char('l')]),
+        ("look-up", "look up", Self::Want(Intent::LookUp), &[Key::PageUp]),
+        ("look-down", "look down", Self::Want(Intent::LookDown), &[Key::PageDown]),
+        ("look-ahead", "look ahead", Self::Want(Intent::LookAhead), &[Key::Home]),
+        ("toggle-run", "run, on and off", Self::ToggleRun, &[Key::Char('r')]),
+        ("toggle-duck", "duck, on and off", Self::ToggleDuck, &[Key::Char('x')]),
+        ("mouse", "turn by mouse", Self::ToggleMouse, &[Key::Char('v')]),
+        ("minimap", "map", Self::ToggleMinimap, &[Key::Char('m'), Key::Tab]),
+        // As on a number pad.
+        ("map-larger", "larger map", Self::ChangeMap(MapChange::Larger), &[Key::Char('9')]),
+        ("map-smaller", "smaller map", Self::ChangeMap(MapChange::Smaller), &[Key::Char('3')]),
+        ("map-north", "move it north", Self::ChangeMap(MapChange::North), &[Key::Char('8')]),
+        ("map-south", "move it south", Self::ChangeMap(MapChange::South), &[Key::Char('2')]),
+        ("map-west", "move it west", Self::ChangeMap(MapChange::West), &[Key::Char('4')]),
+        ("map-east", "move it east", Self::ChangeMap(MapChange::East), &[Key::Char('6')]),
+        ("map-center", "map around you", Self::ChangeMap(MapChange::Center), &[Key::Char('5')]),
+        ("help", "this help", Self::ToggleHelp, &[Key::Char('?')]),
+        ("pause", "pause", Self::TogglePause, &[Key::Char('p')]),
+        ("wider", "wider view", Self::WidenView, &[Key::Char('+'), Key::Char('=')]),
+        ("narrower", "narrower view", Self::NarrowView, &[Key::Char('-')]),
+        ("crosshair", "crosshair", Self::ToggleCrosshair, &[Key::Char('.')]),
+        ("compass", "compass", Self::ToggleCompass, &[Key::Char(',')]),
+        ("ghost", "best run", Self::ToggleGhost, &[Key::Char('0')]),
+        ("stats", "frames and link", Self::ToggleStats, &[Key::Char('i')]),
+        ("leave", "leave", Self::Leave, &[Key::Char('q'), Key::Escape]),
+    ];
+
+    /// The action with that name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|&(known, ..)| known == name).map(|(_, _, action, _)| action)
+    }
+
+    /// Whether the actions exclude each other.
+    pub(crate) fn opposes(self, other: Self) -> bool {
+        matches!((self, other), (Self::Want(one), Self::Want(other)) if one.opposes(other))
+    }
+}
+
+/// The actions of all keys.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bindings {
+    /// Each key occurs once.
+    keys: Vec<(Key, Action)>,
+}
+
+impl Bindings {
+    /// The keys of every action with a short description, in the order of [`Action::ALL`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn described(&self) -> impl Iterator<Item = (String, &'static str)> {
+        Action::ALL.into_iter().map(|(_, does, action, _)| (self.key_names(action), does))
+    }
+
+    /// Replaces the keys of the actions in `rebound` by `bound`. Keys in `bound` are removed from
+    /// other actions.
+    pub(crate) fn rebound(mut self, rebound: &[Action], bound: Vec<(Key, Action)>) -> Self {
+        let is_bound = |key| bound.iter().any(|&(bound, _)| bound == key);
+        self.keys.retain(|&(key, action)| !rebound.contains(&action) && !is_bound(key));
+        self.keys.extend(bound);
+        self.in_order()
+    }
+
+    /// The bindings without those of `keys`.
+    #[must_use]
+    pub fn without(mut self, keys: &[Key]) -> Self {
+        self.keys.retain(|(key, _)| !keys.contains(key));
+        self
+    }
+
+    /// Sorts the keys by their actions.
+    fn in_order(mut self) -> Self {
+        let index = |action| Action::ALL.iter().position(|&(_, _, known, _)| known == action);
+        sort::by_key(&mut self.keys, |&(_, action)| index(action));
+        self
+    }
+
+    /// The action of `key`.
+    pub fn action(&self, key: Key) -> Option<Action> {
+        self.keys.iter().find(|&&(bound, _)| bound == key).map(|&(_, action)| action)
+    }
+
+    /// The event with the key whose action counts: the pressed one, or if that has no action, the
+    /// key at its position on a US keyboard.
+    pub fn resolve(&self, event: KeyEvent) -> KeyEvent {
+        let base = event.base.filter(|_| self.action(event.key).is_none());
+        KeyEvent { key: base.unwrap_or(event.key), ..event }
+    }
+
+    /// The names of the keys of `action`, between blanks.
+    pub(crate) fn key_names(&self, action: Action) -> String {
+        let names: Vec<String> = self.keys(action).map(|key| key.to_string()).collect();
+        names.join(" ")
+    }
+
+    /// The keys of `action`, in the order in which they were bound.
+    pub(crate) fn keys(&self, action: Action) -> impl Iterator<Item = Key> {
+        self.keys.iter().filter(move |&&(_, bound)| bound == action).map(|&(key, _)| key)
+    }
+}
+
+/// A keyboard that keys are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Preset {
+    #[default]
+    Qwerty,
+    /// Z, Q, S and D are where W, A, S and D are on QWERTY keyboards; A leaves.
+    Azerty,
+    /// For users of vi: H and L turn, J and K walk, A and D strafe, Z lights the lamp.
+    Hjkl,
+}
+
+impl Preset {
+    /// The bindings for that keyboard.
+    pub(crate) fn bindings(self) -> Bindings {
+        let turns = [('h', Intent::TurnLeft), ('l', Intent::TurnRight)];
+        // The letters that replace others, and further keys.
+        let (letters, further): (&[(char, char)], &[(char, Intent)]) = match self {
+            Self::Qwerty => (&[], &[]),
+            Self::Azerty => (&[('w', 'z'), ('a', 'q'), ('q', 'a')], &[]),
+            Self::Hjkl => (&[('w', 'k'), ('s', 'j'), ('l', 'z')], &turns),
+        };
+        let on_keyboard = |key| {
+            let own = letters.iter().find(|&&(usual, _)| key == Key::Char(usual));
+            own.map_or(key, |&(_, own)| Key::Char(own))
+        };
+        let bound = |(.., action, keys): (_, _, Action, &'static [Key])| {
+            keys.iter().map(move |&key| (on_keyboard(key), action))
+        };
+        let further = further.iter().map(|&(key, intent)| (Key::Char(key), Action::Want(intent)));
+        Bindings { keys: Action::ALL.into_iter().flat_map(bound).chain(further).collect() }
+            .in_order()
+    }
+}
+
+impl Default for Bindings {
+    /// The bindings for QWERTY keyboards.
+    fn default() -> Self {
+        Preset::default().bindings()
+    }
+}
 
 /// Divides time into steps of the game. A remainder counts for the next step.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +265,7 @@ pub(crate) fn after(time: Duration, steps: u64) -> Duration {
 }
 
 /// The number of whole steps in `time`.
-pub(crate) fn steps_in(time: Duration) -> u64 {
+fn steps_in(time: Duration) -> u64 {
     // More nanoseconds are more than five centuries.
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX) / STEP_NANOSECONDS
 }
@@ -185,9 +407,174 @@ fn tilts(intent: Intent) -> bool {
     matches!(intent, Intent::LookUp | Intent::LookDown)
 }
 
+/// The angle by which a motion across a cell turns or tilts, in degrees.
+const DEGREES_PER_CELL: i32 = 2;
+/// The speed of turning while the pointer is at an edge, in degrees per second.
+const DEGREES_PER_SECOND: i32 = 90;
+/// The number of steps of turning at an edge: one full turn.
+const EDGE_STEPS: u32 = 360 * STEPS_PER_SECOND / DEGREES_PER_SECOND as u32;
+/// The width of an edge is one column, plus one for each 80 columns: the last reported position of
+/// a pointer that leaves the window quickly is a little inside of it.
+const COLUMNS_PER_EDGE_COLUMN: i32 = 80;
+
+/// The position of the pointer, and its motion and clicks since the last step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pointer {
+    is_on: bool,
+    columns: u16,
+    /// Measured from the upper left corner, in units of [`Look`]; `None` if unknown.
+    position: Option<[i32; 2]>,
+    /// The motion since the last step, in the same units.
+    moved: [i32; 2],
+    /// The intents of the buttons for the next step.
+    clicked: Intents,
+    /// The edge at which the pointer rests, −1 for the left and 1 for the right one, and the
+    /// remaining number of steps for which it turns the player.
+    edge: Option<(i16, u32)>,
+}
+
+impl Pointer {
+    /// A pointer that is on or off at first.
+    pub fn new(is_on: bool) -> Self {
+        Self { is_on, ..Self::default() }
+    }
+
+    /// Whether the mouse turns the player.
+    pub fn is_on(&self) -> bool {
+        self.is_on
+    }
+
+    /// Switches between on and off.
+    pub fn toggle(&mut self) {
+        *self = Self { is_on: !self.is_on, columns: self.columns, ..Self::default() };
+    }
+
+    /// Forgets the position.
+    pub fn forget(&mut self) {
+        *self = Self { is_on: self.is_on, columns: self.columns, ..Self::default() };
+    }
+
+    /// Sets the width of the window.
+    pub fn set_columns(&mut self, columns: u16) {
+        self.columns = columns;
+        self.forget();
+    }
+
+    /// Handles an event. Motion and clicks count only if the player `plays`.
+    pub fn handle(&mut self, event: MouseEvent, plays: bool) {
+        if !self.is_on {
+            return;
+        }
+        self.move_to(event.x, event.y);
+        if !plays {
+            self.moved = [0, 0];
+            return;
+        }
+        match event.kind {
+            MouseEventKind::Pressed(MouseButton::Left) => self.clicked.insert(Intent::Open),
+            MouseEventKind::Pressed(MouseButton::Right) => self.clicked.insert(Intent::Jump),
+            _ => {}
+        }
+    }
+
+    /// The intents of the buttons for the next step.
+    pub fn clicked(&self) -> Intents {
+        self.clicked
+    }
+
+    /// Whether the next step turns the player or uses a click.
+    pub fn is_busy(&self) -> bool {
+        self.has_input() || self.edge.is_some()
+    }
+
+    /// Moves the pointer to a position in units of [`MouseEvent`].
+    fn move_to(&mut self, x: u32, y: u32) {
+        let units_per_cell = MouseEvent::UNITS_PER_CELL as i32;
+        let position = [x, y].map(|units| {
+            units as i32 * DEGREES_PER_CELL * i32::from(Look::PER_DEGREE) / units_per_cell
+        });
+        let before = self.position.replace(position).unwrap_or(position);
+        let [right, down] = [position[0] - before[0], position[1] - before[1]];
+        let half_a_window =
+            i32::from(self.columns) * DEGREES_PER_CELL * i32::from(Look::PER_DEGREE) / 2;
+        // For a longer motion, the pointer was outside of the window.
+        if right.abs() <= half_a_window {
+            self.moved = [self.moved[0] + right, self.moved[1] + down];
+        }
+        self.edge = self.edge_at(x as i32 / units_per_cell).map(|edge| (edge, EDGE_STEPS));
+    }
+
+    /// The edge at `column`.
+    fn edge_at(&self, column: i32) -> Option<i16> {
+        let columns = i32::from(self.columns);
+        let at_edge = 1 + columns / COLUMNS_PER_EDGE_COLUMN;
+        if columns < 4 * at_edge {
+            return None;
+        }
+        let to_the_left = column < at_edge;
+        let to_the_right = column >= columns - at_edge;
+        (to_the_left || to_the_right).then_some(if to_the_left { -1 } else { 1 })
+    }
+
+    /// The turn and tilt of the next step.
+    pub fn look(&self) -> Look {
+        let at_edge = self.edge.map_or(0, |(edge, _)| {
+            i32::from(edge) * DEGREES_PER_SECOND * i32::from(Look::PER_DEGREE)
+                / STEPS_PER_SECOND as i32
+        });
+        let within = |amount: i32| amount.clamp(-i32::from(i16::MAX), i16::MAX.into()) as i16;
+        Look { turn: within(self.moved[0] + at_edge), tilt: within(-self.moved[1]) }
+    }
+
+    /// Whether there was motion or a click since the last step.
+    pub(crate) fn has_input(&self) -> bool {
+        self.moved != [0, 0] || !self.clicked.is_empty()
+    }
+
+    /// Records that `steps` steps have used [`Pointer::look`].
+    pub fn passed(&mut self, steps: u64) {
+        if steps == 0 {
+            return;
+        }
+        self.moved = [0, 0];
+        self.clicked = Intents::new();
+        self.edge = self.edge.and_then(|(edge, left)| {
+            let left = u64::from(left).saturating_sub(steps) as u32;
+            (left > 0).then_some((edge, left))
+        });
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::Configuration;
+    use crate::terminal::{Modifiers, Phase};
+    use proptest::prelude::*;
+
+    #[test]
+    fn every_action_has_a_key_in_every_preset() {
+        for preset in [Preset::Qwerty, Preset::Azerty, Preset::Hjkl] {
+            for (name, _, action, _) in Action::ALL {
+                assert!(preset.bindings().keys(action).next().is_some(), "{name} in {preset:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_character_of_a_key_counts_before_its_position() {
+        let event = |key, base| KeyEvent {
+            key: Key::Char(key),
+            base: Some(Key::Char(base)),
+            modifiers: Modifiers::default(),
+            phase: Phase::Press,
+        };
+        let text = "[keys]\nopen = \"ц\"";
+        let cyrillic = Configuration::parse(text, "config.toml").unwrap().bindings;
+        assert_eq!(cyrillic.resolve(event('ц', 'w')).key, Key::Char('ц'));
+        assert_eq!(cyrillic.resolve(event('ф', 'a')).key, Key::Char('a'));
+        assert_eq!(Bindings::default().resolve(event('ц', 'w')).key, Key::Char('w'));
+    }
 
     #[test]
     fn no_time_is_lost_between_calls() {
@@ -198,5 +585,76 @@ mod tests {
         assert_eq!(clock.step_after(2), clock.step_after(0) + 2 * step());
         clock.skip_to(Duration::from_hours(1));
         assert_eq!(clock.steps_until(Duration::from_hours(1)), 0);
+    }
+
+    fn on(columns: u16) -> Pointer {
+        let mut pointer = Pointer::new(true);
+        pointer.set_columns(columns);
+        pointer
+    }
+
+    const CELL: u32 = MouseEvent::UNITS_PER_CELL;
+
+    #[test]
+    fn the_first_position_turns_nothing_and_a_cell_is_two_degrees() {
+        let mut pointer = on(80);
+        pointer.move_to(40 * CELL, 10 * CELL);
+        assert_eq!(pointer.look(), Look::NONE);
+        pointer.move_to(41 * CELL, 10 * CELL);
+        assert_eq!(pointer.look(), Look { turn: 200, tilt: 0 });
+        pointer.passed(1);
+        assert_eq!(pointer.look(), Look::NONE);
+        pointer.move_to(41 * CELL, 8 * CELL);
+        assert_eq!(pointer.look(), Look { turn: 0, tilt: 400 });
+    }
+
+    #[test]
+    fn at_an_edge_the_player_makes_one_turn() {
+        let mut pointer = on(80);
+        pointer.move_to(50 * CELL, 10 * CELL);
+        pointer.move_to(79 * CELL, 10 * CELL);
+        pointer.passed(1);
+        let mut turned = 0;
+        for _ in 0..10_000 {
+            turned += i32::from(pointer.look().turn);
+            pointer.passed(1);
+        }
+        // The first step is the one that used the motion.
+        assert_eq!(turned, 360 * 100 - 150);
+        pointer.move_to(0, 10 * CELL);
+        assert_eq!(pointer.look().turn, -150, "it came from the other side of the window");
+        pointer.forget();
+        assert_eq!(pointer.look(), Look::NONE);
+    }
+
+    #[test]
+    fn a_narrow_window_has_no_edges() {
+        let mut pointer = on(3);
+        pointer.move_to(CELL, 0);
+        pointer.move_to(0, 0);
+        assert_eq!(pointer.look().turn, -200);
+        pointer.passed(1);
+        assert_eq!(pointer.look(), Look::NONE);
+    }
+
+    proptest! {
+        #[test]
+        fn returning_to_a_position_turns_nothing(
+            positions in prop::collection::vec((20 * CELL..60 * CELL, 0..24 * CELL), 1..40),
+            cuts in prop::collection::vec(any::<bool>(), 40),
+        ) {
+            let mut pointer = on(80);
+            let mut sum = [0, 0];
+            for (&(x, y), &cut) in positions.iter().chain(&positions[..1]).zip(cuts.iter().chain(&cuts)) {
+                pointer.move_to(x, y);
+                if cut {
+                    let look = pointer.look();
+                    sum = [sum[0] + i32::from(look.turn), sum[1] + i32::from(look.tilt)];
+                    pointer.passed(1);
+                }
+            }
+            let look = pointer.look();
+            prop_assert_eq!([sum[0] + i32::from(look.turn), sum[1] + i32::from(look.tilt)], [0, 0]);
+        }
     }
 }

@@ -13,14 +13,14 @@ use std::time::Duration;
 
 use ratatui::layout::{Rect, Size};
 
-use crate::app::bindings::{Action, Bindings};
+use crate::app::controls::{Action, Bindings};
 use crate::app::picture::{DrawOptions, Overlay};
 use crate::app::played::Viewpoint;
 use crate::app::recording::Ghost;
 use crate::app::screen::Screen;
+use crate::app::status::whole_seconds;
 use crate::app::status::{HealthSigns, Part, hint};
-use crate::app::time::whole_seconds;
-use crate::app::{App, Shown, banner, panels};
+use crate::app::{App, Shown, page, title};
 use crate::game::{Game, PlayerId, STEP};
 use crate::terminal::{Event, Phase};
 use crate::tui::canvas::Canvas;
@@ -41,11 +41,11 @@ impl App {
         go_on: &mut dyn FnMut(Screen, &Bindings) -> bool,
     ) -> bool {
         let area = Rect::from(window);
-        if panels::is_too_small(area) {
+        if page::is_too_small(area) {
             return true;
         }
         self.show_ghost();
-        let [picture, _] = panels::picture_and_status(area);
+        let [picture, _] = page::picture_and_status(area);
         let (options, screen, bindings) =
             (self.draw_options(), self.screen(), &self.settings.bindings);
         let go_on = &mut || go_on(screen, bindings);
@@ -55,10 +55,10 @@ impl App {
     /// Paints the rendered picture, and what lies over it, on a canvas of the same size.
     pub(crate) fn paint(&mut self, canvas: &mut impl Canvas) {
         let area = canvas.bounds();
-        if panels::is_too_small(area) {
-            return panels::too_small(canvas);
+        if page::is_too_small(area) {
+            return page::too_small(canvas);
         }
-        let [picture, status] = panels::picture_and_status(area);
+        let [picture, status] = page::picture_and_status(area);
         self.paint_picture(canvas, picture);
         if self.demo.is_some() {
             canvas.draw_widget(hint("up and down, Enter, Esc"), status);
@@ -79,10 +79,10 @@ impl App {
                 self.pages.help.draw(canvas, picture, (&[], bindings), self.detection.lines());
             }
             Screen::Leaving => {
-                panels::leaving(canvas, picture, bindings, self.effect_of_leaving());
+                page::leaving(canvas, picture, bindings, self.effect_of_leaving());
             }
             Screen::Title => {
-                let below = banner::draw(canvas, picture, self.settings.glyphs, self.depth());
+                let below = title::draw_banner(canvas, picture, self.settings.glyphs, self.depth());
                 self.pages.menu.draw(canvas, below);
             }
             _ => self.pages.menu.draw(canvas, picture),
@@ -91,9 +91,10 @@ impl App {
 
     fn draw_status(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let signs = HealthSigns::for_picture(self.settings.glyphs, self.depth());
-        let Self { game, goal, notice, level, map, controls, pointer, settings, .. } = self;
-        let player = game.grid().and_then(|game| game.seen_by(PlayerId::FIRST));
-        let mission = game.grid().filter(|game| game.is_mission()).zip(player);
+        let Self { game, goal, notice, levels, map, controls, pointer, settings, .. } = self;
+        let (grid, level) = (game.grid(), levels.number);
+        let player = grid.and_then(|game| game.seen_by(PlayerId::FIRST));
+        let mission = grid.filter(|game| game.is_mission()).zip(player);
         let notice = notice.as_ref().filter(|notice| notice.is_shown());
         let stats = self.stats.as_ref().filter(|_| settings.shows_stats);
         self.status.rewrite(|line| {
@@ -106,13 +107,13 @@ impl App {
                 level.write_short(short)?;
                 write!(long, "{level}")?;
             }
-            if let Some(site) = game.site() {
+            if let Some(site) = grid.and_then(Game::site) {
                 line.both(Part::Site, format_args!("{}, {}", site.column, site.row))?;
             }
             let lamp = mission.is_some_and(|(_, player)| player.lamp_is_lit());
             line.write_modes(controls.toggles, pointer.is_on(), lamp)?;
-            line.write_keys(game.keys())?;
-            if let (None, Some(message)) = (notice, game.message()) {
+            line.write_keys(grid.into_iter().flat_map(Game::keys))?;
+            if let (None, Some(message)) = (notice, grid.and_then(Game::message)) {
                 line.both(Part::Notice, format_args!("{message}"))?;
             } else if let Some(goal) = notice.or(Some(goal)).filter(|goal| goal.is_shown()) {
                 let [short, long] = line.forms(Part::Notice);
@@ -122,7 +123,7 @@ impl App {
             if let Some(stats) = stats {
                 line.write_stats(stats)?;
             }
-            if let Some(share) = game.grid().and_then(|game| map.share_seen(game)) {
+            if let Some(share) = grid.and_then(|game| map.share_seen(game)) {
                 line.both(Part::Seen, format_args!("{:.0} % seen", (share * 100.0).floor()))?;
             }
             line.both(Part::Time, format_args!("{}", whole_seconds(game.elapsed())))?;
@@ -134,10 +135,17 @@ impl App {
     fn paint_picture(&mut self, canvas: &mut impl Canvas, area: Rect) {
         let options = self.draw_options();
         self.game.paint(&options, canvas, area, &self.views);
-        if self.demo.is_none() {
-            self.draw_map(canvas, area, &options);
-            self.draw_hud(canvas, area, &options);
+        if self.demo.is_some() {
+            return;
         }
+        let preferences = self.store.preferences();
+        let game = self.game.grid();
+        let overlay =
+            game.and_then(|game| Overlay::new(game, PlayerId::FIRST, &options, preferences));
+        let Some(overlay) = overlay else { return options.draw_middle(canvas, area) };
+        let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
+        overlay.draw_map(canvas, area, &mut self.map, &self.views.grid, ghost);
+        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
     }
 
     fn draw_options(&self) -> DrawOptions {
@@ -164,28 +172,6 @@ impl App {
         if let Some(game) = self.game.grid_mut() {
             game.show_guest(|sprite| ghost.figure(sprite).filter(|_| is_on));
         }
-    }
-
-    fn draw_hud(&self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
-        let Some(overlay) = self.overlay(options) else {
-            return options.draw_middle(canvas, area);
-        };
-        overlay.draw_hud(canvas, area, self.screen() == Screen::Playing);
-    }
-
-    fn draw_map(&mut self, canvas: &mut impl Canvas, area: Rect, options: &DrawOptions) {
-        let preferences = self.store.preferences();
-        let Some(game) = self.game.grid() else { return };
-        if let Some(overlay) = Overlay::new(game, PlayerId::FIRST, options, preferences) {
-            let ghost = self.ghost.as_ref().filter(|_| preferences.ghost).and_then(Ghost::on_map);
-            let overlay = overlay.with_ghost(ghost);
-            overlay.draw_map(canvas, area, &mut self.map, &self.views.grid);
-        }
-    }
-
-    fn overlay<'a>(&'a self, options: &'a DrawOptions) -> Option<Overlay<'a>> {
-        let preferences = self.store.preferences();
-        Overlay::new(self.game.grid()?, PlayerId::FIRST, options, preferences)
     }
 }
 
@@ -217,7 +203,7 @@ impl App {
     }
 
     /// The number of steps until that change; `None` for never.
-    pub(crate) fn steps_to_animation(&self) -> Option<u64> {
+    fn steps_to_animation(&self) -> Option<u64> {
         let steps = (self.animates_at? - self.game.elapsed()) / STEP;
         Some(steps.round().max(0.0) as u64)
     }
@@ -228,7 +214,7 @@ impl App {
         let figures = self.figures_in_view().copied().collect();
         self.shown = Some(Shown { viewpoint, revision, figures });
         let soonest = self.game.elapsed() + STEP;
-        self.animates_at = self.views.next_change().map(|change| change.max(soonest));
+        self.animates_at = self.views.grid.next_change().map(|change| change.max(soonest));
     }
 
     /// The time at which the game changes without an event; `None` for never.

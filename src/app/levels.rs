@@ -4,48 +4,45 @@
 //! A level may change while it is played, because its author edits the map. The game checks for changes
 //! a few times a second. Rejected: file events of the system. A library for them needs a thread, wakes
 //! the loop, and has to follow files that editors replace.
+//!
+//! A descent is endless, or the one of the day. It ends when the player dies: there is no way back to a floor, so that how far somebody
+//! came means the same for all. The first try of a daily run counts, and is asked about before it begins;
+//! tries after its end are practice. A descent that is left is saved, and goes on from there as the same
+//! try: its saved game is removed then, so that a death cannot be undone.
 
 use std::time::Duration;
-use std::{fmt, iter, mem};
+use std::{fmt, iter};
 
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Text};
 
 use crate::app::App;
-use crate::app::panels::{self, wrapped};
+use crate::app::page::{self, Menu, wrapped};
 use crate::app::played::{Goal, Played};
 use crate::app::recording::{Ghost, RunLog};
-use crate::app::screen::Screen;
-use crate::app::steps::Watch;
-use crate::app::store::Reached;
+use crate::app::run::Watch;
+use crate::app::screen::{Choice, Screen};
+use crate::app::status::whole_seconds;
+use crate::app::store::{Descent, Reached, Save};
 use crate::app::title::{Demo, OwnLevel};
 use crate::fault::Faults;
-use crate::game::{Game, Intent, Intents, Rules};
+use crate::game::{Game, Intent, Intents, LevelName, Rules, STEP};
 use crate::generate::descent;
 use crate::map::{Level, builtin};
 use crate::space::Scene;
 use crate::tui::canvas::Canvas;
 use crate::world::Difficulty;
 
-/// The levels of a game, in order. Each but the first is created when it is reached.
+/// The level that is played, and those after it, in order. Each is created when it is reached.
 pub struct Levels {
-    pub(crate) first: Stage,
-    pub(crate) rest: Box<dyn Iterator<Item = Stage>>,
-    pub(crate) changes: Option<Changes>,
+    /// The level that is played, to begin it again.
+    pub(crate) stage: Stage,
+    rest: Box<dyn Iterator<Item = Stage>>,
+    /// The source of changes of the level.
+    pub(crate) reload: Option<Reload>,
     pub(crate) number: LevelNumber,
-    pub(crate) course: Course,
-}
-
-/// The course that levels belong to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) enum Course {
-    /// Levels that are tried again until they are won.
-    #[default]
-    Levels,
-    /// A descent, which ends with the player.
-    Endless,
-    /// The descent of a day, such as 20261122, and whether the try counts.
-    Daily { date: u32, counts: bool },
+    /// The kind of the descent, which ends with the player; `None` for levels, which are tried again until they are won.
+    pub(crate) descent: Option<Descent>,
 }
 
 /// A level before it begins. It can begin any number of times.
@@ -90,10 +87,10 @@ impl Levels {
         Some(Self::staged(first, stages).numbered(index + 1, builtin::LEVELS.len()))
     }
 
-    /// The floors of the descent with that seed, without an end.
-    pub(crate) fn descent(seed: u64, course: Course) -> Self {
+    /// The floors of the descent with that seed, without an end. The seed of a daily run is its date.
+    pub(crate) fn descent(seed: u64, kind: Descent) -> Self {
         let stage = move |number| Stage::Floor { seed, number };
-        Self { course, ..Self::staged(stage(1), (2..).map(stage)) }
+        Self { descent: Some(kind), ..Self::staged(stage(1), (2..).map(stage)) }
     }
 
     /// One level that may change during the game. `changes` is called a few times a second. If the
@@ -102,7 +99,8 @@ impl Levels {
         level: Level,
         changes: impl FnMut() -> Option<Result<Level, Faults>> + 'static,
     ) -> Self {
-        Self { changes: Some(Box::new(changes)), ..Self::new(level, iter::empty()) }
+        let reload = Reload { changes: Box::new(changes), next_check: INTERVAL, fault: None };
+        Self { reload: Some(reload), ..Self::new(level, iter::empty()) }
     }
 
     /// Sets the number of the first level, counted from 1, and the number of levels.
@@ -111,28 +109,20 @@ impl Levels {
         Self { number: LevelNumber { number, of: Some(of) }, ..self }
     }
 
-    /// No level.
-    pub(crate) fn nothing() -> Self {
-        Self::staged(Stage::nothing(), iter::empty())
+    fn staged(stage: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
+        let number = LevelNumber { number: 1, of: None };
+        Self { stage, rest: Box::new(rest), number, reload: None, descent: None }
     }
+}
 
-    fn staged(first: Stage, rest: impl Iterator<Item = Stage> + 'static) -> Self {
-        Self {
-            first,
-            rest: Box::new(rest),
-            number: LevelNumber { number: 1, of: None },
-            changes: None,
-            course: Course::default(),
-        }
+impl Default for Levels {
+    /// A level in which there is nothing.
+    fn default() -> Self {
+        Self::staged(Stage::Level(Level::Space(Scene::default())), iter::empty())
     }
 }
 
 impl Stage {
-    /// A level in which there is nothing.
-    pub(crate) fn nothing() -> Self {
-        Self::Level(Level::Space(Scene::default()))
-    }
-
     /// The name under which results of the level are kept, if they are.
     pub(crate) fn name(&self) -> Option<&str> {
         match self {
@@ -165,20 +155,9 @@ impl Stage {
             }
         })
     }
-
-    /// Replaces the level by a changed one.
-    pub(crate) fn change(&mut self, level: Level) {
-        *self = Self::Level(level);
-    }
 }
 
 impl LevelNumber {
-    /// The number of the next level.
-    #[must_use]
-    pub(crate) fn next(self) -> Self {
-        Self { number: self.number + 1, ..self }
-    }
-
     /// Whether there are several levels, as far as known.
     pub(crate) fn is_one_of_several(self) -> bool {
         self.number > 1 || self.of.is_some_and(|count| count > 1)
@@ -217,30 +196,28 @@ impl App {
 
     /// Begins the first of `levels`.
     pub(crate) fn set_up(&mut self, levels: Levels) {
-        let Levels { first, rest, number, changes, course } = levels;
-        let Some(game) = first.begin(self.difficulty) else { return };
-        self.later_levels = rest;
-        self.level = number;
-        self.reload = changes.map(Reload::from);
+        let Some(game) = levels.stage.begin(self.difficulty) else { return };
+        self.levels = levels;
         self.earlier = 0.0;
-        self.course = course;
         self.reached = Reached::default();
         self.demo = None;
         self.log = RunLog::default();
-        self.begin_level(first, game);
+        self.begin_level(game);
         self.tell_whether_it_counts();
     }
 
     /// Begins the next level. After the last one comes the end.
     pub(crate) fn next_level(&mut self) {
-        let Some(stage) = self.later_levels.next() else { return self.show(Screen::End) };
-        let Some(game) = stage.begin(self.difficulty) else { return self.show(Screen::End) };
+        let stage = self.levels.rest.next();
+        let begun = stage.and_then(|stage| Some((stage.begin(self.difficulty)?, stage)));
+        let Some((game, stage)) = begun else { return self.show(Screen::End) };
         self.earlier += self.game.elapsed();
-        self.level = self.level.next();
+        self.levels.number.number += 1;
+        self.levels.stage = stage;
         if !self.is_descent() {
             self.log = RunLog::default();
         }
-        self.begin_level(stage, game);
+        self.begin_level(game);
         self.ask_about_saved();
     }
 
@@ -253,10 +230,9 @@ impl App {
 
     /// Returns to the start of the level.
     pub(crate) fn begin_again(&mut self) {
-        let Some(game) = self.stage.begin(self.difficulty) else { return };
+        let Some(game) = self.levels.stage.begin(self.difficulty) else { return };
         self.log = RunLog::default();
-        let stage = mem::replace(&mut self.stage, Stage::nothing());
-        self.begin_level(stage, game);
+        self.begin_level(game);
     }
 
     /// Goes on from the last checkpoint after a death.
@@ -281,25 +257,22 @@ impl App {
     /// Shows the title, over a level that plays itself.
     pub(crate) fn show_title(&mut self) {
         self.script = None;
-        self.reload = None;
+        self.levels.reload = None;
         self.ghost = None;
         match Demo::begin() {
             Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
-            None => self.game = Played::nothing(),
+            None => self.game = Played::default(),
         }
         self.release_keys();
         self.show(Screen::Title);
     }
 
-    fn begin_level(&mut self, stage: Stage, game: Played) {
-        self.ghost = match (self.best_run(&stage), game.grid()) {
-            (Some(cursor), Some(game)) => Some(Ghost::new(game.clone(), cursor)),
-            _ => None,
-        };
+    fn begin_level(&mut self, game: Played) {
+        let best_run = self.best_run().zip(game.grid());
+        self.ghost = best_run.map(|(cursor, game)| Ghost::new(game.clone(), cursor));
         self.watch = Watch::begin(game.grid());
-        self.stage = stage;
         self.game = game;
-        self.result = None;
+        self.improved = None;
         self.notice = None;
         self.goal = Goal::of(&self.game, self.settings.minimap);
         self.map.begin_level();
@@ -311,35 +284,26 @@ impl App {
 /// The time between two checks.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Returns the level or its faults, if it has changed.
-pub(crate) type Changes = Box<dyn FnMut() -> Option<Result<Level, Faults>>>;
-
 /// The source of changes, and the faults of the last one.
 pub(crate) struct Reload {
-    changes: Changes,
+    /// Returns the level or its faults, if it has changed.
+    changes: Box<dyn FnMut() -> Option<Result<Level, Faults>>>,
     next_check: Duration,
     fault: Option<String>,
-}
-
-impl Reload {
-    pub(crate) fn from(changes: Changes) -> Self {
-        Self { changes, next_check: INTERVAL, fault: None }
-    }
 }
 
 impl App {
     /// Checks for a change when it is time, and continues in the changed level.
     pub(crate) fn reload(&mut self, now: Duration) {
-        let Some(reload) = self.reload.as_mut().filter(|reload| now >= reload.next_check) else {
-            return;
-        };
+        let due = self.levels.reload.as_mut().filter(|reload| now >= reload.next_check);
+        let Some(reload) = due else { return };
         reload.next_check = now + INTERVAL;
         match (reload.changes)() {
             None => {}
             Some(Ok(level)) => {
                 reload.fault = None;
                 self.game = self.game.begun_again_in(level.clone());
-                self.stage.change(level);
+                self.levels.stage = Stage::Level(level);
                 self.goal = Goal::of(&self.game, self.settings.minimap);
                 self.map.begin_level();
                 if self.shows_result() {
@@ -356,17 +320,17 @@ impl App {
 
     /// The time of the next check; `None` for never.
     pub(crate) fn next_reload(&self) -> Option<Duration> {
-        self.reload.as_ref().map(|reload| reload.next_check)
+        self.levels.reload.as_ref().map(|reload| reload.next_check)
     }
 
     /// Draws the faults of the level, if any, over the bottom of the picture.
     pub(crate) fn draw_fault(&self, canvas: &mut impl Canvas, picture: Rect) {
-        let fault = self.reload.as_ref().and_then(|reload| reload.fault.as_ref());
+        let fault = self.levels.reload.as_ref().and_then(|reload| reload.fault.as_ref());
         let Some(fault) = fault else { return };
         let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));
         let height = (lines.len() as u16).saturating_add(2).min(picture.height);
         let area = Rect { y: picture.bottom() - height, height, ..picture };
-        let inside = panels::framed(canvas, area, "the map has faults");
+        let inside = page::framed(canvas, area, "the map has faults");
         let text: Text = lines.into_iter().map(Line::from).collect();
         let padded = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         for side in [inside.x, inside.right().saturating_sub(1)] {
@@ -374,4 +338,138 @@ impl App {
         }
         canvas.draw_widget(text, padded);
     }
+}
+
+/// The sentence about a daily run that does not count.
+const PRACTICE: &str = "Practice: the first try of the day counts";
+
+impl App {
+    /// The question before the daily run: the try that counts begins or goes on, or is over.
+    pub(crate) fn daily_menu(&self) -> Menu<Choice> {
+        let menu = Menu::new("daily run");
+        let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return menu };
+        let menu = menu.line(format!("The descent of {}, the same for all.", date_of(date.into())));
+        let rules = Rules { difficulty: Difficulty::default(), seed: date.into() };
+        let id = save_of_descent(Descent::Daily, rules).id();
+        let menu = match self.store.daily(date) {
+            None if !self.store.has_room_for(id) => self.with_removal(menu),
+            None => menu
+                .line("One try counts, and it ends with your death.")
+                .line("If you leave, it is saved, and you can go on.")
+                .entry("Begin the try that counts", Choice::Daily),
+            Some(_) if self.store.has_saved(id) => menu
+                .line("The try that counts is where you left it.")
+                .entry("Continue the try that counts", Choice::Continue(id)),
+            Some(tried) => menu
+                .line(format!("The try that counts reached {}.", described(tried)))
+                .entry("Practise", Choice::Daily),
+        };
+        menu.entry("Return to the title", Choice::Back)
+    }
+
+    /// Begins the descent of the day, at the same difficulty for everybody.
+    pub(crate) fn begin_daily(&mut self) {
+        let Some(date) = self.offers.as_ref().and_then(|offers| offers.today) else { return };
+        let counts = self.store.begin_daily(date);
+        let kind = if counts { Descent::Daily } else { Descent::Practice };
+        self.difficulty = Difficulty::default();
+        self.set_up(Levels::descent(date.into(), kind));
+        self.ask_about_saved();
+    }
+
+    /// Begins a descent that nobody has seen.
+    pub(crate) fn begin_endless(&mut self) {
+        let Some(offers) = self.offers.as_mut() else { return };
+        let seed = offers.seed;
+        offers.seed = seed.wrapping_add(1);
+        self.difficulty = self.usual_difficulty();
+        self.begin(Levels::descent(seed, Descent::Endless));
+    }
+
+    /// Says at the start of a daily run whether the try counts.
+    fn tell_whether_it_counts(&mut self) {
+        let (text, short) = match self.levels.descent {
+            Some(Descent::Daily) => ("Daily run: this try counts", "This try counts"),
+            Some(Descent::Practice) => (PRACTICE, "Practice"),
+            Some(Descent::Endless) | None => return,
+        };
+        self.goal = Goal::new(text, short);
+    }
+
+    /// Counts the floor whose exit the player has just reached.
+    pub(crate) fn count_floor(&mut self) {
+        if let Some(game) = self.game.grid() {
+            self.reached = self.reached.and(&game.tally());
+        }
+    }
+
+    /// Whether the level belongs to a descent.
+    pub(crate) fn is_descent(&self) -> bool {
+        self.levels.descent.is_some()
+    }
+
+    /// Records a floor that was won.
+    pub(crate) fn record_floor(&mut self) {
+        let Some(game) = self.game.grid() else { return };
+        let (date, script) = (u32::try_from(game.rules().seed), self.run_script(game));
+        self.count_floor();
+        match (self.levels.descent, date) {
+            (Some(Descent::Daily), Ok(date)) => self.store.record_daily(date, self.reached, script),
+            (Some(Descent::Endless), _) => self.store.record_descent(self.reached, script),
+            _ => {}
+        }
+    }
+
+    /// The lines about how far the descent came.
+    pub(crate) fn descent_lines(&self) -> impl Iterator<Item = String> {
+        let is_practice = self.levels.descent == Some(Descent::Practice);
+        [described(self.reached)].into_iter().chain(is_practice.then(|| PRACTICE.to_owned()))
+    }
+
+    /// Adds the descents to the title's menu.
+    pub(crate) fn with_descents(&self, menu: Menu<Choice>) -> Menu<Choice> {
+        let Some(offers) = &self.offers else { return menu };
+        let reached = |reached: Option<Reached>| reached.map_or_else(String::new, short);
+        let daily = offers.today.map(|date| {
+            ("Daily run", reached(self.store.daily(date)), Choice::Open(Screen::Daily))
+        });
+        menu.entries(daily).entry_with(
+            "Endless",
+            reached(self.store.best_descent()),
+            Choice::Endless,
+        )
+    }
+}
+
+/// The descent of that kind with these rules, as it is saved, without steps and checksum.
+pub(crate) fn save_of_descent(kind: Descent, rules: Rules) -> Save {
+    Save {
+        level: LevelName::of_floor(1).as_str().to_owned(),
+        file: None,
+        rules,
+        descent: Some(kind),
+        steps: None,
+        checksum: None,
+    }
+}
+
+/// The seed of a daily run as a date: 20261122 is 2026-11-22.
+pub(crate) fn date_of(seed: u64) -> String {
+    format!("{}-{:02}-{:02}", seed / 10_000, seed / 100 % 100, seed % 100)
+}
+
+/// The floors that were reached, for the title.
+fn short(reached: Reached) -> String {
+    match reached.floors {
+        1 => "1 floor".to_owned(),
+        floors => format!("{floors} floors"),
+    }
+}
+
+fn described(reached: Reached) -> String {
+    if reached.floors == 0 {
+        return short(reached);
+    }
+    let seconds = whole_seconds(reached.steps as f64 * STEP);
+    format!("{}, {} gold in {seconds}", short(reached), reached.treasure)
 }

@@ -1,21 +1,37 @@
-//! How the picture of one player is drawn, and the map and the HUD over it.
+//! The picture of one player, and over it the HUD and the map: directions of sounds, a flash at the edge, the compass,
+//! the middle of the picture, and the text of a note.
 //!
-//! All of it depends on the game and the player alone, so that a game at home and a room of several
-//! show the same.
+//! All of it depends on the game and the player alone, so that a game at home and a room of several show the same. A
+//! level without guards looks and costs as if there were no HUD, because absent things are not drawn.
+//!
+//! - **Sounds.** The edge is a ring around the player as seen from above: a sound ahead is at the top,
+//!   one from behind at the bottom. A mark is an arrow and one to three characters by the strength. Each
+//!   kind of sound has its own character, so that colours are not needed. If a guard has noticed the
+//!   player, or strikes, a word says so. Marks that would cover each other move aside: a louder one keeps
+//!   its place.
+//! - **The flash.** It is red when the player is hurt, on the side of the blow, and golden when they find
+//!   something. It tints the pixels before they are painted, so that every colour depth shows it. Without
+//!   colours, the edge is drawn in characters.
 
+use glam::DVec2;
 use ratatui::layout::{Rect, Size};
-use ratatui::style::Color;
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::{Block, Padding, Paragraph};
 
-use crate::app::map_panel::MapPanel;
+use crate::app::MapDisplay;
+use crate::app::controls::MapChange;
+use crate::app::page::{self, BORDERS, PADDING, framed, wrapped};
 use crate::app::store::Preferences;
-use crate::app::{hud, panels};
+use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
-use crate::game::{Flash, Game, PlayerId, PlayerView};
+use crate::game::{Flash, FlashKind, Game, Heard, PlayerId, PlayerView, SoundKind};
 use crate::render::{Filter, Frame, Renderable};
+use crate::sort;
 use crate::terminal::Protocol;
 use crate::tui::canvas::Canvas;
-use crate::tui::{CellAspect, Correction, FirstPerson, GlyphSet, MapMark, View};
-use crate::world::{FieldOfView, Heading};
+use crate::tui::{CellAspect, Correction, Explored, FirstPerson, GlyphSet, MapMark, Minimap, View};
+use crate::world::{Camera, FieldOfView, Heading};
 
 /// How the terminal shows pictures, as far as it is known.
 #[derive(Clone, Copy, Debug, Default)]
@@ -118,10 +134,10 @@ impl DrawOptions {
     /// Tints and marks the pixels of a picture in colours.
     fn change_pixels(&self, frame: &mut Frame) {
         if let Some((flash, heading)) = &self.flash {
-            hud::tint(frame, flash, *heading);
+            tint(frame, flash, *heading);
         }
         if self.marks_middle && self.glyphs.has_blocks() {
-            hud::mark_middle(frame);
+            mark_middle(frame);
         }
     }
 }
@@ -138,7 +154,6 @@ pub struct Overlay<'a> {
     player: PlayerView<'a>,
     options: &'a DrawOptions,
     preferences: Preferences,
-    ghost: Option<MapMark>,
 }
 
 impl<'a> Overlay<'a> {
@@ -149,12 +164,7 @@ impl<'a> Overlay<'a> {
         options: &'a DrawOptions,
         preferences: Preferences,
     ) -> Option<Self> {
-        Some(Self { game, player: game.seen_by(player)?, options, preferences, ghost: None })
-    }
-
-    /// Sets the ghost on the map.
-    pub(crate) fn with_ghost(self, ghost: Option<MapMark>) -> Self {
-        Self { ghost, ..self }
+        Some(Self { game, player: game.seen_by(player)?, options, preferences })
     }
 
     /// Draws the middle, the flash at the edge, and the compass; also sounds and the note if
@@ -165,28 +175,29 @@ impl<'a> Overlay<'a> {
         let heading = player.camera(options.field_of_view).heading;
         let is_plain = options.depth == ColorDepth::Mono;
         if let Some((flash, heading)) = options.flash.as_ref().filter(|_| is_plain) {
-            hud::draw_edge(canvas, area, flash, *heading);
+            draw_edge(canvas, area, flash, *heading);
         }
         if self.preferences.compass {
-            hud::draw_compass(canvas, area, heading);
+            draw_compass(canvas, area, heading);
         }
         if shows_events {
-            hud::draw_sounds(canvas, area, player.heard(), heading, options.depth);
+            draw_sounds(canvas, area, player.heard(), heading, options.depth);
             if let Some(note) = player.note() {
-                hud::draw_note(canvas, area, note);
+                draw_note(canvas, area, note);
             }
         }
     }
 
-    /// Draws the map with its panel, if it is shown. `view` has drawn the picture.
+    /// Draws the map with its panel, and perhaps a ghost, if it is shown. `view` has drawn the picture.
     pub fn draw_map(
         &self,
         canvas: &mut impl Canvas,
         area: Rect,
         panel: &mut MapPanel,
         view: &View,
+        ghost: Option<MapMark>,
     ) {
-        let Self { game, player, options, ghost, .. } = self;
+        let Self { game, player, options, .. } = self;
         let camera = &player.camera(options.field_of_view);
         panel.explore(game, camera, area.width);
         if !panel.is_shown {
@@ -198,9 +209,9 @@ impl<'a> Overlay<'a> {
         let others = others.map(|it| MapMark { position: it.position, heading: it.heading });
         let marks: Vec<MapMark> = guards.chain(others).collect();
         let map = panel.minimap(game, camera, view);
-        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(*ghost);
-        if let Some(place) = panels::minimap(area, &map) {
-            let inside = panels::framed(canvas, place, "map");
+        let map = map.glyphs(options.glyphs).color_depth(options.depth).marks(&marks).ghost(ghost);
+        if let Some(place) = page::minimap(area, &map) {
+            let inside = framed(canvas, place, "map");
             map.paint(inside, canvas);
             let extent = map.extent_within(inside.as_size());
             panel.shown(extent, game, camera);
@@ -218,3 +229,422 @@ impl DrawOptions {
         }
     }
 }
+
+/// The widest text of a note, in columns.
+const NOTE_COLUMNS: usize = 56;
+
+/// Draws the text of a note at the bottom of the picture.
+pub(crate) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
+    let most_columns = usize::from(picture.width.saturating_sub(BORDERS + PADDING)).max(1);
+    let columns = most_columns.min(NOTE_COLUMNS);
+    let lines: Vec<String> = note.lines().flat_map(|line| wrapped(line, columns)).collect();
+    let widest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+    let (width, height) = (widest as u16 + BORDERS + PADDING, lines.len() as u16 + BORDERS);
+    let (width, height) = (width.max(8).min(picture.width), height.min(picture.height));
+    let area = Rect {
+        x: picture.x + (picture.width - width) / 2,
+        y: picture.bottom() - height,
+        width,
+        height,
+    };
+    let inside = framed(canvas, area, "note");
+    let text: Text = lines.into_iter().map(Line::from).collect();
+    let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
+    canvas.draw_widget(Paragraph::new(text).block(padded), inside);
+}
+
+/// Marks the middle of a picture that is painted in half blocks.
+fn mark_middle(frame: &mut Frame) {
+    let (x, y) = (frame.width() as usize / 2, frame.height() as usize / 2);
+    let Some(pixel) = frame.rows_mut().nth(y).and_then(|row| row.get_mut(x)) else { return };
+    *pixel = if pixel.luma() < 128 { Rgb::WHITE } else { Rgb::BLACK };
+}
+
+/// The most marks that are shown.
+const MOST: usize = 8;
+/// The rows at the top that other panels use.
+const ROWS_ABOVE: u16 = 1;
+/// The columns of a picture with room for words.
+const COLUMNS_FOR_WORDS: u16 = 40;
+
+/// Draws a mark for each of `heard`, as heard in the direction of view `heading`.
+fn draw_sounds(
+    canvas: &mut impl Canvas,
+    picture: Rect,
+    heard: &[Heard],
+    heading: Heading,
+    depth: ColorDepth,
+) {
+    if heard.is_empty() || picture.height <= ROWS_ABOVE + 2 || picture.width < 20 {
+        return;
+    }
+    let ring = Rect { y: picture.y + ROWS_ABOVE, height: picture.height - ROWS_ABOVE, ..picture };
+    let mut loudest: Vec<&Heard> = heard.iter().collect();
+    sort::by_key(&mut loudest, |heard| (!is_threat(heard.kind), u8::MAX - heard.strength));
+    let mut taken: Vec<Rect> = Vec::new();
+    for heard in loudest.into_iter().take(MOST) {
+        let text = mark(heard, heading, picture.width >= COLUMNS_FOR_WORDS);
+        let Some(area) = free_place(ring, angle(heard, heading), &text, &taken) else { continue };
+        canvas.draw_widget(Line::raw(text).style(style(heard.kind, depth)), area);
+        taken.push(area);
+    }
+}
+
+/// Whether the sound means that somebody has noticed the player or is about to strike.
+fn is_threat(kind: SoundKind) -> bool {
+    word(kind).is_some()
+}
+
+/// What the guard behind the sound does, if it threatens the player.
+const fn word(kind: SoundKind) -> Option<&'static str> {
+    match kind {
+        SoundKind::Wonder => Some("wonders"),
+        SoundKind::Shout => Some("shouts"),
+        SoundKind::Bell => Some("rings"),
+        SoundKind::Bark => Some("barks"),
+        SoundKind::Windup => Some("attacks"),
+        SoundKind::Draw => Some("aims"),
+        SoundKind::Shot => Some("shoots"),
+        SoundKind::Swing => Some("strikes"),
+        _ => None,
+    }
+}
+
+/// The character of a kind of sound.
+const fn character(kind: SoundKind) -> char {
+    match kind {
+        SoundKind::Walking => '.',
+        SoundKind::Running => ':',
+        SoundKind::Landing => '_',
+        SoundKind::Splash => '~',
+        SoundKind::Door => '+',
+        SoundKind::Mechanism => '=',
+        SoundKind::Spikes => 'i',
+        SoundKind::Knock => 'o',
+        SoundKind::Crash => '*',
+        SoundKind::Blow => 'x',
+        SoundKind::Cry => 'a',
+        SoundKind::Fall => 'u',
+        SoundKind::Wonder => '?',
+        SoundKind::GiveUp => ',',
+        SoundKind::Shout => '!',
+        SoundKind::Bell => '&',
+        SoundKind::Bark => 'w',
+        SoundKind::Windup => '/',
+        SoundKind::Draw => ')',
+        SoundKind::Shot => '-',
+        SoundKind::Swing => '\\',
+    }
+}
+
+/// The angle from the direction of view to the sound, clockwise, from −180 to 180 degrees.
+fn angle(heard: &Heard, heading: Heading) -> f64 {
+    let clockwise = heard.bearing.degrees() - heading.degrees();
+    (clockwise + 540.0).rem_euclid(360.0) - 180.0
+}
+
+/// The side of the ring on which a sound at `angle` is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Ahead,
+    Right,
+    Behind,
+    Left,
+}
+
+impl Side {
+    fn of(angle: f64) -> Self {
+        match angle {
+            -45.0..=45.0 => Self::Ahead,
+            45.0..=135.0 => Self::Right,
+            -135.0..=-45.0 => Self::Left,
+            _ => Self::Behind,
+        }
+    }
+}
+
+fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
+    let strength = usize::from(heard.strength.clamp(1, 3));
+    let characters: String = std::iter::repeat_n(character(heard.kind), strength).collect();
+    let word = word(heard.kind).filter(|_| has_words);
+    let characters = match (word, Side::of(angle(heard, heading))) {
+        (None, _) => characters,
+        (Some(word), Side::Right) => format!("{word} {characters}"),
+        (Some(word), _) => format!("{characters} {word}"),
+    };
+    match Side::of(angle(heard, heading)) {
+        Side::Ahead => format!("^{characters}"),
+        Side::Right => format!("{characters}>"),
+        Side::Behind => format!("v{characters}"),
+        Side::Left => format!("<{characters}"),
+    }
+}
+
+/// The place of `text` on the ring, or the nearest free place.
+fn free_place(ring: Rect, angle: f64, text: &str, taken: &[Rect]) -> Option<Rect> {
+    let width = text.chars().count() as u16;
+    let place = place(ring, angle, width);
+    let along_a_side = matches!(Side::of(angle), Side::Left | Side::Right);
+    let moved = |by: i32| {
+        let (by_x, by_y) = if along_a_side { (0, by) } else { (by * i32::from(width + 1), 0) };
+        let x = u16::try_from(i32::from(place.x) + by_x).ok()?;
+        let y = u16::try_from(i32::from(place.y) + by_y).ok()?;
+        let moved = Rect { x, y, ..place };
+        (ring.intersection(moved) == moved).then_some(moved)
+    };
+    let nearest = (0..MOST as i32).flat_map(|by| [by, -by]);
+    nearest.filter_map(moved).find(|place| taken.iter().all(|other| !other.intersects(*place)))
+}
+
+/// The place of a mark `width` columns wide.
+fn place(ring: Rect, angle: f64, width: u16) -> Rect {
+    let spare = [ring.width - width, ring.height - 1].map(f64::from);
+    // From 0 to 1 along the side: from the left to the right, or from the top to the bottom.
+    let along = |angle: f64| ((angle + 45.0) / 90.0).clamp(0.0, 1.0);
+    let (x, y) = match Side::of(angle) {
+        Side::Ahead => (along(angle), 0.0),
+        Side::Right => (1.0, along(angle - 90.0)),
+        Side::Left => (0.0, 1.0 - along(angle + 90.0)),
+        Side::Behind => (1.0 - along(angle - 180.0_f64.copysign(angle)), 1.0),
+    };
+    Rect {
+        x: ring.x + (x * spare[0]).round() as u16,
+        y: ring.y + (y * spare[1]).round() as u16,
+        width,
+        height: 1,
+    }
+}
+
+fn style(kind: SoundKind, depth: ColorDepth) -> Style {
+    let bold = Style::new().add_modifier(Modifier::BOLD);
+    match (depth, is_threat(kind)) {
+        (ColorDepth::Mono, false) => Style::new().add_modifier(Modifier::REVERSED),
+        (ColorDepth::Mono, true) => bold.add_modifier(Modifier::REVERSED),
+        (ColorDepth::Indexed16, false) => Style::new().fg(Color::Indexed(14)),
+        (ColorDepth::Indexed16, true) => bold.fg(Color::Indexed(9)),
+        (ColorDepth::Indexed256, false) => Style::new().fg(Color::Indexed(153)),
+        (ColorDepth::Indexed256, true) => bold.fg(Color::Indexed(203)),
+        (ColorDepth::True, false) => Style::new().fg(Color::Rgb(0xa8, 0xd0, 0xf0)),
+        (ColorDepth::True, true) => bold.fg(Color::Rgb(0xff, 0x60, 0x50)),
+    }
+}
+
+/// The colours of a flash.
+const HURT: Rgb = Rgb::new(0xe8, 0x18, 0x10);
+const GAIN: Rgb = Rgb::new(0xff, 0xd0, 0x40);
+/// The opacity of the tint at the edge.
+const HURT_OPACITY: f64 = 210.0;
+const GAIN_OPACITY: f64 = 130.0;
+/// The width of the tint, as a share of the picture's smaller side, on the side of the blow and on
+/// the others.
+const NEAR_SIDE: f64 = 0.3;
+const OTHER_SIDES: f64 = 0.08;
+
+/// The sides of the picture on which the flash is: one, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sides(Option<Side>);
+
+impl Sides {
+    /// All of them, or the one from which the player was hurt.
+    fn of(flash: &Flash, heading: Heading) -> Self {
+        let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else {
+            return Self(None);
+        };
+        let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
+        let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
+        Self(Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4]))
+    }
+
+    fn contains(self, side: Side) -> bool {
+        self.0.is_none_or(|only| only == side)
+    }
+}
+
+/// Tints the pixels at the edge of `frame`.
+pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
+    let (color, opacity) = match flash.kind {
+        FlashKind::Hurt { .. } => (HURT, HURT_OPACITY),
+        FlashKind::Gain => (GAIN, GAIN_OPACITY),
+    };
+    let opacity = opacity * flash.strength();
+    let sides = Sides::of(flash, heading);
+    // A flash without a direction is thin on all sides.
+    let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+    // Half blocks are square; the pixels of other glyphs are higher than wide.
+    let aspect = frame.pixel_aspect().height_over_width();
+    let side = width.min(height * aspect);
+    let reach = |which| side * if sides.0 == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
+    let share = |distance: f64, reach: f64| (1.0 - distance / reach.max(1.0)).max(0.0);
+    for (y, row) in frame.rows_mut().enumerate() {
+        let (top, bottom) = ((y as f64 + 0.5) * aspect, (height - y as f64 - 0.5) * aspect);
+        let rows = share(top, reach(Side::Ahead)).max(share(bottom, reach(Side::Behind)));
+        for (x, pixel) in row.iter_mut().enumerate() {
+            let (left, right) = (x as f64 + 0.5, width - x as f64 - 0.5);
+            let columns = share(left, reach(Side::Left)).max(share(right, reach(Side::Right)));
+            let alpha = opacity * rows.max(columns);
+            if alpha >= 1.0 {
+                *pixel = color.over(*pixel, alpha as u8);
+            }
+        }
+    }
+}
+
+/// Draws the edge in characters, for pictures without colours.
+fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: Heading) {
+    let character = match flash.kind {
+        FlashKind::Hurt { .. } => '#',
+        FlashKind::Gain => '+',
+    };
+    let sides = Sides::of(flash, heading);
+    let mut draw = |x, y| canvas.draw_character(x, y, character, [Color::Reset; 2]);
+    let (last_column, last_row) =
+        (picture.right().saturating_sub(1), picture.bottom().saturating_sub(1));
+    for x in picture.left()..picture.right() {
+        let rows = [(Side::Ahead, picture.top()), (Side::Behind, last_row)];
+        rows.into_iter().filter(|row| sides.contains(row.0)).for_each(|(_, y)| draw(x, y));
+    }
+    for y in picture.top()..picture.bottom() {
+        let columns = [(Side::Left, picture.left()), (Side::Right, last_column)];
+        columns.into_iter().filter(|column| sides.contains(column.0)).for_each(|(_, x)| draw(x, y));
+    }
+}
+
+/// The names of the directions, clockwise from the east, where a heading is 0.
+const NAMES: [&str; 8] = ["E", "SE", "S", "SW", "W", "NW", "N", "NE"];
+/// The columns from one name to the next. It is odd, and a third of it is 15 degrees.
+const ADVANCE: i32 = 9;
+/// The widest strip.
+const MOST_COLUMNS: u16 = 31;
+
+/// Draws the strip in the middle of the picture's first row.
+fn draw_compass(canvas: &mut impl Canvas, picture: Rect, heading: Heading) {
+    let width = MOST_COLUMNS.min(picture.width / 3);
+    if width < 7 {
+        return;
+    }
+    let area = Rect { x: picture.x + (picture.width - width) / 2, width, height: 1, ..picture };
+    let strip = Line::raw(strip(heading, width.into()));
+    canvas.draw_widget(strip.style(Style::new().add_modifier(Modifier::REVERSED)), area);
+}
+
+/// The directions around `heading`, which is in the middle.
+fn strip(heading: Heading, width: usize) -> String {
+    let around = NAMES.len() as i32 * ADVANCE;
+    let middle = (heading.degrees() / 360.0 * f64::from(around)).round() as i32;
+    let letter = |column: usize| {
+        let at = (middle + column as i32 - width as i32 / 2).rem_euclid(around);
+        // A name with two letters begins at the column of its direction.
+        let (name, offset) = (NAMES[(at / ADVANCE) as usize], at % ADVANCE);
+        match (name.as_bytes().get(offset as usize), offset % (ADVANCE / 3)) {
+            (Some(&letter), _) => char::from(letter),
+            (None, 0) => '.',
+            (None, _) => ' ',
+        }
+    };
+    (0..width).map(letter).collect()
+}
+
+/// The state of the minimap between frames.
+#[derive(Clone, Debug, Default)]
+pub struct MapPanel {
+    /// Whether the map is shown.
+    pub is_shown: bool,
+    display: MapDisplay,
+    explored: Explored,
+    zoom: i32,
+    /// How far the shown part has been moved away from the player, in cells.
+    offset: DVec2,
+    /// The numbers of cells shown last from left to right and from top to bottom.
+    extent: DVec2,
+}
+
+/// The most levels of zoom in each direction.
+const MOST_ZOOM: i32 = 6;
+/// The share of the shown part by which the map is moved at once.
+const MOVED_BY: f64 = 0.25;
+
+impl MapPanel {
+    /// A panel with this content.
+    pub fn new(display: MapDisplay) -> Self {
+        Self { is_shown: display != MapDisplay::Off, display, ..Self::default() }
+    }
+
+    /// The content of the map, as the settings page shows it.
+    pub fn display(&self) -> MapDisplay {
+        match (self.is_shown, self.display) {
+            (false, _) => MapDisplay::Off,
+            (true, MapDisplay::All) => MapDisplay::All,
+            (true, _) => MapDisplay::Seen,
+        }
+    }
+
+    /// Resets the panel for a new level.
+    pub fn begin_level(&mut self) {
+        self.explored = Explored::default();
+        self.offset = DVec2::ZERO;
+    }
+
+    /// Adds the cells that `camera` sees in a picture with that many columns.
+    fn explore(&mut self, game: &Game, camera: &Camera, columns: u16) {
+        if self.display == MapDisplay::All {
+            return;
+        }
+        if let Some(corner) = game.corner() {
+            self.explored.follow(corner);
+        }
+        self.explored.look(game.world(), camera, columns.into());
+    }
+
+    /// The share of the level that has been seen, if that is counted.
+    pub(crate) fn share_seen(&self, game: &Game) -> Option<f64> {
+        let is_counted = self.display != MapDisplay::All && game.corner().is_none();
+        is_counted.then(|| self.explored.share())
+    }
+
+    /// Applies a change of the zoom or of the shown part.
+    pub fn change(&mut self, change: MapChange) {
+        let by = self.extent * MOVED_BY;
+        match change {
+            MapChange::Larger => self.zoom = (self.zoom + 1).min(MOST_ZOOM),
+            MapChange::Smaller => self.zoom = (self.zoom - 1).max(-MOST_ZOOM),
+            MapChange::North => self.offset.y -= by.y,
+            MapChange::South => self.offset.y += by.y,
+            MapChange::West => self.offset.x -= by.x,
+            MapChange::East => self.offset.x += by.x,
+            MapChange::Center => (self.zoom, self.offset) = (0, DVec2::ZERO),
+        }
+    }
+
+    /// The minimap of `game`, with the camera and the rays of the picture.
+    pub(crate) fn minimap<'a>(
+        &'a self,
+        game: &'a Game,
+        camera: &'a Camera,
+        view: &'a View,
+    ) -> Minimap<'a> {
+        let map = Minimap::new(game.world(), camera)
+            .seen(view.columns())
+            .zoom(self.zoom)
+            .offset(self.offset);
+        match self.display {
+            MapDisplay::All => map,
+            MapDisplay::Seen | MapDisplay::Off => map.explored(&self.explored),
+        }
+    }
+
+    /// Records that `extent` cells were shown. The offset is limited to the map, so that no key
+    /// presses are needed to come back from outside.
+    pub(crate) fn shown(&mut self, extent: DVec2, game: &Game, camera: &Camera) {
+        let grid = game.world().grid();
+        let size = grid.extent();
+        self.extent = extent.min(size);
+        let half = self.extent / 2.0;
+        let center = (camera.position() + self.offset).clamp(half, size - half);
+        if self.offset != DVec2::ZERO {
+            self.offset = center - camera.position();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -11,8 +11,7 @@ use ratatui::layout::{Rect, Size};
 
 use crate::app::picture::DrawOptions;
 use crate::app::settings::MapDisplay;
-use crate::game::{Flight, Game, Intents, Outcome, Rules, STEPS_PER_SECOND};
-use crate::generate::Site;
+use crate::game::{Flight, Game, Intents, Rules, STEPS_PER_SECOND};
 use crate::map::Level;
 use crate::space;
 use crate::tui::View;
@@ -47,12 +46,6 @@ impl Views {
     pub(crate) fn new(grid: View) -> Self {
         Self { grid, ..Self::default() }
     }
-
-    /// The game time of the next change in the last picture that the player does not cause; `None`
-    /// for never.
-    pub(crate) fn next_change(&self) -> Option<f64> {
-        self.grid.next_change()
-    }
 }
 
 impl Played {
@@ -66,11 +59,6 @@ impl Played {
             Level::Grid(world) => Self::Grid(Box::new(Game::with_rules(*world, rules))),
             Level::Space(scene) => Self::Space(Box::new(Flight::new(scene))),
         }
-    }
-
-    /// A flight through nothing.
-    pub(crate) fn nothing() -> Self {
-        Self::new(Level::Space(space::Scene::default()))
     }
 
     /// Begins `level` at the player's position in this game, if possible.
@@ -94,36 +82,6 @@ impl Played {
         }
     }
 
-    /// The goal that the map gives.
-    pub(crate) fn goal(&self) -> Option<&str> {
-        self.grid()?.world().goal()
-    }
-
-    /// Whether the level has an exit.
-    pub(crate) fn has_exit(&self) -> bool {
-        self.grid().is_some_and(Game::has_exit)
-    }
-
-    /// The player's cell in a generated level.
-    pub(crate) fn site(&self) -> Option<Site> {
-        self.grid()?.site()
-    }
-
-    /// The names of the keys that the player has.
-    pub(crate) fn keys(&self) -> impl Iterator<Item = &str> {
-        self.grid().into_iter().flat_map(Game::keys)
-    }
-
-    /// The message for the player.
-    pub(crate) fn message(&self) -> Option<&str> {
-        self.grid()?.message()
-    }
-
-    /// Whether the player is dead.
-    pub(crate) fn is_dead(&self) -> bool {
-        self.grid().is_some_and(|game| matches!(game.outcome(), Outcome::Dead { .. }))
-    }
-
     /// The game, if it is in a grid.
     pub(crate) fn grid_mut(&mut self) -> Option<&mut Game> {
         match self {
@@ -131,14 +89,12 @@ impl Played {
             Self::Space(_) => None,
         }
     }
+}
 
-    pub(crate) fn is_airborne(&self) -> bool {
-        self.grid().is_some_and(Game::is_airborne)
-    }
-
-    /// Whether the player flies, so that ducking moves down.
-    pub(crate) fn flies(&self) -> bool {
-        self.grid().is_none()
+impl Default for Played {
+    /// A flight through nothing.
+    fn default() -> Self {
+        Self::new(Level::Space(space::Scene::default()))
     }
 }
 
@@ -264,7 +220,7 @@ impl Played {
 const SHOWN_FOR: u64 = 4 * STEPS_PER_SECOND as u64;
 
 /// A goal, and how much longer it is shown.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Goal {
     text: String,
     short: String,
@@ -274,12 +230,11 @@ pub(crate) struct Goal {
 impl Goal {
     /// The goal of `game`, from its map if that has one.
     pub(crate) fn of(game: &Played, display: MapDisplay) -> Self {
-        let (text, short) = match game.goal() {
+        let has_exit = game.grid().is_some_and(Game::has_exit);
+        let (text, short) = match game.grid().and_then(|game| game.world().goal()) {
             Some(own) => (own, own),
-            None if game.has_exit() && display == MapDisplay::Off => {
-                ("Find the way out", "Find the exit")
-            }
-            None if game.has_exit() => ("Find the way out: green on the map", "Find the exit"),
+            None if has_exit && display == MapDisplay::Off => ("Find the way out", "Find the exit"),
+            None if has_exit => ("Find the way out: green on the map", "Find the exit"),
             None => ("Roam as you like: no exit here", "Roam around"),
         };
         Self::new(text, short)

@@ -2,44 +2,28 @@
 //! the last level.
 
 use crate::app::App;
-use crate::app::levels::Stage;
-use crate::app::menu::Menu;
+use crate::app::page::Menu;
 use crate::app::recording::{RunLog, ScriptCursor};
 use crate::app::screen::Choice;
+use crate::app::status::{tenths, whole_seconds};
 use crate::app::store::{Improved, Run};
-use crate::app::time::{tenths, whole_seconds};
-use crate::game::{Game, Header, LevelName, Outcome, Rank, STEP, Script, Share, Tally};
+use crate::game::{Game, Header, LevelName, Outcome, STEP, Script, Share, Tally};
 use crate::map::builtin;
 
-/// The result of a level that was won.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LevelResult {
-    pub(crate) tally: Tally,
-    pub(crate) par: Option<u32>,
-    pub(crate) rank: Rank,
-    pub(crate) improved: Improved,
-}
-
 impl App {
-    /// Records the level that has just been won, and returns its result.
-    pub(crate) fn record_result(&mut self) -> Option<LevelResult> {
+    /// Records the level that has just been won, and returns its improvement.
+    pub(crate) fn record_result(&mut self) -> Option<Improved> {
         if self.is_descent() {
             self.record_floor();
-        }
-        if !self.is_descent() {
+        } else {
             self.remove_save_of_level();
         }
         let game = self.game.grid()?;
-        let (tally, par) = (game.tally(), game.world().par());
-        let rank = tally.rank(par);
-        let improved = match self.stage.name().map(str::to_owned) {
-            Some(level) => {
-                let run = Run { tally, rank, script: self.run_script(game) };
-                self.store.record(&level, self.difficulty, run)
-            }
-            None => Improved::default(),
-        };
-        Some(LevelResult { tally, par, rank, improved })
+        let Some(level) = self.levels.stage.name() else { return Some(Improved::default()) };
+        let (level, tally) = (level.to_owned(), game.tally());
+        let run =
+            Run { tally, rank: tally.rank(game.world().par()), script: self.run_script(game) };
+        Some(self.store.record(&level, self.difficulty, run))
     }
 
     /// The script of the run so far, with a header that names the level. A descent is one run from its
@@ -48,7 +32,7 @@ impl App {
         let level = if self.is_descent() {
             Some(LevelName::of_floor(1))
         } else {
-            self.stage.name().and_then(LevelName::new)
+            self.levels.stage.name().and_then(LevelName::new)
         };
         let header =
             Header { level, difficulty: Some(self.difficulty), seed: Some(game.rules().seed) };
@@ -89,8 +73,8 @@ impl App {
     }
 
     /// The best run of the level as a script, to walk along.
-    pub(crate) fn best_run(&self, stage: &Stage) -> Option<ScriptCursor> {
-        let text = self.store.script(stage.name()?, self.difficulty)?;
+    pub(crate) fn best_run(&self) -> Option<ScriptCursor> {
+        let text = self.store.script(self.levels.stage.name()?, self.difficulty)?;
         Script::parse(&text, "the best run").ok().map(|script| ScriptCursor::new(&script))
     }
 
@@ -119,18 +103,15 @@ pub(crate) fn builtin_named(name: &str) -> Option<usize> {
 impl App {
     /// The result of the level, and the ways to go on.
     pub(crate) fn level_done_menu(&self) -> Menu<Choice> {
-        let menu =
-            self.level_lines().into_iter().fold(Menu::new("you found the way out"), Menu::line);
-        let is_fastest = self.result.is_some_and(|result| result.improved.time);
+        let is_fastest = self.improved.is_some_and(|improved| improved.time);
         let fastest = if is_fastest { " (your fastest)" } else { "" };
-        let menu = menu.line(format!("in {}{fastest}", tenths(self.game.elapsed())));
-        let menu = match &self.result {
-            Some(result) => result_lines(result).into_iter().fold(menu, Menu::line),
-            None => menu,
-        };
-        let menu = menu.entry("Go on", Choice::NextLevel);
-        let menu =
-            if self.is_descent() { menu } else { menu.entry("Play it again", Choice::Restart) };
+        let result = self.improved.zip(self.game.grid()).map(result_lines);
+        let menu = Menu::new("you found the way out")
+            .lines(self.level_lines())
+            .line(format!("in {}{fastest}", tenths(self.game.elapsed())))
+            .lines(result.into_iter().flatten())
+            .entry("Go on", Choice::NextLevel)
+            .entries((!self.is_descent()).then_some(("Play it again", "", Choice::Restart)));
         self.with_leaving(menu)
     }
 
@@ -140,17 +121,15 @@ impl App {
             Some(Outcome::Dead { cause }) => format!("killed by {cause}"),
             _ => String::new(),
         };
+        let menu = Menu::new("you are dead").line(cause);
         if self.is_descent() {
-            let menu = Menu::new("you are dead").line(cause);
-            let menu = self.descent_lines().into_iter().fold(menu, Menu::line);
-            return self.with_leaving(menu);
+            return self.with_leaving(menu.lines(self.descent_lines()));
         }
         let deaths = self.game.grid().map_or(0, |game| game.tally().deaths);
-        let menu = Menu::new("you are dead").line(cause);
-        let menu =
-            if deaths > 1 { menu.line(format!("for the {} time", ordinal(deaths))) } else { menu };
-        let menu =
-            menu.entry("Try again", Choice::Retry).entry("Restart the level", Choice::Restart);
+        let menu = menu
+            .lines((deaths > 1).then(|| format!("for the {} time", ordinal(deaths))))
+            .entry("Try again", Choice::Retry)
+            .entry("Restart the level", Choice::Restart);
         self.with_leaving(menu)
     }
 
@@ -161,12 +140,10 @@ impl App {
     }
 
     /// The level's title and, if there are several levels, its number.
-    pub(crate) fn level_lines(&self) -> Vec<String> {
-        let mut lines = vec![self.game.title().to_owned()];
-        if self.level.is_one_of_several() {
-            lines.push(self.level.to_string());
-        }
-        lines
+    pub(crate) fn level_lines(&self) -> impl Iterator<Item = String> {
+        let number = self.levels.number;
+        let number = number.is_one_of_several().then(|| number.to_string());
+        [self.game.title().to_owned()].into_iter().chain(number)
     }
 }
 
@@ -183,16 +160,15 @@ fn ordinal(number: u32) -> String {
 }
 
 /// The rank first, as it is what a small window has room for.
-fn result_lines(result: &LevelResult) -> Vec<String> {
-    let LevelResult { tally, par, rank, improved } = *result;
+fn result_lines((improved, game): (Improved, &Game)) -> impl Iterator<Item = String> {
+    let (tally, par) = (game.tally(), game.world().par());
     let best = if improved.rank { " (your best)" } else { "" };
-    let mut lines = vec![format!("rank: {rank}{best}"), counts(&tally)];
-    if let Some(par) = par {
+    let lines = [format!("rank: {}{best}", tally.rank(par)), counts(&tally)];
+    lines.into_iter().chain(par.map(|par| {
         let seconds = tally.steps as f64 * STEP;
         let compared = if seconds <= f64::from(par) { "within" } else { "over" };
-        lines.push(format!("{compared} the par time of {}", whole_seconds(par.into())));
-    }
-    lines
+        format!("{compared} the par time of {}", whole_seconds(par.into()))
+    }))
 }
 
 /// The counts of finds and events, without zeros that say nothing.

@@ -9,13 +9,13 @@
 //! a checksum of the map alone. It would not notice a change of the rules, and would reject a map in
 //! which only a comment has changed.
 
-use super::descents::{date_of, save_of_descent};
-use super::menu::Menu;
+use super::levels::{date_of, save_of_descent};
+use super::page::Menu;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
+use super::run::Watch;
 use super::screen::{Choice, capitalized};
-use super::steps::Watch;
-use super::time::whole_seconds;
+use super::status::whole_seconds;
 use super::{App, Levels, Screen};
 use crate::app::store::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
 use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
@@ -56,12 +56,12 @@ impl App {
     fn as_save(&self) -> Option<Save> {
         let game = self.game.grid().filter(|_| self.demo.is_none())?;
         let steps = Some(self.log.steps());
-        if let Some(kind) = self.descent() {
+        if let Some(kind) = self.levels.descent {
             return Some(Save { steps, ..save_of_descent(kind, game.rules()) });
         }
         Some(Save {
-            level: self.stage.name()?.to_owned(),
-            file: self.stage.file().map(str::to_owned),
+            level: self.levels.stage.name()?.to_owned(),
+            file: self.levels.stage.file().map(str::to_owned),
             rules: game.rules(),
             descent: None,
             steps,
@@ -72,7 +72,7 @@ impl App {
     /// Whether a game has begun and is not over. A descent is not over at the exit of a floor, but with the
     /// player's death.
     fn is_unfinished(&self) -> bool {
-        let is_over = |game: &Game| match self.descent() {
+        let is_over = |game: &Game| match self.levels.descent {
             Some(_) => matches!(game.outcome(), Outcome::Dead { .. }),
             None => game.is_finished(),
         };
@@ -123,11 +123,8 @@ impl App {
     pub(crate) fn has_saved_menu(&self) -> Menu<Choice> {
         let menu = Menu::new("a saved game");
         let Some(id) = self.as_save().map(|save| save.id()) else { return menu };
-        let menu = match self.store.saves().find(|save| save.id() == id) {
-            Some(save) => menu.line(described(save)),
-            None => menu,
-        };
         let menu = menu
+            .lines(self.store.saves().find(|save| save.id() == id).map(described))
             .line("A new game takes its place when you leave it or win.")
             .entry("Continue", Choice::Resume(id))
             .entry("Begin anew", Choice::GoOn);
@@ -142,13 +139,9 @@ impl App {
 
     /// Adds the offer to remove the oldest saved game.
     pub(crate) fn with_removal(&self, menu: Menu<Choice>) -> Menu<Choice> {
-        let menu = menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."));
-        match self.store.saves().last() {
-            Some(oldest) => {
-                menu.entry_with("Remove the oldest", name_of(oldest), Choice::RemoveOldest)
-            }
-            None => menu,
-        }
+        let oldest = self.store.saves().last();
+        menu.line(format!("{MOST_SAVES} games are saved, and no more are kept."))
+            .entries(oldest.map(|it| ("Remove the oldest", name_of(it), Choice::RemoveOldest)))
     }
 
     /// Removes the oldest saved game to make room for the new one.
@@ -180,9 +173,7 @@ impl App {
 
     /// The list of saved games, the newest first, and the next level of the campaign.
     pub(crate) fn saves_menu(&self) -> Menu<Choice> {
-        let menu = Menu::new("continue").line("x removes a saved game");
-        self.ways_on()
-            .fold(menu, |menu, (name, played, choice)| menu.entry_with(name, played, choice))
+        Menu::new("continue").line("x removes a saved game").entries(self.ways_on())
     }
 
     /// The games to continue: name, time played, and choice.
@@ -207,12 +198,10 @@ impl App {
 
     /// The question whether to remove a saved game.
     pub(crate) fn remove_menu(&self, id: SaveId) -> Menu<Choice> {
-        let menu = Menu::new("remove the saved game?");
-        let menu = match self.store.saves().find(|save| save.id() == id) {
-            Some(save) => menu.line(described(save)),
-            None => menu,
-        };
-        menu.entry("Keep it", Choice::Back).entry("Remove it", Choice::Remove(id))
+        Menu::new("remove the saved game?")
+            .lines(self.store.saves().find(|save| save.id() == id).map(described))
+            .entry("Keep it", Choice::Back)
+            .entry("Remove it", Choice::Remove(id))
     }
 
     /// Removes a saved game, and returns to the list, or to the title if it is empty.
@@ -256,7 +245,7 @@ impl App {
     /// A sentence why there is no such level now.
     fn begin_saved(&mut self, save: &Save) -> Result<(), String> {
         let levels = match save.descent {
-            Some(kind) => Self::descent_of(kind, save.rules.seed).ok_or(NO_MAP)?,
+            Some(kind) => Levels::descent(save.rules.seed, kind),
             None => self.levels_of(save)?,
         };
         self.difficulty = save.rules.difficulty;

@@ -1,19 +1,22 @@
-//! Screens: the pages of the game at home, their menus, and what choosing an entry does.
+//! Screens: the pages of the game at home, their menus, and the effect of keys, the mouse and entries on each.
 
 use std::fmt::Write;
+use std::time::Duration;
 
-use crate::app::bindings::Action;
-use crate::app::menu::Menu;
-use crate::app::page::{Kind, Page};
-use crate::app::panels::key_names;
-use crate::app::store::SaveId;
-use crate::app::time::{of_steps, whole_seconds};
+use crate::app::controls::{Action, KeyContext};
+use crate::app::page::{Effect, Kind, Menu, Page};
+use crate::app::picture::widened;
+use crate::app::status::{of_steps, whole_seconds};
+use crate::app::store::{Preferences, SaveId};
 use crate::app::{App, Levels};
+use crate::game::{Game, Intents};
 use crate::map::builtin;
+use crate::terminal::{Key, KeyEvent, MouseEvent};
+use crate::tui::Press;
 use crate::world::Difficulty;
 
 /// The panel on the picture. The effect of keys depends on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) enum Screen {
     Title,
     /// The choice of a difficulty for a new game.
@@ -37,6 +40,7 @@ pub(crate) enum Screen {
     Settings,
     /// The question whether to tell tmux that its terminal shows 24-bit colours.
     Tmux,
+    #[default]
     Playing,
     Paused,
     Help,
@@ -108,7 +112,7 @@ impl Page for Screen {
 
 impl Screen {
     /// Whether the screen is a question before the first step of a level.
-    pub(crate) fn is_before_start(self) -> bool {
+    fn is_before_start(self) -> bool {
         matches!(self, Self::HasSaved | Self::NoRoom | Self::Outdated(_))
     }
 }
@@ -179,7 +183,7 @@ impl App {
             Screen::Dead => self.death_menu(),
             Screen::LevelDone => self.level_done_menu(),
             Screen::End => self.end_menu(),
-            _ => Menu::new(""),
+            _ => Menu::default(),
         }
     }
 
@@ -242,30 +246,29 @@ impl App {
         }
     }
 
-    pub(crate) fn title_menu(&self) -> Menu<Choice> {
+    fn title_menu(&self) -> Menu<Choice> {
         let menu = self
-            .with_continue(Menu::new(""))
+            .with_continue(Menu::default())
             .entry("New game", Choice::Open(Screen::NewGame))
             .entry("Levels", Choice::Open(Screen::Levels));
-        let menu = self.with_descents(menu);
         let has_maps = self.offers.as_ref().is_some_and(|offers| offers.maps.is_some());
-        let menu = if has_maps { menu.entry("My maps", Choice::Open(Screen::Maps)) } else { menu };
-        let menu = menu
+        self.with_descents(menu)
+            .entries(has_maps.then_some(("My maps", "", Choice::Open(Screen::Maps))))
             .entry("Settings", Choice::Open(Screen::Settings))
-            .entry("Help", Choice::Open(Screen::Help));
-        self.with_tmux_offer(menu).entry("Leave", Choice::Leave)
+            .entry("Help", Choice::Open(Screen::Help))
+            .entries(self.tmux_offer())
+            .entry("Leave", Choice::Leave)
     }
 
     /// The built-in levels, each with the best time and the best rank.
     fn level_menu(&self) -> Menu<Choice> {
         let difficulty = self.store.preferences().difficulty;
-        let menu = Menu::new(format!("levels, {}", difficulty.name()))
-            .line("left and right: another difficulty");
-        let levels = builtin::LEVELS.iter().enumerate();
-        levels.fold(menu, |menu, (index, level)| {
-            let best = self.best_of(level.name, difficulty);
-            menu.entry_with(capitalized(level.name), best, Choice::Level(index))
-        })
+        Menu::new(format!("levels, {}", difficulty.name()))
+            .line("left and right: another difficulty")
+            .entries(builtin::LEVELS.iter().enumerate().map(|(index, level)| {
+                let best = self.best_of(level.name, difficulty);
+                (capitalized(level.name), best, Choice::Level(index))
+            }))
     }
 
     /// The best time and the best rank in the level that the store calls `name`.
@@ -290,24 +293,23 @@ impl App {
         if self.own_maps.is_empty() {
             return menu.line("There is no map file here. docs/maps.md says how to write one.");
         }
-        let maps = self.own_maps.iter().enumerate();
-        maps.fold(menu, |menu, (index, map)| {
+        menu.entries(self.own_maps.iter().enumerate().map(|(index, map)| {
             let best = self.best_of(&map.key, difficulty);
-            menu.entry_with(map.name.as_str(), best, Choice::Map(index))
-        })
+            (map.name.as_str(), best, Choice::Map(index))
+        }))
     }
 
     fn pause_menu(&self) -> Menu<Choice> {
-        let keys = key_names(&self.settings.bindings, Action::TogglePause);
-        let mut menu = Menu::new("paused").line(format!("{keys} goes on"));
-        menu = menu.line(self.goal.text());
-        menu = self.level_lines().into_iter().fold(menu, Menu::line);
-        menu = menu.line(whole_seconds(self.game.elapsed()).to_string());
-        menu = self.game.keys().fold(menu, |menu, key| menu.line(format!("{key} key")));
-        menu = menu.entry("Continue", Choice::GoOn);
-        menu =
-            if self.is_descent() { menu } else { menu.entry("Restart the level", Choice::Restart) };
-        menu = menu
+        let keys = self.settings.bindings.key_names(Action::TogglePause);
+        let carried = self.game.grid().into_iter().flat_map(Game::keys);
+        let menu = Menu::new("paused")
+            .line(format!("{keys} goes on"))
+            .line(self.goal.text())
+            .lines(self.level_lines())
+            .line(whole_seconds(self.game.elapsed()).to_string())
+            .lines(carried.map(|key| format!("{key} key")))
+            .entry("Continue", Choice::GoOn)
+            .entries((!self.is_descent()).then_some(("Restart the level", "", Choice::Restart)))
             .entry("Settings", Choice::Open(Screen::Settings))
             .entry("Help", Choice::Open(Screen::Help));
         self.with_leaving(menu)
@@ -315,11 +317,8 @@ impl App {
 
     /// Adds the entries that end the game.
     pub(crate) fn with_leaving(&self, menu: Menu<Choice>) -> Menu<Choice> {
-        let menu = match &self.offers {
-            Some(_) => menu.entry("Leave to the title", Choice::ToTitle),
-            None => menu,
-        };
-        menu.entry("Leave", Choice::Leave)
+        let title = self.offers.as_ref().map(|_| ("Leave to the title", "", Choice::ToTitle));
+        menu.entries(title).entry("Leave", Choice::Leave)
     }
 }
 
@@ -329,16 +328,9 @@ fn new_game_menu(usual: Difficulty) -> Menu<Choice> {
         Difficulty::Normal => "guards call each other",
         Difficulty::Hard => "no checkpoints",
     };
-    let menu = Menu::new("new game");
-    let menu = Difficulty::ALL.into_iter().fold(menu, |menu, difficulty| {
-        menu.entry_with(
-            capitalized(difficulty.name()),
-            about(difficulty),
-            Choice::Begin(difficulty),
-        )
-    });
+    let entry = |it: Difficulty| (capitalized(it.name()), about(it), Choice::Begin(it));
     let usual = Difficulty::ALL.iter().position(|&difficulty| difficulty == usual);
-    menu.selecting(usual.unwrap_or(0))
+    Menu::new("new game").entries(Difficulty::ALL.map(entry)).selecting(usual.unwrap_or(0))
 }
 
 /// `text` with a capital letter at its start.
@@ -348,4 +340,194 @@ pub(crate) fn capitalized(text: &str) -> String {
     // Writing to a string never fails.
     _ = capitalized.write_str(letters.as_str());
     capitalized
+}
+
+impl App {
+    /// Handles a press, a repetition or a release at time `now`.
+    pub(crate) fn key(&mut self, event: KeyEvent, now: Duration) {
+        self.advance(now);
+        let event = self.settings.bindings.resolve(event);
+        let key_context = self.key_context();
+        let press = self.controls.handle(event, now, &self.settings.bindings, key_context);
+        if let Some(press) = press {
+            self.press(event.key, press);
+        }
+    }
+
+    /// Handles the loss of the focus: keys may be released in another window.
+    pub(crate) fn focus_lost(&mut self, now: Duration) {
+        self.advance(now);
+        self.release_keys();
+        self.pointer.forget();
+    }
+
+    /// Releases all keys.
+    pub(crate) fn release_keys(&mut self) {
+        self.controls.held.release_all();
+    }
+
+    /// Answers the question on the screen by a pending key that did not repeat.
+    pub(crate) fn settle(&mut self, now: Duration) {
+        let effect = self.pages.settle(&self.settings.bindings, now);
+        self.carry_out(effect);
+    }
+
+    pub(crate) fn key_context(&self) -> KeyContext {
+        KeyContext {
+            plays: self.screen() == Screen::Playing,
+            is_airborne: self.game.grid().is_some_and(Game::is_airborne),
+            flies: self.game.grid().is_none(),
+        }
+    }
+
+    fn press(&mut self, key: Key, press: Press) {
+        let (bindings, held) = (&self.settings.bindings, &self.controls.held);
+        match self.pages.press((key, press), bindings, held, self.now) {
+            Effect::Other => match self.pages.menu.choice() {
+                Some(Choice::Continue(id)) if self.removes(key) => self.open(Screen::Remove(id)),
+                _ => self.press_command(key, press),
+            },
+            effect => self.carry_out(effect),
+        }
+    }
+
+    fn carry_out(&mut self, effect: Effect) {
+        match effect {
+            Effect::None | Effect::Answer(_) | Effect::Other => {}
+            Effect::Redraw => self.shown = None,
+            Effect::Change { forward } => self.change_value(forward),
+            Effect::Choose => self.choose(),
+            Effect::Leave(true) => self.leave(),
+            Effect::Leave(false) => self.close(),
+        }
+    }
+
+    /// Handles the keys of the game, and the keys with one effect on every screen.
+    fn press_command(&mut self, key: Key, press: Press) {
+        match self.settings.bindings.action(key) {
+            Some(Action::WidenView) => self.widen_view(true),
+            Some(Action::NarrowView) => self.widen_view(false),
+            Some(action) if press != Press::Repeat => self.command(key, action),
+            _ if press != Press::Repeat && key == Key::Backspace => self.go_back(),
+            _ => {}
+        }
+    }
+
+    fn change_value(&mut self, forward: bool) {
+        match (self.screen(), self.pages.menu.choice()) {
+            (Screen::Levels | Screen::Maps, _) => self.change_difficulty(forward),
+            (_, Some(Choice::Change(setting))) => self.change_setting(setting, forward),
+            _ => {}
+        }
+    }
+
+    /// Whether `key` removes the selected saved game.
+    fn removes(&self, key: Key) -> bool {
+        self.screen() == Screen::Saves && matches!(key, Key::Char('x') | Key::Delete)
+    }
+
+    fn command(&mut self, key: Key, action: Action) {
+        match (self.screen(), action) {
+            (screen, Action::Leave) if key == Key::Escape && screen != Screen::Playing => {
+                self.go_back();
+            }
+            (_, Action::Leave) => self.ask_to_leave(),
+            (Screen::Help, Action::ToggleHelp) | (Screen::Paused, Action::TogglePause) => {
+                self.close();
+            }
+            (_, Action::ToggleHelp) => self.open(Screen::Help),
+            (Screen::Playing, Action::TogglePause) => self.open(Screen::Paused),
+            _ if self.demo.is_some() => {}
+            (_, Action::ToggleMinimap) => toggle(&mut self.map.is_shown, &mut self.shown),
+            (_, Action::ToggleDuck) => toggle(&mut self.controls.toggles.ducks, &mut self.shown),
+            (_, Action::ToggleRun) => toggle(&mut self.controls.toggles.runs, &mut self.shown),
+            (_, Action::ToggleCrosshair) => self.prefer(|it| it.crosshair ^= true),
+            (_, Action::ToggleCompass) => self.prefer(|it| it.compass ^= true),
+            (_, Action::ToggleGhost) => self.toggle_ghost(),
+            (_, Action::ToggleStats) => toggle(&mut self.settings.shows_stats, &mut self.shown),
+            (Screen::Playing, Action::ToggleWalkOn) => {
+                toggle(&mut self.controls.toggles.keeps_walking, &mut self.shown);
+            }
+            (_, Action::ToggleMouse) => {
+                self.pointer.toggle();
+                self.shown = None;
+            }
+            (_, Action::ChangeMap(change)) => {
+                self.map.change(change);
+                self.shown = None;
+            }
+            _ => {}
+        }
+    }
+
+    /// Keeps a choice of the player.
+    pub(crate) fn prefer(&mut self, change: impl Fn(&mut Preferences)) {
+        let mut preferences = self.store.preferences();
+        change(&mut preferences);
+        self.store.set_preferences(preferences);
+        self.shown = None;
+    }
+
+    /// Returns to the screen before, or asks whether to leave where there is none.
+    fn go_back(&mut self) {
+        match self.screen() {
+            Screen::Playing => {}
+            Screen::Title => self.leave(),
+            screen if screen.is_before_start() => self.give_up_beginning(),
+            _ => self.close(),
+        }
+    }
+
+    /// Returns to the title from a question before a level, or leaves where there is no title.
+    fn give_up_beginning(&mut self) {
+        match self.offers {
+            Some(_) => self.return_to_title(),
+            None => self.leave(),
+        }
+    }
+
+    /// Asks whether to leave. Where there is no game to lose, it is not asked.
+    fn ask_to_leave(&mut self) {
+        if self.demo.is_some() || self.screen().is_before_start() {
+            self.leave();
+        } else {
+            self.open(Screen::Leaving);
+        }
+    }
+
+    /// Leaves the program.
+    pub(crate) fn leave(&mut self) {
+        _ = self.leave_game();
+        self.has_left = true;
+    }
+
+    /// Handles an event of the mouse at time `now`.
+    pub(crate) fn mouse(&mut self, event: MouseEvent, now: Duration) {
+        self.advance(now);
+        self.pointer.handle(event, self.screen() == Screen::Playing);
+    }
+
+    /// The player's intents for the next step, by keys and mouse.
+    pub(crate) fn wanted(&self) -> Intents {
+        let keys = self.intents();
+        keys.iter()
+            .chain(self.pointer.clicked().iter())
+            .collect::<Intents>()
+            .with_look(self.pointer.look())
+    }
+
+    /// The player's intents by the held keys.
+    pub(crate) fn intents(&self) -> Intents {
+        self.controls.intents(&self.settings.bindings, self.key_context())
+    }
+
+    fn widen_view(&mut self, widens: bool) {
+        self.settings.field_of_view = widened(self.settings.field_of_view, widens);
+    }
+}
+
+/// Toggles a switch that is visible on the screen.
+fn toggle<T>(switch: &mut bool, shown: &mut Option<T>) {
+    *switch = !*switch;
+    *shown = None;
 }

@@ -1,4 +1,4 @@
-//! The status line below the picture.
+//! The status line below the picture, with the figures of frames and times as players read them.
 //!
 //! It is rewritten in each frame, into memory that is kept: no change must be tracked, and nothing
 //! is allocated. So it shows the time of the last frame: while nothing moves, no frame is
@@ -7,7 +7,8 @@
 //! Parts that do not fit are left out as a whole, the least important first. Rejected: cutting the
 //! line at its end. In a narrow window, the key for help would be lost.
 
-use std::fmt::{self, Write};
+use std::fmt::{self, Display, Write};
+use std::time::Duration;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -15,11 +16,10 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 
-use crate::app::bindings::{Action, Bindings};
-use crate::app::controls::Toggles;
-use crate::app::stats::Stats;
+use crate::app::controls::{Action, Bindings, Toggles};
 use crate::color::palette::ColorDepth;
-use crate::game::{Alarm, Game, GuardView, Health, PlayerView, Share};
+use crate::game::{Alarm, Game, GuardView, Health, PlayerView, STEP, Share};
+use crate::terminal::{Fidelity, Protocol};
 use crate::tui::GlyphSet;
 use crate::world::{FieldOfView, Supply};
 
@@ -359,6 +359,104 @@ impl StatusLine {
         }
         Ok(())
     }
+}
+
+/// The current figures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stats {
+    /// The rates of frames and bytes.
+    pub rates: Rates,
+    /// The time from sending a frame to the terminal's answer, if it answers.
+    pub round_trip: Option<Duration>,
+    /// The fidelity of frames.
+    pub fidelity: Fidelity,
+    /// Whether the link limits the fidelity, so that compression would help.
+    pub wants_compression: bool,
+}
+
+/// The rates of frames and bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rates {
+    pub(crate) frames_per_second: f64,
+    pub(crate) bytes_per_second: f64,
+}
+
+impl Display for Rates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames_per_second, bytes_per_second } = self;
+        write!(f, "{frames_per_second:.0} fps  {:.0} kB/s", bytes_per_second / 1000.0)
+    }
+}
+
+impl Display for Stats {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}  ", self.rates)?;
+        if let Some(round_trip) = self.round_trip {
+            write!(f, "{} ms  ", round_trip.as_millis())?;
+        }
+        write!(f, "fidelity {}", self.fidelity)?;
+        if self.wants_compression { f.write_str("  (ssh -C helps)") } else { Ok(()) }
+    }
+}
+
+/// Measures the rates while frames follow one another. Pauses between motions do not count, so that
+/// the figures need no update when motion ends.
+#[derive(Debug, Default)]
+pub struct Meter {
+    begun: Duration,
+    bytes_before: u64,
+    frames: u32,
+    last: Duration,
+}
+
+/// The time between two figures.
+const PERIOD: Duration = Duration::from_millis(500);
+/// The shortest time without frames that counts as a pause.
+const PAUSE: Duration = Duration::from_millis(500);
+
+impl Meter {
+    /// Counts a frame that `protocol` has drawn. Returns new figures when they are due.
+    pub fn measure(&mut self, protocol: &Protocol, now: Duration) -> Option<Stats> {
+        let rates = self.frame(now, protocol.bytes_drawn())?;
+        let (round_trip, fidelity) = (protocol.round_trip(), protocol.fidelity());
+        let wants_compression = protocol.is_limited_by_network();
+        Some(Stats { rates, round_trip, fidelity, wants_compression })
+    }
+
+    /// Counts a frame; `bytes` is the total so far. Returns new rates when they are due.
+    fn frame(&mut self, now: Duration, bytes: u64) -> Option<Rates> {
+        let pauses = now.saturating_sub(self.last) > PAUSE;
+        let elapsed = now.saturating_sub(self.begun);
+        self.frames += 1;
+        self.last = now;
+        if !pauses && elapsed < PERIOD {
+            return None;
+        }
+        let rates = Rates {
+            frames_per_second: f64::from(self.frames) / elapsed.as_secs_f64(),
+            bytes_per_second: bytes.saturating_sub(self.bytes_before) as f64
+                / elapsed.as_secs_f64(),
+        };
+        *self = Self { begun: now, bytes_before: bytes, frames: 0, last: now };
+        (!pauses).then_some(rates)
+    }
+}
+
+/// Formats minutes and seconds.
+pub fn whole_seconds(seconds: f64) -> impl Display {
+    let seconds = seconds as u64;
+    fmt::from_fn(move |f| write!(f, "{}:{:02}", seconds / 60, seconds % 60))
+}
+
+/// Formats minutes, seconds and tenths.
+pub fn tenths(seconds: f64) -> String {
+    let all = (seconds * 10.0) as u64;
+    format!("{}:{:02}.{}", all / 600, all / 10 % 60, all % 10)
+}
+
+/// Formats the time of `steps` steps of a game as minutes, seconds and tenths.
+pub fn of_steps(steps: u64) -> String {
+    tenths(steps as f64 * STEP)
 }
 
 #[cfg(test)]

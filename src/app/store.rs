@@ -31,24 +31,20 @@
 //! locked while the game runs. The second game would keep nothing.
 
 pub mod home;
-mod names;
-pub(crate) mod preferences;
 pub mod private;
 mod progress;
-mod results;
 mod text;
 
 use std::path::Path;
 
 use home::{Home, LARGEST_SCRIPT};
-pub use names::map_key;
-pub use names::name_in_map_key;
-pub use preferences::Preferences;
+pub use progress::{
+    Best, Descent, DescentRun, Improved, MOST_SAVES, NotSaved, Reached, Run, Save, SaveId,
+    SavedGame, map_key, name_in_map_key, replayed,
+};
 use progress::{Change, Progress};
-pub use progress::{Descent, MOST_SAVES, NotSaved, Save, SaveId, SavedGame};
-pub use results::{Best, Improved, Reached, Run};
-pub use results::{DescentRun, replayed};
 
+pub use crate::app::setting::Preferences;
 use crate::world::Difficulty;
 
 /// One player's store: a folder, or memory.
@@ -61,7 +57,7 @@ use crate::world::Difficulty;
 /// assert!(store.preferences().compass);
 /// assert_eq!(store.trouble(), None);
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Store {
     /// The state that the player sees: the file as last read, with all changes.
     progress: Progress,
@@ -88,13 +84,7 @@ impl Store {
 
     /// A store that ends with the program.
     pub fn in_memory() -> Self {
-        Self {
-            progress: Progress::default(),
-            pending: Vec::new(),
-            home: None,
-            damage: None,
-            trouble: None,
-        }
+        Self::default()
     }
 
     /// The best results in a level. `level` is the name of a built-in level, or the [key](map_key) of
@@ -107,14 +97,18 @@ impl Store {
     pub fn script(&self, level: &str, difficulty: Difficulty) -> Option<String> {
         self.text_in(|progress| {
             let best = progress.best(level, difficulty)?;
-            Some(names::of_run(level, difficulty, best.tally.steps))
+            Some(progress::of_run(level, difficulty, best.tally.steps))
         })
     }
 
     /// Records a run that reached the exit, and returns what it improved.
     pub fn record(&mut self, level: &str, difficulty: Difficulty, run: Run) -> Improved {
-        let improved = self.progress.improved_by(level, difficulty, &run);
-        if improved.any() {
+        let best = self.best(level, difficulty);
+        let improved = Improved {
+            time: best.is_none_or(|best| run.tally.steps < best.tally.steps),
+            rank: best.is_none_or(|best| run.rank > best.rank),
+        };
+        if improved.time || improved.rank {
             self.change(Change::Won { level: level.to_owned(), difficulty, run });
         }
         improved
@@ -122,7 +116,8 @@ impl Store {
 
     /// The levels that were won at a difficulty, in the order of their names.
     pub fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
-        self.progress.won(difficulty)
+        let levels = self.progress.bests.keys().filter(move |(_, at)| *at == difficulty);
+        levels.map(|(level, _)| level.as_str())
     }
 
     /// The saved games, the newest first.
@@ -209,13 +204,11 @@ impl Store {
         self.progress.descent
     }
 
-    /// Records a descent without an end and its script, and returns whether it is the best one.
-    pub fn record_descent(&mut self, reached: Reached, script: String) -> bool {
-        let is_best = self.progress.descent.is_none_or(|best| best < reached);
-        if is_best {
+    /// Records a descent without an end and its script, if it is the best one.
+    pub fn record_descent(&mut self, reached: Reached, script: String) {
+        if self.progress.descent.is_none_or(|best| best < reached) {
             self.change(Change::Descent { reached, script });
         }
-        is_best
     }
 
     /// A sentence about what is damaged or could not be kept, for the end of the game.

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use super::Error;
 use super::machine::data_folder;
+use crate::app::status::{of_steps, tenths};
 use crate::app::store::{Best, Store};
-use crate::app::time::{of_steps, tenths};
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
 use crate::sort;

@@ -8,7 +8,7 @@ use super::Game;
 use super::rules::STEPS_PER_SECOND;
 
 /// A part of a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Share {
     /// The part that has been found.
     pub found: u32,
@@ -24,7 +24,7 @@ impl Share {
 }
 
 /// What a player has done in a level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// The time in steps.
     pub steps: u64,

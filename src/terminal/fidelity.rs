@@ -68,16 +68,9 @@ impl FromStr for Fidelity {
 }
 
 /// The error for a text that is not a fidelity.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is no fidelity: write exact, high, low or a number up to 255")]
 pub struct UnknownFidelity(String);
-
-impl fmt::Display for UnknownFidelity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}' is no fidelity: write exact, high, low or a number up to 255", self.0)
-    }
-}
-
-impl std::error::Error for UnknownFidelity {}
 
 #[cfg(test)]
 mod tests {

@@ -18,7 +18,7 @@ use ratatui::layout::Size;
 
 use super::error::Kind;
 use super::input::{Answer, Decoder, Input};
-use super::protocol::Changes;
+use super::sequence::Changes;
 use super::unix::Device;
 use super::{Error, sequence};
 use crate::fault::printable;

@@ -13,8 +13,8 @@ use std::time::Duration;
 
 use termina::event::{KeyCode, KeyEventKind, ModifierKeyCode, Modifiers as Reported};
 
+use super::event::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::event::{MouseButton, MouseEventKind, MouseReport};
-use super::key::{Key, KeyEvent, Modifiers, Phase, base_key};
 use super::known::{Known, known};
 use super::sequence;
 
@@ -215,89 +215,50 @@ impl Decoder {
     }
 }
 
+/// The effect of `byte` after a unit in this state.
 fn step(state: State, byte: u8) -> Step {
-    match state {
-        State::Ground => between_units(byte),
-        State::Character { missing } => in_character(missing, byte),
-        State::Escape => after_escape(byte),
-        State::SingleShift | State::ConsoleKey => before_last_of_key(byte),
-        State::ControlSequenceStart if byte == b'[' => Step::Continue(State::ConsoleKey),
-        State::ControlSequenceStart if byte == b'M' => {
-            Step::Continue(State::MouseBytes { missing: 3 })
+    match (state, byte) {
+        (State::Ground, ESCAPE) => Step::Continue(State::Escape),
+        (State::Ground | State::Escape, 0xc2..=0xdf) => {
+            Step::Continue(State::Character { missing: 1 })
         }
-        State::MouseBytes { missing } => in_mouse_bytes(missing, byte),
-        State::ControlSequenceStart | State::ControlSequence => in_control_sequence(byte),
-        State::String(kind) => in_string(kind, byte),
-        State::StringEscape(kind) if byte == b'\\' => Step::Complete(kind),
-        State::StringEscape(_) => Step::RestartEscaped,
-    }
-}
-
-fn between_units(byte: u8) -> Step {
-    match byte {
-        ESCAPE => Step::Continue(State::Escape),
-        0x80.. => character_start(byte),
-        _ => Step::Complete(Kind::Key),
-    }
-}
-
-fn character_start(byte: u8) -> Step {
-    match byte {
-        0xc2..=0xdf => Step::Continue(State::Character { missing: 1 }),
-        0xe0..=0xef => Step::Continue(State::Character { missing: 2 }),
-        0xf0..=0xf4 => Step::Continue(State::Character { missing: 3 }),
-        _ => Step::Abandon,
-    }
-}
-
-fn in_character(missing: u8, byte: u8) -> Step {
-    match (missing, byte) {
-        (1, 0x80..=0xbf) => Step::Complete(Kind::Key),
-        (_, 0x80..=0xbf) => Step::Continue(State::Character { missing: missing - 1 }),
-        _ => Step::Restart,
-    }
-}
-
-fn after_escape(byte: u8) -> Step {
-    match byte {
-        ESCAPE => Step::Split,
-        b'O' => Step::Continue(State::SingleShift),
-        b'[' => Step::Continue(State::ControlSequenceStart),
-        b'P' => Step::Continue(State::String(Kind::DeviceControl)),
-        b']' | b'_' | b'^' | b'X' => Step::Continue(State::String(Kind::OtherString)),
-        0x80.. => character_start(byte),
-        _ => Step::Complete(Kind::Key),
-    }
-}
-
-fn before_last_of_key(byte: u8) -> Step {
-    match byte {
-        b' '..=b'~' => Step::Complete(Kind::Key),
-        _ => Step::Restart,
-    }
-}
-
-fn in_control_sequence(byte: u8) -> Step {
-    match byte {
-        b' '..=b'?' => Step::Continue(State::ControlSequence),
-        b'@'..=b'~' => Step::Complete(Kind::ControlSequence),
-        _ => Step::Restart,
-    }
-}
-
-fn in_mouse_bytes(missing: u8, byte: u8) -> Step {
-    match (missing, byte) {
-        (_, ..b' ') => Step::Restart,
-        (1, _) => Step::Complete(Kind::MouseBytes),
-        _ => Step::Continue(State::MouseBytes { missing: missing - 1 }),
-    }
-}
-
-fn in_string(kind: Kind, byte: u8) -> Step {
-    match byte {
-        ESCAPE => Step::Continue(State::StringEscape(kind)),
-        BELL => Step::Complete(kind),
-        b' '..=b'~' | 0x80.. => Step::Continue(State::String(kind)),
+        (State::Ground | State::Escape, 0xe0..=0xef) => {
+            Step::Continue(State::Character { missing: 2 })
+        }
+        (State::Ground | State::Escape, 0xf0..=0xf4) => {
+            Step::Continue(State::Character { missing: 3 })
+        }
+        (State::Ground | State::Escape, 0x80..) => Step::Abandon,
+        (State::Character { missing: 1 }, 0x80..=0xbf) => Step::Complete(Kind::Key),
+        (State::Character { missing }, 0x80..=0xbf) => {
+            Step::Continue(State::Character { missing: missing - 1 })
+        }
+        (State::Escape, ESCAPE) => Step::Split,
+        (State::Escape, b'O') => Step::Continue(State::SingleShift),
+        (State::Escape, b'[') => Step::Continue(State::ControlSequenceStart),
+        (State::Escape, b'P') => Step::Continue(State::String(Kind::DeviceControl)),
+        (State::Escape, b']' | b'_' | b'^' | b'X') => {
+            Step::Continue(State::String(Kind::OtherString))
+        }
+        (State::Ground | State::Escape, _) => Step::Complete(Kind::Key),
+        (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
+        (State::ControlSequenceStart, b'[') => Step::Continue(State::ConsoleKey),
+        (State::ControlSequenceStart, b'M') => Step::Continue(State::MouseBytes { missing: 3 }),
+        (State::ControlSequenceStart | State::ControlSequence, b' '..=b'?') => {
+            Step::Continue(State::ControlSequence)
+        }
+        (State::ControlSequenceStart | State::ControlSequence, b'@'..=b'~') => {
+            Step::Complete(Kind::ControlSequence)
+        }
+        (State::MouseBytes { missing: 1 }, b' '..) => Step::Complete(Kind::MouseBytes),
+        (State::MouseBytes { missing }, b' '..) => {
+            Step::Continue(State::MouseBytes { missing: missing - 1 })
+        }
+        (State::String(kind), ESCAPE) => Step::Continue(State::StringEscape(kind)),
+        (State::String(kind), BELL) => Step::Complete(kind),
+        (State::String(kind), b' '..=b'~' | 0x80..) => Step::Continue(State::String(kind)),
+        (State::StringEscape(kind), b'\\') => Step::Complete(kind),
+        (State::StringEscape(_), _) => Step::RestartEscaped,
         _ => Step::Restart,
     }
 }

@@ -1,5 +1,15 @@
-//! Terminals by the names that they report (XTVERSION): their colours, and the glyphs that they draw
-//! themselves, without a font.
+//! A terminal's properties by its environment and by the name that it reports, and how to use it.
+//!
+//! For the colours, the user's choice comes first (`NO_COLOR`, `FORCE_COLOR`, `CLICOLOR_FORCE`), then the terminal's
+//! own claims (`COLORTERM`, `TERM`), then a guess that a query may raise.
+//!
+//! Missing variables do not restrict the game: containers and `ssh` often set neither a locale nor `TERM`, in terminals
+//! that show UTF-8 and know every sequence.
+//!
+//! Rejected: a database of terminals. Half of the machines lack it, and it has wrong numbers of colours on others.
+//! A program that aborts without a locale or `TERM`, or that draws with letters then.
+//!
+//! The reported name (XTVERSION) implies the colours, and the glyphs that the terminal draws itself, without a font:
 //!
 //! - A terminal draws glyphs of a kind from the version in the table on. Terminals before it, and
 //!   those without an entry, are trusted with half blocks only.
@@ -8,8 +18,235 @@
 //!
 //! Rejected: the width of a glyph by a cursor report. It proves the width, never the ink.
 
-use crate::color::palette::ShadeInk;
+use crate::color::palette::{ColorDepth, ShadeInk};
+use crate::terminal::Fidelity;
 use crate::tui::GlyphSet;
+
+/// The initially known properties of a terminal, and how to use it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a question of its own")]
+pub struct Options {
+    /// The terminal's number of colours. If it is a guess, the terminal is queried.
+    pub color_depth: Detected,
+    /// The source of the colour depth.
+    pub color_source: ColorSource,
+    /// The terminal's name in `TERM`, if the terminal cannot move its cursor.
+    pub teletype: Option<&'static str>,
+    /// Whether the terminal shows only ASCII. Other characters are replaced by similar ones.
+    pub is_ascii: bool,
+    /// Whether to request reports of key releases.
+    pub ask_for_key_releases: bool,
+    /// Whether to ask if mouse positions can be in pixels.
+    pub ask_for_mouse_pixels: bool,
+    /// Whether to ask for the terminal's name and version.
+    pub ask_for_version: bool,
+    /// Whether the program runs in a tmux of this machine, which a [`Session`](super::Session) asks
+    /// about the terminal around it.
+    pub ask_tmux: bool,
+    /// Whether the terminal is across a network. The first frame is then coarse; later frames make
+    /// it exact.
+    pub is_remote: bool,
+    /// Whether to probe control sequences that make frames shorter (repeated characters and the
+    /// palette), and to use those that work.
+    pub probe_extensions: bool,
+    /// The fidelity of frames; `None` for the best that the link allows.
+    pub fidelity: Option<Fidelity>,
+}
+
+impl Options {
+    /// Options from `environment`, which looks up variables by name.
+    ///
+    /// Control sequences that make frames shorter are not probed in a terminal multiplexer, nor in
+    /// a terminal that is unknown or has no window.
+    ///
+    /// A multiplexer is not asked for key releases: the ones that support them lose some, and a key
+    /// whose release is lost is held for ever. Nor is it asked for pixels, since it has none of its
+    /// own.
+    ///
+    /// Apple's Terminal is not asked for pixels: it prints the last character of that query
+    /// (DECRQM). A terminal that is unknown by its `TERM` is not asked for its version, since some
+    /// would print that query.
+    pub fn from_environment(environment: impl Fn(&str) -> Option<String>) -> Self {
+        /// Terminals that ignore unknown control sequences.
+        const KNOWN: [&str; 14] = [
+            "xterm",
+            "vte",
+            "gnome",
+            "konsole",
+            "mintty",
+            "iterm",
+            "st-",
+            "tmux",
+            "rxvt-unicode",
+            "foot",
+            "alacritty",
+            "contour",
+            "ghostty",
+            "wezterm",
+        ];
+        let is_set = |name| environment(name).is_some_and(|value| !value.is_empty());
+        let term = environment("TERM").unwrap_or_default();
+        let multiplexed = is_set("TMUX")
+            || is_set("STY")
+            || ["tmux", "screen"].iter().any(|name| term.starts_with(name));
+        let is_plain = ["", "dumb", "linux", "unknown"].contains(&&*term) || term.starts_with("vt");
+        let (color_depth, color_source) = detect(&environment);
+        Self {
+            color_depth,
+            color_source,
+            teletype: teletype(&environment),
+            is_ascii: false,
+            ask_for_key_releases: !multiplexed,
+            ask_for_mouse_pixels: !multiplexed
+                && environment("TERM_PROGRAM").as_deref() != Some("Apple_Terminal"),
+            ask_for_version: KNOWN.iter().any(|name| term.starts_with(name)),
+            ask_tmux: is_set("TMUX"),
+            is_remote: ["SSH_CONNECTION", "SSH_CLIENT", "SSH_TTY"].into_iter().any(is_set),
+            probe_extensions: !multiplexed && !is_plain,
+            fidelity: None,
+        }
+    }
+}
+
+/// The colour depth that an environment implies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detected {
+    /// A depth that no answer of the terminal would change.
+    Certain(ColorDepth),
+    /// The greatest safe depth until the terminal has been queried.
+    Guess(ColorDepth),
+}
+
+impl Detected {
+    /// The depth to start with.
+    pub fn depth(self) -> ColorDepth {
+        match self {
+            Self::Certain(depth) | Self::Guess(depth) => depth,
+        }
+    }
+}
+
+/// The evidence for the colour depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorSource {
+    /// The variable `NO_COLOR`.
+    NoColor,
+    /// The variable `FORCE_COLOR`, or `CLICOLOR_FORCE`.
+    ForceColor,
+    /// The variable `COLORTERM`.
+    ColorTerm,
+    /// The variable `TERM`.
+    Term,
+    /// The terminal's answer to a query.
+    Answer,
+    /// The terminal shows 256 colours, and lets the program define them.
+    Palette,
+    /// The answer of tmux about the terminal around it.
+    Tmux,
+    /// No evidence; most terminals have this depth.
+    Nothing,
+}
+
+/// The colour depth that `environment` implies, which looks up variables by name, and the evidence for it.
+fn detect(environment: impl Fn(&str) -> Option<String>) -> (Detected, ColorSource) {
+    use ColorSource::{ColorTerm, ForceColor, NoColor, Nothing, Term};
+    let certain = |depth, source| (Detected::Certain(depth), source);
+    let variable = |name| environment(name).filter(|value| !value.is_empty());
+    if variable("NO_COLOR").is_some() {
+        return certain(ColorDepth::Mono, NoColor);
+    }
+    let forced = match environment("FORCE_COLOR").as_deref() {
+        Some("0" | "false") => return certain(ColorDepth::Mono, ForceColor),
+        Some("1") => return certain(ColorDepth::Indexed16, ForceColor),
+        Some("2") => return certain(ColorDepth::Indexed256, ForceColor),
+        Some("3") => return certain(ColorDepth::True, ForceColor),
+        Some(_) => true,
+        None => variable("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
+    };
+    if matches!(variable("COLORTERM").as_deref(), Some("truecolor" | "24bit")) {
+        // tmux passes on the variable of the terminal in which it began, and knows better itself.
+        let is_certain = variable("TMUX").is_none();
+        let depth = if is_certain { Detected::Certain } else { Detected::Guess };
+        return (depth(ColorDepth::True), ColorTerm);
+    }
+    let named = variable("TERM").map_or(Detected::Guess(ColorDepth::Indexed256), |term| of(&term));
+    // In tmux, TERM may be `screen`, whatever tmux sends.
+    let is_tmux = variable("TMUX").is_some() && variable("STY").is_none();
+    match named {
+        Detected::Certain(depth @ ColorDepth::Indexed256) if is_tmux => {
+            (Detected::Guess(depth), Nothing)
+        }
+        Detected::Certain(ColorDepth::Mono) if forced => certain(ColorDepth::Indexed16, ForceColor),
+        Detected::Certain(depth) => certain(depth, Term),
+        Detected::Guess(depth) => (Detected::Guess(depth), Nothing),
+    }
+}
+
+/// The depth that `term`, a value of `TERM`, implies.
+fn of(term: &str) -> Detected {
+    const TRUE: [&str; 9] = [
+        "alacritty",
+        "contour",
+        "foot",
+        "ghostty",
+        "rio",
+        "wezterm",
+        "xterm-direct",
+        "xterm-ghostty",
+        "xterm-kitty",
+    ];
+    const SIXTEEN: [&str; 5] = ["ansi", "cygwin", "linux", "rxvt", "xterm-16color"];
+    const MONO: [&str; 7] = ["dumb", "unknown", "vt52", "vt100", "vt102", "vt220", "xterm-mono"];
+    let is = |known: &&str| {
+        term.strip_prefix(*known).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    };
+    if TRUE.iter().any(is) || term.ends_with("-direct") {
+        Detected::Certain(ColorDepth::True)
+    } else if MONO.contains(&term) {
+        Detected::Certain(ColorDepth::Mono)
+    } else if SIXTEEN.contains(&term) {
+        Detected::Certain(ColorDepth::Indexed16)
+    } else if is(&"screen") {
+        // It forwards the query to the terminal around it, whose answer does not apply to it.
+        Detected::Certain(ColorDepth::Indexed256)
+    } else {
+        Detected::Guess(ColorDepth::Indexed256)
+    }
+}
+
+/// Values of `TERM` for terminals that cannot move their cursors, all without `cup` in the database
+/// of terminals: those that programs and systems set, and teletypes.
+const TELETYPES: [&str; 12] = [
+    "dumb", "unknown", "vanilla", "emacs", "glasstty", "printer", "lpr", "tty33", "tty35", "tty37",
+    "tty40", "tty43",
+];
+
+/// The value of `TERM` in `environment`, which looks up variables by name, if it names a terminal that cannot move its
+/// cursor.
+fn teletype(environment: impl Fn(&str) -> Option<String>) -> Option<&'static str> {
+    let term = environment("TERM")?;
+    TELETYPES.into_iter().find(|&known| known == term)
+}
+
+/// The setting of the locale in `environment`, such as `LANG=C`, if it is not a setting for UTF-8.
+/// `None` if it is, and without a setting, since most terminals show UTF-8.
+///
+/// The first non-empty variable of `LC_ALL`, `LC_CTYPE` and `LANG` counts, as in POSIX. A locale
+/// without a character set is not UTF-8.
+///
+/// ```
+/// use cellcaster::terminal::locale_without_utf8;
+///
+/// let environment = |name: &str| (name == "LANG").then(|| "de_DE.ISO-8859-1".to_owned());
+/// assert_eq!(locale_without_utf8(environment).as_deref(), Some("LANG=de_DE.ISO-8859-1"));
+/// ```
+pub fn locale_without_utf8(environment: impl Fn(&str) -> Option<String>) -> Option<String> {
+    let setting = |name| Some((name, environment(name).filter(|value| !value.is_empty())?));
+    let (name, value) = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(setting)?;
+    let lower = value.to_ascii_lowercase();
+    let is_utf8 = lower.contains("utf-8") || lower.contains("utf8");
+    (!is_utf8).then(|| format!("{name}={value}"))
+}
 
 /// The properties of a terminal, by its name and version.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,7 +360,165 @@ fn numbers(version: &str) -> Version {
 
 #[cfg(test)]
 mod tests {
+    use super::ColorDepth::{Indexed16, Indexed256, Mono, True};
+    use super::Detected::{Certain, Guess};
     use super::*;
+
+    #[test]
+    fn an_unknown_terminal_is_not_asked_for_its_version() {
+        let asks = |term: &'static str| {
+            let environment = move |name: &str| (name == "TERM").then(|| term.to_owned());
+            Options::from_environment(environment).ask_for_version
+        };
+        assert!(["xterm", "xterm-256color", "tmux-256color", "konsole"].into_iter().all(asks));
+        assert!(!["", "ansi", "eterm-color", "unheard-of"].into_iter().any(asks));
+    }
+
+    #[test]
+    fn a_terminal_that_prints_the_query_is_not_asked_for_pixels() {
+        let asks = |name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| (asked == name).then(|| value.to_owned());
+            Options::from_environment(environment).ask_for_mouse_pixels
+        };
+        assert!(!asks("TERM_PROGRAM", "Apple_Terminal"));
+        assert!(asks("TERM_PROGRAM", "iTerm.app") && asks("TERM", "xterm-256color"));
+    }
+
+    #[test]
+    fn a_network_is_known_by_the_variables_of_sshd() {
+        let is_remote = |value: &'static str| {
+            let environment =
+                move |name: &str| (name == "SSH_CONNECTION").then(|| value.to_owned());
+            Options::from_environment(environment).is_remote
+        };
+        assert!(is_remote("192.0.2.1 50000 192.0.2.2 22"));
+        assert!(!is_remote(""));
+    }
+
+    fn asks_for_releases(name: &str, value: &str) -> bool {
+        let environment = |asked: &str| (asked == name).then(|| value.to_owned());
+        Options::from_environment(environment).ask_for_key_releases
+    }
+
+    #[test]
+    fn only_terminals_in_windows_are_probed() {
+        let probes = |term: &'static str, name: &'static str, value: &'static str| {
+            let environment = move |asked: &str| match asked {
+                "TERM" => Some(term.to_owned()),
+                _ => (asked == name).then(|| value.to_owned()),
+            };
+            Options::from_environment(environment).probe_extensions
+        };
+        assert!(probes("xterm-256color", "", "") && probes("xterm-kitty", "TMUX", ""));
+        for term in ["", "dumb", "linux", "screen", "screen-256color", "tmux-256color"] {
+            assert!(!probes(term, "", ""), "{term}");
+        }
+        assert!(!probes("xterm-256color", "TMUX", "/tmp/tmux-1000/default,1,0"));
+        assert!(!probes("xterm-256color", "STY", "1.pts-0.host"));
+    }
+
+    #[test]
+    fn multiplexers_are_not_asked_for_releases() {
+        for (name, value) in [
+            ("TMUX", "/tmp/tmux-1000/default,1,0"),
+            ("STY", "1.pts-0.host"),
+            ("TERM", "screen"),
+            ("TERM", "screen-256color"),
+            ("TERM", "tmux-256color"),
+        ] {
+            assert!(!asks_for_releases(name, value), "{name}={value}");
+        }
+        for (name, value) in [("TERM", "xterm-kitty"), ("TMUX", ""), ("TERM", "")] {
+            assert!(asks_for_releases(name, value), "{name}={value}");
+        }
+    }
+
+    #[test]
+    fn the_environment_is_read_in_the_documented_order() {
+        let cases: [(&str, Detected); 32] = [
+            ("", Guess(Indexed256)),
+            ("TERM=xterm-256color", Guess(Indexed256)),
+            ("TERM=tmux-256color", Guess(Indexed256)),
+            ("TERM=screen-256color", Certain(Indexed256)),
+            ("TERM=screen", Certain(Indexed256)),
+            ("TERM=screen TMUX=socket", Guess(Indexed256)),
+            ("TERM=screen TMUX=socket STY=1", Certain(Indexed256)),
+            ("TERM=xterm", Guess(Indexed256)),
+            ("TERM=xterm-kitty", Certain(True)),
+            ("TERM=alacritty", Certain(True)),
+            ("TERM=alacritty-direct", Certain(True)),
+            ("TERM=foot-extra", Certain(True)),
+            ("TERM=footloose", Guess(Indexed256)),
+            ("TERM=konsole-direct", Certain(True)),
+            ("TERM=linux", Certain(Indexed16)),
+            ("TERM=dumb", Certain(Mono)),
+            ("TERM=vt100", Certain(Mono)),
+            ("TERM=linux COLORTERM=truecolor", Certain(True)),
+            ("TERM=xterm COLORTERM=24bit", Certain(True)),
+            ("TERM=xterm COLORTERM=yes", Guess(Indexed256)),
+            ("TERM=xterm-kitty NO_COLOR=1", Certain(Mono)),
+            ("TERM=xterm-kitty NO_COLOR=", Certain(True)),
+            ("NO_COLOR=1 FORCE_COLOR=3", Certain(Mono)),
+            ("COLORTERM=truecolor FORCE_COLOR=0", Certain(Mono)),
+            ("COLORTERM=truecolor FORCE_COLOR=1", Certain(Indexed16)),
+            ("TERM=dumb FORCE_COLOR=2", Certain(Indexed256)),
+            ("TERM=dumb FORCE_COLOR=3", Certain(True)),
+            ("TERM=dumb FORCE_COLOR=", Certain(Indexed16)),
+            ("TERM=dumb FORCE_COLOR=true", Certain(Indexed16)),
+            ("TERM=dumb CLICOLOR_FORCE=1", Certain(Indexed16)),
+            ("TERM=dumb CLICOLOR_FORCE=0", Certain(Mono)),
+            ("TERM=xterm-kitty CLICOLOR_FORCE=1", Certain(True)),
+        ];
+        for (variables, expected) in cases {
+            let environment = |name: &str| {
+                variables
+                    .split_whitespace()
+                    .filter_map(|pair| pair.split_once('='))
+                    .find(|(known, _)| *known == name)
+                    .map(|(_, value)| value.to_owned())
+            };
+            assert_eq!(detect(environment).0, expected, "{variables}");
+        }
+    }
+
+    fn environment(variables: &str) -> impl Fn(&str) -> Option<String> {
+        move |name| {
+            let pairs = variables.split_whitespace().filter_map(|pair| pair.split_once('='));
+            pairs.into_iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_owned())
+        }
+    }
+
+    #[test]
+    fn the_first_setting_of_the_locale_counts() {
+        for (variables, said) in [
+            ("", None),
+            ("LANG=", None),
+            ("LANG=en_GB.UTF-8", None),
+            ("LANG=C.utf8", None),
+            ("LC_CTYPE=UTF-8", None),
+            ("LANG=C", Some("LANG=C")),
+            ("LANG=en_US", Some("LANG=en_US")),
+            ("LANG=ru_RU.KOI8-R", Some("LANG=ru_RU.KOI8-R")),
+            ("LANG=C.UTF-8 LC_ALL=POSIX", Some("LC_ALL=POSIX")),
+            ("LANG=C LC_ALL=C.UTF-8", None),
+            ("LANG=C LC_CTYPE=de_DE.UTF-8 LC_ALL=", None),
+            ("LANG=C.UTF-8 LC_CTYPE=C", Some("LC_CTYPE=C")),
+            ("LANG=C.UTF-8 LC_MESSAGES=C", None),
+        ] {
+            let found = locale_without_utf8(environment(variables));
+            assert_eq!(found.as_deref(), said, "{variables}");
+        }
+    }
+
+    #[test]
+    fn only_terminals_without_cursor_motion_are_teletypes() {
+        for term in ["TERM=dumb", "TERM=unknown", "TERM=tty33"] {
+            assert!(teletype(environment(term)).is_some(), "{term}");
+        }
+        for term in ["", "TERM=", "TERM=xterm", "TERM=vt52", "TERM=dumber", "TERM=no-such"] {
+            assert_eq!(teletype(environment(term)), None, "{term}");
+        }
+    }
 
     #[test]
     fn block_glyphs_depend_on_the_version() {

@@ -15,20 +15,17 @@
 //! Rejected: a trait of a device. A server waits for many channels at once, and a device that blocks would need a
 //! thread for each of them.
 
-mod changes;
-
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::backend::Backend;
 
-pub(crate) use self::changes::Changes;
-use self::changes::KeyFlags;
 use super::event::{MouseReport, MouseUnits};
 use super::flow::{Flow, Request};
 use super::input::{Answer, Decoder, Input};
 use super::known::{Colors, Known};
+use super::sequence::{Changes, KeyFlags};
 use super::{
     CellWriter, ColorSource, Detected, Event, Fidelity, Key, KeyEvent, Options, Phase, QuitReason,
     Screen, TmuxClient, WindowSize, sequence,
@@ -80,7 +77,10 @@ pub struct Protocol {
     tmux: Option<TmuxClient>,
     /// Whether the terminal has not answered yet if it reports key releases.
     awaits_key_releases: bool,
-    mouse: Mouse,
+    /// Whether the terminal can report positions of the mouse in pixels.
+    has_mouse_pixels: bool,
+    /// Whether reports of the mouse may still be in the previous unit.
+    mouse_is_changing: bool,
     flow: Flow,
     /// The frame that is encoded and not yet in `output`.
     drawn: Option<Drawn>,
@@ -101,17 +101,6 @@ enum Drawn {
     Refinement,
 }
 
-/// The state of mouse reports.
-#[derive(Clone, Copy, Debug, Default)]
-struct Mouse {
-    /// The unit of positions; `None` if the mouse is not reported.
-    units: Option<MouseUnits>,
-    /// Whether the terminal can report positions in pixels.
-    has_pixels: bool,
-    /// Whether reports may still be in the previous unit.
-    is_changing: bool,
-}
-
 impl Protocol {
     /// The protocol with a terminal that has these `options`. Nothing is sent yet.
     pub fn new(options: Options, size: WindowSize) -> Self {
@@ -128,7 +117,8 @@ impl Protocol {
             known: Known::default(),
             tmux: None,
             awaits_key_releases: false,
-            mouse: Mouse::default(),
+            has_mouse_pixels: false,
+            mouse_is_changing: false,
             flow: Flow::new(options.is_remote),
             drawn: None,
             palette: PaletteProbe::default(),
@@ -153,7 +143,9 @@ impl Protocol {
             queries.push_str(sequence::QUERY_VERSION);
         }
         if self.options.probe_extensions && !self.options.is_ascii {
-            self.probe_extensions(&mut queries);
+            queries.push_str(sequence::PROBE_PALETTE);
+            queries.push_str(sequence::PROBE_REPETITION);
+            self.changes.palette_defined = true;
         }
         // A terminal that does not understand a query may print a part of it.
         queries.push_str(sequence::ERASE);
@@ -170,9 +162,8 @@ impl Protocol {
     }
 
     fn take_screen(&mut self) {
-        let mut text = String::new();
+        let text = self.changes.start();
         self.is_ending = false;
-        self.changes.push_start(&mut text);
         self.frames_before_key_flags = self.flow.frames_sent();
         self.confirm_key_flags();
         self.output.extend_from_slice(text.as_bytes());
@@ -186,7 +177,7 @@ impl Protocol {
         self.flow.forget();
         self.changes.fences.forget();
         self.decoder = Decoder::default();
-        self.mouse.is_changing = false;
+        self.mouse_is_changing = false;
     }
 
     /// Undoes all changes of the terminal's state, except that it shows the alternate screen until
@@ -297,10 +288,9 @@ impl Protocol {
     /// Sets whether the mouse is reported, which it is not at first. Positions are in pixels if the
     /// terminal can report them.
     pub fn set_mouse(&mut self, is_reported: bool) {
-        if self.mouse.units.is_some() != is_reported && !self.is_ending {
-            self.mouse.units = is_reported.then(|| self.mouse_units());
-            self.mouse.is_changing = false;
-            self.send_mouse_units();
+        if self.changes.mouse.is_some() != is_reported && !self.is_ending {
+            self.mouse_is_changing = false;
+            self.change_mouse(is_reported.then(|| self.mouse_units()));
         }
     }
 
@@ -353,14 +343,19 @@ impl Protocol {
     fn take_answer(&mut self, answer: Answer, now: Duration) {
         match answer {
             Answer::PixelMouse => {
-                self.mouse.has_pixels = true;
+                self.has_mouse_pixels = true;
                 self.update_mouse_units(now);
             }
             Answer::KeyFlags => self.settle_key_releases(true),
             Answer::TrueColor => self.raise_color_depth(),
             Answer::Version(known) => self.identify(known, now),
-            Answer::Repeats => self.repeats_blocks(),
-            Answer::PaletteEntry(color) => self.palette_reported(color),
+            // Without a probe, an answer belongs to another program.
+            Answer::Repeats if self.changes.palette_defined => self.writer.set_repeats(true),
+            Answer::PaletteEntry(color) if self.changes.palette_defined => {
+                self.palette = self.palette.after_report(color);
+                self.use_palette();
+            }
+            Answer::Repeats | Answer::PaletteEntry(_) => {}
             Answer::Status => {
                 self.flow.answered(now);
                 self.changes.awaits_statuses = self.flow.awaits_answers();
@@ -368,7 +363,7 @@ impl Protocol {
             }
             Answer::Fence => {
                 self.changes.fences.answered();
-                self.mouse.is_changing &= self.changes.fences.are_open();
+                self.mouse_is_changing &= self.changes.fences.are_open();
                 self.flow.fence_answered(now);
                 self.changes.awaits_statuses = self.flow.awaits_answers();
                 self.confirm_key_flags();
@@ -382,13 +377,13 @@ impl Protocol {
 
     /// The event of `report`; `None` if the mouse is not reported or its unit is changing.
     fn mouse_event(&self, report: MouseReport) -> Option<Event> {
-        let units = self.mouse.units.filter(|_| !self.mouse.is_changing)?;
+        let units = self.changes.mouse.filter(|_| !self.mouse_is_changing)?;
         report.event(units, self.size).map(Event::Mouse)
     }
 
     /// The finest unit in which the terminal reports positions.
     fn mouse_units(&self) -> MouseUnits {
-        if self.mouse.has_pixels && self.size.pixels.is_some() {
+        if self.has_mouse_pixels && self.size.pixels.is_some() {
             MouseUnits::Pixels
         } else {
             MouseUnits::Cells
@@ -398,19 +393,17 @@ impl Protocol {
     /// If the mouse is reported, switches to the finest unit that is available.
     fn update_mouse_units(&mut self, now: Duration) {
         let finest = self.mouse_units();
-        if self.mouse.units.is_none_or(|units| units == finest) || self.is_ending {
+        if self.changes.mouse.is_none_or(|units| units == finest) || self.is_ending {
             return;
         }
-        self.mouse.units = Some(finest);
-        self.mouse.is_changing = true;
-        self.send_mouse_units();
+        self.mouse_is_changing = true;
+        self.change_mouse(Some(finest));
         // Reports after the answer are in the new unit.
         self.queue_queries("", now);
     }
 
-    fn send_mouse_units(&mut self) {
-        let mut text = String::new();
-        self.changes.change_mouse(self.mouse.units, &mut text);
+    fn change_mouse(&mut self, units: Option<MouseUnits>) {
+        let text = self.changes.change_mouse(units);
         self.output.extend_from_slice(text.as_bytes());
     }
 
@@ -638,28 +631,6 @@ impl Protocol {
     fn queue_fence(&mut self, now: Duration) {
         self.output.extend_from_slice(sequence::QUERY_FENCE.as_bytes());
         self.changes.fences.sent(now);
-    }
-
-    /// Adds the probes to `queries`.
-    fn probe_extensions(&mut self, queries: &mut String) {
-        queries.push_str(sequence::PROBE_PALETTE);
-        queries.push_str(sequence::PROBE_REPETITION);
-        self.changes.palette_defined = true;
-    }
-
-    /// Records that the terminal has repeated a half block.
-    fn repeats_blocks(&mut self) {
-        if self.changes.palette_defined {
-            self.writer.set_repeats(true);
-        }
-    }
-
-    /// Records the terminal's report of the colour of the probed palette entry.
-    fn palette_reported(&mut self, color: [u16; 3]) {
-        if self.changes.palette_defined {
-            self.palette = self.palette.after_report(color);
-            self.use_palette();
-        }
     }
 
     /// Uses the palette if it can be defined and reset and the terminal shows 24-bit colours.

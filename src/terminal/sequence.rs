@@ -1,11 +1,19 @@
-//! Control sequences that crossterm lacks or has in another form.
+//! Changes of the terminal's state and the sequences that undo them, and the control sequences that crossterm lacks or
+//! has in another form.
 //!
-//! Crossterm provides all others. It couples the keyboard flags with its event reader, which this crate does not use,
+//! Crossterm couples the keyboard flags with its event reader, which this crate does not use,
 //! and formats colours and motions in a way that takes longer than the rest of a cell's encoding.
 
 use std::ops::RangeInclusive;
+use std::time::Duration;
 
 use crossterm::Command;
+use crossterm::cursor::{Hide, Show};
+use crossterm::terminal::{
+    DisableLineWrap, EnableLineWrap, EndSynchronizedUpdate, EnterAlternateScreen,
+};
+
+use crate::terminal::event::MouseUnits;
 
 /// The sequences of one of crossterm's commands.
 pub(crate) fn of(command: impl Command) -> String {
@@ -24,17 +32,17 @@ pub(crate) const CLEAR_KEY_FLAGS: &str = "\x1b[=0u";
 pub(crate) const POP_KEY_FLAGS: &str = "\x1b[<u";
 
 /// Enables reports of the window's focus.
-pub(crate) const ENABLE_FOCUS_REPORTS: &str = "\x1b[?1004h";
+const ENABLE_FOCUS_REPORTS: &str = "\x1b[?1004h";
 /// Disables reports of the window's focus.
-pub(crate) const DISABLE_FOCUS_REPORTS: &str = "\x1b[?1004l";
+const DISABLE_FOCUS_REPORTS: &str = "\x1b[?1004l";
 /// Enables reports of all motions of the mouse and of its buttons, as decimal numbers.
 pub(crate) const ENABLE_MOUSE: &str = "\x1b[?1003h\x1b[?1006h";
 /// Disables reports of the mouse.
 pub(crate) const DISABLE_MOUSE: &str = "\x1b[?1003l\x1b[?1006l";
 /// Sets mouse positions to pixels. This mode replaces mode 1006, so it is set after that.
-pub(crate) const ENABLE_MOUSE_PIXELS: &str = "\x1b[?1016h";
+const ENABLE_MOUSE_PIXELS: &str = "\x1b[?1016h";
 /// Sets mouse positions to cells.
-pub(crate) const DISABLE_MOUSE_PIXELS: &str = "\x1b[?1016l";
+const DISABLE_MOUSE_PIXELS: &str = "\x1b[?1016l";
 /// Queries whether the terminal knows mode 1016 (DECRQM).
 pub(crate) const QUERY_MOUSE_PIXELS: &str = "\x1b[?1016$p";
 
@@ -73,7 +81,7 @@ pub(crate) const DEFINED: [u16; 3] = [0x1212, 0xabab, 0x5656];
 pub(crate) const PALETTE: RangeInclusive<u8> = 24..=255;
 
 /// The sequences that reset the palette entries that may have been defined.
-pub(crate) fn give_palette_back() -> String {
+fn give_palette_back() -> String {
     /// Some terminals accept at most sixteen parameters.
     const AT_ONCE: usize = 15;
     let mut text = String::new();
@@ -87,6 +95,180 @@ pub(crate) fn give_palette_back() -> String {
 
 /// Queries the device's attributes, which every terminal answers, after all earlier queries.
 pub(crate) const QUERY_FENCE: &str = "\x1b[c";
+
+/// The program's changes to the terminal, and the answers that may still arrive.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Changes {
+    pub(crate) key_flags: KeyFlags,
+    /// The unit of mouse positions; `None` if the mouse is not reported.
+    pub(crate) mouse: Option<MouseUnits>,
+    pub(crate) fences: Fences,
+    /// Whether answers to status requests may arrive.
+    pub(crate) awaits_statuses: bool,
+    /// Whether entries of the palette may have been defined.
+    pub(crate) palette_defined: bool,
+}
+
+/// The state of the program's own keyboard flags, with which the terminal reports keys in the kitty protocol.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum KeyFlags {
+    /// There are none.
+    #[default]
+    Unset,
+    /// They were pushed, behind a frame that the terminal may not have read.
+    Pushed,
+    /// They were pushed, and the terminal has answered all frames before them.
+    Received,
+}
+
+impl Changes {
+    /// The sequences that take the screen, which is the alternate one, without a cursor, and that enable the
+    /// reports.
+    pub(crate) fn start(&mut self) -> String {
+        let mut text = of(EnterAlternateScreen) + &of(Hide);
+        // Long lines are cut, so that a narrower window does not scroll.
+        text.push_str(&of(DisableLineWrap));
+        text.push_str(RESET_STYLE);
+        text.push_str(ENABLE_FOCUS_REPORTS);
+        if self.key_flags != KeyFlags::Unset {
+            text.push_str(PUSH_KEY_FLAGS);
+            self.key_flags = KeyFlags::Pushed;
+        }
+        text + &mouse_change(None, self.mouse)
+    }
+
+    /// Sets whether and in which unit the mouse is reported, and returns the sequences for it.
+    pub(crate) fn change_mouse(&mut self, mouse: Option<MouseUnits>) -> String {
+        mouse_change(std::mem::replace(&mut self.mouse, mouse), mouse)
+    }
+
+    /// The sequences that undo all changes, in reverse order, but leave the alternate screen. If
+    /// input may still arrive, a fence is among them, whose answer follows all of it.
+    pub(crate) fn end(&mut self, now: Duration) -> String {
+        let mut text = self.end_of_frame();
+        self.push_end_of_reports(self.key_flags, &mut text);
+        if self.has_pending_reports() {
+            text.push_str(QUERY_FENCE);
+            self.fences.sent(now);
+            self.awaits_statuses = false;
+        }
+        text + &end_of_screen()
+    }
+
+    /// The same sequences for a terminal that does not read, some of whose input was discarded before
+    /// it was read. There is no fence among them, whose answer would arrive too late.
+    pub(crate) fn end_after_loss(&mut self) -> String {
+        let mut text = self.end_of_frame();
+        let mut key_flags = self.key_flags;
+        if key_flags == KeyFlags::Pushed {
+            // A pop without its push would take the flags of another program.
+            text.push_str(CLEAR_KEY_FLAGS);
+            key_flags = KeyFlags::Unset;
+        }
+        self.push_end_of_reports(key_flags, &mut text);
+        self.fences.forget();
+        text + &end_of_screen()
+    }
+
+    /// Records that no keyboard flags of the program were sent: they need not be undone.
+    pub(crate) fn forget_key_flags(&mut self) {
+        self.key_flags = KeyFlags::Unset;
+    }
+
+    /// Records that the terminal may have received a part of what [`Changes::end`] has returned.
+    pub(crate) fn doubt_key_flags(&mut self) {
+        if self.key_flags == KeyFlags::Received {
+            self.key_flags = KeyFlags::Pushed;
+        }
+    }
+
+    fn end_of_frame(&self) -> String {
+        let mut text = of(EndSynchronizedUpdate) + RESET_STYLE;
+        if self.palette_defined {
+            text.push_str(&give_palette_back());
+        }
+        text
+    }
+
+    /// Adds the sequences that disable the reports.
+    fn push_end_of_reports(&self, key_flags: KeyFlags, text: &mut String) {
+        text.push_str(&mouse_change(self.mouse, None));
+        if key_flags != KeyFlags::Unset {
+            text.push_str(POP_KEY_FLAGS);
+        }
+        text.push_str(DISABLE_FOCUS_REPORTS);
+    }
+
+    /// Whether the terminal may have sent input that is not read yet: a key release, which it sends
+    /// until its flags are popped, a motion of the mouse, or the answer to a frame. Focus reports
+    /// do not count: few are sent, and waiting for a terminal that answers nothing takes a second.
+    fn has_pending_reports(&self) -> bool {
+        let has_frequent_reports = self.key_flags != KeyFlags::Unset || self.mouse.is_some();
+        has_frequent_reports || self.awaits_statuses || self.fences.are_answered
+    }
+}
+
+fn end_of_screen() -> String {
+    of(EnableLineWrap) + &of(Show)
+}
+
+/// The sequences that change mouse reports from `before` to `after`.
+fn mouse_change(before: Option<MouseUnits>, after: Option<MouseUnits>) -> String {
+    let reports = match (before, after) {
+        (None, Some(_)) => ENABLE_MOUSE,
+        (Some(_), None) => DISABLE_MOUSE,
+        _ => "",
+    };
+    let units = match [before, after].map(|units| units == Some(MouseUnits::Pixels)) {
+        [false, true] => ENABLE_MOUSE_PIXELS,
+        [true, false] => DISABLE_MOUSE_PIXELS,
+        _ => "",
+    };
+    [reports, units].concat()
+}
+
+/// How long to wait for the answer of a terminal that has never answered.
+const TIMEOUT: Duration = Duration::from_secs(1);
+/// How long to wait for a terminal that has answered before, and so will again. A shell would print a later answer.
+const TIMEOUT_AFTER_ANSWER: Duration = Duration::from_secs(5);
+
+/// Fences: queries that every terminal answers. Here, those without an answer yet.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fences {
+    open: u32,
+    last_sent: Duration,
+    /// Whether the terminal has ever answered one.
+    are_answered: bool,
+}
+
+impl Fences {
+    pub(crate) fn sent(&mut self, now: Duration) {
+        self.open += 1;
+        self.last_sent = now;
+    }
+
+    pub(crate) fn answered(&mut self) {
+        self.open = self.open.saturating_sub(1);
+        self.are_answered = true;
+    }
+
+    /// Expects no answer any more.
+    pub(crate) fn forget(&mut self) {
+        self.open = 0;
+    }
+
+    /// Whether a fence is unanswered.
+    pub(crate) fn are_open(&self) -> bool {
+        self.open > 0
+    }
+
+    /// The remaining time to wait for an answer; `None` if no answer is expected any more.
+    pub(crate) fn time_left(&self, now: Duration) -> Option<Duration> {
+        let timeout = if self.are_answered { TIMEOUT_AFTER_ANSWER } else { TIMEOUT };
+        let left = timeout.checked_sub(now.saturating_sub(self.last_sent))?;
+        self.are_open().then_some(left)
+    }
+}
 
 #[cfg(test)]
 mod tests {

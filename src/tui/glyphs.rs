@@ -1,6 +1,7 @@
 //! Glyph sets and the shape of cells: how pixels become characters.
 
 use ratatui::style::Color;
+use serde::{Deserialize, Serialize};
 
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
@@ -8,7 +9,7 @@ use crate::render::PixelAspect;
 use crate::tui::canvas::true_color;
 
 /// The characters that pixels are drawn with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum GlyphSet {
     /// Two pixels per cell, one above the other: `▀`, `▄`, `█` and space.
     #[default]

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::app::bindings::Action;
+use crate::app::controls::Action;
 use crate::game::Intent;
 use crate::terminal::Key;
 

@@ -102,3 +102,40 @@ fn any_width_is_possible() {
         shown(&line, columns);
     }
 }
+
+#[test]
+fn pauses_do_not_count() {
+    let mut meter = Meter::default();
+    let figures: Vec<_> = (0..40_u64)
+        .filter_map(|frame| {
+            // Two times two seconds with ten frames per second, a minute apart.
+            let time = frame * 100 + if frame < 20 { 1_000 } else { 61_000 };
+            meter.frame(Duration::from_millis(time), frame * 500)
+        })
+        .collect();
+    assert_eq!(figures.len(), 6);
+    for Rates { frames_per_second, bytes_per_second } in figures {
+        assert!((frames_per_second - 10.0).abs() < 0.1, "{frames_per_second}");
+        assert!((bytes_per_second - 5000.0).abs() < 1.0, "{bytes_per_second}");
+    }
+}
+
+#[test]
+fn stats_are_short() {
+    let rates = Rates { frames_per_second: 29.6, bytes_per_second: 118_432.0 };
+    let round_trip = Some(Duration::from_micros(104_900));
+    let fidelity = Fidelity::new(7);
+    let stats = Stats { rates, round_trip, fidelity, wants_compression: false };
+    assert_eq!(stats.to_string(), "30 fps  118 kB/s  104 ms  fidelity 7");
+    let stats = Stats { round_trip: None, fidelity: Fidelity::EXACT, ..stats };
+    assert_eq!(stats.to_string(), "30 fps  118 kB/s  fidelity exact");
+    let stats = Stats { fidelity: Fidelity::HIGH, wants_compression: true, ..stats };
+    assert!(stats.to_string().ends_with("fidelity high  (ssh -C helps)"), "{stats}");
+}
+
+#[test]
+fn times_are_minutes_seconds_and_tenths() {
+    assert_eq!(tenths(0.0), "0:00.0");
+    assert_eq!(tenths(61.26), "1:01.2");
+    assert_eq!(tenths(3600.0), "60:00.0");
+}

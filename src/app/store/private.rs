@@ -1,13 +1,12 @@
 //! Files of the program's own: it reads regular ones only, and nobody else on the machine reads them.
 
-use std::error::Error;
-use std::fmt;
 use std::fs::{self, DirBuilder, File, FileType, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
 /// A path at which there is no regular file.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("it is {0}, and must be a file: move it away")]
 struct NoFile(&'static str);
 
 /// Opens a file to read it. Never waits: a named pipe, on which a reader waits for a writer, is an error
@@ -112,14 +111,6 @@ fn name_of(kind: FileType) -> &'static str {
 fn name_of(kind: FileType) -> &'static str {
     if kind.is_dir() { "a folder" } else { "a device" }
 }
-
-impl fmt::Display for NoFile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "it is {}, and must be a file: move it away", self.0)
-    }
-}
-
-impl Error for NoFile {}
 
 #[cfg(unix)]
 fn do_not_wait(options: &mut OpenOptions) {

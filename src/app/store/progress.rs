@@ -1,14 +1,20 @@
 //! Progress: the content of the store's file, and changes of it, which are applied to whatever the file
 //! holds at that time.
+//!
+//! The name of a script's file has only lower-case letters, digits, `-` and `_` of the level's key; every other byte
+//! is `%` and its two hexadecimal digits. So different keys have different names where upper and
+//! lower case are the same, and no name leaves the folder. Device names of Windows, such as `con`,
+//! are not reserved with `%` in them, so their first letter is written that way.
 
 use std::collections::BTreeMap;
-use std::{fmt, mem};
+use std::fmt::Write;
+use std::mem;
 
-use crate::app::store::names;
-use crate::app::store::preferences::Preferences;
-use crate::app::store::results::{Best, Improved, Reached, Run};
-use crate::game::Rules;
-use crate::world::Difficulty;
+use crate::app::setting::Preferences;
+use crate::game::{Game, Outcome, Rank, Rules, Script, Tally};
+use crate::generate::floors_below;
+use crate::rng;
+use crate::world::{Difficulty, World};
 
 /// The content of `progress.toml`.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
@@ -56,15 +62,15 @@ pub struct SavedGame {
 pub struct SaveId(u64);
 
 /// The reason why a game is not saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSaved {
     /// [`MOST_SAVES`] other games are saved.
+    #[error("{MOST_SAVES} other games are saved, and no more are kept")]
     Full,
     /// Its script is longer than the longest script that is read.
+    #[error("it is longer than a game that can be kept")]
     TooLong,
 }
-
-impl std::error::Error for NotSaved {}
 
 /// The most games that are saved.
 pub const MOST_SAVES: usize = 100;
@@ -103,23 +109,8 @@ impl Progress {
         self.saves.push(entry);
     }
 
-    pub(crate) fn remove_save(&mut self, id: SaveId) {
+    fn remove_save(&mut self, id: SaveId) {
         self.saves.retain(|entry| entry.save.id() != id);
-    }
-
-    /// The improvement by a run.
-    pub(crate) fn improved_by(&self, level: &str, difficulty: Difficulty, run: &Run) -> Improved {
-        match self.best(level, difficulty) {
-            None => Improved { time: true, rank: true },
-            Some(best) => {
-                Improved { time: run.tally.steps < best.tally.steps, rank: run.rank > best.rank }
-            }
-        }
-    }
-
-    pub(crate) fn won(&self, difficulty: Difficulty) -> impl Iterator<Item = &str> {
-        let of_it = move |&&(_, at): &&(String, Difficulty)| at == difficulty;
-        self.bests.keys().filter(of_it).map(|(level, _)| level.as_str())
     }
 
     /// The names of all scripts that it refers to.
@@ -127,11 +118,10 @@ impl Progress {
         let runs = self
             .bests
             .iter()
-            .map(|((level, difficulty), best)| names::of_run(level, *difficulty, best.tally.steps));
+            .map(|((level, difficulty), best)| of_run(level, *difficulty, best.tally.steps));
         let saved = self.saves.iter().map(|entry| entry.script.clone());
-        let dailies =
-            self.dailies.iter().filter_map(|(&date, reached)| names::of_daily(date, *reached));
-        runs.chain(saved).chain(dailies).chain(self.descent.and_then(names::of_descent))
+        let dailies = self.dailies.iter().filter_map(|(&date, reached)| of_daily(date, *reached));
+        runs.chain(saved).chain(dailies).chain(self.descent.and_then(of_descent))
     }
 }
 
@@ -141,16 +131,7 @@ impl Save {
         let place = self.file.as_deref().unwrap_or(&self.level);
         let kind = self.descent.map_or("level", Descent::name);
         let Rules { difficulty, seed } = self.rules;
-        SaveId(names::hash(&format!("{kind} {} {seed} {place}", difficulty.name())))
-    }
-}
-
-impl fmt::Display for NotSaved {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Full => write!(f, "{MOST_SAVES} other games are saved, and no more are kept"),
-            Self::TooLong => f.write_str("it is longer than a game that can be kept"),
-        }
+        SaveId(hash(&format!("{kind} {} {seed} {place}", difficulty.name())))
     }
 }
 
@@ -164,12 +145,6 @@ impl Descent {
 
     pub(crate) fn named(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(_, known)| *known == name).map(|&(kind, _)| kind)
-    }
-}
-
-impl SavedEntry {
-    pub(crate) fn of(game: &SavedGame) -> Self {
-        Self { save: game.save.clone(), script: names::of_saved(&game.script) }
     }
 }
 
@@ -195,13 +170,11 @@ impl Change {
     pub(crate) fn written(&self) -> Option<(String, &str)> {
         match self {
             Self::Won { level, difficulty, run } => {
-                Some((names::of_run(level, *difficulty, run.tally.steps), &run.script))
+                Some((of_run(level, *difficulty, run.tally.steps), &run.script))
             }
-            Self::Saved(game) => Some((names::of_saved(&game.script), &game.script)),
-            Self::Daily { date, reached, script } => {
-                Some((names::of_daily(*date, *reached)?, script))
-            }
-            Self::Descent { reached, script } => Some((names::of_descent(*reached)?, script)),
+            Self::Saved(game) => Some((of_saved(&game.script), &game.script)),
+            Self::Daily { date, reached, script } => Some((of_daily(*date, *reached)?, script)),
+            Self::Descent { reached, script } => Some((of_descent(*reached)?, script)),
             Self::Removed(_) | Self::Preferences { .. } => None,
         }
     }
@@ -219,7 +192,9 @@ impl Progress {
             Change::Won { level, difficulty, run } => {
                 self.add_best((level.clone(), *difficulty), Best::of(run));
             }
-            Change::Saved(game) => self.add_save(SavedEntry::of(game)),
+            Change::Saved(SavedGame { save, script }) => {
+                self.add_save(SavedEntry { save: save.clone(), script: of_saved(script) });
+            }
             Change::Removed(id) => self.remove_save(*id),
             Change::Preferences { before, after } => self.preferences.choose(*before, *after),
             Change::Daily { date, reached, .. } => self.add_daily(*date, *reached),
@@ -248,5 +223,235 @@ impl Progress {
     fn add_daily(&mut self, date: u32, reached: Reached) {
         let known = self.dailies.entry(date).or_insert(reached);
         *known = reached.max(*known);
+    }
+}
+
+/// A run that reached the exit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// Its tally.
+    pub tally: Tally,
+    /// Its rank.
+    pub rank: Rank,
+    /// Its script, with a header that names the level.
+    pub script: String,
+}
+
+/// The best results in a level at one difficulty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Best {
+    /// The tally of the fastest run.
+    pub tally: Tally,
+    /// The highest rank of all runs.
+    pub rank: Rank,
+}
+
+/// The improvement by a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Improved {
+    /// Whether it is the fastest run.
+    pub time: bool,
+    /// Whether it has a higher rank than all others.
+    pub rank: bool,
+}
+
+/// How far a descent came. More floors are better, then more treasure, then fewer steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Reached {
+    /// The floors whose exit was reached.
+    pub floors: u32,
+    /// The treasure of these floors.
+    pub treasure: u32,
+    /// The steps that these floors took.
+    pub steps: u64,
+}
+
+impl Reached {
+    /// One floor further, with the tally of that floor.
+    #[must_use]
+    pub fn and(self, tally: &Tally) -> Self {
+        Self {
+            floors: self.floors + 1,
+            treasure: self.treasure.saturating_add(tally.treasure.found),
+            steps: self.steps + tally.steps,
+        }
+    }
+}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let by_value = (self.floors, self.treasure).cmp(&(other.floors, other.treasure));
+        by_value.then(other.steps.cmp(&self.steps))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Best {
+    /// The results of one run.
+    pub(crate) fn of(run: &Run) -> Self {
+        Self { tally: run.tally, rank: run.rank }
+    }
+
+    /// The best of both. Of equally fast runs it is the first.
+    pub fn and(self, other: Self) -> Self {
+        let fastest = if other.tally.steps < self.tally.steps { other } else { self };
+        Self { tally: fastest.tally, rank: self.rank.max(other.rank) }
+    }
+}
+
+/// The end of a descent.
+pub struct DescentRun {
+    /// The game on the last floor.
+    pub game: Game,
+    /// How far it came.
+    pub reached: Reached,
+}
+
+/// The game at the end of `script`, or at its first exit.
+pub fn replayed(world: World, rules: Rules, script: &Script) -> Game {
+    let mut game = Game::with_rules(world, rules);
+    for (_section, intents) in script.iter() {
+        if game.is_finished() {
+            break;
+        }
+        game.step(intents);
+    }
+    game
+}
+
+impl DescentRun {
+    /// The descent of `script` from `floor` on, whose world is `first`. As in a game, a descent ends
+    /// with the first death, and what is found counts once the exit is reached.
+    pub fn replayed(floor: u32, first: World, rules: Rules, script: &Script) -> Self {
+        let mut game = Game::with_rules(first, rules);
+        let mut later = floors_below(rules.seed, floor);
+        let mut reached = Reached::default();
+        for (_section, intents) in script.iter() {
+            if game.outcome() != Outcome::Playing {
+                let Some(world) = later.next().filter(|_| game.is_finished()) else { break };
+                game = Game::with_rules(world, rules);
+            }
+            game.step(intents);
+            if game.is_finished() {
+                reached = reached.and(&game.tally());
+            }
+        }
+        Self { game, reached }
+    }
+}
+
+/// In bytes. Of a longer name the rest is replaced by a hash.
+const LONGEST: usize = 80;
+/// Names of devices, with a digit after the last two.
+const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
+
+/// The key of a map file in the store: its name without the folder, and a hash of its text. The
+/// results of a map that has changed do not count for it.
+pub fn map_key(file_name: &str, text: &str) -> String {
+    let stem = file_name.strip_suffix(".toml").unwrap_or(file_name);
+    format!("{stem}-{:016x}", hash(text))
+}
+
+/// The name of the map in a [`map_key`]; `None` if `key` is none.
+pub fn name_in_map_key(key: &str) -> Option<&str> {
+    let (name, hash) = key.rsplit_once('-')?;
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    let is_hash = hash.len() == 16 && hash.bytes().all(is_digit);
+    (is_hash && !name.is_empty()).then_some(name)
+}
+
+/// The file of the script of a run.
+pub(crate) fn of_run(level: &str, difficulty: Difficulty, steps: u64) -> String {
+    format!("{}.{}.{steps}.script", escaped(level), difficulty.name())
+}
+
+/// The file of the script of a saved game.
+fn of_saved(script: &str) -> String {
+    format!("{SAVED}.{:016x}.script", hash(script))
+}
+
+/// The file of the script of a daily run, once it has reached an exit.
+fn of_daily(date: u32, reached: Reached) -> Option<String> {
+    Some(format!("daily.{date}.{}.script", figures(reached)?))
+}
+
+/// The file of the script of a descent, once it has reached an exit.
+pub(crate) fn of_descent(reached: Reached) -> Option<String> {
+    Some(format!("descent.{}.script", figures(reached)?))
+}
+
+fn figures(Reached { floors, treasure, steps }: Reached) -> Option<String> {
+    (floors > 0).then(|| format!("{floors}-{treasure}-{steps}"))
+}
+
+/// No level has this name or a descent's: the names of levels end in a difficulty and a number.
+const SAVED: &str = "saved";
+
+fn escaped(key: &str) -> String {
+    let is_device = DEVICES.iter().any(|device| {
+        key.strip_prefix(device).is_some_and(|rest| rest.is_empty() || rest.len() == 1)
+    });
+    let is_plain =
+        |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || b"-_".contains(&byte);
+    let mut name = String::new();
+    for (index, byte) in key.bytes().enumerate() {
+        if is_plain(byte) && !(is_device && index == 0) {
+            name.push(char::from(byte));
+        } else {
+            _ = write!(name, "%{byte:02x}");
+        }
+    }
+    if name.len() > LONGEST {
+        name.truncate(LONGEST);
+        _ = write!(name, "%%{:016x}", hash(key));
+    }
+    name
+}
+
+pub(crate) fn hash(text: &str) -> u64 {
+    let words = text.as_bytes().chunks(8).map(|chunk| {
+        let mut word = [0; 8];
+        word[..chunk.len()].copy_from_slice(chunk);
+        u64::from_le_bytes(word)
+    });
+    rng::hash(text.len() as u64, words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn names_are_safe_in_every_file_system() {
+        let name = |level| of_run(level, Difficulty::Hard, 7);
+        assert_eq!(name("cellar"), "cellar.hard.7.script");
+        assert_eq!(name("../Etc\\x y"), "%2e%2e%2f%45tc%5cx%20y.hard.7.script");
+        assert_eq!(name("con"), "%63on.hard.7.script");
+        assert_eq!(name("lpt1"), "%6cpt1.hard.7.script");
+        assert_eq!(name("console"), "console.hard.7.script");
+        assert_eq!(name(""), ".hard.7.script");
+        assert!(name(&"ä".repeat(4000)).len() < 130);
+        assert_eq!(map_key("My map.toml", "grid"), "My map-e6ec39ffc58f483c");
+    }
+
+    proptest! {
+        #[test]
+        fn different_levels_have_different_files(keys in prop::collection::vec("(?s).{0,60}", 2..20)) {
+            let mut names = BTreeMap::new();
+            for key in keys {
+                let name = of_run(&key, Difficulty::Easy, 1);
+                prop_assert!(name.bytes().all(|byte| byte == b'%' || byte == b'.' || byte == b'-'
+                    || byte == b'_' || byte.is_ascii_lowercase() || byte.is_ascii_digit()));
+                let other = names.insert(name, key.clone());
+                prop_assert!(other.is_none_or(|other| other == key));
+            }
+        }
     }
 }

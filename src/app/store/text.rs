@@ -13,10 +13,10 @@ use std::fmt;
 
 use toml::de::DeValue;
 
-use super::preferences::{PREFERENCES, Preferences};
+use super::progress::{Best, Reached};
 use super::progress::{Descent, Progress, Save, SavedEntry};
-use super::results::{Best, Reached};
 use crate::app::setting::toml_string;
+use crate::app::setting::{PREFERENCES, Preferences};
 use crate::fault::Fault;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::game::{Rank, Rules, Share, Tally};

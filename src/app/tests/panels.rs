@@ -8,7 +8,7 @@ use super::missions::{danger, dead, text};
 use super::titles::titled;
 use super::*;
 use crate::app::Offers;
-use crate::app::panels::{framed, leaving, message};
+use crate::app::page::{framed, leaving, message};
 use crate::tui::GlyphSet;
 use crate::tui::canvas::Canvas;
 
@@ -102,8 +102,8 @@ fn panels_stay_in_areas_of_every_small_size() {
         message(canvas, area, "title", "some text\nin two lines".into());
         leaving(canvas, area, &rig.app.settings.bindings, "leaves");
         framed(canvas, area, "title");
-        banner::draw(canvas, area, GlyphSet::Half, ColorDepth::True);
-        hud::draw_note(canvas, area, "a note that is long enough to be wrapped into lines");
+        title::draw_banner(canvas, area, GlyphSet::Half, ColorDepth::True);
+        picture::draw_note(canvas, area, "a note that is long enough to be wrapped into lines");
         rig.app.pages.menu.draw(canvas, area);
         let bindings = &rig.app.settings.bindings;
         rig.app.pages.help.draw(canvas, area, (&[], bindings), iter::once("a note".to_owned()));

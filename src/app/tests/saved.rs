@@ -4,7 +4,7 @@ use super::missions::text;
 use super::titles::titled;
 use super::*;
 use crate::app::recording::RunLog;
-use crate::app::store::{MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
+use crate::app::store::{Descent, MOST_SAVES, Run, Save, SaveId, SavedGame, map_key};
 use crate::app::{Given, Offers, Opening, Origin, OwnLevel};
 use crate::game::{Header, Intents, Script};
 use crate::map::builtin;
@@ -93,12 +93,12 @@ fn a_descent_that_is_left_goes_on_once() {
         [("Endless", "Endless on normal"), ("Daily run", "Daily run of 2026-11-22")]
     {
         let mut rig = playing(label, offers());
-        let course = rig.app.course;
+        let course = rig.app.levels.descent;
         let mut left = leave(&mut rig);
         let shown = text(&mut rig.app, 80, 24);
         assert!(shown.contains(&format!("Continue  {name}")), "{shown}");
         rig.choose("Continue");
-        assert_eq!((rig.app.screen(), rig.app.course), (Screen::Playing, course));
+        assert_eq!((rig.app.screen(), rig.app.levels.descent), (Screen::Playing, course));
         while left.tally().steps < rig.game().tally().steps {
             left.step(Intents::new());
         }
@@ -326,8 +326,8 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
 
     rig.choose("Daily run");
     rig.choose("Begin the try that counts");
-    let counts = Course::Daily { date: 20_261_122, counts: true };
-    assert_eq!((rig.app.course, rig.app.screen()), (counts, Screen::Playing));
+    let counts = Some(Descent::Daily);
+    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, Screen::Playing));
     walk(&mut rig);
     rig.tap(Key::Char('q'), 30);
     let shown = text(&mut rig.app, 80, 24);
@@ -344,7 +344,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
         "the floors are not shown before the try is over: {shown}"
     );
     rig.choose("Continue the try that counts");
-    assert_eq!((rig.app.course, rig.app.screen()), (counts, Screen::Playing));
+    assert_eq!((rig.app.levels.descent, rig.app.screen()), (counts, Screen::Playing));
     assert!(rig.game().elapsed() > 1.5);
     assert_eq!(newest(&rig), None);
     // The program is killed: the try is over.
@@ -353,7 +353,7 @@ fn the_daily_run_is_asked_about_and_goes_on_as_the_same_try() {
     rig.choose("Daily run");
     assert!(text(&mut rig.app, 80, 24).contains("The try that counts reached 0 floors."));
     rig.choose("Practise");
-    assert_eq!(rig.app.course, Course::Daily { date: 20_261_122, counts: false });
+    assert_eq!(rig.app.levels.descent, Some(Descent::Practice));
     walk(&mut rig);
     leave(&mut rig);
     // Practice has a saved game of its own.

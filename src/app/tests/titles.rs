@@ -102,7 +102,7 @@ fn a_digit_chooses_and_a_repetition_chooses_nothing() {
     rig.tap(Key::Char('2'), 30);
     rig.wait(700);
     assert_eq!(
-        (rig.app.screen(), rig.app.level.to_string()),
+        (rig.app.screen(), rig.app.levels.number.to_string()),
         (Screen::Playing, format!("level 2 of {}", builtin::LEVELS.len()))
     );
 
@@ -148,7 +148,10 @@ fn the_exit_of_a_level_leads_to_the_next_one() {
     let levels = Levels::new(way_out("First"), [way_out("Second")].into_iter()).numbered(1, 2);
     let mut rig = Rig::of(App::new(levels, Settings::default()), Some((500, 30)));
     for (title, number) in [("First", "level 1 of 2"), ("Second", "level 2 of 2")] {
-        assert_eq!((rig.app.game.title(), rig.app.level.to_string()), (title, number.to_owned()));
+        assert_eq!(
+            (rig.app.game.title(), rig.app.levels.number.to_string()),
+            (title, number.to_owned())
+        );
         rig.press(W);
         rig.wait(1500);
         rig.release(W);
@@ -176,7 +179,9 @@ fn the_first_picture_of_the_title_needs_one_level_and_no_list_of_maps() {
     assert_eq!(searches.get(), 0);
     assert!(rig.app.own_maps.is_empty() && rig.app.ghost.is_none());
     // No level but that behind the title exists.
-    assert!(rig.app.stage.begin(Difficulty::Normal).is_some_and(|game| game.grid().is_none()));
+    assert!(
+        rig.app.levels.stage.begin(Difficulty::Normal).is_some_and(|game| game.grid().is_none())
+    );
     rig.choose("My maps");
     assert_eq!(searches.get(), 1);
 }

@@ -66,7 +66,11 @@ fn every_script_that_wins_goes_on_from_any_step() {
                 // A difference stays, so that it is found some steps later.
                 if step % 32 == 0 {
                     let sums = restored.iter().map(Game::checksum);
-                    assert!(sums.eq(vec![game.checksum(); restored.len()]), "{} {step}", level.name);
+                    assert!(
+                        sums.eq(vec![game.checksum(); restored.len()]),
+                        "{} {step}",
+                        level.name
+                    );
                 }
             }
             for other in &restored {

@@ -10,16 +10,30 @@
 //! safe.
 //!
 //! A palette without definitions, as of most terminals, has no memory; one with them has 75 KB.
-//! A terminal without 24-bit colours shows all colours as entries, by a [`Quantizer`].
+//!
+//! A terminal without 24-bit colours shows all colours as entries, by a [`Quantizer`]. A terminal that shows 256 colours and lets a program define them (OSC 4) looks almost like one
+//! with 24-bit colours. Entries 24 to 255 hold colours of the frames, and each colour of a frame is
+//! replaced by the nearest entry in Oklab before the frame is encoded. The model of the screen
+//! therefore holds only colours of entries. No two entries have the same colour, so that a colour
+//! in the model tells which entry a cell shows.
+//!
+//! - The entries are chosen again if the frame's mean error has grown too much, and after a change of
+//!   scene. Most of them keep their colours.
+//! - A definition changes the cells that show the entry. The model then records their new colour,
+//!   and the encoder sends the cells again that have become too wrong.
+//! - The same frames give the same entries.
+//!
+//! Rejected: defining only entries that no cell shows, as the palette for shorter frames does. Most
+//! entries are shown all the time, so that a level kept the colours of the one before it.
 
-use super::bytes::{Bytes, Definitions};
-use super::ink::{self, Ink, Price, Telling};
-use super::packed_cell::PackedCell;
-use super::quantizer::Quantizer;
-use super::screen::Screen;
-use super::style::{Kind, Shade, Style};
-use crate::color::palette;
-use crate::terminal::sequence;
+use crate::color::oklab::Oklab;
+use crate::color::{Rgb, palette};
+use crate::terminal::cell_writer::bytes::{Bytes, Definitions};
+use crate::terminal::cell_writer::ink::{self, Ink, Price, Telling};
+use crate::terminal::cell_writer::packed_cell::PackedCell;
+use crate::terminal::cell_writer::screen::Screen;
+use crate::terminal::cell_writer::style::{Kind, Shade, Style};
+use crate::terminal::sequence::PALETTE;
 
 /// The known entries of the terminal's palette.
 #[derive(Debug, Default)]
@@ -336,7 +350,7 @@ impl Palette {
         let is_free =
             |entry: &u8| !is_shown[usize::from(*entry)] && wanted_at[usize::from(*entry)] < frame;
         self.free.clear();
-        self.free.extend(sequence::PALETTE.filter(is_free));
+        self.free.extend(PALETTE.filter(is_free));
         self.free.sort_unstable_by_key(|&entry| (wanted_at[usize::from(entry)], entry));
         self.frequent.sort_unstable_by_key(|count| (u16::MAX - count.count, count.shade.in_bits()));
         let (entries, colors, is_shown) = (&self.entries, &self.colors, &self.is_shown);
@@ -372,5 +386,380 @@ impl Palette {
         self.entries[entry_place(shade)] = entry;
         self.wanted_at[index] = self.frame;
         self.counts[shade.hash(PLACE_BITS)] = Count { shade: Shade::DEFAULT, count: 0 };
+    }
+}
+
+/// The entries, and the colours that they stand for.
+#[derive(Debug)]
+struct Quantizer {
+    clusters: Clusters,
+    /// The colour of each entry; [`Shade::NONE`] for undefined ones.
+    shades: Vec<Shade>,
+    /// The entries by the bits of their colours.
+    by_shade: Vec<(u32, u8)>,
+    /// Recent colours with their nearest entries, by hash.
+    known: Vec<NearCluster>,
+    /// The number of the frame, and of that in which the entries were last chosen.
+    frame: u32,
+    chosen_at: u32,
+    /// The mean error just after that.
+    error_then: f32,
+}
+
+/// The nearest entry of a colour, and its distance in Oklab.
+#[derive(Clone, Copy, Debug)]
+struct NearCluster {
+    shade: Shade,
+    place: u8,
+    distance: f32,
+}
+
+/// The mean error that is always small enough.
+const SMALL: f32 = 0.004;
+/// The growth of the mean error after which entries are chosen again.
+const GROWTH: f32 = 1.4;
+/// The number of frames for which a choice lasts, unless the error exceeds [`SCENE`].
+const PATIENCE: u32 = 15;
+/// A mean error that only a change of scene causes.
+const SCENE: f32 = 0.03;
+/// The recent colours are in a cache of this many ways and of 2^[`PLACE_BITS`] places each.
+const WAYS: usize = 4;
+
+impl Quantizer {
+    pub(crate) fn new() -> Self {
+        let nothing = NearCluster { shade: Shade::NONE, place: 0, distance: 0.0 };
+        Self {
+            clusters: Clusters::new(PALETTE.count()),
+            shades: vec![Shade::NONE; PALETTE.count()],
+            by_shade: Vec::new(),
+            known: vec![nothing; WAYS << PLACE_BITS],
+            frame: 0,
+            chosen_at: 0,
+            error_then: 0.0,
+        }
+    }
+
+    /// Replaces the colours of all targets by entries. Definitions of entries, which the
+    /// terminal must receive before the frame, are added to `bytes`.
+    pub(crate) fn quantize(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
+        self.frame += 1;
+        let error = self.mean_error(screen);
+        if self.must_choose(error) {
+            self.choose(screen, bytes);
+            self.chosen_at = self.frame;
+            self.error_then = self.mean_error(screen).unwrap_or_default();
+        }
+        if !self.by_shade.is_empty() {
+            screen.recolor_targets(|shade| self.nearest(shade).map_or(shade, |(shade, _)| shade));
+        }
+    }
+
+    /// The colour of the entry that is shown for `shade`, and the entry; `None` for named colours and
+    /// the terminal's own.
+    pub(crate) fn told(&self, shade: Shade) -> Option<(Shade, u8)> {
+        let channels = channels(shade)?;
+        let place = match self.place_of(Shade::rgb(channels)) {
+            Some(place) => place,
+            None => self.clusters.nearest(lab(channels)).0,
+        };
+        self.at(place)
+    }
+
+    /// The nearest entry in place of `wanted`, whose own parameters take this number of bytes.
+    pub(crate) fn telling(&mut self, telling: &mut Telling, price: Price) {
+        let wanted = telling.ink;
+        let Some((shade, entry)) = self.nearest(wanted.shade) else { return };
+        telling.bytes = Shade::indexed(entry).bytes() as f32;
+        if shade != wanted.shade {
+            telling.ink = Ink::new(shade);
+            telling.error = price.of(telling.ink, wanted);
+        }
+    }
+
+    /// As [`Quantizer::told`], and remembers it.
+    fn nearest(&mut self, shade: Shade) -> Option<(Shade, u8)> {
+        let near = self.near(shade)?;
+        self.at(near.place)
+    }
+
+    fn near(&mut self, shade: Shade) -> Option<NearCluster> {
+        let channels = channels(shade)?;
+        let way = (shade.in_bits() & (WAYS as u32 - 1)) as usize;
+        let known = shade.hash(PLACE_BITS) * WAYS + way;
+        if self.known[known].shade != shade {
+            let (place, distance) = self.clusters.nearest(lab(channels));
+            self.known[known] = NearCluster { shade, place, distance };
+        }
+        Some(self.known[known])
+    }
+
+    fn at(&self, place: u8) -> Option<(Shade, u8)> {
+        let shade = self.shades[usize::from(place)];
+        (shade != Shade::NONE).then_some((shade, place + PALETTE.start()))
+    }
+
+    fn place_of(&self, shade: Shade) -> Option<u8> {
+        let found = self.by_shade.binary_search_by_key(&shade.in_bits(), |(bits, _)| *bits);
+        found.ok().map(|index| self.by_shade[index].1)
+    }
+
+    /// The mean error of the targets, in Oklab; `None` without colours. Records which entries are in
+    /// use.
+    fn mean_error(&mut self, screen: &Screen) -> Option<f32> {
+        let (mut error, mut count) = (0.0_f32, 0_u32);
+        let mut last = (PackedCell::UNKNOWN, 0.0, 0);
+        for &target in screen.targets() {
+            if target != last.0 {
+                last = (target, 0.0, 0);
+                for shade in target.colors() {
+                    let Some(near) = self.near(shade) else { continue };
+                    self.clusters.note_use(near.place, self.frame);
+                    last.1 += near.distance;
+                    last.2 += 1;
+                }
+            }
+            error += last.1;
+            count += last.2;
+        }
+        (count > 0).then(|| error / count as f32)
+    }
+
+    /// Whether the entries must be chosen again for a frame of this mean error.
+    fn must_choose(&self, error: Option<f32>) -> bool {
+        let Some(error) = error else { return false };
+        let has_grown = error > SMALL.max(self.error_then * GROWTH);
+        let is_time = self.frame - self.chosen_at >= PATIENCE || error > SCENE;
+        self.by_shade.is_empty() || has_grown && is_time
+    }
+
+    /// Chooses entries for the targets, defines them, and records what the cells then show.
+    fn choose(&mut self, screen: &mut Screen, bytes: &mut Bytes) {
+        let samples = samples(screen);
+        let wanted = self.clusters.fit(&samples, &self.shades);
+        let mut changes = Vec::new();
+        let mut definitions = Definitions::begin(bytes);
+        for (place, (shade, wanted)) in (0_u8..).zip(self.shades.iter_mut().zip(wanted)) {
+            let before = std::mem::replace(shade, wanted);
+            if let (true, Kind::Rgb(channels)) = (before != wanted, wanted.kind()) {
+                definitions.push(place + PALETTE.start(), channels);
+            }
+            if before != wanted {
+                changes.push((before.in_bits(), wanted));
+            }
+        }
+        definitions.end();
+        changes.sort_unstable_by_key(|(before, _)| *before);
+        screen.recolor_shown(|shade| {
+            let found = changes.binary_search_by_key(&shade.in_bits(), |(before, _)| *before);
+            found.map_or(shade, |index| changes[index].1)
+        });
+        let shades = self.shades.iter().zip(0_u8..).filter(|(shade, _)| **shade != Shade::NONE);
+        self.by_shade.clear();
+        self.by_shade.extend(shades.map(|(shade, place)| (shade.in_bits(), place)));
+        self.by_shade.sort_unstable();
+        self.known.fill(NearCluster { shade: Shade::NONE, place: 0, distance: 0.0 });
+    }
+}
+
+/// The largest number of colours that entries are chosen for. In a large window, similar colours
+/// count as one.
+const MOST_SAMPLES: usize = 4096;
+
+/// The colours of the targets, in the order of their bits.
+fn samples(screen: &Screen) -> Vec<Sample> {
+    let shades = screen.targets().flat_map(|target| target.colors());
+    let mut colors: Vec<[u8; 3]> = shades.filter_map(channels).collect();
+    colors.sort_unstable();
+    let mut samples: Vec<Sample> = Vec::new();
+    for dropped in 0..u8::BITS {
+        samples.clear();
+        let key = |color: [u8; 3]| color.map(|channel| channel >> dropped);
+        if dropped > 0 {
+            colors.sort_unstable_by_key(|color| (key(*color), *color));
+        }
+        for group in colors.chunk_by(|one, other| key(*one) == key(*other)) {
+            let shade = Shade::rgb(group[group.len() / 2]);
+            samples.push(Sample { shade, lab: [0.0; 3], count: group.len() as f32 });
+        }
+        if samples.len() <= MOST_SAMPLES {
+            break;
+        }
+    }
+    for sample in &mut samples {
+        sample.lab = channels(sample.shade).map_or([0.0; 3], lab);
+    }
+    samples
+}
+
+/// Red, green and blue of a colour; `None` for named colours, which users redefine, and for the
+/// terminal's own.
+fn channels(shade: Shade) -> Option<[u8; 3]> {
+    match shade.kind() {
+        Kind::Rgb(channels) => Some(channels),
+        Kind::Indexed(index @ 16..) => Some(palette::of_256(index).channels()),
+        Kind::Indexed(_) | Kind::Default => None,
+    }
+}
+
+fn lab([red, green, blue]: [u8; 3]) -> [f32; 3] {
+    Oklab::from(Rgb::new(red, green, blue)).0.map(|component| component as f32)
+}
+
+/// A colour of a frame.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    shade: Shade,
+    lab: [f32; 3],
+    /// The number of half cells that have it.
+    count: f32,
+}
+
+/// Clusters of colours, one for each entry, found by k-means in Oklab.
+///
+/// The search begins with the present entries. In each round, colours go to their nearest entries and entries move to
+/// the means of their colours. Entries without colours go to where the error is largest, the longest unused ones
+/// first (Linde, Buzo and Gray, 1980). An entry takes the colour of the frame that is nearest to its mean, so that
+/// large areas of one colour, such as black, are exact.
+///
+/// Rejected: a median cut, which begins from nothing. An entry that keeps its place needs no new definition, and cells
+/// that show it need not be sent again.
+#[derive(Debug)]
+struct Clusters {
+    /// Their centres in Oklab, component by component.
+    centers: [Vec<f32>; 3],
+    /// The number of the frame in which each was last in use.
+    used_at: Vec<u32>,
+}
+
+/// The sums of a cluster's colours.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f32,
+    lab: [f32; 3],
+    /// The squares of the distances.
+    error: f32,
+    /// The sample with the largest error, and that error.
+    worst: (usize, f32),
+}
+
+/// The centre of an entry that is undefined.
+const UNDEFINED: f32 = 1e9;
+/// The largest number of rounds. Eight are needed to find all entries from nothing.
+const ROUNDS: u32 = 12;
+/// The mean error that needs no further entries.
+const ENOUGH: f32 = 0.002;
+/// An entry within this distance of its mean keeps its colour.
+const NEAR: f32 = 0.004;
+
+impl Clusters {
+    /// Undefined clusters.
+    fn new(count: usize) -> Self {
+        Self { centers: [0, 1, 2].map(|_| vec![UNDEFINED; count]), used_at: vec![0; count] }
+    }
+
+    /// Records that an entry is in use.
+    fn note_use(&mut self, place: u8, frame: u32) {
+        self.used_at[usize::from(place)] = frame;
+    }
+
+    /// The cluster nearest to a colour, and the distance.
+    fn nearest(&self, lab: [f32; 3]) -> (u8, f32) {
+        let (place, square) = ink::nearest(&self.centers, lab);
+        (place, square.sqrt())
+    }
+
+    /// Fits the entries, which have the colours `shades`, to `samples`. Returns their new colours.
+    fn fit(&mut self, samples: &[Sample], shades: &[Shade]) -> Vec<Shade> {
+        let before = self.centers.clone();
+        for _ in 0..ROUNDS {
+            let (sums, error) = self.sums(samples);
+            for (place, sums) in sums.iter().enumerate().filter(|(_, sums)| sums.count > 0.0) {
+                self.move_to(place, sums.lab.map(|sum| sum / sums.count));
+            }
+            if error <= ENOUGH || !self.split(&sums, samples) {
+                break;
+            }
+        }
+        self.settle(samples, shades, &before)
+    }
+
+    /// The sums of each cluster, and the mean distance of all samples.
+    fn sums(&self, samples: &[Sample]) -> (Vec<Sums>, f32) {
+        let mut all = vec![Sums::default(); self.used_at.len()];
+        let (mut distances, mut count) = (0.0, 0.0);
+        for (index, sample) in samples.iter().enumerate() {
+            let (place, distance) = self.nearest(sample.lab);
+            let sums = &mut all[usize::from(place)];
+            let error = sample.count * distance * distance;
+            sums.count += sample.count;
+            sums.error += error;
+            for (sum, component) in sums.lab.iter_mut().zip(sample.lab) {
+                *sum += sample.count * component;
+            }
+            if error > sums.worst.1 {
+                sums.worst = (index, error);
+            }
+            distances += sample.count * distance;
+            count += sample.count;
+        }
+        (all, distances / count)
+    }
+
+    /// Moves entries without colours to where the error is largest. Returns whether there are any.
+    fn split(&mut self, sums: &[Sums], samples: &[Sample]) -> bool {
+        let mut spare: Vec<usize> =
+            (0..sums.len()).filter(|&place| sums[place].count == 0.0).collect();
+        spare.sort_by_key(|&place| self.used_at[place]);
+        let mut worst: Vec<Sums> = sums.iter().copied().filter(|sums| sums.worst.1 > 0.0).collect();
+        worst.sort_by(|one, other| other.error.total_cmp(&one.error));
+        for (&place, sums) in spare.iter().zip(&worst) {
+            self.move_to(place, samples[sums.worst.0].lab);
+        }
+        !spare.is_empty() && !worst.is_empty()
+    }
+
+    /// Moves each centre to a colour of its own cluster, or back if it is near enough to where it was
+    /// `before`. Returns the colours.
+    fn settle(
+        &mut self,
+        samples: &[Sample],
+        shades: &[Shade],
+        before: &[Vec<f32>; 3],
+    ) -> Vec<Shade> {
+        let mut nearest = vec![(f32::INFINITY, 0); shades.len()];
+        for (index, sample) in samples.iter().enumerate() {
+            let (place, distance) = self.nearest(sample.lab);
+            let known = &mut nearest[usize::from(place)];
+            if distance < known.0 {
+                *known = (distance, index);
+            }
+        }
+        let mut settled: Vec<Shade> = Vec::with_capacity(shades.len());
+        for (place, (&shade, &(distance, index))) in shades.iter().zip(&nearest).enumerate() {
+            let old = before.each_ref().map(|components| components[place]);
+            let has_colors = distance.is_finite();
+            let is_kept = !has_colors || self.distance(place, old) <= NEAR.max(distance);
+            let (lab, chosen) =
+                if is_kept { (old, shade) } else { (samples[index].lab, samples[index].shade) };
+            // Two entries of one colour could not be told apart.
+            let is_new = chosen != Shade::NONE && !settled.contains(&chosen);
+            self.move_to(place, if is_new { lab } else { [UNDEFINED; 3] });
+            settled.push(if is_new { chosen } else { Shade::NONE });
+        }
+        settled
+    }
+
+    fn move_to(&mut self, place: usize, lab: [f32; 3]) {
+        for (centers, component) in self.centers.iter_mut().zip(lab) {
+            centers[place] = component;
+        }
+    }
+
+    fn distance(&self, place: usize, lab: [f32; 3]) -> f32 {
+        let squares = self.centers.iter().zip(lab).map(|(centers, component)| {
+            let difference = centers[place] - component;
+            difference * difference
+        });
+        squares.sum::<f32>().sqrt()
     }
 }

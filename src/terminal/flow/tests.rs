@@ -4,11 +4,11 @@
 mod scenarios;
 mod simulation;
 
+use self::simulation::{Conditions, FrameSource, Frames, Latency, Simulation, UNLIMITED, saving};
 use proptest::prelude::*;
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
 
-use self::simulation::{Conditions, FrameSource, Frames, Latency, Simulation, UNLIMITED, saving};
 use super::*;
 use crate::app::{Levels, Replay, Settings};
 use crate::color::palette::ColorDepth;

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::super::key::{Key, Modifiers, Phase};
+use super::super::event::{Key, Modifiers, Phase};
 use super::*;
 use crate::terminal::event::{MouseButton, MouseEventKind};
 use crate::terminal::known::known;

@@ -16,8 +16,8 @@ use super::pages::Page;
 use super::stay::{SeenGhost, seconds_left};
 use super::talk;
 use super::ui::Ui;
+use crate::line;
 use crate::rooms::room::{Phase, RoomView};
-use crate::sessions::line;
 use cellcaster::app::parts::{
     DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
     picture_and_status, too_small, whole_seconds,
@@ -151,7 +151,7 @@ impl Ui {
                 overhead::draw(canvas, area, &options, &player, room, &ghosts);
                 let overlay = Overlay::new(game, player.id(), &options, preferences);
                 if let Some(overlay) = overlay {
-                    overlay.draw_map(canvas, area, &mut stay.map, &view);
+                    overlay.draw_map(canvas, area, &mut stay.map, &view, None);
                     overlay.draw_hud(canvas, area, page == Page::Room);
                 }
             }
