@@ -18,16 +18,12 @@
 //! pointer. Code that measures times passes a [`Visitor`], whose loop is compiled for each caster: a pointer that is
 //! followed for each ray would be measured as well.
 
-mod accumulate;
 mod clipped_ray;
-mod dda;
-mod fixed;
+mod lines;
 mod march;
 mod table;
 
-pub use accumulate::Accumulate;
-pub use dda::{Dda, Dda32};
-pub use fixed::Fixed;
+pub use lines::{Accumulate, Dda, Dda32, Fixed};
 pub use march::March;
 pub use table::Table;
 

@@ -127,7 +127,7 @@ async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std:
     Ok(())
 }
 
-/// What each of the servers has used so far.
+/// The resources that each server has used.
 fn usage(servers: &[ServerProcess]) -> Vec<Usage> {
     servers.iter().map(ServerProcess::usage).collect()
 }
@@ -136,7 +136,7 @@ fn megabytes(usage: &[Usage]) -> f64 {
     usage.iter().map(|it| it.megabytes).sum()
 }
 
-/// What the clients have counted.
+/// The counts of the clients.
 async fn ended(mut clients: JoinSet<Result<Tally, String>>) -> Vec<Tally> {
     let mut tallies = Vec::new();
     while let Some(client) = clients.join_next().await {

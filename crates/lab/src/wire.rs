@@ -4,9 +4,9 @@
 //! A script is played once, and each of its frames passes through every encoder: ratatui's own for
 //! crossterm, which most programs use, and Cellcaster's at several fidelities. The report counts
 //! bytes, before and after the compression of `ssh -C`, and compares the colours on the terminal
-//! with those that the game drew. The distance of two colours is ΔE of CIE76, the Euclidean
-//! distance in CIELAB, which published figures on terminal video use. CIEDE2000 was refused: it is
-//! meant for colours closer than most of these, and its hue sectors have discontinuities.
+//! with the game's own. The distance of two colours is ΔE of CIE76, the Euclidean
+//! distance in CIELAB, which published figures on terminal video use. Rejected: CIEDE2000, which is
+//! meant for colours closer than most of these, and whose hue sectors have discontinuities.
 //!
 //! The first frame paints everything with any encoder, and is reported separately.
 

@@ -3,11 +3,11 @@
 //! A picture has one sample in each pixel, and the truth is what a perfect camera sees: the mean
 //! light over the pixel. It is computed from the renderer's own picture, eight times as wide and
 //! high and without filtering: 64 samples of a pixel, averaged in linear light and not rounded. The
-//! renderer's samples are verified elsewhere, against an independent tracer. An oracle in rational
-//! arithmetic was refused here: 64 samples of it take seconds for each picture.
+//! renderer's samples are verified elsewhere, against an independent tracer. Rejected: an oracle in
+//! rational arithmetic. 64 samples of it take seconds for each picture.
 //!
-//! What is compared is what a terminal shows of a window: each half of a cell, as the glyphs of the
-//! window light it. A glyph's coverage is that of an 8×8 bitmap font.
+//! Each half of a cell is compared, as the glyphs of the window light it. The coverage of a glyph is taken from an 8×8
+//! bitmap font.
 //!
 //! A half is at an edge if its samples show more than one surface: floor, ceiling, sky, a thing, or
 //! one plane of walls. *Crawl* is the change from frame to frame that the truth does not have: the
@@ -30,7 +30,7 @@ use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surfac
 use cellcaster::tui::{FirstPerson, GlyphSet, View, rgb_of};
 use cellcaster::world::{Camera, World};
 
-/// What a window shows a picture by.
+/// The glyphs and colours by which a window shows a picture.
 #[derive(Clone, Copy, Debug)]
 struct Display {
     name: &'static str,
@@ -177,7 +177,7 @@ fn compare(
     }
 }
 
-// What the cells of a window look like.
+// The appearance of a window's cells.
 
 /// A window that shows pictures.
 struct Window {
@@ -244,7 +244,7 @@ struct Half {
     is_at_edge: bool,
 }
 
-/// What a sample shows: a surface, and for walls the line of the grid that they stand on.
+/// The content of a sample: a surface, and for walls the line of the grid that they stand on.
 type Shown = (Option<Surface>, Option<(Side, u32)>);
 
 /// The halves of the cells of a window of `size`, row by row, in the view of `camera`.

@@ -26,7 +26,7 @@ use cellcaster::world::{Camera, FieldOfView, World};
 /// The errors of a feature.
 struct Feature {
     name: &'static str,
-    /// What is compared.
+    /// The figure that is compared.
     figure: &'static str,
     /// The unit of the errors.
     unit: &'static str,
@@ -84,7 +84,7 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
 const STEP: usize = 15;
 
 /// A colour is wrong if another index is nearer in Oklab, in which the palette is searched. The
-/// errors are those of the colours that are shown, in ΔE of CIE76, of which 2.3 is just seen.
+/// errors of the shown colours are in ΔE of CIE76; a difference of 2.3 is just seen.
 fn palette(
     name: &'static str,
     indices: std::ops::RangeInclusive<u8>,
@@ -111,8 +111,7 @@ fn palette(
     Feature { name, figure: "colour", unit: "ΔE", outcomes, work: Box::new(work) }
 }
 
-// Fidelity: the colours that a terminal shows while the camera moves, compared with those that were
-// drawn.
+// Fidelity: the colours that a terminal shows while the camera moves, compared with the drawn ones.
 
 const WINDOW: Size = Size::new(80, 24);
 const FRAMES: usize = 24;

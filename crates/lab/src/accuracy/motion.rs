@@ -18,7 +18,7 @@ use cellcaster::numeric::damped_motion::approach;
 
 /// The time of a motion, in seconds.
 const SECONDS: f64 = 10.0;
-/// The target, in cells per second: that of a player who walks.
+/// The target: the speed of a player who walks, in cells per second.
 const SPEED: f64 = 3.0;
 /// The lengths of steps, in seconds.
 const STEPS: [f64; 6] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0];
@@ -123,7 +123,7 @@ fn errors(integrator: Integrator, motion: &Motion) -> [f64; 2] {
     errors
 }
 
-/// The time of a step: that of whole motions, one after the other, with many steps in all.
+/// The time of a step, in nanoseconds, measured by whole motions with many steps in all.
 fn nanoseconds((integrator, motion): (Integrator, Motion)) -> f64 {
     const MANY: u64 = 20_000;
     let steps = count(motion.step).min(MANY);
@@ -139,8 +139,7 @@ fn nanoseconds((integrator, motion): (Integrator, Motion)) -> f64 {
 }
 
 /// The slopes of the errors of velocity and place over the step in logarithms, by least squares, at
-/// the rate 1; `None` where there are fewer than two errors between those of rounding and those of
-/// steps that are too long.
+/// the rate 1; `None` if fewer than two errors are neither mostly rounding nor of steps that are too long.
 fn slopes(integrator: Integrator) -> [Option<f64>; 2] {
     const LINEAR: std::ops::Range<f64> = 1e-12..0.1;
     const SLOPE_STEPS: [f64; 6] = [0.2, 0.1, 0.05, 0.02, 0.01, 0.005];
@@ -288,7 +287,7 @@ impl Truth {
         Self { velocity: &target * &approached, place: &target * &(&time - &lag) }
     }
 
-    /// The absolute errors of a velocity and a place; infinite for those that are not finite.
+    /// The absolute errors of a velocity and a place; infinite for a value that is not finite.
     fn errors(&self, (velocity, place): (f64, f64)) -> [f64; 2] {
         [(velocity, &self.velocity), (place, &self.place)].map(|(value, truth)| {
             if value.is_finite() {

@@ -6,7 +6,7 @@
 //! hit is the nearer one of the first solid cell behind an x line and the first behind a y line. No
 //! state is carried from one crossing to the next, and nothing is rounded.
 //!
-//! Fractions in lowest terms were refused: greatest common divisors would take most of the time,
+//! Rejected: fractions in lowest terms. Greatest common divisors would take most of the time,
 //! and are not needed.
 
 use std::cmp::Ordering;
@@ -107,7 +107,7 @@ impl Rational {
     }
 }
 
-/// A finite double as an integer times a power of two, whose exponent is that of the last place.
+/// A finite double as an integer times a power of two: the value of its last place.
 pub(crate) fn integer(value: f64) -> (BigInt, i64) {
     const LEADING_ONE: u64 = 1 << 52;
     let biased_exponent = value.abs().to_bits() / LEADING_ONE;

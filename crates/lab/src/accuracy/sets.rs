@@ -65,6 +65,12 @@ fn made(width: u32, height: u32, is_solid: impl Fn(u32, u32) -> bool) -> Grid {
     Grid::new(width, height, TileId(1), cells).expect("there is a cell for each column and row")
 }
 
+/// A square grid with a wall around it and further solid cells.
+fn walled(side: u32, is_solid: impl Fn(u32, u32) -> bool) -> Grid {
+    let is_edge = |index: u32| index == 0 || index == side - 1;
+    made(side, side, |column, row| is_edge(column) || is_edge(row) || is_solid(column, row))
+}
+
 /// Rays from every origin along every direction.
 fn all(origins: &[DVec2], directions: &[DVec2]) -> Vec<Ray> {
     let along = |&origin| directions.iter().filter_map(move |&d| Ray::new(origin, d).ok());
@@ -73,13 +79,7 @@ fn all(origins: &[DVec2], directions: &[DVec2]) -> Vec<Ray> {
 
 /// Points on the floor of the hall: in general position, in the middle of a cell, and on lines.
 fn places() -> [DVec2; 5] {
-    [
-        DVec2::new(2.37, 5.61),
-        DVec2::new(6.5, 9.5),
-        DVec2::new(7.0, 5.0),
-        DVec2::new(12.0, 4.25),
-        DVec2::new(1.1, 1.9),
-    ]
+    [(2.37, 5.61), (6.5, 9.5), (7.0, 5.0), (12.0, 4.25), (1.1, 1.9)].map(DVec2::from)
 }
 
 /// The eight images of a direction under reflections in the axes and the diagonals.
@@ -109,11 +109,7 @@ pub fn ordinary(seed: u64, count: usize) -> Vec<Set> {
 /// A plain of 4096 × 4096 cells with a tenth of `count` rays: a wall around it, and a pillar in every
 /// sixty-fourth column of every sixty-fourth row.
 pub fn plain(seed: u64, count: usize) -> Set {
-    const SIDE: u32 = 4096;
-    let is_edge = |index: u32| index == 0 || index == SIDE - 1;
-    let mut grid = made(SIDE, SIDE, |column, row| {
-        is_edge(column) || is_edge(row) || (column % 64 == 32 && row % 64 == 32)
-    });
+    let mut grid = walled(4096, |column, row| column % 64 == 32 && row % 64 == 32);
     // As a world has it.
     grid.clear(|_| false);
     let rays = rays_from_floor(&grid, count.div_ceil(10), &mut SplitMix64::new(seed));
@@ -153,26 +149,27 @@ fn rooms() -> Grid {
 
 /// An open square of 64 × 64 cells with a pillar in every fourth column of every fourth row.
 fn pillars() -> Grid {
-    let is_edge = |index: u32| index == 0 || index == 63;
-    made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 4 == 2 && row % 4 == 2))
+    walled(64, |column, row| column % 4 == 2 && row % 4 == 2)
 }
 
 /// Corridors of 62 cells, one cell wide, with crossings at every eighth cell.
 fn corridors() -> Grid {
-    let is_edge = |index: u32| index == 0 || index == 63;
-    made(64, 64, |column, row| is_edge(column) || is_edge(row) || (column % 8 != 4 && row % 8 != 4))
+    walled(64, |column, row| column % 8 != 4 && row % 8 != 4)
 }
 
 // Directions that are hard to cast.
 
 fn directions(random: &mut SplitMix64) -> Vec<Set> {
+    let tiny = [(1e-300, 2e-300), (1e-310, 3e-310), (5e-324, 5e-324), (5e-324, 1e-323)];
+    let unlike = [(1e300, 5e-324), (1e300, 1e-300), (f64::MAX, f64::MIN_POSITIVE), (1e300, 1.0)];
+    let powers_of_ten = (3..=17).map(|exponent| libm::exp10(f64::from(-exponent)));
     vec![
         set("axis-parallel", all(&places(), &turned(1.0, 0.0))),
         set("negative zero", all(&places(), &negative_zeros())),
-        set("tiny beside one", all(&places(), &beside_one(&[1e-300, 1e-308, 1e-310, 5e-324]))),
-        set("tiny", all(&places(), &tiny())),
-        set("unlike components", all(&places(), &unlike())),
-        set("nearly parallel", all(&places(), &beside_one(&powers_of_ten(3..=17)))),
+        set("tiny beside one", all(&places(), &beside_one([1e-300, 1e-308, 1e-310, 5e-324]))),
+        set("tiny", all(&places(), &all_turned(tiny))),
+        set("unlike components", all(&places(), &all_turned(unlike))),
+        set("nearly parallel", all(&places(), &beside_one(powers_of_ten))),
         set("through corners", through_corners(random)),
         set("between diagonal walls", between_diagonal_walls()),
         set("along lines", along_lines()),
@@ -187,22 +184,14 @@ fn negative_zeros() -> Vec<DVec2> {
     turned(1.0, -0.0).into_iter().chain(turned(-1.0, -0.0)).collect()
 }
 
-fn beside_one(sizes: &[f64]) -> Vec<DVec2> {
-    sizes.iter().flat_map(|&size| turned(1.0, size)).collect()
+/// Images of directions whose other component is 1.
+fn beside_one(sizes: impl IntoIterator<Item = f64>) -> Vec<DVec2> {
+    all_turned(sizes.into_iter().map(|size| (1.0, size)))
 }
 
-fn powers_of_ten(exponents: std::ops::RangeInclusive<i32>) -> Vec<f64> {
-    exponents.map(|exponent| libm::exp10(f64::from(-exponent))).collect()
-}
-
-fn tiny() -> Vec<DVec2> {
-    let sizes = [(1e-300, 2e-300), (1e-310, 3e-310), (5e-324, 5e-324), (5e-324, 1e-323)];
-    sizes.into_iter().flat_map(|(x, y)| turned(x, y)).collect()
-}
-
-fn unlike() -> Vec<DVec2> {
-    let sizes = [(1e300, 5e-324), (1e300, 1e-300), (f64::MAX, f64::MIN_POSITIVE), (1e300, 1.0)];
-    sizes.into_iter().flat_map(|(x, y)| turned(x, y)).collect()
+/// The images of each of these directions.
+fn all_turned(directions: impl IntoIterator<Item = (f64, f64)>) -> Vec<DVec2> {
+    directions.into_iter().flat_map(|(x, y)| turned(x, y)).collect()
 }
 
 /// From random points to every corner of the grid, and an ulp beside it.
@@ -255,10 +244,7 @@ fn origins(random: &mut SplitMix64) -> Vec<Set> {
 }
 
 fn slopes() -> Vec<DVec2> {
-    [(1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (0.3, 0.1), (1.0, 1e-9), (0.7, 1e-300)]
-        .into_iter()
-        .flat_map(|(x, y)| turned(x, y))
-        .collect()
+    all_turned([(1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (0.3, 0.1), (1.0, 1e-9), (0.7, 1e-300)])
 }
 
 /// On lines of either kind, on both, and on all edges of the map.
@@ -355,9 +341,7 @@ fn long_map() -> Set {
 
 /// An open plain of 4096 × 4096 cells, with a wall around it.
 fn open_plain(random: &mut SplitMix64) -> Set {
-    let size = 4096;
-    let is_edge = |index: u32| index == 0 || index == size - 1;
-    let grid = made(size, size, |column, row| is_edge(column) || is_edge(row));
+    let grid = walled(4096, |_, _| false);
     let mut rays = all(
         &[DVec2::new(1.5, 1.5), DVec2::new(1.0, 1.0), DVec2::new(2048.5, 2048.5)],
         &[(1.0, 1.0), (2.0, 1.0), (-1.0, -1.0), (1.0, 1.0 + f64::EPSILON)].map(DVec2::from),

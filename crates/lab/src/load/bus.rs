@@ -41,19 +41,17 @@ async fn load(rooms: usize, plan: &Load) -> Result<(), Box<dyn Error>> {
     let address = plan.cluster.as_deref().ok_or("--bus needs --cluster")?;
     let (client, listener) = (connect(address).await?, connect(address).await?);
     let context = jetstream::new(client.clone());
-    let config = stream::Config {
-        name: STREAM.to_owned(),
-        subjects: vec!["cellcaster.load.log.*".to_owned()],
-        ..stream::Config::default()
-    };
-    context.create_stream(config).await?;
-    let config = stream::Config {
-        name: CHECKPOINTS.to_owned(),
-        subjects: vec!["cellcaster.load.checkpoint.*".to_owned()],
-        max_messages_per_subject: 1,
-        ..stream::Config::default()
-    };
-    context.create_stream(config).await?;
+    for (name, subject, most) in
+        [(STREAM, "cellcaster.load.log.*", 0), (CHECKPOINTS, "cellcaster.load.checkpoint.*", 1)]
+    {
+        let config = stream::Config {
+            name: name.to_owned(),
+            subjects: vec![subject.to_owned()],
+            max_messages_per_subject: most,
+            ..stream::Config::default()
+        };
+        context.create_stream(config).await?;
+    }
     let mut heard = listener.subscribe("cellcaster.load.peers.*").await?;
     tokio::spawn(async move { while heard.next().await.is_some() {} });
     let (begin, seconds) = (Instant::now() + WARM_UP, Duration::from_secs(plan.seconds));

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// What a client has counted.
+/// The counts of a client.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) is_walking: bool,

@@ -73,7 +73,7 @@ impl ServerProcess {
         self.child.id()
     }
 
-    /// What the server has used so far.
+    /// The resources that the server has used.
     pub(crate) fn usage(&self) -> Usage {
         Usage::of(self.child.id())
     }
@@ -100,9 +100,9 @@ impl Drop for ServerProcess {
     }
 }
 
-// What processes have used, from `/proc`.
+// Resources of processes, from `/proc`.
 
-/// What a process and all its descendants have used.
+/// The resources that a process and all its descendants have used.
 #[derive(Debug)]
 pub(crate) struct Usage {
     pub(crate) processor: Duration,
@@ -110,7 +110,7 @@ pub(crate) struct Usage {
     pub(crate) megabytes: f64,
 }
 
-/// What the kernel tells about one process.
+/// The kernel's figures of one process.
 struct Stat {
     parent: u32,
     processor: Duration,
@@ -147,7 +147,7 @@ fn stats() -> BTreeMap<u32, Stat> {
 fn stat(process: u32) -> Option<Stat> {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
-    // User and system time, and those of children that have ended, in hundredths of a second.
+    // User and system time, also of children that have ended, in hundredths of a second.
     let ticks: u64 = fields.get(11..15)?.iter().filter_map(|it| it.parse::<u64>().ok()).sum();
     Some(Stat {
         parent: fields.get(1)?.parse().ok()?,

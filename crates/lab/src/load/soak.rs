@@ -19,7 +19,7 @@ use super::wanderer::{self, Leaving};
 /// How the visits have ended so far; `None` for those with a fault.
 type Ends = Arc<Mutex<BTreeMap<Option<Leaving>, u64>>>;
 
-/// The parts of the time, after each of which the server is measured.
+/// The server is measured after each of so many parts of the time.
 const PARTS: u32 = 10;
 /// The longest visit without its end.
 const LONGEST: Duration = Duration::from_secs(20);

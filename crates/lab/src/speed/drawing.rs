@@ -10,16 +10,15 @@ use crate::report::{Diagram, Row, Table, Value, headings, median, seconds};
 use cellcaster::render::{Frame, FrameSize, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
-/// A scene.
-#[derive(Clone, Copy)]
-enum Scene {
-    /// Walls, with a textured floor and ceiling.
-    Planes,
-    /// Walls, with one colour above and below them.
-    Walls,
+/// A level that is drawn.
+struct Scene {
+    name: &'static str,
+    world: World,
+    /// The classic loop's floors for this scene.
+    floors: &'static [ClassicFloor],
 }
 
-/// The sizes of the pictures: those of terminals, from 80×24 to 320×100 cells, then larger ones.
+/// The sizes of the pictures: in terminals from 80×24 to 320×100 cells, then larger ones.
 const SIZES: [FrameSize; 8] = [
     size(80, 48),
     size(120, 80),
@@ -52,13 +51,16 @@ const TURNS: usize = 3;
 /// For each camera, all renderers take turns, so that a busy machine slows all of them. A result is
 /// the mean, over the visited cameras, of the medians for each camera.
 pub fn measure_drawing(time: Duration) -> Table {
-    let scenes = [(Scene::Planes, textured_scene()), (Scene::Walls, plain_scene())];
-    let pictures = || SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (size, scene)));
-    let all: f64 = pictures().map(|(size, (scene, _))| share(*scene, size)).sum();
-    let rows = pictures().flat_map(|(size, (scene, world))| {
-        let time = time.mul_f64(share(*scene, size) / all);
-        Comparison::new(*scene, world, size).measure(time)
-    });
+    // With a textured floor and ceiling, and with one colour each.
+    let textured = &[ClassicFloor::ByColumn, ClassicFloor::ByScanline];
+    let scenes = [
+        Scene { name: "planes", world: textured_scene(), floors: textured },
+        Scene { name: "walls", world: plain_scene(), floors: &[ClassicFloor::None] },
+    ];
+    let pictures = || SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (scene, size)));
+    let all: f64 = pictures().map(|(scene, size)| share(scene, size)).sum();
+    let rows = pictures()
+        .flat_map(|(scene, size)| compare(scene, size, time.mul_f64(share(scene, size) / all)));
     Table {
         name: "drawing",
         title: "Nanoseconds a pixel of the renderer on one thread (ours), beside the loop that tutorials\n\
@@ -73,39 +75,9 @@ pub fn measure_drawing(time: Duration) -> Table {
 
 /// The weight of these pictures in the distribution of time. Large pictures take longer, but need
 /// fewer samples.
-fn share(scene: Scene, size: FrameSize) -> f64 {
+fn share(scene: &Scene, size: FrameSize) -> f64 {
     let pixels = f64::from(size.width.get()) * f64::from(size.height.get());
-    pixels.sqrt() * (1 + scene.floors().len()) as f64
-}
-
-impl Scene {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Planes => "planes",
-            Self::Walls => "walls",
-        }
-    }
-
-    /// The classic loop's floors for this scene.
-    fn floors(self) -> &'static [ClassicFloor] {
-        match self {
-            Self::Planes => &[ClassicFloor::ByColumn, ClassicFloor::ByScanline],
-            Self::Walls => &[ClassicFloor::None],
-        }
-    }
-}
-
-/// All renderers of a scene at one size, and their buffers.
-struct Comparison<'a> {
-    scene: Scene,
-    world: &'a World,
-    size: FrameSize,
-    single_threaded: Renderer,
-    multi_threaded: Renderer,
-    threads: usize,
-    classic: Classic,
-    frame: Frame,
-    pixels: Vec<u32>,
+    pixels.sqrt() * (1 + scene.floors.len()) as f64
 }
 
 /// The times of all renderers for one camera, in seconds.
@@ -118,98 +90,73 @@ struct Times {
     classic: [Vec<f64>; 2],
 }
 
-impl<'a> Comparison<'a> {
-    fn new(scene: Scene, world: &'a World, size: FrameSize) -> Self {
-        let mut frame = Frame::new(size, pixel_aspect(size));
-        let (mut single_threaded, mut multi_threaded) = (Renderer::new(), Renderer::new());
-        single_threaded.set_threads(NonZero::<usize>::MIN);
-        let start = world.start_camera(FieldOfView::default());
-        let threads = multi_threaded.explain(world, &start, &mut frame).threads.count();
-        let pixels = vec![0; frame.width() as usize * frame.height() as usize];
-        let classic = Classic::new(world);
-        Self {
-            scene,
-            world,
-            size,
-            single_threaded,
-            multi_threaded,
-            threads,
-            classic,
-            frame,
-            pixels,
-        }
-    }
-
-    fn measure(mut self, time: Duration) -> Vec<Row> {
-        let cameras = walk(self.world, CAMERAS);
-        // The first draw loads caches, and is not counted.
-        self.take_turns(&cameras[0], 1, &mut Times::default());
-        let mut times = vec![Times::default(); CAMERAS];
-        let begun = Instant::now();
-        for index in (0..).map(|index| index * STRIDE % CAMERAS) {
-            self.take_turns(&cameras[index], TURNS, &mut times[index]);
-            if begun.elapsed() >= time {
-                break;
-            }
-        }
-        self.rows(&times)
-    }
-
-    /// Draws `turns` times with each renderer from `camera`, in turns.
-    fn take_turns(&mut self, camera: &Camera, turns: usize, times: &mut Times) {
-        let Self {
-            scene,
-            world,
-            size,
-            single_threaded,
-            multi_threaded,
-            threads,
-            classic,
-            frame,
-            pixels,
-        } = self;
-        let size = (size.width.get() as usize, size.height.get() as usize);
+/// Draws a scene with all renderers at one size, which takes about `time`.
+fn compare(scene: &Scene, size: FrameSize, time: Duration) -> Vec<Row> {
+    let Scene { world, floors, .. } = scene;
+    let (width, height) = (size.width.get() as usize, size.height.get() as usize);
+    let mut frame = Frame::new(size, pixel_aspect(size));
+    let mut pixels = vec![0; width * height];
+    let (mut single_threaded, mut multi_threaded) = (Renderer::new(), Renderer::new());
+    single_threaded.set_threads(NonZero::<usize>::MIN);
+    let start = world.start_camera(FieldOfView::default());
+    let threads = multi_threaded.explain(world, &start, &mut frame).threads.count();
+    let classic = Classic::new(world);
+    // Draws `turns` times with each renderer, in turns.
+    let mut take_turns = |camera: &Camera, turns: usize, times: &mut Times| {
         for turn in 0..turns {
-            times.ours.push(seconds(|| single_threaded.render(world, camera, black_box(frame))));
-            times.fill.push(seconds(|| black_box(&mut *pixels).fill(turn as u32)));
-            if *threads > 1 {
-                let draw = || multi_threaded.render(world, camera, black_box(frame));
+            let draw = || single_threaded.render(world, camera, black_box(&mut frame));
+            times.ours.push(seconds(draw));
+            times.fill.push(seconds(|| black_box(&mut pixels).fill(turn as u32)));
+            if threads > 1 {
+                let draw = || multi_threaded.render(world, camera, black_box(&mut frame));
                 times.by_threads.push(seconds(draw));
             }
-            for (times, &floor) in times.classic.iter_mut().zip(scene.floors()) {
-                times.push(seconds(|| classic.draw(camera, floor, size, black_box(pixels))));
+            for (times, &floor) in times.classic.iter_mut().zip(*floors) {
+                let pixels = black_box(&mut pixels);
+                times.push(seconds(|| classic.draw(camera, floor, (width, height), pixels)));
             }
         }
-    }
-
-    /// A row for each renderer.
-    fn rows(&self, times: &[Times]) -> Vec<Row> {
-        let Self { scene, size, threads, .. } = *self;
-        let mean = |of: &dyn Fn(&Times) -> &Vec<f64>| {
-            let visited = times.iter().filter(|times| !times.ours.is_empty());
-            mean_of_medians(visited.map(of))
-        };
-        let floors = 0..scene.floors().len();
-        let classic = floors.map(|floor| mean(&|times| &times.classic[floor]));
-        let (ours, fill) = (mean(&|times| &times.ours), mean(&|times| &times.fill));
-        let mut renderers = vec![
-            ("ours", 1, ours),
-            ("classic", 1, classic.fold(f64::INFINITY, f64::min)),
-            ("fill", 1, fill),
-        ];
-        if threads > 1 {
-            renderers.push(("by threads", threads, mean(&|times| &times.by_threads)));
+    };
+    let cameras = walk(world, CAMERAS);
+    // The first draw loads caches, and is not counted.
+    take_turns(&cameras[0], 1, &mut Times::default());
+    let mut times = vec![Times::default(); CAMERAS];
+    let begun = Instant::now();
+    for index in (0..).map(|index| index * STRIDE % CAMERAS) {
+        take_turns(&cameras[index], TURNS, &mut times[index]);
+        if begun.elapsed() >= time {
+            break;
         }
-        let picture = format!("{}x{}", size.width, size.height);
-        let pixels = self.pixels.len() as f64;
-        let row = |(name, threads, time): (&str, usize, f64)| {
-            let figures = [time * 1e9 / pixels, time / ours, time / fill].map(Value::Number);
-            let counts = [Value::Count(pixels as u64), Value::Count(threads as u64)];
-            let values = counts.into_iter().chain(figures).collect();
-            Row::new([scene.name(), name, &picture], values)
-        };
-        renderers.into_iter().map(row).collect()
     }
+    rows(scene, size, threads, &times)
+}
+
+/// A row for each renderer.
+fn rows(scene: &Scene, size: FrameSize, threads: usize, times: &[Times]) -> Vec<Row> {
+    let mean = |of: &dyn Fn(&Times) -> &Vec<f64>| {
+        let visited = times.iter().filter(|times| !times.ours.is_empty());
+        mean_of_medians(visited.map(of))
+    };
+    let floors = 0..scene.floors.len();
+    let classic = floors.map(|floor| mean(&|times| &times.classic[floor]));
+    let (ours, fill) = (mean(&|times| &times.ours), mean(&|times| &times.fill));
+    let mut renderers = vec![
+        ("ours", 1, ours),
+        ("classic", 1, classic.fold(f64::INFINITY, f64::min)),
+        ("fill", 1, fill),
+    ];
+    if threads > 1 {
+        renderers.push(("by threads", threads, mean(&|times| &times.by_threads)));
+    }
+    let picture = format!("{}x{}", size.width, size.height);
+    let pixels = f64::from(size.width.get()) * f64::from(size.height.get());
+    let row = |(name, threads, time): (&str, usize, f64)| {
+        let figures = [time * 1e9 / pixels, time / ours, time / fill].map(Value::Number);
+        let counts = [Value::Count(pixels as u64), Value::Count(threads as u64)];
+        let values = counts.into_iter().chain(figures).collect();
+        Row::new([scene.name, name, &picture], values)
+    };
+    renderers.into_iter().map(row).collect()
 }
 
 fn mean_of_medians<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {

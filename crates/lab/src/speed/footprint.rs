@@ -24,7 +24,7 @@ const GAME_WINDOW: Size = Size::new(120, 40);
 /// The number of times the program is started.
 const STARTS: usize = 9;
 
-/// Measures. The process must not have done anything else yet. What this system does not report has no figure.
+/// Measures. The process must not have done anything else yet. A figure that this system does not report is missing.
 pub(crate) fn measure_footprint() -> Result<Table, Error> {
     const MEBIBYTE: f64 = (1 << 20) as f64;
     play()?;

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use flate2::{Compress, Compression, FlushCompress, Status};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use ratatui::backend::{Backend, CrosstermBackend};
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Size;
@@ -253,43 +254,28 @@ fn share(sorted: &[usize], percent: usize) -> usize {
 // The compression of `ssh -C`: one zlib stream that is flushed after each frame. OpenSSH uses
 // level 6; another server could choose level 1.
 
-/// The reported levels: the fastest one, and that of OpenSSH.
+/// The reported levels: the fastest one, and OpenSSH's.
 const LEVELS: [u32; 2] = [1, 6];
-/// More bytes than zlib adds to incompressible data.
-const OVERHEAD: usize = 256;
 
 /// A compressed stream.
-#[derive(Debug)]
-struct Stream {
-    compress: Compress,
-    output: Vec<u8>,
-}
+struct Stream(ZlibEncoder<Vec<u8>>);
 
 impl Stream {
     fn new(level: u32) -> Self {
-        Self { compress: Compress::new(Compression::new(level), true), output: Vec::new() }
+        Self(ZlibEncoder::new(Vec::new(), Compression::new(level)))
     }
 
     /// The number of bytes sent for `frame`; 0 for an empty one.
     fn size_of(&mut self, frame: &[u8]) -> usize {
-        if frame.is_empty() {
-            return 0;
+        if !frame.is_empty() {
+            // Writing to memory cannot fail.
+            _ = self.0.write_all(frame).and_then(|()| self.0.flush());
         }
-        let (read, written) = (self.compress.total_in(), self.compress.total_out());
-        loop {
-            let rest = &frame[(self.compress.total_in() - read) as usize..];
-            self.output.clear();
-            self.output.reserve(rest.len() + OVERHEAD);
-            let status = self.compress.compress_vec(rest, &mut self.output, FlushCompress::Sync);
-            let is_full = self.output.len() == self.output.capacity();
-            if !is_full || !matches!(status, Ok(Status::Ok)) {
-                return (self.compress.total_out() - written) as usize;
-            }
-        }
+        self.0.get_mut().drain(..).len()
     }
 }
 
-// The difference between the colours that a viewer sees and those that were drawn.
+// The difference between the colours that a viewer sees and the drawn ones.
 
 /// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]

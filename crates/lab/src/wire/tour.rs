@@ -90,7 +90,7 @@ pub fn report_glyphs(
     }
 }
 
-/// The sums over all frames; those of the bytes are without the first frame of each level.
+/// The sums over all frames; the first frame of each level does not count for `frames` and `bytes`.
 #[derive(Clone, Copy, Default)]
 struct GlyphSums {
     frames: usize,
@@ -141,7 +141,7 @@ fn measure_glyphs(
     });
 }
 
-/// What the terminal shows. A colour of the terminal's own is black.
+/// The picture on the terminal. The terminal's own colours are black.
 fn shown_by(encoder: &Encoder, size: Size) -> SeenPicture {
     SeenPicture::of_cells(size, |x, y| match encoder.shown(x, y) {
         Some((Some(mosaic), colors)) => {
@@ -319,7 +319,7 @@ impl MethodRun {
     }
 }
 
-/// What the eye sees of the cells.
+/// The cells as the eye sees them.
 fn shown(buffer: &Buffer, ink: Option<ShadeInk>) -> Vec<Oklab> {
     let width = usize::from(buffer.area.width);
     let mut light = Vec::with_capacity(2 * buffer.content().len());

@@ -166,7 +166,7 @@ fn direction(camera: &Camera, (x, y): (u32, u32)) -> DVec3 {
     ray_of_column(camera, x).extend(up)
 }
 
-/// The characters of the tiles with heights, the height of each, the colour of its top, and that of
+/// The characters of the tiles with heights, the height of each, and the colours of its top and of
 /// its sides.
 const TILES: [(char, f64, u32, u32); 5] = [
     ('.', 0.0, 0x20_40_60, 0x20_40_60),

@@ -67,7 +67,7 @@ struct Met {
     is_end: bool,
 }
 
-/// What a ray may hit.
+/// The possible hits of a ray.
 struct Truth {
     /// All places up to the first that is no end. There are several where a ray through the end of one wall
     /// meets another.
