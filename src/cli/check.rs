@@ -28,7 +28,7 @@ pub(crate) struct Check {
     deny: Option<Denied>,
 }
 
-/// What counts as a fault.
+/// The kind of message that counts as a fault.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Denied {
     Remarks,

@@ -27,7 +27,7 @@ const INSTALLED: [(&str, &str); 2] =
 /// A command of another program.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct External {
-    /// What follows `cellcaster-` in its name.
+    /// The part of its name after `cellcaster-`.
     program: String,
     arguments: Vec<OsString>,
 }

@@ -79,14 +79,14 @@ pub fn load_series(argument: Option<&OsStr>) -> Result<Levels, Error> {
     }
     let level = load(argument)?;
     let path = argument.filter(|argument| *argument != STANDARD_INPUT).map(Path::new);
-    // What is no file, such as a pipe, cannot be found again.
+    // A pipe, or anything else that is no file, cannot be found again.
     Ok(match path.and_then(|path| own_level(path, level.clone())) {
         Some(own) => Levels::own(own),
         None => Levels::new(level, iter::empty()),
     })
 }
 
-/// As [`load_series`], or the generated level followed by those of the next seeds.
+/// As [`load_series`], or the generated level followed by the levels of the next seeds.
 pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
     let Some(generator) = place.generate else { return load_series(place.map.as_deref()) };
     let (seed, extent) = (place.seed.unwrap_or(FIRST_SEED), place.level_size.unwrap_or_default());
@@ -100,7 +100,7 @@ pub(crate) fn load_or_generate(place: &Place) -> Result<Levels, Error> {
     Ok(Levels::of_games(first, later))
 }
 
-/// The levels of a script: those that the options name, or else that of its header.
+/// The levels that the options name, or else the level in the script's header.
 pub(crate) fn of_script(place: &Place, header: &Header) -> Result<Levels, Error> {
     let rules = header.rules();
     match &header.level {

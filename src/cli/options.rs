@@ -138,7 +138,7 @@ pub(crate) fn size(text: &str) -> Result<Size, Takes> {
 }
 
 /// As [`size`], but for a window: it is drawn for each frame of a game, and several buffers of it are in memory. The limit
-/// is that of a window of 800×250 cells.
+/// is the area of a window of 800×250 cells.
 pub fn window(text: &str) -> Result<Size, Takes> {
     let is_window = |it: &Size| {
         it.width.max(it.height) <= 1000 && u32::from(it.width) * u32::from(it.height) <= 200_000

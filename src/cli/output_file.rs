@@ -1,4 +1,4 @@
-//! What a command writes: standard output, and a file that is complete, or as it was before.
+//! The output of a command: standard output, and files that are complete, or as they were before.
 //!
 //! A file is written under another name and renamed, as in the store, so that a full disk costs neither
 //! the file before nor leaves a part of the new one. Pipes and devices are written directly.
@@ -22,7 +22,7 @@ pub struct OutputFile {
     replacement: Option<Replacement>,
 }
 
-/// The path under which a file is written, and the one that it gets at the end.
+/// The path under which a file is written, and its path at the end.
 struct Replacement {
     new: PathBuf,
     path: PathBuf,
@@ -58,7 +58,7 @@ impl OutputFile {
 }
 
 impl Replacement {
-    /// The replacement of the file at `path`, or of the one that a link there leads to.
+    /// The replacement of the file at `path`, or of the file to which a link there leads.
     fn of(path: &Path) -> Self {
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let mut new = path.clone().into_os_string();

@@ -30,7 +30,7 @@ impl fmt::Display for Takes {
 
 impl std::error::Error for Takes {}
 
-/// The arguments `words`, the first of which is the program's own name. Writes the help or the version and returns `None`
+/// Parses `words`, which begin with the program's own name. Writes the help or the version and returns `None`
 /// where these are requested.
 ///
 /// # Errors
@@ -55,7 +55,7 @@ pub fn parse<P: Parser>(words: impl IntoIterator<Item = OsString>) -> Result<Opt
     }
 }
 
-/// The command, and its subcommands, with options that take values such as `-1`, and of which the last one counts.
+/// The command, and its subcommands, with options that take values such as `-1`. The last of repeated options counts.
 fn lenient(command: Command) -> Command {
     command
         .args_override_self(true)

@@ -200,7 +200,7 @@ fn opening(options: &Play) -> Result<Opening, Error> {
     Ok(Opening::Title(offers()))
 }
 
-/// What the title offers.
+/// The offers of the title.
 fn offers() -> Offers {
     let own = data_folder().map(|folder| folder.join("maps"));
     let folders: Vec<PathBuf> = [PathBuf::from(".")].into_iter().chain(own).collect();

@@ -50,7 +50,7 @@ impl RecordingFile {
         } else {
             options.create_new(true);
         }
-        // What players say to each other is in it.
+        // It contains what players say to each other.
         private::restrict_file(&mut options);
         let file = options.write(true).open(path).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Error::mistake(format!(

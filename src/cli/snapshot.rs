@@ -175,7 +175,7 @@ fn camera(world: &World, place: Option<(DVec2, Heading)>, options: &Snapshot) ->
     camera.with_pitch(options.pitch.unwrap_or_default())
 }
 
-/// Values that are not given, including the height, are those of the start.
+/// Values that are not given, including the height, are as at the start.
 fn scene_camera(scene: &Scene, options: &Snapshot) -> Result<space::Camera, Error> {
     let start = scene.start_camera(options.field_of_view());
     let (position, heading) =

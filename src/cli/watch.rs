@@ -1,8 +1,8 @@
 //! `--watch`: polling a map file, and reloading it when it changes.
 //!
 //! Two versions of a file differ if their modification time or their length differs. The map and
-//! every PNG that it names are compared, including those that do not exist. A library for file
-//! system notifications was refused: it adds a thread and dozens of crates on each platform to save
+//! every PNG that it names are compared, including missing ones. Rejected: a library for file
+//! system notifications. It adds a thread and dozens of crates on each platform to save
 //! a few calls per second, and it loses files that an editor replaces.
 
 use std::cell::RefCell;
@@ -78,7 +78,7 @@ impl TextureFiles for TrackedFiles<'_> {
     }
 }
 
-/// What distinguishes two versions of a file: the modification time and the length; `None` if there is no file.
+/// The modification time and the length, which distinguish two versions of a file; `None` if there is no file.
 type FileVersion = Option<(Option<SystemTime>, u64)>;
 
 fn version_of(path: &Path) -> FileVersion {

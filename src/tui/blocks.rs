@@ -1,7 +1,7 @@
 //! Blocks: a cell shows two, four, six or eight pixels, each in one of two colours.
 //!
 //! [`split`] chooses the two colours of a cell and the pixels that have the first of them. Flat colours, such as
-//! those of a map, become the nearest colours.
+//! the colours of a map, become the nearest colours.
 //!
 //! In a small palette, each cell of a picture is a block in two palette colours or one of the shades ░ ▒ ▓, whichever
 //! shows it better (see [`mixture`](crate::color::palette::mixture)).

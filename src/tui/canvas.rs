@@ -47,7 +47,7 @@ impl Canvas for Buffer {
         self.area
     }
 
-    /// A mosaic and its inverse show the same two colours. Chooses the one that shares more colours with the cell
+    /// A mosaic and its inverse show the same two colours. Chooses whichever shares more colours with the cell
     /// to the left, since most encoders need not send those again. A cell of one colour is a space.
     fn draw_mosaics(&mut self, x: u16, y: u16, row: impl Iterator<Item = (Mosaic, [Color; 2])>) {
         let mut before = [Color::Reset; 2];

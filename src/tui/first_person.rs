@@ -248,7 +248,7 @@ impl View {
     }
 
     /// Whether `figure` may be seen in the last picture, wherever the figure was then. `world` and
-    /// `camera` are those of the picture.
+    /// `camera` must be the ones of the picture.
     #[cfg(feature = "terminal")]
     pub(crate) fn may_show(&self, world: &World, camera: &Camera, figure: &Figure) -> bool {
         self.renderer.may_show(world, camera, &self.frame, figure)

@@ -73,7 +73,7 @@ impl Splits {
 const SHIFTS: [[u32; 2]; 3] = [[4, 7], [4, 4], [5, 6]];
 
 impl Splits {
-    /// The splits of cells by their pixels, of which each has at least two and at most eight.
+    /// The splits of cells by their pixels: two to eight in each cell.
     #[inline(never)]
     fn of<const N: usize>(pixels: &[Lanes<Rgb>; N]) -> Self {
         if let [first, last] = pixels.as_slice() {
@@ -344,7 +344,7 @@ mod tests {
         part(true) + part(false)
     }
 
-    /// The excess of the error over the least of all masks, over that of all cells.
+    /// The excess of the summed error of all cells over the sum of the least errors of any mask.
     fn excess<const N: usize>(cells: impl Iterator<Item = [Rgb; N]>) -> f64 {
         let (mut found, mut least) = (0.0, 0.0);
         for pixels in cells {

@@ -505,7 +505,7 @@ impl Observer<'_> {
     }
 
     /// Whether the floor of the observer's own gap has a lower slope at `from` than at `t`. They are equal in
-    /// a cell of which the ray meets a corner only.
+    /// a cell if the ray meets only a corner of it.
     #[inline]
     fn rises(&self, from: f64, t: f64) -> bool {
         let bottom = self.own_gap.bottom;
