@@ -45,7 +45,7 @@ pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{Refusal, StoreFailure};
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
-pub use presence::{HostNotice, HostRow, Visit, VisitBegin, VisitId, Visitor};
+pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
 pub use results::{
     LevelBoard, LevelScore, MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedRun, verify,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
 use cellcaster::fault::Faults;
-use cellcaster::game::{Game, Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
+use cellcaster::game::{Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
 use thiserror::Error;
@@ -115,7 +115,8 @@ pub fn verify_with(
     };
     let game = replayed(world.ok_or(Unverified::OtherLevel)?, rules, &script);
     if !game.is_finished() {
-        return Err(not_won(&game));
+        let is_dead = matches!(game.outcome(), Outcome::Dead { .. });
+        return Err(if is_dead { Unverified::Dead } else { Unverified::NotWon });
     }
     let tally = game.tally();
     let rank = tally.rank(game.world().par());
@@ -195,13 +196,6 @@ pub(crate) fn with_run(known: Option<Best>, run: &VerifiedRun) -> (Best, Improve
     let Some(known) = known else { return (of_run, Improved { time: true, rank: true }) };
     let time = of_run.tally.steps < known.tally.steps;
     (known.and(of_run), Improved { time, rank: of_run.rank > known.rank })
-}
-
-fn not_won(game: &Game) -> Unverified {
-    match game.outcome() {
-        Outcome::Dead { .. } => Unverified::Dead,
-        Outcome::Playing | Outcome::Won => Unverified::NotWon,
-    }
 }
 
 #[cfg(test)]

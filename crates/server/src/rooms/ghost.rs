@@ -140,19 +140,10 @@ impl Ghost {
 /// The runs of boards, played once and kept for the next round, oldest first.
 #[derive(Debug, Default)]
 pub(crate) struct KeptRuns {
-    runs: VecDeque<(Key, Arc<Run>)>,
+    runs: VecDeque<((LevelBoard, AccountId, u64), Arc<Run>)>,
     /// The number of scripts that were played.
     #[cfg(test)]
     played: usize,
-}
-
-/// The key of a run: an account's fastest run of a level takes fewer steps than the one before it.
-#[derive(Clone, Debug, PartialEq)]
-struct Key {
-    level: String,
-    difficulty: Difficulty,
-    account: AccountId,
-    steps: u64,
 }
 
 impl KeptRuns {
@@ -194,8 +185,8 @@ impl KeptRuns {
         board: &LevelBoard,
         (account, steps): (AccountId, u64),
     ) -> Result<Option<Arc<Run>>, StoreFailure> {
-        let (level, difficulty) = (board.level().to_owned(), board.difficulty());
-        let key = Key { level, difficulty, account, steps };
+        // An account's fastest run of a level takes fewer steps than the one before it.
+        let key = (board.clone(), account, steps);
         if let Some((_, run)) = self.runs.iter().find(|(known, _)| *known == key) {
             return Ok(Some(Arc::clone(run)));
         }

@@ -47,13 +47,6 @@ pub(crate) struct HostFacts {
     pub(crate) frame_time: Duration,
 }
 
-impl HostFacts {
-    /// Whether rooms in that level can be played here. In a cluster, other hosts may have other maps.
-    pub(crate) fn has_level(&self, name: &str) -> bool {
-        self.catalog.world(name).is_some()
-    }
-}
-
 /// A way into a room.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Way {
