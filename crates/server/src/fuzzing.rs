@@ -312,7 +312,7 @@ impl Default for Desk {
             visitor
         });
         let visitors = visitors.collect();
-        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()));
+        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()), None);
         Self { operator, _visitors: visitors }
     }
 }
