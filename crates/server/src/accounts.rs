@@ -49,7 +49,6 @@ pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
 pub use results::{
     LevelBoard, LevelScore, MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
-    verify_with,
 };
 pub use store::HostStore;
 pub use waiting::{Late, WaitingResult, WaitingResults};

@@ -284,7 +284,7 @@ mod tests {
             ghosts.iter().map(Ghost::label).collect()
         };
         assert_eq!(labels(&mut store, CELLAR, Some(jon)), [""; 0]);
-        let run = verify(WON).unwrap();
+        let run = verify(WON, |_| None).unwrap();
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         assert_eq!(labels(&mut store, CELLAR, Some(jon)), ["Mara's best"]);
         assert_eq!(labels(&mut store, CELLAR, None), ["Mara's best"]);
@@ -301,7 +301,7 @@ mod tests {
     fn only_some_runs_are_kept() {
         let (catalog, mut store) = (Catalog::builtin(), HostStore::in_memory());
         let mara = account(&mut store, 1, "Mara").id;
-        let run = verify(WON).unwrap();
+        let run = verify(WON, |_| None).unwrap();
         store.record(mara, &run, UnixTime::new(8)).unwrap();
         let board = LevelBoard::new(CELLAR.0, CELLAR.1).unwrap();
         let mut kept = KeptRuns::default();

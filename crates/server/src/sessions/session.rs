@@ -33,7 +33,6 @@ mod ui;
 
 use std::time::Duration;
 
-pub(crate) use self::endings::IdleLimits;
 use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent, Way};
 use self::ui::Ui;

@@ -28,9 +28,7 @@ use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::session::{
-    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
-};
+use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
@@ -141,7 +139,6 @@ impl Driver {
             compresses: visitor.compresses,
             ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
-            idle: IdleLimits::default(),
             frame_time: shared.load.frame_time(),
         };
         let now = shared.now();
