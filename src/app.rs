@@ -48,7 +48,7 @@ pub use levels::Levels;
 use page::Pages;
 use picture::{MapPanel, TerminalLook};
 use played::{Goal, Played, Viewpoint, Views};
-use recording::{Ghost, RunLog, ScriptRecorder};
+use recording::{Ghost, RunLog, ScriptRecorder, Steps};
 pub use recording::{Recording, Replay};
 use run::Watch;
 pub use run::{Farewell, Opening, play};
@@ -56,7 +56,7 @@ use screen::{Choice, Screen};
 pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
-use title::{Demo, TmuxOrder};
+use title::TmuxOrder;
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
 use crate::color::palette::ColorDepth;
@@ -99,8 +99,8 @@ struct App {
     /// The offers of the title; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
-    /// The level behind the title, while there is no game.
-    demo: Option<Demo>,
+    /// The rest of the script that plays the level behind the title, while there is no game.
+    demo: Option<Steps>,
     settings: Settings,
     terminal: TerminalLook,
     controls: Controls,

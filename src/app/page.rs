@@ -735,6 +735,11 @@ pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text)
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
+    panel(canvas, area, title, text);
+}
+
+/// Draws a panel with a text.
+pub(crate) fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Text) {
     let inside = framed(canvas, area, title);
     let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);

@@ -16,12 +16,11 @@
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Padding, Paragraph};
+use ratatui::text::Line;
 
 use crate::app::MapDisplay;
 use crate::app::controls::MapChange;
-use crate::app::page::{self, BORDERS, PADDING, framed, wrapped};
+use crate::app::page::{self, BORDERS, PADDING, framed, panel, wrapped};
 use crate::app::store::Preferences;
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
@@ -247,10 +246,7 @@ pub(crate) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
         width,
         height,
     };
-    let inside = framed(canvas, area, "note");
-    let text: Text = lines.into_iter().map(Line::from).collect();
-    let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
-    canvas.draw_widget(Paragraph::new(text).block(padded), inside);
+    panel(canvas, area, "note", lines.into_iter().map(Line::from).collect());
 }
 
 /// Marks the middle of a picture that is painted in half blocks.

@@ -3,9 +3,10 @@
 //! The ghost is a game of its own. Rejected: recorded positions. A script is a hundredth of their size,
 //! and is kept anyway.
 
-use std::fmt;
 use std::io::Write;
+use std::iter::{self, FlatMap, RepeatN};
 use std::num::NonZeroU32;
+use std::{fmt, vec};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
@@ -99,36 +100,15 @@ impl RunLog {
     }
 }
 
-/// A script and the number of its steps that are over.
-#[derive(Clone, Debug)]
-pub(crate) struct ScriptCursor {
-    stretches: Vec<Stretch>,
-    /// The stretch of the next step, and how many of its steps are over.
-    index: usize,
-    passed: u32,
-}
+/// The intents of each step of a script.
+pub(crate) type Steps =
+    FlatMap<vec::IntoIter<Stretch>, RepeatN<Intents>, fn(Stretch) -> RepeatN<Intents>>;
 
-impl ScriptCursor {
-    /// The start of `script`.
-    pub(crate) fn new(script: &Script) -> Self {
-        let stretches = script.sections().iter().flat_map(|section| &section.stretches);
-        Self { stretches: stretches.copied().collect(), index: 0, passed: 0 }
-    }
-
-    /// The intents of the next step, which is then over; `None` at the end.
-    pub(crate) fn next(&mut self) -> Option<Intents> {
-        let stretch = self.stretches.get(self.index)?;
-        self.passed += 1;
-        if self.passed >= stretch.steps {
-            (self.index, self.passed) = (self.index + 1, 0);
-        }
-        Some(stretch.intents)
-    }
-
-    /// Returns to the start.
-    pub(crate) fn rewind(&mut self) {
-        (self.index, self.passed) = (0, 0);
-    }
+/// The intents of each step of `script`.
+pub(crate) fn steps(script: &Script) -> Steps {
+    let stretches = script.sections().iter().flat_map(|section| section.stretches.iter().copied());
+    let steps = |stretch: Stretch| iter::repeat_n(stretch.intents, stretch.steps as usize);
+    stretches.collect::<Vec<_>>().into_iter().flat_map(steps as fn(Stretch) -> RepeatN<Intents>)
 }
 
 /// How much of the ghost shows, of 255.
@@ -138,7 +118,7 @@ const OPACITY: u8 = 96;
 #[derive(Debug)]
 pub(crate) struct Ghost {
     game: Game,
-    cursor: ScriptCursor,
+    steps: Steps,
     /// The intents of the next step; `None` at the end of the script.
     next: Option<Intents>,
 }
@@ -162,16 +142,16 @@ impl App {
 
 impl Ghost {
     /// The best run at its start, in `game` at its start.
-    pub(crate) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
-        let next = cursor.next();
-        Self { game, cursor, next }
+    pub(crate) fn new(game: Game, mut steps: Steps) -> Self {
+        let next = steps.next();
+        Self { game, steps, next }
     }
 
     /// Advances by one step.
     pub(crate) fn step(&mut self) {
         if let Some(intents) = self.next {
             self.game.step(intents);
-            self.next = self.cursor.next();
+            self.next = self.steps.next();
         }
     }
 
@@ -314,15 +294,6 @@ mod tests {
     fn it_gives_the_steps_of_the_script() {
         let text = "2 steps forward\n[b]\n1 step stand\n3 steps run\n";
         let script = Script::parse(text, "it").unwrap_or_else(|faults| panic!("{faults}"));
-        let expected: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
-        let mut cursor = ScriptCursor::new(&script);
-        for _ in 0..2 {
-            let mut steps = Vec::new();
-            while let Some(intents) = cursor.next() {
-                steps.push(intents);
-            }
-            assert_eq!(steps, expected);
-            cursor.rewind();
-        }
+        assert!(steps(&script).eq(script.iter().map(|(_, intents)| intents)));
     }
 }

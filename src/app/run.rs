@@ -335,15 +335,6 @@ impl App {
         self.settle(now);
     }
 
-    /// Advances the level behind the title by one step.
-    fn step_demo(&mut self) {
-        let Some(demo) = &mut self.demo else { return };
-        match demo.next().filter(|_| !self.game.is_finished()) {
-            Some(intents) => self.game.step(intents),
-            None => self.game = demo.rewind().unwrap_or_default(),
-        }
-    }
-
     /// Advances by one step that ends at `now`, or by up to `most` steps in which nothing happens.
     /// Returns their number.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {

@@ -473,16 +473,9 @@ impl App {
         match self.screen() {
             Screen::Playing => {}
             Screen::Title => self.leave(),
-            screen if screen.is_before_start() => self.give_up_beginning(),
-            _ => self.close(),
-        }
-    }
-
-    /// Returns to the title from a question before a level, or leaves where there is no title.
-    fn give_up_beginning(&mut self) {
-        match self.offers {
-            Some(_) => self.return_to_title(),
-            None => self.leave(),
+            screen if !screen.is_before_start() => self.close(),
+            _ if self.offers.is_some() => self.return_to_title(),
+            _ => self.leave(),
         }
     }
 

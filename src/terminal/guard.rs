@@ -62,14 +62,25 @@ impl Guard {
             output_queue: Mutex::default(),
             recorder: recorder.map(Mutex::new),
         });
-        protect(&guard)?;
+        let mut current = current();
+        if current.is_some() {
+            return Err(Kind::AlreadyTaken.into());
+        }
+        *current = Some(Arc::clone(&guard));
+        static HOOK: Once = Once::new();
+        HOOK.call_once(install_hook);
+        drop(current);
         Ok(guard)
     }
 
     /// Gives the terminal back at the end of the session.
     pub(crate) fn uninstall(&self) {
         self.give_back();
-        release(self);
+        // Panics are then handled as before.
+        let mut current = current();
+        if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), self)) {
+            *current = None;
+        }
     }
 
     pub(crate) fn device(&self) -> &Device {
@@ -310,31 +321,11 @@ impl OutputQueue {
 /// process and not to the session.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
 
-/// Sets the guard that the hook uses.
-fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
-    static HOOK: Once = Once::new();
-    let mut current = lock();
-    if current.is_some() {
-        return Err(Kind::AlreadyTaken.into());
-    }
-    *current = Some(Arc::clone(guard));
-    HOOK.call_once(install_hook);
-    Ok(())
-}
-
-/// Removes `guard`; panics are then handled as before.
-fn release(guard: &Guard) {
-    let mut current = lock();
-    if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
-        *current = None;
-    }
-}
-
 /// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
 /// panics outside of sessions. It is never removed: this would also remove a hook installed after it.
 fn install_hook() {
     let outside = panic::take_hook();
-    panic::set_hook(Box::new(move |info| match lock().clone() {
+    panic::set_hook(Box::new(move |info| match current().clone() {
         Some(guard) => {
             guard.give_back();
             report(info);
@@ -365,7 +356,7 @@ fn message(payload: &dyn Any) -> &str {
         .unwrap_or("it does not say which")
 }
 
-fn lock() -> MutexGuard<'static, Option<Arc<Guard>>> {
+fn current() -> MutexGuard<'static, Option<Arc<Guard>>> {
     CURRENT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
