@@ -150,7 +150,7 @@ impl Bindings {
         self.in_order()
     }
 
-    /// The bindings without those of `keys`.
+    /// Removes the bindings of `keys`.
     #[must_use]
     pub fn without(mut self, keys: &[Key]) -> Self {
         self.keys.retain(|(key, _)| !keys.contains(key));

@@ -288,48 +288,33 @@ fn draw_sounds(
 
 /// Whether the sound means that somebody has noticed the player or is about to strike.
 fn is_threat(kind: SoundKind) -> bool {
-    word(kind).is_some()
+    sign(kind).1.is_some()
 }
 
-/// What the guard behind the sound does, if it threatens the player.
-const fn word(kind: SoundKind) -> Option<&'static str> {
+/// The character of a kind of sound, and what the guard behind it does, if that threatens the player.
+const fn sign(kind: SoundKind) -> (char, Option<&'static str>) {
     match kind {
-        SoundKind::Wonder => Some("wonders"),
-        SoundKind::Shout => Some("shouts"),
-        SoundKind::Bell => Some("rings"),
-        SoundKind::Bark => Some("barks"),
-        SoundKind::Windup => Some("attacks"),
-        SoundKind::Draw => Some("aims"),
-        SoundKind::Shot => Some("shoots"),
-        SoundKind::Swing => Some("strikes"),
-        _ => None,
-    }
-}
-
-/// The character of a kind of sound.
-const fn character(kind: SoundKind) -> char {
-    match kind {
-        SoundKind::Walking => '.',
-        SoundKind::Running => ':',
-        SoundKind::Landing => '_',
-        SoundKind::Splash => '~',
-        SoundKind::Door => '+',
-        SoundKind::Mechanism => '=',
-        SoundKind::Spikes => 'i',
-        SoundKind::Knock => 'o',
-        SoundKind::Crash => '*',
-        SoundKind::Blow => 'x',
-        SoundKind::Cry => 'a',
-        SoundKind::Fall => 'u',
-        SoundKind::Wonder => '?',
-        SoundKind::GiveUp => ',',
-        SoundKind::Shout => '!',
-        SoundKind::Bell => '&',
-        SoundKind::Bark => 'w',
-        SoundKind::Windup => '/',
-        SoundKind::Draw => ')',
-        SoundKind::Shot => '-',
-        SoundKind::Swing => '\\',
+        SoundKind::Walking => ('.', None),
+        SoundKind::Running => (':', None),
+        SoundKind::Landing => ('_', None),
+        SoundKind::Splash => ('~', None),
+        SoundKind::Door => ('+', None),
+        SoundKind::Mechanism => ('=', None),
+        SoundKind::Spikes => ('i', None),
+        SoundKind::Knock => ('o', None),
+        SoundKind::Crash => ('*', None),
+        SoundKind::Blow => ('x', None),
+        SoundKind::Cry => ('a', None),
+        SoundKind::Fall => ('u', None),
+        SoundKind::Wonder => ('?', Some("wonders")),
+        SoundKind::GiveUp => (',', None),
+        SoundKind::Shout => ('!', Some("shouts")),
+        SoundKind::Bell => ('&', Some("rings")),
+        SoundKind::Bark => ('w', Some("barks")),
+        SoundKind::Windup => ('/', Some("attacks")),
+        SoundKind::Draw => (')', Some("aims")),
+        SoundKind::Shot => ('-', Some("shoots")),
+        SoundKind::Swing => ('\\', Some("strikes")),
     }
 }
 
@@ -361,9 +346,9 @@ impl Side {
 
 fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     let strength = usize::from(heard.strength.clamp(1, 3));
-    let characters: String = std::iter::repeat_n(character(heard.kind), strength).collect();
-    let word = word(heard.kind).filter(|_| has_words);
-    let characters = match (word, Side::of(angle(heard, heading))) {
+    let (character, word) = sign(heard.kind);
+    let characters: String = std::iter::repeat_n(character, strength).collect();
+    let characters = match (word.filter(|_| has_words), Side::of(angle(heard, heading))) {
         (None, _) => characters,
         (Some(word), Side::Right) => format!("{word} {characters}"),
         (Some(word), _) => format!("{characters} {word}"),

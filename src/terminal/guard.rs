@@ -207,23 +207,23 @@ impl Guard {
             state.changes.forget_key_flags();
         }
         let text = state.changes.end(self.now());
-        let accepted = self.write_patiently(&text);
+        let accepted = self.write_within_timeout(&text);
         if !accepted.as_ref().is_ok_and(|&length| length == text.len()) {
             // The frame that the terminal has not accepted gives way.
             if accepted.is_ok_and(|length| length > 0) {
                 state.changes.doubt_key_flags();
             }
             _ = self.device.discard_output();
-            _ = self.write_patiently(&state.changes.end_after_loss());
+            _ = self.write_within_timeout(&state.changes.end_after_loss());
         }
         self.discard_answers(&mut state.changes);
-        _ = self.write_patiently(&sequence::of(LeaveAlternateScreen));
+        _ = self.write_within_timeout(&sequence::of(LeaveAlternateScreen));
         _ = self.device.discard_input();
         _ = self.device.restore_attributes();
     }
 
     /// Writes `text`, and returns the length of the part that the terminal accepts in time.
-    fn write_patiently(&self, text: &str) -> io::Result<usize> {
+    fn write_within_timeout(&self, text: &str) -> io::Result<usize> {
         self.record(|recorder| recorder.sent(text.as_bytes()));
         let deadline = Instant::now() + WRITE_TIMEOUT;
         self.device.write(text.as_bytes(), || Instant::now() < deadline)

@@ -137,7 +137,7 @@ impl Decoder {
     }
 
     /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
-    pub(crate) fn patience(&self) -> Option<Duration> {
+    pub(crate) fn timeout(&self) -> Option<Duration> {
         /// Longer than the gaps within a sequence, shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
         /// This is certainly a sequence, but the link may be slow.
@@ -325,7 +325,7 @@ fn device_control(unit: &[u8]) -> Option<Answer> {
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
 }
 
-/// The key event of `unit`; `None` if it is not a key, or one that cannot be bound.
+/// The key event of `unit`; `None` if it is not a key, or cannot be bound.
 fn key_event(unit: &[u8]) -> Option<KeyEvent> {
     match unit {
         [0x1b, character] => {
@@ -344,7 +344,7 @@ fn told_base(unit: &[u8]) -> Option<char> {
     char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
 }
 
-/// The parser's event for `unit`. Each unit has a new parser: one that has kept bytes of an unknown
+/// The parser's event for `unit`. Each unit has a new parser: a parser that has kept bytes of an unknown
 /// unit would prefix them to the next.
 fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
     let mut parser = termina::Parser::default();

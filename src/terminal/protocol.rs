@@ -21,7 +21,7 @@ use std::time::Duration;
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::backend::Backend;
 
-use super::event::{MouseReport, MouseUnits};
+use super::event::MouseUnits;
 use super::flow::{Flow, Request};
 use super::input::{Answer, Decoder, Input};
 use super::known::{Colors, Known};
@@ -310,7 +310,7 @@ impl Protocol {
 
     /// The time at which half a key is taken for a whole one.
     pub(crate) fn gives_up_at(&self) -> Option<Duration> {
-        self.decoder.patience().map(|patience| self.received_at + patience)
+        self.decoder.timeout().map(|timeout| self.received_at + timeout)
     }
 
     /// Stops waiting for the rest of a key.
@@ -334,7 +334,9 @@ impl Protocol {
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
             Input::Mouse(report) => {
                 self.flow.received_input();
-                self.events.extend(self.mouse_event(report));
+                let units = self.changes.mouse.filter(|_| !self.mouse_is_changing);
+                let event = units.and_then(|units| report.event(units, self.size));
+                self.events.extend(event.map(Event::Mouse));
             }
             Input::Answer(answer) => self.take_answer(answer, now),
         }
@@ -373,12 +375,6 @@ impl Protocol {
                 }
             }
         }
-    }
-
-    /// The event of `report`; `None` if the mouse is not reported or its unit is changing.
-    fn mouse_event(&self, report: MouseReport) -> Option<Event> {
-        let units = self.changes.mouse.filter(|_| !self.mouse_is_changing)?;
-        report.event(units, self.size).map(Event::Mouse)
     }
 
     /// The finest unit in which the terminal reports positions.
@@ -434,17 +430,13 @@ impl Protocol {
     fn identify(&mut self, known: Known, now: Duration) {
         match known.colors {
             Colors::True => self.raise_color_depth(),
-            Colors::Ask => self.ask_for_true_color(now),
-            Colors::Unknown => {}
+            Colors::Ask if matches!(self.options.color_depth, Detected::Guess(_)) => {
+                self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
+            }
+            Colors::Ask | Colors::Unknown => {}
         }
         // In tmux, its answer about the terminal around it says more.
-        if self.tmux.is_none() {
-            self.set_known(known);
-        }
-    }
-
-    fn set_known(&mut self, known: Known) {
-        if self.known != known {
+        if self.tmux.is_none() && self.known != known {
             self.known = known;
             self.events.push_back(Event::Identified);
         }
@@ -466,12 +458,6 @@ impl Protocol {
             self.known = client.known();
             self.tmux = Some(client);
             self.events.push_back(Event::Identified);
-        }
-    }
-
-    fn ask_for_true_color(&mut self, now: Duration) {
-        if matches!(self.options.color_depth, Detected::Guess(_)) {
-            self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
         }
     }
 

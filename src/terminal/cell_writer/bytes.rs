@@ -78,7 +78,7 @@ impl Bytes {
 }
 
 impl Piece<'_> {
-    /// Writes all of `text`, of which the first `count` bytes are part of the piece.
+    /// Writes all of `text`. Only its first `count` bytes are part of the piece.
     #[inline]
     pub(crate) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         const { assert!(LENGTH <= EXCESS) };

@@ -427,7 +427,7 @@ const FRAMES: usize = 10;
 
 /// The number of frames without a change after which a row is refined while others change. Cells
 /// that soon move on would be drawn in vain.
-const PATIENCE: usize = 10;
+const RESTING_FRAMES: usize = 10;
 
 thread_local! {
     static INEXACT: Cell<Option<Box<Inexact>>> = const { Cell::new(None) };
@@ -476,7 +476,9 @@ impl Refinement {
         }
         let mut inexact = INEXACT.take().unwrap_or_default();
         for mut row in screen.inexact_rows() {
-            let Some(drawn) = usize::from(row.state.rested).checked_sub(PATIENCE) else { continue };
+            let Some(drawn) = usize::from(row.state.rested).checked_sub(RESTING_FRAMES) else {
+                continue;
+            };
             if !row.is_near() {
                 draw_row(pen, shifts, row);
                 continue;

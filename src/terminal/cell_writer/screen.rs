@@ -176,7 +176,7 @@ impl Screen {
         }
     }
 
-    /// Sets an intricate target, and blanks those that it covers: ratatui does not send a covered
+    /// Sets an intricate target, and blanks the targets that it covers: ratatui does not send a covered
     /// cell, and need not send it when it is uncovered.
     #[cold]
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
