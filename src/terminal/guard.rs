@@ -67,7 +67,6 @@ impl Guard {
             return Err(Kind::AlreadyTaken.into());
         }
         *current = Some(Arc::clone(&guard));
-        static HOOK: Once = Once::new();
         HOOK.call_once(install_hook);
         drop(current);
         Ok(guard)
@@ -320,6 +319,7 @@ impl OutputQueue {
 /// The guard of the current session. The hook runs in all threads, so that this belongs to the
 /// process and not to the session.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
+static HOOK: Once = Once::new();
 
 /// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
 /// panics outside of sessions. It is never removed: this would also remove a hook installed after it.

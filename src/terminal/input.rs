@@ -229,7 +229,8 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::Character { missing: 3 })
         }
         (State::Ground | State::Escape, 0x80..) => Step::Abandon,
-        (State::Character { missing: 1 }, 0x80..=0xbf) => Step::Complete(Kind::Key),
+        (State::Character { missing: 1 }, 0x80..=0xbf)
+        | (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
         (State::Character { missing }, 0x80..=0xbf) => {
             Step::Continue(State::Character { missing: missing - 1 })
         }
@@ -241,7 +242,6 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::String(Kind::OtherString))
         }
         (State::Ground | State::Escape, _) => Step::Complete(Kind::Key),
-        (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
         (State::ControlSequenceStart, b'[') => Step::Continue(State::ConsoleKey),
         (State::ControlSequenceStart, b'M') => Step::Continue(State::MouseBytes { missing: 3 }),
         (State::ControlSequenceStart | State::ControlSequence, b' '..=b'?') => {
@@ -255,9 +255,8 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::MouseBytes { missing: missing - 1 })
         }
         (State::String(kind), ESCAPE) => Step::Continue(State::StringEscape(kind)),
-        (State::String(kind), BELL) => Step::Complete(kind),
+        (State::String(kind), BELL) | (State::StringEscape(kind), b'\\') => Step::Complete(kind),
         (State::String(kind), b' '..=b'~' | 0x80..) => Step::Continue(State::String(kind)),
-        (State::StringEscape(kind), b'\\') => Step::Complete(kind),
         (State::StringEscape(_), _) => Step::RestartEscaped,
         _ => Step::Restart,
     }
