@@ -421,24 +421,12 @@ const GAIN_OPACITY: f64 = 130.0;
 const NEAR_SIDE: f64 = 0.3;
 const OTHER_SIDES: f64 = 0.08;
 
-/// The sides of the picture on which the flash is: one, or all of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Sides(Option<Side>);
-
-impl Sides {
-    /// All of them, or the one from which the player was hurt.
-    fn of(flash: &Flash, heading: Heading) -> Self {
-        let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else {
-            return Self(None);
-        };
-        let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
-        let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
-        Self(Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4]))
-    }
-
-    fn contains(self, side: Side) -> bool {
-        self.0.is_none_or(|only| only == side)
-    }
+/// The side of the picture on which the flash is, from which the player was hurt; `None` for all of them.
+fn side_of(flash: &Flash, heading: Heading) -> Option<Side> {
+    let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { return None };
+    let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
+    let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
+    Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4])
 }
 
 /// Tints the pixels at the edge of `frame`.
@@ -448,13 +436,13 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
         FlashKind::Gain => (GAIN, GAIN_OPACITY),
     };
     let opacity = opacity * flash.strength();
-    let sides = Sides::of(flash, heading);
+    let hit = side_of(flash, heading);
     // A flash without a direction is thin on all sides.
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     // Half blocks are square; the pixels of other glyphs are higher than wide.
     let aspect = frame.pixel_aspect().height_over_width();
     let side = width.min(height * aspect);
-    let reach = |which| side * if sides.0 == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
+    let reach = |which| side * if hit == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
     let share = |distance: f64, reach: f64| (1.0 - distance / reach.max(1.0)).max(0.0);
     for (y, row) in frame.rows_mut().enumerate() {
         let (top, bottom) = ((y as f64 + 0.5) * aspect, (height - y as f64 - 0.5) * aspect);
@@ -476,17 +464,18 @@ fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: He
         FlashKind::Hurt { .. } => '#',
         FlashKind::Gain => '+',
     };
-    let sides = Sides::of(flash, heading);
+    let hit = side_of(flash, heading);
+    let is_hit = |side| hit.is_none_or(|only| only == side);
     let mut draw = |x, y| canvas.draw_character(x, y, character, [Color::Reset; 2]);
     let (last_column, last_row) =
         (picture.right().saturating_sub(1), picture.bottom().saturating_sub(1));
     for x in picture.left()..picture.right() {
         let rows = [(Side::Ahead, picture.top()), (Side::Behind, last_row)];
-        rows.into_iter().filter(|row| sides.contains(row.0)).for_each(|(_, y)| draw(x, y));
+        rows.into_iter().filter(|row| is_hit(row.0)).for_each(|(_, y)| draw(x, y));
     }
     for y in picture.top()..picture.bottom() {
         let columns = [(Side::Left, picture.left()), (Side::Right, last_column)];
-        columns.into_iter().filter(|column| sides.contains(column.0)).for_each(|(_, x)| draw(x, y));
+        columns.into_iter().filter(|column| is_hit(column.0)).for_each(|(_, x)| draw(x, y));
     }
 }
 

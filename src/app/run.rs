@@ -74,7 +74,7 @@ pub fn play(
     let ascii_locale = ascii_locale(settings.glyphs);
     options.is_ascii = ascii_locale.is_some();
     let mut session = Session::enter_recorded(options, recording.terminal)?;
-    let mut presenter = Presenter::new(settings.frame_time);
+    let mut presenter = Presenter::default();
     let mut app = App::opened(opening, settings, store);
     app.script = recording.script;
     app.detection.ascii_locale = ascii_locale;
@@ -92,7 +92,6 @@ pub fn play(
         if app.take_tmux_order() {
             session.tell_tmux();
         }
-        presenter.frame_time = app.settings.frame_time;
         presenter.update(&mut app, &mut session, time.now())?;
         let wakes_at = presenter.wakes_at(&app, &session, time.now());
         let timeout = wakes_at.and_then(|wakes| time.until(wakes));
@@ -140,8 +139,8 @@ pub struct Farewell {
 
 /// Shows the newest state of the game, at most at the given frame rate and only when the terminal
 /// is ready.
+#[derive(Default)]
 struct Presenter {
-    frame_time: Duration,
     next_frame: Duration,
     /// Whether a frame is due and the terminal is not ready; it will report when it is.
     waits: bool,
@@ -151,11 +150,6 @@ struct Presenter {
 }
 
 impl Presenter {
-    fn new(frame_time: Duration) -> Self {
-        let meter = Meter::default();
-        Self { frame_time, next_frame: Duration::ZERO, waits: false, is_idle: false, meter }
-    }
-
     /// Draws or refines a frame, if one is due, and unless an event comes first.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
         let may_be_due = now >= self.next_frame;
@@ -188,9 +182,9 @@ impl Presenter {
         }
         // Counted from the time at which this frame was due: the time for drawing must not slow
         // frames down.
-        self.next_frame = Some(self.next_frame + self.frame_time)
+        self.next_frame = Some(self.next_frame + app.settings.frame_time)
             .filter(|&next| now < next)
-            .unwrap_or(now + self.frame_time);
+            .unwrap_or(now + app.settings.frame_time);
         Ok(())
     }
 
@@ -198,13 +192,13 @@ impl Presenter {
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
         let (frame, soonest) = if self.waits {
             // The game continues while the terminal is not ready.
-            (None, now + self.frame_time)
+            (None, now + app.settings.frame_time)
         } else {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
         // While others move out of view and the player does not, a look at each step is in vain.
         let rests = self.is_idle && app.waits_for_others();
-        let soonest = if rests { now + self.frame_time } else { soonest };
+        let soonest = if rests { now + app.settings.frame_time } else { soonest };
         let change = app.next_change().map(|change| change.max(soonest));
         let expiry = app.controls.held.next_expiry();
         frame.into_iter().chain(change).chain(expiry).chain(app.next_reload()).min()

@@ -22,17 +22,6 @@ use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
 use crate::world::Difficulty;
 
-/// The effect of leaving on the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Leaving {
-    /// Nothing has been played, or the game is over.
-    LosesNothing,
-    Saves,
-    FindsNoRoom,
-    /// The level has no name to find it by.
-    Loses,
-}
-
 impl App {
     /// Saves a game that has begun and is not over, if its level has a name to find it by.
     ///
@@ -74,24 +63,18 @@ impl App {
         game.is_some_and(|game| !is_over(game))
     }
 
-    fn leaving(&self) -> Leaving {
-        if !self.is_unfinished() {
-            return Leaving::LosesNothing;
-        }
-        match self.as_save() {
-            Some(save) if self.store.has_room_for(save.id()) => Leaving::Saves,
-            Some(_) => Leaving::FindsNoRoom,
-            None => Leaving::Loses,
-        }
-    }
-
     /// The effect of leaving the program, for the question whether to leave.
     pub(crate) fn effect_of_leaving(&self) -> &'static str {
-        match self.leaving() {
-            Leaving::LosesNothing => "leaves the program",
-            Leaving::Saves => "leaves the program\nthe game is saved",
-            Leaving::FindsNoRoom => "leaves the program\nno room to save the game",
-            Leaving::Loses => "leaves the program\nthis game cannot be saved",
+        if !self.is_unfinished() {
+            return "leaves the program";
+        }
+        match self.as_save() {
+            Some(save) if self.store.has_room_for(save.id()) => {
+                "leaves the program\nthe game is saved"
+            }
+            Some(_) => "leaves the program\nno room to save the game",
+            // The level has no name to find it by.
+            None => "leaves the program\nthis game cannot be saved",
         }
     }
 
