@@ -18,9 +18,8 @@ use ratatui::text::Line;
 
 use crate::app::App;
 use crate::app::page::{Menu, panel, wrapped};
-use crate::app::played::{Goal, Played};
+use crate::app::played::{Goal, Played, Watch};
 use crate::app::recording::{Ghost, RunLog};
-use crate::app::run::Watch;
 use crate::app::screen::{Choice, Screen};
 use crate::app::status::whole_seconds;
 use crate::app::store::{Descent, Reached, Save};
@@ -192,6 +191,27 @@ impl App {
         self.script = None;
         self.set_up(levels);
         self.ask_about_saved();
+    }
+
+    /// Begins the built-in level with that index.
+    pub(crate) fn begin_builtin(&mut self, index: usize) {
+        if let Some(levels) = Levels::builtin(index) {
+            self.begin(levels);
+        }
+    }
+
+    /// Begins the map with that index in the list of own maps.
+    pub(crate) fn begin_own_map(&mut self, index: usize) {
+        let Some(map) = self.own_maps.get(index) else { return };
+        match (map.load)() {
+            Ok(level) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin(Levels::own(level));
+            }
+            Err(fault) => {
+                self.say_in_menu(&fault);
+            }
+        }
     }
 
     /// Begins the first of `levels`.

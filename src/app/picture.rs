@@ -18,10 +18,9 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::Line;
 
-use crate::app::MapDisplay;
 use crate::app::controls::MapChange;
 use crate::app::page::{self, BORDERS, PADDING, framed, panel, wrapped};
-use crate::app::store::Preferences;
+use crate::app::setting::{MapDisplay, Preferences};
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::{Flash, FlashKind, Game, Heard, PlayerId, PlayerView, SoundKind};

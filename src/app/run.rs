@@ -1,4 +1,5 @@
-//! The main loop, which has a terminal and a clock, and the steps of the game that pass with time.
+//! The main loop, which has a terminal and a clock, the steps of the game that pass with time, and replays without
+//! either.
 //!
 //! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
 //! frame, so that nothing is computed or written.
@@ -19,9 +20,13 @@
 //! Steps that take long are not caught up with: the game slows down, and keys are read between two
 //! steps, whatever a step takes.
 
-use std::env;
+use std::num::NonZeroU32;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
+use std::{env, fmt};
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
 
 use crate::app::App;
 use crate::app::controls::{self, Clock};
@@ -34,7 +39,7 @@ use crate::app::settings::Settings;
 use crate::app::status::Meter;
 use crate::app::store::Store;
 use crate::app::title::Offers;
-use crate::game::{Alarm, Game, Intents, PlayerId};
+use crate::game::{Game, Intents, PlayerId, STEPS_PER_SECOND, Script};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
@@ -377,38 +382,79 @@ impl App {
     }
 }
 
-/// The last state, to compare the next one with.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Watch {
-    alarm: Alarm,
-    health: u8,
-    /// Whether something has happened since [`Watch::take_ring`].
-    rings: bool,
+/// A game without a terminal, one step at a time. It draws the picture, minimap and status line
+/// that a player with the same intents would see.
+///
+/// After a level's exit is reached, the next step is the first one of the next level.
+pub struct Replay {
+    app: App,
+    picture: Buffer,
 }
 
-impl Watch {
-    /// A watch that begins with the state of the player of `game`.
-    pub(crate) fn begin(game: Option<&Game>) -> Self {
-        game.map_or_else(Self::default, |game| Self::of(game, PlayerId::FIRST))
+impl Replay {
+    /// Begins `levels` in a window of `size`.
+    pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
+        let area = Rect::from(size);
+        Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
     }
 
-    /// A watch that begins with the state of `player` in `game`.
-    pub fn of(game: &Game, player: PlayerId) -> Self {
-        let mut watch = Self::default();
-        watch.look_at(game, player);
-        Self { rings: false, ..watch }
+    /// Advances by one step with `intents`.
+    pub fn step(&mut self, intents: Intents) {
+        if self.app.screen() == Screen::LevelDone {
+            self.app.next_level();
+        }
+        if self.app.screen() == Screen::Playing {
+            self.app.game.step(intents);
+            self.app.goal.moved(u64::from(!intents.is_empty()));
+            if self.app.game.is_finished() {
+                self.app.show(Screen::LevelDone);
+            }
+        }
     }
 
-    /// Looks at the state of `player` after a step.
-    pub fn look_at(&mut self, game: &Game, player: PlayerId) {
-        let alarm = game.alarm();
-        let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
-        self.rings |= alarm > self.alarm || health < self.health;
-        (self.alarm, self.health) = (alarm, health);
+    /// Plays `script` and calls `show` with its frames, `frames_per_second` per second; the first
+    /// shows the state before the first step. The arguments are the frame's number, the section of
+    /// the script that led to it, and its cells.
+    ///
+    /// # Errors
+    /// The first error of `show`.
+    pub fn play<E>(
+        &mut self,
+        script: &Script,
+        frames_per_second: NonZeroU32,
+        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut frame = 0;
+        show(frame, 0, self.picture())?;
+        for (steps, (section, intents)) in (1..).zip(script.iter()) {
+            self.step(intents);
+            let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
+            while frame < frames {
+                frame += 1;
+                show(frame, section, self.picture())?;
+            }
+        }
+        Ok(())
     }
 
-    /// Whether something has happened since the last call.
-    pub fn take_ring(&mut self) -> bool {
-        std::mem::take(&mut self.rings)
+    /// Draws the current state.
+    pub fn draw(&mut self, canvas: &mut impl Canvas) {
+        self.app.draw(canvas);
+    }
+
+    /// The current picture. As in a game, it is redrawn only if something has changed.
+    pub fn picture(&mut self) -> &Buffer {
+        if self.app.is_stale() {
+            self.picture.reset();
+            self.app.draw(&mut self.picture);
+            self.app.drawn();
+        }
+        &self.picture
+    }
+}
+
+impl fmt::Debug for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Replay").field("game", &self.app.game).finish_non_exhaustive()
     }
 }

@@ -11,9 +11,9 @@
 
 use super::levels::{date_of, save_of_descent};
 use super::page::Menu;
+use super::played::Watch;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
-use super::run::Watch;
 use super::screen::{Choice, capitalized};
 use super::status::whole_seconds;
 use super::{App, Levels, Screen};
