@@ -5,7 +5,7 @@
 
 use allocation_counter::measure;
 use cellcaster_server::fuzzing::Desk;
-use cellcaster_server::ops::admin::{AdminReply, AdminRequest};
+use cellcaster_server::admin::{AdminReply, AdminRequest};
 
 thread_local! {
     static DESK: Desk = Desk::default();

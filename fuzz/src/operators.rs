@@ -1,7 +1,7 @@
 //! What operators and visitors write: a configuration, a name, a range of addresses, a script. The first
 //! byte says which one, the others are the text.
 
-use cellcaster_server::ops::config::Config;
+use cellcaster_server::config::Config;
 use cellcaster_server::accounts::{AccountKey, AddressPrefix, Name, printable, verify};
 
 use crate::faults::check_faults;

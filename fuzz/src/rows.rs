@@ -105,7 +105,7 @@ fn use_all(store: &mut HostStore) {
     check(store.account_named(&name));
     for byte in 0..2 {
         let key = AccountKey::new([byte; 32]);
-        _ = store.create_account(&key, &name, now);
+        _ = store.create_account(None, &key, &name, now);
         let Ok(Some(account)) = store.account(&key) else { continue };
         let account = account.id;
         check(store.settings(account));

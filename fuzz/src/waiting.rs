@@ -48,7 +48,7 @@ fn length_of_a_new(folder: &Folder) -> usize {
 fn record(waiting: &mut WaitingResults) {
     let mut store = HostStore::in_memory();
     let (name, now) = (Name::new("Ada").expect("it is a name"), UnixTime::new(1_795_300_000));
-    store.create_account(&AccountKey::new([0; 32]), &name, now).expect("it is the first one");
+    store.create_account(None, &AccountKey::new([0; 32]), &name, now).expect("it is the first one");
     let world = |name: &str| builtin::LEVELS.iter().find(|it| it.name == name)?.world().ok();
     for index in (0..waiting.len()).rev() {
         assert!(waiting.record(index, &mut store, world, now).is_some());

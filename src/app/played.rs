@@ -143,11 +143,11 @@ impl Played {
         self.grid().is_some_and(Game::is_finished)
     }
 
-    /// The number of steps with these intents in which only the clock changes.
-    pub(crate) fn quiet_steps(&self, intents: Intents) -> u64 {
+    /// Whether steps with these intents change only the clock.
+    pub(crate) fn is_at_rest(&self, intents: Intents) -> bool {
         match self {
-            Self::Grid(game) => game.quiet_steps(intents),
-            Self::Space(flight) => flight.quiet_steps(intents),
+            Self::Grid(game) => game.is_at_rest(intents),
+            Self::Space(flight) => flight.is_at_rest(intents),
         }
     }
 

@@ -150,12 +150,9 @@ impl Ghost {
         }
     }
 
-    /// The number of steps in which the ghost stays as it is, at most `most`.
-    pub(crate) fn quiet_steps(&self, most: u64) -> u64 {
-        match self.next {
-            Some(intents) => self.game.quiet_steps(intents).min(1).min(most),
-            None => most,
-        }
+    /// Whether the run has ended.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.next.is_none()
     }
 
     /// A number that changes when the ghost has moved.

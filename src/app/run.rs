@@ -33,7 +33,7 @@ use crate::app::controls::{self, Clock};
 use crate::app::draw::Rendered;
 use crate::app::levels::Levels;
 use crate::app::picture::TerminalLook;
-use crate::app::recording::Recording;
+use crate::app::recording::{Ghost, Recording};
 use crate::app::screen::Screen;
 use crate::app::settings::Settings;
 use crate::app::status::Meter;
@@ -334,16 +334,19 @@ impl App {
         self.settle(now);
     }
 
-    /// Advances by one step that ends at `now`, or by up to `most` steps in which nothing happens.
+    /// Advances by one step that ends at `now`, or by up to `most` steps while the game rests.
     /// Returns their number.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
         let context = self.key_context();
         self.controls.advance(now, context);
         let intents = self.wanted();
-        let quiet = self.quiet_steps(intents);
-        let steady = self.controls.steady_steps(now, context, most);
-        let steps = if self.pointer.has_input() { 1 } else { steady.min(quiet.max(1)) };
-        if quiet > 0 {
+        let rests = self.is_at_rest(intents);
+        let steps = if rests && !self.pointer.has_input() {
+            self.controls.steady_steps(now, context, most)
+        } else {
+            1
+        };
+        if rests {
             self.game.wait(steps);
         } else {
             self.game.step(intents);
@@ -365,10 +368,9 @@ impl App {
         steps
     }
 
-    /// The number of steps with these intents in which nothing changes but clocks.
-    pub(crate) fn quiet_steps(&self, intents: Intents) -> u64 {
-        let quiet = self.game.quiet_steps(intents);
-        self.ghost.as_ref().map_or(quiet, |ghost| ghost.quiet_steps(quiet))
+    /// Whether steps with these intents change only clocks.
+    pub(crate) fn is_at_rest(&self, intents: Intents) -> bool {
+        self.game.is_at_rest(intents) && self.ghost.as_ref().is_none_or(Ghost::is_at_rest)
     }
 
     /// Shows the result if the level is won or the player is dead.

@@ -8,6 +8,7 @@
 use std::fmt::Write;
 use std::num::NonZeroU32;
 
+use serde::{Deserialize, Serialize};
 use toml::de::DeValue;
 
 use crate::app::controls::Preset;
@@ -422,7 +423,8 @@ pub fn toml_string(text: &str) -> String {
 }
 
 /// The player's choices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Preferences {
     /// Whether a dot marks the middle of the picture.

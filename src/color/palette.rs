@@ -13,11 +13,13 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU16, Ordering};
 
+use serde::{Deserialize, Serialize};
+
 use super::Rgb;
 use super::oklab::Oklab;
 
 /// How many colours a terminal can show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum ColorDepth {
     /// 24 bits: every colour is exact.
     #[default]

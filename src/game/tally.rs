@@ -4,10 +4,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Game, STEPS_PER_SECOND};
+use super::Game;
+use super::rules::STEPS_PER_SECOND;
 
 /// A part of a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Share {
     /// The part that has been found.
     pub found: u32,
@@ -23,7 +24,7 @@ impl Share {
 }
 
 /// What a player has done in a level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// The time in steps.
     pub steps: u64,

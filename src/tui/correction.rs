@@ -5,11 +5,13 @@
 //! still picture stays still. An outline sets a thing apart from any surface: a guard a few pixels wide is lost among
 //! the dots and characters of the wall behind, whatever its brightness.
 
+use serde::{Deserialize, Serialize};
+
 use crate::color::Rgb;
 use crate::render::{Frame, FrameSize, Surface};
 
 /// How a picture is changed for the eyes that look at it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Correction {
     /// Not at all.
     #[default]

@@ -1,6 +1,7 @@
 //! Glyph sets and the shape of cells: how pixels become characters.
 
 use ratatui::style::Color;
+use serde::{Deserialize, Serialize};
 
 use crate::color::Rgb;
 use crate::color::palette::{self, ColorDepth};
@@ -8,7 +9,7 @@ use crate::render::PixelAspect;
 use crate::tui::canvas::true_color;
 
 /// The characters that pixels are drawn with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum GlyphSet {
     /// Two pixels per cell, one above the other: `▀`, `▄`, `█` and space.
     #[default]
@@ -89,6 +90,15 @@ impl Default for CellAspect {
     /// Twice as high as wide, as in most fonts.
     fn default() -> Self {
         Self(2.0)
+    }
+}
+
+/// The colour that represents `color` outside a terminal; `None` for the terminal's own colours.
+pub fn rgb_of(color: Color) -> Option<Rgb> {
+    match color {
+        Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
+        Color::Indexed(index) => Some(palette::of_256(index)),
+        _ => None,
     }
 }
 

@@ -21,10 +21,7 @@
 
 mod account;
 mod ban;
-mod database;
 mod failure;
-#[cfg(any(test, fuzzing))]
-mod in_memory;
 mod lease;
 mod name;
 mod postgres;
@@ -32,8 +29,12 @@ mod presence;
 mod rate;
 mod results;
 mod sqlite;
+mod statements;
 mod store;
+#[cfg(any(test, fuzzing))]
+mod testing;
 mod waiting;
+pub(crate) mod worker;
 
 #[cfg(fuzzing)]
 #[doc(hidden)]

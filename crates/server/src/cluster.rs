@@ -25,7 +25,7 @@ mod directory;
 #[cfg(fuzzing)]
 pub(crate) mod fuzzing;
 mod host;
-mod lease_worker;
+mod leases;
 mod message;
 mod nats;
 mod operators;
@@ -36,7 +36,6 @@ mod sequencer;
 mod simulation;
 mod visits;
 
-use std::fmt;
 use std::io;
 use std::sync::{Arc, Mutex};
 
@@ -46,22 +45,22 @@ use tokio::time::Instant;
 use self::bus::Bus;
 pub(crate) use self::directory::{Entrant, SharedRooms};
 use self::host::{HostContext, shown_name};
-use self::lease_worker::LeaseWorker;
+use self::leases::{GATHERED, Leases, MOST_CALLS};
 use self::nats::NatsBus;
-pub(crate) use self::operators::OtherHosts;
 use self::visits::Visits;
 pub(crate) use self::visits::{CountedVisit, NewVisit, VisitRefusal};
+use crate::accounts::worker::StoreWorker;
 use crate::accounts::{HostNotice, HostStore};
+use crate::load::Load;
 use crate::rooms::directory::Rooms;
 use crate::rooms::summary::RoomWish;
-use crate::sessions::load::Load;
-use crate::sessions::visitors::Visitors;
+use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
 
 /// A place in a cluster, for one host.
 pub struct Cluster {
     bus: Box<dyn Bus>,
-    leases: LeaseWorker,
+    leases: Leases,
     visits: Visits,
     notice: HostNotice,
     /// The seed of join tokens, and of the rooms that this host opens.
@@ -82,9 +81,11 @@ impl Cluster {
     ) -> Result<Self, String> {
         let no_thread = |error: io::Error| format!("no thread can be started: {error}");
         // Before anything that may fail: dropping a database blocks, too.
-        let leases = LeaseWorker::start(leases, notice.name.clone()).map_err(no_thread);
-        let visits = Visits::start(presence, notice.clone()).map_err(no_thread);
-        let (leases, visits) = (leases?, visits?);
+        let leases = StoreWorker::start("leases", MOST_CALLS, leases).map_err(no_thread);
+        let presence = StoreWorker::start("visits", MOST_CALLS, presence).map_err(no_thread);
+        let (host, gathered) = (notice.name.clone(), GATHERED);
+        let leases = Leases { store: leases?, host, gathered, renewals: Arc::default() };
+        let visits = Visits::new(presence?, notice.clone());
         let bus = Box::new(NatsBus::connect(address).await?);
         // Without random numbers from the system there would be no keys, either.
         let seed = getrandom::u64().unwrap_or_default();
@@ -101,7 +102,7 @@ impl Cluster {
     ) -> SharedRooms {
         let Self { bus, leases, visits, notice, seed } = self;
         // A host has one name at most.
-        _ = load.metrics().host.set(shown_name(&notice.name).to_owned());
+        _ = load.metrics.host.set(shown_name(&notice.name).to_owned());
         let context = HostContext {
             begun: Instant::now(),
             bus,
@@ -115,11 +116,5 @@ impl Cluster {
             ending: watch::Sender::new(false),
         };
         SharedRooms::new(Arc::new(context), rooms.clone(), standing)
-    }
-}
-
-impl fmt::Debug for Cluster {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cluster").finish_non_exhaustive()
     }
 }

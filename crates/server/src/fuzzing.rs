@@ -10,19 +10,20 @@ use std::time::Duration;
 use tokio::sync::Notify;
 
 use crate::accounts::{AccountKey, AccountSettings};
+use crate::admin::RoomRow;
 pub use crate::cluster::fuzzing::SharedRoom;
-use crate::ops::admin::{Operator, RoomRow, socket};
+use crate::line::Line;
+use crate::operator::{Operator, socket};
 use crate::rooms::replayed::replayed;
 use crate::rooms::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::line::Line;
 use crate::sessions::session::{
     HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
 };
-use crate::sessions::visitors::{Presence, Visitors};
 pub use crate::ssh::fuzzing::serve;
+use crate::visitors::{Presence, Visitors};
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
 use cellcaster::game::{Intent, Intents, PlayerColor};
@@ -68,7 +69,7 @@ impl Hall {
         let mut rng = SplitMix64::new(seed);
         let mode = Mode::ALL[rng.below(Mode::ALL.len())];
         let suited: Vec<&String> =
-            catalog.names().iter().filter(|name| catalog.suits(name, mode)).collect();
+            catalog.names.iter().filter(|name| catalog.suits(name, mode)).collect();
         let level = suited[rng.below(suited.len())];
         let difficulty = [Difficulty::Easy, Difficulty::Normal, Difficulty::Hard][rng.below(3)];
         Self::of(Header::new(level, mode, difficulty, rng.bits()))

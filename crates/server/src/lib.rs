@@ -31,18 +31,27 @@
 #![allow(missing_docs, reason = "the crate is a program, not an interface for others")]
 
 pub mod accounts;
+pub mod admin;
+pub mod admission;
 mod bucket;
 pub mod cli;
 pub mod cluster;
+pub mod config;
 #[cfg(fuzzing)]
 #[doc(hidden)]
 pub mod fuzzing;
-pub mod ops;
+mod line;
+mod load;
+pub mod logging;
+pub mod metrics;
+pub mod operator;
 pub mod rooms;
+mod service;
 pub mod sessions;
 #[cfg(test)]
 mod simulation;
 pub mod ssh;
+pub mod visitors;
 
 mod lock {
     use std::sync::{Mutex, PoisonError};

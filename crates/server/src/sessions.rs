@@ -2,8 +2,4 @@
 //! the room.
 
 pub mod driver;
-pub mod governor;
-pub mod line;
-pub mod load;
 pub mod session;
-pub mod visitors;

@@ -25,18 +25,17 @@ pub(crate) use self::client::{Client, Conditions, guest};
 pub(crate) use self::emulator::Speaks;
 pub(crate) use self::tapes::Tapes;
 use crate::accounts::HostStore;
-use crate::ops::config::StandingRoom;
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::metrics::Metrics;
+use crate::config::{Config, LiveConfig};
+use crate::line::Line;
+use crate::load::Worker;
+use crate::metrics::Metrics;
 use crate::rooms::directory::Rooms;
 use crate::rooms::room::{Catalog, MemberId, Mode, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomWish};
 use crate::sessions::driver::{Setup, Simulated};
-use crate::sessions::line::Line;
-use crate::sessions::load::Worker;
 use crate::sessions::session::Session;
-use crate::sessions::visitors::Visitors;
 use crate::ssh::Visitor;
+use crate::visitors::Visitors;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::map;
 use cellcaster::world::{Difficulty, FieldOfView};
@@ -116,7 +115,7 @@ impl Rig {
         let runtime =
             Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
         let (level, difficulty) = (wish.level.to_owned(), Difficulty::Normal);
-        let room = StandingRoom(RoomWish { level, mode: wish.mode, difficulty });
+        let room = RoomWish { level, mode: wish.mode, difficulty };
         let config =
             Config { message: "Be kind.".to_owned(), standing: vec![room], ..Config::default() };
         let (live, visitors, tapes) =

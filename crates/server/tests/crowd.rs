@@ -10,8 +10,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, future};
 
-use cellcaster_server::ops::config::Config;
-use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::config::Config;
+use cellcaster_server::metrics::Metrics;
 use cellcaster_server::ssh::host_key::HostKey;
 use cellcaster_server::ssh::{Arrival, Departure, Host, Link, Server, Visitor};
 use russh::client::{self, Handle, Handler, Session};

@@ -1,6 +1,7 @@
 //! Accounts: a key, a name, settings, and times.
 
 use std::fmt;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use cellcaster::app::store::Preferences;
 use russh::keys::ssh_key::Fingerprint;
@@ -60,6 +61,12 @@ impl UnixTime {
     pub const fn new(seconds: u64) -> Self {
         const LAST: u64 = i64::MAX as u64;
         Self(if seconds < LAST { seconds } else { LAST })
+    }
+
+    /// The time by the clock of this machine.
+    pub fn now() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        Self::new(since.as_secs())
     }
 
     /// The seconds since 1970.

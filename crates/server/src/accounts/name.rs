@@ -18,6 +18,7 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
 use unicode_script::{Script, UnicodeScript};
 use unicode_security::{
@@ -40,21 +41,28 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 pub struct Name(String);
 
 /// Why a text is no name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NameFault {
     /// It is too short.
+    #[error("A name has at least {} letters.", Name::LEAST_COLUMNS)]
     Short,
     /// It is too long.
+    #[error("A name is at most {} columns wide.", Name::MOST_COLUMNS)]
     Long,
     /// It has a character that no name has.
+    #[error("A name has letters, digits, - and _, not {}.", shown(*.0))]
     Character(char),
     /// It does not begin with a letter.
+    #[error("A name begins with a letter.")]
     Begin,
     /// It ends with `-` or `_`.
+    #[error("A name ends with a letter or a digit.")]
     End,
     /// Its letters are of different scripts.
+    #[error("The letters of a name are of one script.")]
     Mixed,
     /// It is reserved, or looks like a reserved name.
+    #[error("This name is reserved.")]
     Reserved,
 }
 
@@ -72,36 +80,9 @@ const SCRIPTS: [Script; 10] = [
     Script::Bopomofo,
 ];
 /// Names that nobody may have.
-const RESERVED: [&str; 28] = [
-    "admin",
-    "administrator",
-    "all",
-    "anonymous",
-    "anybody",
-    "cellcaster",
-    "console",
-    "everybody",
-    "everyone",
-    "game",
-    "guard",
-    "host",
-    "lobby",
-    "mod",
-    "moderator",
-    "nobody",
-    "none",
-    "operator",
-    "owner",
-    "player",
-    "room",
-    "root",
-    "server",
-    "spectator",
-    "staff",
-    "support",
-    "system",
-    "you",
-];
+const RESERVED: &str = "admin administrator all anonymous anybody cellcaster console everybody everyone \
+    game guard host lobby mod moderator nobody none operator owner player room root \
+    server spectator staff support system you";
 /// The beginning of the names of guests.
 const GUEST: &str = "guest";
 /// Characters with a width that some terminals show as nothing, or that change what is beside them: the
@@ -150,7 +131,7 @@ impl Name {
         // Made once: that takes some thirty times as long as the keys of one name.
         static GUESTS: LazyLock<Vec<String>> = LazyLock::new(|| keys_of(GUEST));
         static WORDS: LazyLock<Vec<String>> =
-            LazyLock::new(|| RESERVED.iter().flat_map(|word| keys_of(word)).collect());
+            LazyLock::new(|| RESERVED.split(' ').flat_map(keys_of).collect());
         let is_guest = |key: &String| GUESTS.iter().any(|guest| key.starts_with(guest.as_str()));
         self.keys().iter().any(|key| is_guest(key) || WORDS.contains(key))
     }
@@ -197,29 +178,6 @@ impl fmt::Display for Name {
         f.pad(&self.0)
     }
 }
-
-impl fmt::Display for NameFault {
-    /// Writes a sentence for the player.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Short => write!(f, "A name has at least {} letters.", Name::LEAST_COLUMNS),
-            Self::Long => write!(f, "A name is at most {} columns wide.", Name::MOST_COLUMNS),
-            Self::Character(character) if is_shown(*character) => {
-                write!(f, "A name has letters, digits, - and _, not {character}.")
-            }
-            Self::Character(character) => {
-                let code = u32::from(*character);
-                write!(f, "A name has letters, digits, - and _, not U+{code:04X}.")
-            }
-            Self::Begin => f.write_str("A name begins with a letter."),
-            Self::End => f.write_str("A name ends with a letter or a digit."),
-            Self::Mixed => f.write_str("The letters of a name are of one script."),
-            Self::Reserved => f.write_str("This name is reserved."),
-        }
-    }
-}
-
-impl std::error::Error for NameFault {}
 
 /// The printable characters of a text, up to that many columns, in one line.
 ///
@@ -287,9 +245,12 @@ fn is_letter(character: char) -> bool {
     is_of_script && has_width && character.is_alphabetic() && character.identifier_allowed()
 }
 
-/// Whether a sentence can show it.
-fn is_shown(character: char) -> bool {
-    character != ' ' && printable(character.encode_utf8(&mut [0; 4]), 2).starts_with(character)
+/// The character in a sentence, or its number if a sentence cannot show it.
+fn shown(character: char) -> String {
+    match printable(character.encode_utf8(&mut [0; 4]), 2) {
+        text if character != ' ' && text.starts_with(character) => character.to_string(),
+        _ => format!("U+{:04X}", u32::from(character)),
+    }
 }
 
 /// The columns of a character that is kept.

@@ -15,15 +15,14 @@
 //!   left alone, and so is a database in which another program has tables of these names.
 //! - **A password is never shown.** Sentences have neither the address as it was given nor a part of it that
 //!   may belong to a misspelt password.
-//! - **A text may have any character**, also U+0000, which PostgreSQL's texts can't contain. It is written as U+0001 and
-//!   `0`, and U+0001 itself as U+0001 and `1`, so that each text has one form. All other texts are themselves.
+//! - **No text has the character U+0000**, which PostgreSQL's texts can't contain. Names, reasons, settings and scripts
+//!   have been printed or parsed before they get here.
 //!
 //! Rejected: a pool of connections, since a host has one thread for its store; and the crate `postgres`, whose
 //! calls wait without limit for a server that has stopped without closing its connections.
 
 mod tls;
 
-use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::error::Error as _;
@@ -42,7 +41,7 @@ use tokio_postgres::{Client, Config, Error, NoTls, Statement};
 
 use self::tls::Tls;
 use super::StoreFailure;
-use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
+use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The most time that a call takes.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -57,8 +56,6 @@ const MOST_CONFLICTS: u32 = 12;
 /// The longest wait before a transaction is run again.
 const LONGEST_WAIT: Duration = Duration::from_millis(128);
 
-/// What stands before an escaped character.
-const ESCAPE: char = '\u{1}';
 /// The lock under which tables are made, "Cell".
 const LOCK: i64 = 0x4365_6c6c;
 /// What the server is told about a new connection. A change is on the disk when it is kept, whatever the
@@ -271,7 +268,7 @@ impl Server {
             Ok(Err(error)) => reason(&error),
             Err(_) => "no answer in time".to_owned(),
         };
-        let failure = StoreFailure::away(format!("{} can't be used: {why}", self.address.shown));
+        let failure = StoreFailure::Away(format!("{} can't be used: {why}", self.address.shown));
         self.refused = Some((Instant::now(), failure.clone()));
         Err(failure)
     }
@@ -298,7 +295,7 @@ impl Call<'_> {
         self.batch("COMMIT").map_err(|failure| match self.fault.get() {
             Some(Fault::Lost | Fault::Unknown) => {
                 self.fault.set(Some(Fault::Unknown));
-                StoreFailure::away(format!("{failure}; the last change may be kept or not"))
+                StoreFailure::Away(format!("{failure}; the last change may be kept or not"))
             }
             _ => failure,
         })
@@ -325,8 +322,8 @@ impl Call<'_> {
         self.fault.set(Some(fault));
         let sentence = format!("{} failed: {why}", self.shown);
         Err(match fault {
-            Fault::Lost | Fault::Unknown => StoreFailure::away(sentence),
-            Fault::Full => StoreFailure::full(sentence),
+            Fault::Lost | Fault::Unknown => StoreFailure::Away(sentence),
+            Fault::Full => StoreFailure::Full(sentence),
             Fault::Conflict | Fault::Refused => StoreFailure::new(sentence),
         })
     }
@@ -388,9 +385,8 @@ impl ToSql for Parameter<'_> {
             ValueRef::Null => Ok(IsNull::Yes),
             ValueRef::Integer(number) if *kind == Type::INT8 => number.to_sql(kind, out),
             ValueRef::Blob(bytes) if *kind == Type::BYTEA => bytes.to_sql(kind, out),
-            ValueRef::Text(text) if *kind == Type::JSON => str::from_utf8(text)?.to_sql(kind, out),
-            ValueRef::Text(text) if *kind == Type::TEXT => {
-                escaped(str::from_utf8(text)?).as_ref().to_sql(kind, out)
+            ValueRef::Text(text) if [Type::JSON, Type::TEXT].contains(kind) => {
+                str::from_utf8(text)?.to_sql(kind, out)
             }
             _ => Err(format!("the parameter is of the type {kind}").into()),
         }
@@ -412,7 +408,7 @@ impl<'a> FromSql<'a> for Column {
             Type::BOOL => bool::from_sql(kind, raw)?.into(),
             Type::INT8 => i64::from_sql(kind, raw)?.into(),
             Type::BYTEA => Vec::from_sql(kind, raw)?.into(),
-            _ => unescaped(<&str>::from_sql(kind, raw)?).into(),
+            _ => String::from_sql(kind, raw)?.into(),
         }))
     }
 
@@ -536,36 +532,6 @@ fn no_address() -> StoreFailure {
     )
 }
 
-/// A text as the tables have it.
-fn escaped(text: &str) -> Cow<'_, str> {
-    if !text.contains(['\0', ESCAPE]) {
-        return Cow::Borrowed(text);
-    }
-    let mut escaped = String::with_capacity(text.len() + 8);
-    for character in text.chars() {
-        match character {
-            '\0' => escaped.extend([ESCAPE, '0']),
-            ESCAPE => escaped.extend([ESCAPE, '1']),
-            other => escaped.push(other),
-        }
-    }
-    Cow::Owned(escaped)
-}
-
-fn unescaped(text: &str) -> String {
-    if !text.contains(ESCAPE) {
-        return text.to_owned();
-    }
-    let (mut unescaped, mut rest) = (String::with_capacity(text.len()), text.chars());
-    while let Some(character) = rest.next() {
-        unescaped.extend(match character {
-            ESCAPE if rest.next() == Some('0') => Some('\0'),
-            other => Some(other),
-        });
-    }
-    unescaped
-}
-
 fn fault(error: &Error) -> Fault {
     // A transaction may learn that another one has inserted the same row from that row alone.
     const CONFLICTS: [&SqlState; 3] = [
@@ -602,8 +568,6 @@ fn reason(error: &Error) -> String {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
 
     #[test]
@@ -635,23 +599,5 @@ mod tests {
             let sentence = failure.to_string();
             assert!(!sentence.contains("heim") && sentence.lines().count() == 1, "{sentence}");
         }
-    }
-
-    proptest! {
-        #[test]
-        fn a_text_has_one_form_without_a_zero(
-            text in "[\u{0}\u{1}01a]{0,9}|.{0,20}",
-            other in "[\u{0}\u{1}01a]{0,9}",
-        ) {
-            let form = escaped(&text);
-            prop_assert!(!form.contains('\0'));
-            prop_assert_eq!(unescaped(&form), text.clone());
-            prop_assert_eq!(form == escaped(&other), text == other);
-        }
-    }
-
-    #[test]
-    fn a_text_without_the_two_characters_is_itself() {
-        assert!(matches!(escaped("10 steps; '\"\u{2}"), Cow::Borrowed("10 steps; '\"\u{2}")));
     }
 }

@@ -19,8 +19,8 @@ use std::time::Duration;
 
 use rusqlite::params;
 
-use super::database::Row;
 use super::lease::milliseconds;
+use super::statements::Row;
 use super::{AccountKey, AddressPrefix, HostStore, StoreFailure};
 
 /// By what the visits of somebody are counted.

@@ -1,7 +1,5 @@
 //! Results: the boards that they belong to, and the runs that count. The host plays the scripts of runs again.
 
-use std::cmp::Ordering;
-use std::fmt;
 use std::sync::Arc;
 
 use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
@@ -9,6 +7,7 @@ use cellcaster::fault::Faults;
 use cellcaster::game::{Game, Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
+use thiserror::Error;
 
 use super::{AccountId, Name, UnixTime};
 
@@ -50,19 +49,25 @@ pub struct VerifiedRun {
 }
 
 /// Why a script is no run that counts.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum Unverified {
     /// It is longer than [`MOST_SCRIPT_STEPS`] or [`MOST_SCRIPT_BYTES`].
+    #[error("The run took longer than half an hour.")]
     TooLong,
     /// It is no script.
+    #[error("{0}")]
     Faulty(Faults),
     /// It names no level that has a board.
+    #[error("The level has no board.")]
     OtherLevel,
     /// A level is played with the seed 0, so that all runs of it compare.
+    #[error("The level was played with another seed than all others.")]
     OtherSeed,
     /// The player dies.
+    #[error("The run ends with the player's death.")]
     Dead,
     /// No exit is reached.
+    #[error("The run reaches no exit.")]
     NotWon,
 }
 
@@ -139,25 +144,12 @@ impl LevelBoard {
     pub fn difficulty(&self) -> Difficulty {
         self.difficulty
     }
-}
 
-impl Ord for LevelBoard {
-    /// Built-in levels in their order come before maps by name, and easy before hard.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let rank = |board: &Self| {
-            let level = place(&board.level).unwrap_or(usize::MAX);
-            let difficulty = Difficulty::ALL.iter().position(|it| *it == board.difficulty);
-            (level, difficulty)
-        };
-        let [(level, difficulty), (other_level, other_difficulty)] = [rank(self), rank(other)];
-        let by_level = level.cmp(&other_level).then_with(|| self.level.cmp(&other.level));
-        by_level.then(difficulty.cmp(&other_difficulty))
-    }
-}
-
-impl PartialOrd for LevelBoard {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+    /// The key of a list of boards: built-in levels in their order come before maps by name, and easy before hard.
+    pub(crate) fn order(&self) -> (usize, Arc<str>, Option<usize>) {
+        let level = place(&self.level).unwrap_or(usize::MAX);
+        let difficulty = Difficulty::ALL.iter().position(|it| *it == self.difficulty);
+        (level, Arc::clone(&self.level), difficulty)
     }
 }
 
@@ -187,24 +179,6 @@ impl VerifiedRun {
         &self.script
     }
 }
-
-impl fmt::Display for Unverified {
-    /// Writes a sentence; for a text that is no script, a report.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooLong => f.write_str("The run took longer than half an hour."),
-            Self::Faulty(faults) => faults.fmt(f),
-            Self::OtherLevel => f.write_str("The level has no board."),
-            Self::OtherSeed => {
-                f.write_str("The level was played with another seed than all others.")
-            }
-            Self::Dead => f.write_str("The run ends with the player's death."),
-            Self::NotWon => f.write_str("The run reaches no exit."),
-        }
-    }
-}
-
-impl std::error::Error for Unverified {}
 
 #[cfg(any(test, fuzzing))]
 impl VerifiedRun {

@@ -16,16 +16,9 @@ CREATE INDEX names_of_account ON names (account);
 
 CREATE TABLE settings (
     account INTEGER NOT NULL PRIMARY KEY REFERENCES accounts,
-    crosshair INTEGER NOT NULL,
-    compass INTEGER NOT NULL,
-    bell INTEGER NOT NULL,
-    ghost INTEGER NOT NULL,
-    difficulty TEXT NOT NULL,
-    glyphs TEXT,
-    colors TEXT,
-    frames_per_second INTEGER,
-    configuration TEXT NOT NULL,
-    correction TEXT NOT NULL
+    -- In JSON.
+    preferences TEXT NOT NULL,
+    configuration TEXT NOT NULL
 ) STRICT;
 
 CREATE TABLE bans (
@@ -43,13 +36,8 @@ CREATE TABLE results (
     level TEXT NOT NULL,
     difficulty TEXT NOT NULL,
     steps INTEGER NOT NULL CHECK (steps >= 0),
-    treasure INTEGER NOT NULL,
-    treasure_total INTEGER NOT NULL,
-    secrets INTEGER NOT NULL,
-    secrets_total INTEGER NOT NULL,
-    alarms INTEGER NOT NULL,
-    deaths INTEGER NOT NULL,
-    stunned INTEGER NOT NULL,
+    -- In JSON, with the same steps.
+    tally TEXT NOT NULL,
     rank TEXT NOT NULL,
     verified_at INTEGER NOT NULL,
     script TEXT NOT NULL,

@@ -29,7 +29,7 @@ use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, OpenFlags, ToSql, TransactionBehavior, params_from_iter};
 
 use super::StoreFailure;
-use super::database::{Isolation, Row, SCHEMA, Statements, VERSION};
+use super::statements::{Isolation, Row, SCHEMA, Statements, VERSION};
 
 /// The mark of the file in its header, "Cell".
 const APPLICATION: i32 = 0x4365_6c6c;
@@ -359,7 +359,7 @@ impl From<rusqlite::Error> for StoreFailure {
     fn from(error: rusqlite::Error) -> Self {
         let sentence = format!("the host's store failed: {error}");
         match error.sqlite_error_code() {
-            Some(ErrorCode::DiskFull) => Self::full(sentence),
+            Some(ErrorCode::DiskFull) => Self::Full(sentence),
             _ => Self::new(sentence),
         }
     }

@@ -3,17 +3,18 @@
 use std::fmt;
 use std::path::Path;
 
-use cellcaster::app::parts::Choice;
-use cellcaster::app::store::{Best, Improved, Preferences};
-use cellcaster::game::{Rank, Share, Tally};
+use cellcaster::app::store::{Best, Improved};
+use cellcaster::game::Rank;
 use cellcaster::world::Difficulty;
-use rusqlite::params;
+use rusqlite::{Connection, params};
+use serde::Serialize;
 
 use super::ban::applying;
-use super::database::{Database, Row, Statements};
+
 use super::postgres::Server;
 use super::rate::milliseconds;
 use super::results::with_run;
+use super::statements::{Isolation, Row, Statements};
 use super::{
     Account, AccountId, AccountKey, AccountSettings, AddressPrefix, Ban, BanTarget, Identity,
     LevelBoard, LevelScore, NAME_HELD, Name, Origin, RENAME_WAIT, Refusal, StoreFailure, UnixTime,
@@ -23,6 +24,64 @@ use super::{
 /// What a host keeps.
 pub struct HostStore {
     pub(crate) database: Database,
+}
+
+/// A SQLite file, or a PostgreSQL server that several hosts share.
+pub(crate) enum Database {
+    File(Connection),
+    Server(Box<Server>),
+    /// Answers every call with this failure.
+    #[cfg(test)]
+    Failing(StoreFailure),
+}
+
+impl Database {
+    /// Runs statements that may as well run twice: they read, or set what they would set again.
+    ///
+    /// # Errors
+    /// Those of `act`.
+    pub(crate) fn once<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Isolation::None, act)
+    }
+
+    /// Runs a transaction, which is undone if `act` fails. Transactions have the effect of one after the other.
+    ///
+    /// # Errors
+    /// Those of `act`, and if the transaction can't be kept.
+    pub(crate) fn change<T, E: From<StoreFailure>>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        self.run(Isolation::Serializable, act)
+    }
+
+    /// Runs a transaction each of whose statements sees what others have kept until then, and waits for transactions
+    /// that change the same row.
+    ///
+    /// # Errors
+    /// Those of `act`, and if the transaction can't be kept.
+    pub(crate) fn change_rows<T>(
+        &mut self,
+        act: impl FnMut(&dyn Statements) -> Result<T, StoreFailure>,
+    ) -> Result<T, StoreFailure> {
+        self.run(Isolation::Committed, act)
+    }
+
+    fn run<T, E: From<StoreFailure>>(
+        &mut self,
+        isolation: Isolation,
+        act: impl FnMut(&dyn Statements) -> Result<T, E>,
+    ) -> Result<T, E> {
+        match self {
+            Self::File(connection) => sqlite::run(connection, isolation, act),
+            Self::Server(server) => server.run(isolation, act),
+            #[cfg(test)]
+            Self::Failing(failure) => Err(failure.clone().into()),
+        }
+    }
 }
 
 /// Opening a store.
@@ -111,25 +170,12 @@ impl HostStore {
         self.database.once(|it| it.row(&sql, values)?.as_ref().map(account).transpose())
     }
 
-    /// Creates the account of a key, whatever others were created.
+    /// Creates the account of a key, with a name. A new account counts for its `origin`, if there is one, unless it is
+    /// refused for another reason.
     ///
     /// # Errors
-    /// [`Refusal`].
+    /// A [`Refusal`]: for one, the name is taken or banned, or the network makes too many accounts.
     pub fn create_account(
-        &mut self,
-        key: &AccountKey,
-        name: &Name,
-        now: UnixTime,
-    ) -> Result<Account, Refusal> {
-        self.create_account_from(None, key, name, now)
-    }
-
-    /// Creates the account of a key, if its network has not made too many. An account that is refused for another
-    /// reason does not count.
-    ///
-    /// # Errors
-    /// [`Refusal`].
-    pub fn create_account_from(
         &mut self,
         origin: Option<&Origin>,
         key: &AccountKey,
@@ -197,11 +243,14 @@ impl HostStore {
     /// # Errors
     /// See [`account`](Self::account).
     pub fn settings(&mut self, id: AccountId) -> Result<AccountSettings, StoreFailure> {
-        let sql = "SELECT crosshair, compass, bell, ghost, difficulty, glyphs, colors, \
-                   frames_per_second, configuration, correction FROM settings WHERE account = ?1";
+        let sql = "SELECT preferences, configuration FROM settings WHERE account = ?1";
         let row = self.database.once(|it| it.row(sql, params![id]))?;
-        let settings = row.as_ref().map(settings).transpose()?;
-        Ok(settings.unwrap_or_default())
+        let settings = row.map(|row| {
+            // Those of another version are the default.
+            let preferences = serde_json::from_str(&row.get::<String>(0)?).unwrap_or_default();
+            Ok(AccountSettings { preferences, configuration: row.get(1)? })
+        });
+        settings.unwrap_or_else(|| Ok(AccountSettings::default()))
     }
 
     /// Replaces the settings of an account.
@@ -214,28 +263,10 @@ impl HostStore {
         settings: &AccountSettings,
     ) -> Result<(), StoreFailure> {
         let AccountSettings { preferences, configuration } = settings.checked()?;
-        let Preferences { crosshair, compass, bell, ghost, .. } = *preferences;
-        let sql = "INSERT INTO settings (account, crosshair, compass, bell, ghost, difficulty, glyphs, \
-                   colors, frames_per_second, configuration, correction) \
-                   VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) \
-                   ON CONFLICT (account) DO UPDATE SET crosshair = excluded.crosshair, \
-                   compass = excluded.compass, bell = excluded.bell, ghost = excluded.ghost, \
-                   difficulty = excluded.difficulty, glyphs = excluded.glyphs, \
-                   colors = excluded.colors, frames_per_second = excluded.frames_per_second, \
-                   configuration = excluded.configuration, correction = excluded.correction";
-        let values = params![
-            id,
-            crosshair,
-            compass,
-            bell,
-            ghost,
-            preferences.difficulty.name(),
-            preferences.glyphs.map(Choice::name),
-            preferences.colors.map(Choice::name),
-            preferences.frames_per_second,
-            configuration,
-            preferences.correction.name(),
-        ];
+        let sql = "INSERT INTO settings (account, preferences, configuration) VALUES (?1, ?2, ?3) \
+                   ON CONFLICT (account) DO UPDATE SET preferences = excluded.preferences, \
+                   configuration = excluded.configuration";
+        let values = params![id, json(preferences), configuration];
         self.database.once(|it| it.execute(sql, values).map(|_| ()))
     }
 }
@@ -286,10 +317,6 @@ impl HostStore {
     }
 }
 
-/// The columns of a [`Best`].
-const BEST: &str = "steps, treasure, treasure_total, secrets, secrets_total, alarms, deaths, \
-                    stunned, rank";
-
 /// Results and boards.
 impl HostStore {
     /// Records a run, and returns what it improved.
@@ -303,42 +330,25 @@ impl HostStore {
         now: UnixTime,
     ) -> Result<Improved, StoreFailure> {
         let (level, difficulty) = (run.board().level(), run.board().difficulty().name());
-        let select = format!(
-            "SELECT {BEST} FROM results WHERE account = ?1 AND level = ?2 AND difficulty = ?3"
-        );
-        let insert = format!(
-            "INSERT INTO results (account, level, difficulty, {BEST}, verified_at, script) \
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14) \
-             ON CONFLICT (account, level, difficulty) DO UPDATE SET steps = excluded.steps, \
-             treasure = excluded.treasure, treasure_total = excluded.treasure_total, \
-             secrets = excluded.secrets, secrets_total = excluded.secrets_total, \
-             alarms = excluded.alarms, deaths = excluded.deaths, stunned = excluded.stunned, \
-             rank = excluded.rank, verified_at = excluded.verified_at, script = excluded.script"
-        );
+        let select = "SELECT tally, rank FROM results \
+                      WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
+        let insert = "INSERT INTO results \
+                      (account, level, difficulty, steps, tally, rank, verified_at, script) \
+                      VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) \
+                      ON CONFLICT (account, level, difficulty) DO UPDATE SET \
+                      steps = excluded.steps, tally = excluded.tally, rank = excluded.rank, \
+                      verified_at = excluded.verified_at, script = excluded.script";
         let set_rank =
             "UPDATE results SET rank = ?4 WHERE account = ?1 AND level = ?2 AND difficulty = ?3";
         self.database.change(|it| {
-            let known = it.row(&select, params![account, level, difficulty])?;
+            let known = it.row(select, params![account, level, difficulty])?;
             let (best, improved) = with_run(known.map(|row| best(&row, 0)).transpose()?, run);
             let Best { tally, rank } = best;
             if improved.time {
-                let values = params![
-                    account,
-                    level,
-                    difficulty,
-                    tally.steps as i64,
-                    tally.treasure.found,
-                    tally.treasure.total,
-                    tally.secrets.found,
-                    tally.secrets.total,
-                    tally.alarms,
-                    tally.deaths,
-                    tally.stunned,
-                    rank.name(),
-                    now,
-                    run.script(),
-                ];
-                it.execute(&insert, values)?;
+                let (steps, tally, script) = (tally.steps as i64, json(&tally), run.script());
+                let values =
+                    params![account, level, difficulty, steps, tally, rank.name(), now, script];
+                it.execute(insert, values)?;
             } else if improved.rank {
                 it.execute(set_rank, params![account, level, difficulty, rank.name()])?;
             }
@@ -351,12 +361,12 @@ impl HostStore {
     /// # Errors
     /// See [`account`](Self::account).
     pub fn bests(&mut self, account: AccountId) -> Result<Vec<(LevelBoard, Best)>, StoreFailure> {
-        let sql = format!("SELECT level, difficulty, {BEST} FROM results WHERE account = ?1");
-        let rows = self.database.once(|it| it.rows(&sql, params![account]))?;
+        let sql = "SELECT level, difficulty, tally, rank FROM results WHERE account = ?1";
+        let rows = self.database.once(|it| it.rows(sql, params![account]))?;
         let bests = rows.iter().map(|row| Ok((board(row)?, best(row, 2)?)));
         let bests = bests.collect::<Result<Vec<_>, StoreFailure>>()?.into_iter();
         let mut bests: Vec<_> = bests.filter_map(|(board, best)| Some((board?, best))).collect();
-        bests.sort_by(|(one, _), (other, _)| one.cmp(other));
+        bests.sort_by_key(|(board, _)| board.order());
         Ok(bests)
     }
 
@@ -369,7 +379,7 @@ impl HostStore {
         let rows = self.database.once(|it| it.rows(sql, &[]))?;
         let known = rows.iter().map(board).collect::<Result<Vec<_>, _>>()?;
         let mut boards: Vec<LevelBoard> = known.into_iter().flatten().collect();
-        boards.sort();
+        boards.sort_by_key(LevelBoard::order);
         Ok(boards)
     }
 
@@ -383,13 +393,13 @@ impl HostStore {
         board: &LevelBoard,
         most: usize,
     ) -> Result<Vec<LevelScore>, StoreFailure> {
-        let sql = format!(
-            "SELECT account, name, verified_at, {BEST} FROM results JOIN accounts ON id = account \
-             WHERE level = ?1 AND difficulty = ?2 ORDER BY steps, verified_at, account LIMIT ?3"
-        );
+        let sql = "SELECT account, name, verified_at, tally, rank \
+                   FROM results JOIN accounts ON id = account \
+                   WHERE level = ?1 AND difficulty = ?2 \
+                   ORDER BY steps, verified_at, account LIMIT ?3";
         let most = i64::try_from(most).unwrap_or(i64::MAX);
         let values = params![board.level(), board.difficulty().name(), most];
-        self.database.once(|it| it.rows(&sql, values)?.iter().map(score).collect())
+        self.database.once(|it| it.rows(sql, values)?.iter().map(score).collect())
     }
 
     /// The script of the fastest run of an account.
@@ -523,22 +533,6 @@ fn account(row: &Row) -> Result<Account, StoreFailure> {
     })
 }
 
-fn settings(row: &Row) -> Result<AccountSettings, StoreFailure> {
-    let name = |column| row.get::<Option<String>>(column);
-    let preferences = Preferences {
-        crosshair: row.get(0)?,
-        compass: row.get(1)?,
-        bell: row.get(2)?,
-        ghost: row.get(3)?,
-        difficulty: name(4)?.and_then(|name| Difficulty::named(&name)).unwrap_or_default(),
-        glyphs: name(5)?.and_then(|name| Choice::named(&name)),
-        colors: name(6)?.and_then(|name| Choice::named(&name)),
-        frames_per_second: row.get::<Option<u32>>(7)?.and_then(std::num::NonZeroU32::new),
-        correction: name(9)?.and_then(|name| Choice::named(&name)).unwrap_or_default(),
-    };
-    Ok(AccountSettings { preferences, configuration: row.get(8)? })
-}
-
 /// The board in the first two columns; `None` if there is none of that name any more.
 fn board(row: &Row) -> Result<Option<LevelBoard>, StoreFailure> {
     let (level, difficulty): (String, String) = (row.get(0)?, row.get(1)?);
@@ -551,19 +545,15 @@ fn score(row: &Row) -> Result<LevelScore, StoreFailure> {
     Ok(LevelScore { account, name, tally, rank, verified_at })
 }
 
-/// The result in the columns [`BEST`] from `first` on.
+/// The result whose tally and rank are in the columns from `first` on.
 fn best(row: &Row, first: usize) -> Result<Best, StoreFailure> {
-    let share = |column: usize| -> Result<Share, StoreFailure> {
-        Ok(Share { found: row.get(column)?, total: row.get(column + 1)? })
-    };
-    let tally = Tally {
-        steps: row.count(first)?,
-        treasure: share(first + 1)?,
-        secrets: share(first + 3)?,
-        alarms: row.get(first + 5)?,
-        deaths: row.get(first + 6)?,
-        stunned: row.get(first + 7)?,
-    };
-    let rank: String = row.get(first + 8)?;
+    let tally = serde_json::from_str(&row.get::<String>(first)?)
+        .map_err(|error| StoreFailure::new(format!("the host's store has no tally: {error}")))?;
+    let rank: String = row.get(first + 1)?;
     Ok(Best { tally, rank: Rank::named(&rank).unwrap_or(Rank::Burglar) })
+}
+
+fn json(value: &impl Serialize) -> String {
+    // Numbers and names always have a form in JSON.
+    serde_json::to_string(value).unwrap_or_default()
 }

@@ -20,7 +20,7 @@ use std::{env, fs};
 
 use proptest::prelude::*;
 
-use super::database::Database;
+use super::store::Database;
 use super::*;
 use cellcaster::app::store::Preferences;
 use cellcaster::game::{Rank, Share, Tally};
@@ -101,18 +101,21 @@ fn run(level: &str, steps: u64, rank: Rank) -> VerifiedRun {
         deaths: 5,
         stunned: 6,
     };
-    VerifiedRun::made_up(board(level), tally, rank, &format!("{steps} steps; '\"\u{1F600}\0"))
+    VerifiedRun::made_up(board(level), tally, rank, &format!("{steps} steps; '\"\u{1F600}"))
 }
 
 #[test]
 fn a_key_is_an_account() {
     with_each(|store| {
         assert_eq!(store.account(&key(1)).unwrap(), None);
-        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
-        let bob = store.create_account(&key(2), &name("Bob"), at(1)).unwrap();
+        let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
+        let bob = store.create_account(None, &key(2), &name("Bob"), at(1)).unwrap();
         assert_ne!(ada.id, bob.id);
         assert_eq!(store.account(&key(1)).unwrap(), Some(ada.clone()));
-        assert_eq!(store.create_account(&key(1), &name("Eve"), at(1)), Err(Refusal::KeyKnown));
+        assert_eq!(
+            store.create_account(None, &key(1), &name("Eve"), at(1)),
+            Err(Refusal::KeyKnown)
+        );
         store.note_visit(ada.id, at(3)).unwrap();
         let seen = Account { seen_at: at(3), ..ada };
         assert_eq!(store.account(&key(1)).unwrap(), Some(seen.clone()));
@@ -124,19 +127,19 @@ fn a_key_is_an_account() {
 #[test]
 fn a_name_is_of_one_account() {
     with_each(|store| {
-        store.create_account(&key(1), &name("Bill"), at(0)).unwrap();
+        store.create_account(None, &key(1), &name("Bill"), at(0)).unwrap();
         for other in ["Bill", "bILL", "BiIl", "bi11"] {
-            let refused = store.create_account(&key(2), &name(other), at(0));
+            let refused = store.create_account(None, &key(2), &name(other), at(0));
             assert_eq!(refused, Err(Refusal::NameTaken), "{other}");
         }
-        store.create_account(&key(2), &name("Will"), at(0)).unwrap();
+        store.create_account(None, &key(2), &name("Will"), at(0)).unwrap();
     });
 }
 
 #[test]
 fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
     with_each(|store| {
-        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+        let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
         let next = at(7);
         let early = store.rename(ada.id, &name("Eve"), UnixTime::new(next.seconds() - 1));
         assert_eq!(early, Err(Refusal::TooEarly { next }));
@@ -145,12 +148,15 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
         assert_eq!(store.account(&key(1)).unwrap(), Some(eve));
         assert_eq!(store.account_named(&name("Ada")).unwrap(), None);
         // Nobody else has the old name for a while; the account itself may go back to it.
-        let taken = store.create_account(&key(2), &name("ADA"), at(36));
+        let taken = store.create_account(None, &key(2), &name("ADA"), at(36));
         assert_eq!(taken, Err(Refusal::NameTaken));
         store.rename(ada.id, &name("ada"), at(14)).unwrap();
         store.rename(ada.id, &name("Eve"), at(21)).unwrap();
-        assert_eq!(store.create_account(&key(2), &name("Ada"), at(50)), Err(Refusal::NameTaken));
-        store.create_account(&key(2), &name("Ada"), at(51)).unwrap();
+        assert_eq!(
+            store.create_account(None, &key(2), &name("Ada"), at(50)),
+            Err(Refusal::NameTaken)
+        );
+        store.create_account(None, &key(2), &name("Ada"), at(51)).unwrap();
         let back = store.rename(ada.id, &name("Ada"), at(60));
         assert_eq!(back, Err(Refusal::NameTaken));
     });
@@ -159,7 +165,7 @@ fn a_name_can_be_changed_after_a_while_and_is_held_for_a_while() {
 #[test]
 fn settings_are_kept_by_account() {
     with_each(|store| {
-        let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
+        let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap().id;
         assert_eq!(store.settings(ada).unwrap(), AccountSettings::default());
         let preferences = Preferences {
             bell: true,
@@ -207,8 +213,8 @@ fn a_ban_applies_until_it_ends() {
         assert_eq!(store.ban_of(&visitor, at(0)).unwrap().as_ref(), Some(&bans[0]));
         assert_eq!(store.ban_of(&Identity::default(), at(0)).unwrap(), None);
         // A name that is banned is nobody's.
-        assert_eq!(store.create_account(&key(3), &rude, at(1)), Err(Refusal::NameBanned));
-        store.create_account(&key(3), &rude, at(2)).unwrap();
+        assert_eq!(store.create_account(None, &key(3), &rude, at(1)), Err(Refusal::NameBanned));
+        store.create_account(None, &key(3), &rude, at(2)).unwrap();
         // A later ban is in place of the earlier one.
         let longer = ban(range(), None);
         store.ban(&longer).unwrap();
@@ -223,7 +229,7 @@ fn a_ban_applies_until_it_ends() {
 fn boards_have_the_best_run_of_each_account() {
     with_each(|store| {
         let [ada, bob, eve] = [(1, "Ada"), (2, "Bob"), (3, "Eve")].map(|(number, text)| {
-            store.create_account(&key(number), &name(text), at(0)).unwrap().id
+            store.create_account(None, &key(number), &name(text), at(0)).unwrap().id
         });
         let mut record = |account, level, steps, rank, day| {
             let improved = store.record(account, &run(level, steps, rank), at(day)).unwrap();
@@ -273,7 +279,7 @@ proptest! {
         let mut accepted: Vec<Name> = Vec::new();
         for (number, text) in (1_u8..).zip(&texts) {
             let Ok(name) = Name::new(text) else { continue };
-            if store.create_account(&key(number), &name, at(0)).is_ok() {
+            if store.create_account(None, &key(number), &name, at(0)).is_ok() {
                 let skeleton = |name: &Name| -> String {
                     unicode_security::skeleton(name.as_str()).collect()
                 };

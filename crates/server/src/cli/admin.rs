@@ -6,16 +6,15 @@
 use std::env;
 use std::io::{self, Write};
 use std::path::Path;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use unicode_width::UnicodeWidthStr;
 
 use super::arguments::{Admin, AdminAction};
 use super::host_store::{Database, failed};
 use crate::accounts::{Ban, BanTarget, HostStore, UnixTime};
-use crate::ops::admin::{
-    AdminFailure, AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow, ask,
-};
+use crate::admin::{AdminReply, AdminRequest, HostInfo, RoomRow, Target, VisitorRow};
+use crate::operator::socket::{AdminFailure, ask};
 use cellcaster::cli::Error;
 use cellcaster::cli::machine::data_folder;
 use cellcaster::rng;
@@ -111,10 +110,7 @@ impl RunningHost<'_> {
         match self.answers(request)? {
             AdminReply::Count(count) => Ok(count),
             AdminReply::Fault(sentence) => Err(Error::mistake(sentence)),
-            AdminReply::Visitors(_)
-            | AdminReply::Rooms(_)
-            | AdminReply::Hosts(_)
-            | AdminReply::AllHosts { .. } => Err(other_version()),
+            _ => Err(other_version()),
         }
     }
 
@@ -186,7 +182,7 @@ fn ban(
     reason: &str,
 ) -> Result<String, Error> {
     let mut store = open(database)?;
-    let now = now();
+    let now = UnixTime::now();
     let targets = targets(&mut store, target)?;
     for target in &targets {
         let ban = Ban {
@@ -229,7 +225,7 @@ fn unban(database: &Database, target: &Target) -> Result<String, Error> {
 /// The bans in force.
 fn bans(database: &Database) -> Result<String, Error> {
     let mut store = database.open_to_read()?;
-    let now = now();
+    let now = UnixTime::now();
     let bans = store.bans(now).map_err(failed)?;
     if bans.is_empty() {
         return Ok("nobody is banned\n".to_owned());
@@ -295,11 +291,6 @@ fn operator() -> String {
     names.into_iter().find(|name| !name.is_empty()).unwrap_or_else(|| "console".to_owned())
 }
 
-fn now() -> UnixTime {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    UnixTime::new(since.as_secs())
-}
-
 /// Rows below a line of titles, in columns as wide as they need. Characters that a terminal would obey
 /// are replaced.
 fn table<const N: usize>(titles: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
@@ -338,18 +329,18 @@ fn time_text(seconds: u64) -> String {
 }
 
 fn sessions(count: usize) -> String {
-    match count {
-        0 => "no session".to_owned(),
-        1 => "1 session".to_owned(),
-        count => format!("{count} sessions"),
-    }
+    counted(count, "no session", "session")
 }
 
 fn visitors(count: usize) -> String {
+    counted(count, "nobody", "visitor")
+}
+
+fn counted(count: usize, none: &str, one: &str) -> String {
     match count {
-        0 => "nobody".to_owned(),
-        1 => "1 visitor".to_owned(),
-        count => format!("{count} visitors"),
+        0 => none.to_owned(),
+        1 => format!("1 {one}"),
+        count => format!("{count} {one}s"),
     }
 }
 
@@ -359,7 +350,9 @@ impl From<AdminFailure> for Error {
             AdminFailure::NoServer(_) | AdminFailure::NotAllowed(_) => {
                 Self::mistake(failure.to_string())
             }
-            AdminFailure::Failed(..) => Self::machine(failure.to_string()),
+            AdminFailure::TimedOut(_) | AdminFailure::Failed(..) => {
+                Self::machine(failure.to_string())
+            }
         }
     }
 }

@@ -12,9 +12,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 
 use super::host_store::Database;
 use crate::accounts::{AccountKey, AddressPrefix};
-use crate::ops::admin::Target;
-use crate::ops::logging::LogFormat;
-use crate::sessions::visitors::SessionId;
+use crate::admin::Target;
+use crate::logging::LogFormat;
+use crate::visitors::SessionId;
 
 /// An SSH server in which people play Cellcaster together
 ///
@@ -70,7 +70,7 @@ pub(crate) struct Serve {
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) maps: Option<PathBuf>,
     /// How the log is written
-    #[arg(long, value_name = "FORMAT", default_value = "text", value_parser = log_format)]
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub(crate) log: LogFormat,
     /// A folder for the log of each room. It keeps 256 MiB and 30 days at most: the oldest recordings are removed first
     /// [default: nothing is recorded]
@@ -257,14 +257,6 @@ impl fmt::Debug for ClusterAddress {
 
 fn address(text: &str) -> Result<SocketAddr, Takes> {
     text.parse().map_err(|_| Takes("an address and a port, such as 0.0.0.0:2222 or [::]:2222"))
-}
-
-fn log_format(text: &str) -> Result<LogFormat, Takes> {
-    match text {
-        "text" => Ok(LogFormat::Text),
-        "json" => Ok(LogFormat::Json),
-        _ => Err(Takes("text or json")),
-    }
 }
 
 fn key(text: &str) -> Result<AccountKey, Takes> {

@@ -1,33 +1,34 @@
 //! `cellcaster-server`: the SSH server.
 
-mod configuration;
-mod signals;
-
 use std::io::{self, Write};
 use std::net::{IpAddr, SocketAddr};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
+use tokio::sync::{Notify, watch};
 use tokio::task::JoinSet;
 
 use super::arguments::Serve;
 use super::host_store::{Database, failed};
 use crate::accounts::{HostNotice, HostStore, StoreFailure, WaitingResults};
 use crate::cluster::Cluster;
+use crate::config::{Config, LiveConfig};
+use crate::logging::{self, Logging};
+use crate::metrics::respond;
 #[cfg(unix)]
-use crate::ops::admin::AdminSocket;
-use crate::ops::config::Config;
-use crate::ops::logging::{LogFormat, Logging, events};
-use crate::ops::metrics::respond;
+use crate::operator::socket::AdminSocket;
+use crate::rooms::maps::{HostMaps, MapsError};
+use crate::rooms::room::Catalog;
 use crate::sessions::driver::{GameHost, HostParts};
-use crate::sessions::visitors::Visitors;
 use crate::ssh::Server;
 use crate::ssh::host_key::HostKey;
+use crate::visitors::Visitors;
+use cellcaster::app::store::private;
 use cellcaster::cli::Error;
-use cellcaster::cli::machine::data_folder;
-use configuration::Configuration;
-use signals::{Hangups, Signals};
+use cellcaster::cli::config::LARGEST;
+use cellcaster::cli::machine::{configuration_file, data_folder};
 
 /// Serves until a signal ends it.
 pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
@@ -37,110 +38,93 @@ pub(crate) fn run(mut options: Serve) -> Result<(), Error> {
             "there is no folder for data; name one, as in \"cellcaster-server --data FOLDER\"",
         )
     })?;
-    let key = HostKey::open(&folder).map_err(|error| Error::mistake(error.to_string()))?;
+    let key = HostKey::open(&folder).map_err(Error::mistake)?;
     let database = Database::named(options.store.store.take());
     let database = database.unwrap_or_else(|| Database::Folder(folder.clone()));
-    let cluster = pending_cluster(&options, &database)?;
+    let cluster = cluster(&options, &database)?;
     let store = open_store(&database, options.accept_empty)?;
-    let waiting = waiting(&folder)?;
+    let waiting = WaitingResults::open(&folder).map(warned).map_err(failed)?;
     let runtime = Runtime::new().map_err(|error| no_thread(&error))?;
-    let parts =
-        Parts { config, key, folder: &folder, format: options.log, store, waiting, cluster };
-    let ended = runtime.block_on(serve(configuration, parts));
+    let ended = runtime.block_on(async {
+        let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
+        let signals = Signals::catch().map_err(no_signals)?;
+        let hangups = Hangups::catch().map_err(no_signals)?;
+        let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
+        let cannot = |error| cannot_listen(wanted, &error);
+        let metrics_listener = match config.metrics {
+            Some(address) => {
+                let listener = TcpListener::bind(address).await;
+                Some(listener.map_err(|error| cannot_listen(address, &error))?)
+            }
+            None => None,
+        };
+        #[cfg(unix)]
+        let admin = bind_admin(&folder)?;
+        let server = Server::bind(config, key).await.map_err(cannot)?;
+        let address = server.address().map_err(cannot)?;
+        let logging = Logging::begin(options.log, &filter);
+        logging::listening(address, &fingerprint);
+
+        let host = HostParts::new(server.config(), server.metrics(), Visitors::default(), store);
+        let mut host = host.map_err(|error| no_thread(&error))?;
+        host.catalog = Catalog::with(&configuration.maps);
+        host.waiting = Some(waiting);
+        if let Some((cluster, [leases, presence])) = cluster {
+            let cluster = Cluster::join(&cluster, leases, presence, notice(address)).await;
+            host.cluster = Some(cluster.map_err(Error::mistake)?);
+        }
+        let host = GameHost::start(host);
+        // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
+        let text = invitation(address, &fingerprint);
+        io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
+        let mut services = JoinSet::new();
+        if let Some(listener) = metrics_listener {
+            logging::metrics_listening(listener.local_addr().map_err(cannot)?);
+            services.spawn(respond(listener, server.metrics()));
+        }
+        let operator = host.operator(signals.drain());
+        services.spawn(operator.clone().answer_others());
+        #[cfg(unix)]
+        if let Some(admin) = admin {
+            services.spawn(admin.serve(operator));
+        }
+        services.spawn(configuration.follow(hangups, server.config(), logging));
+        let ending = host.ending();
+        tokio::select! {
+            () = server.run(host, signals.first()) => ending.await,
+            () = signals.second() => {}
+        }
+        // Else the process might end before the socket is removed.
+        services.shutdown().await;
+        logging::ended();
+        Ok(())
+    });
     // After a second signal, nothing is waited for.
     runtime.shutdown_background();
     ended
 }
 
-/// What a server is made of.
-struct Parts<'a> {
-    config: Config,
-    key: HostKey,
-    /// For data.
-    folder: &'a Path,
-    format: LogFormat,
-    store: HostStore,
-    waiting: WaitingResults,
-    /// In a cluster.
-    cluster: Option<PendingCluster>,
-}
-
-async fn serve(configuration: Configuration, parts: Parts<'_>) -> Result<(), Error> {
-    let Parts { config, key, folder, format, store, waiting, cluster } = parts;
-    let no_signals = |error| Error::machine(format!("no signal can be caught: {error}"));
-    let signals = Signals::catch().map_err(no_signals)?;
-    let hangups = Hangups::catch().map_err(no_signals)?;
-    let (wanted, fingerprint, filter) = (config.listen, key.fingerprint(), config.log.clone());
-    let cannot = |error| cannot_listen(wanted, &error);
-    let metrics_listener = match config.metrics {
-        Some(address) => {
-            Some(TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?)
-        }
-        None => None,
-    };
-    #[cfg(unix)]
-    let admin = bind_admin(folder)?;
-    let server = Server::bind(config, key).await.map_err(cannot)?;
-    let address = server.address().map_err(cannot)?;
-    let logging = Logging::begin(format, &filter);
-    events::listening(address, &fingerprint);
-
-    let host = HostParts::new(server.config(), server.metrics(), Visitors::default(), store);
-    let host = host.map_err(|error| no_thread(&error))?;
-    let mut host = host.with_maps(configuration.maps()).with_waiting(waiting);
-    if let Some(cluster) = cluster {
-        host = cluster.join(host, address).await?;
-    }
-    let host = GameHost::start(host);
-    // The rooms take a moment to make. Those who are invited, and operators, are answered at once.
-    let text = invitation(address, &fingerprint);
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))?;
-    let mut services = JoinSet::new();
-    if let Some(listener) = metrics_listener {
-        events::metrics_listening(listener.local_addr().map_err(cannot)?);
-        services.spawn(respond(listener, server.metrics()));
-    }
-    let operator = host.operator(signals.drain());
-    services.spawn(operator.clone().answer_others());
-    #[cfg(unix)]
-    if let Some(admin) = admin {
-        services.spawn(admin.serve(operator));
-    }
-    services.spawn(configuration.follow(hangups, server.config(), logging));
-    let ending = host.ending();
-    tokio::select! {
-        () = server.run(host, signals.first()) => ending.await,
-        () = signals.second() => {}
-    }
-    // Else the process might end before the socket is removed.
-    services.shutdown().await;
-    events::ended();
-    Ok(())
-}
-
 /// The store. A damaged one is an error unless the operator accepts that it may be empty.
 fn open_store(database: &Database, accepts_empty: bool) -> Result<HostStore, Error> {
     let refused = |failure: StoreFailure| Error::mistake(failure.to_string());
-    if !accepts_empty {
-        return database.open().map_err(refused);
+    if accepts_empty {
+        database.open_or_salvage().map(warned).map_err(refused)
+    } else {
+        database.open().map_err(refused)
     }
-    let (store, damage) = database.open_or_salvage().map_err(refused)?;
+}
+
+/// What was opened, after a warning if it was damaged.
+fn warned<T>((opened, damage): (T, Option<String>)) -> T {
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
-    Ok(store)
+    opened
 }
 
-/// A cluster that the host is going to join.
-struct PendingCluster {
-    address: String,
-    /// Each on a connection of its own, so that they wait for nothing else.
-    leases: HostStore,
-    presence: HostStore,
-}
-
-/// The cluster that `options` name. The store is that of all hosts.
-fn pending_cluster(options: &Serve, store: &Database) -> Result<Option<PendingCluster>, Error> {
+/// The address of the bus of the cluster that `options` name, with connections to the database of all hosts: one for leases
+/// and one for visits, so that they wait for nothing else.
+fn cluster(options: &Serve, store: &Database) -> Result<Option<(String, [HostStore; 2])>, Error> {
     let Some(address) = options.cluster() else { return Ok(None) };
     let Database::Address(store) = store else {
         return Err(Error::mistake(
@@ -152,40 +136,24 @@ fn pending_cluster(options: &Serve, store: &Database) -> Result<Option<PendingCl
         return Err(Error::mistake("rooms of a cluster are not recorded: leave out --record-room"));
     }
     let open = || HostStore::connect(store).map_err(|failure| Error::mistake(failure.to_string()));
-    Ok(Some(PendingCluster { address, leases: open()?, presence: open()? }))
+    Ok(Some((address, [open()?, open()?])))
 }
 
-impl PendingCluster {
-    /// Joins the cluster under a name that no other host has, with a host that listens at `address`.
-    async fn join(self, host: HostParts, address: SocketAddr) -> Result<HostParts, Error> {
-        let notice = HostNotice {
-            name: unique_name(address),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            address: address.to_string(),
-            load: 0,
-        };
-        let cluster = Cluster::join(&self.address, self.leases, self.presence, notice).await;
-        Ok(host.in_cluster(cluster.map_err(Error::mistake)?))
-    }
-}
-
-/// The name of this machine with the port, which operators know, and a number that no other start of a host has.
-fn unique_name(address: SocketAddr) -> String {
+/// What this host tells the others. Its name is the name of this machine with the port, which operators know, and a
+/// number that no other start of a host has.
+fn notice(address: SocketAddr) -> HostNotice {
     #[cfg(unix)]
     let machine =
         rustix::system::uname().nodename().to_string_lossy().replace(char::is_whitespace, "-");
     #[cfg(not(unix))]
     let machine = address.ip();
-    format!("{machine}:{} {:08x}", address.port(), getrandom::u32().unwrap_or_default())
-}
-
-/// The results that wait in the folder for data.
-fn waiting(folder: &Path) -> Result<WaitingResults, Error> {
-    let (waiting, damage) = WaitingResults::open(folder).map_err(failed)?;
-    if let Some(sentence) = damage {
-        Error::machine(sentence).warn();
+    let number = getrandom::u32().unwrap_or_default();
+    HostNotice {
+        name: format!("{machine}:{} {number:08x}", address.port()),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        address: address.to_string(),
+        load: 0,
     }
-    Ok(waiting)
 }
 
 /// The socket for `cellcaster-server admin`. Without one the server runs, too, as in a folder with a name
@@ -231,4 +199,232 @@ fn invitation(address: SocketAddr, fingerprint: &str) -> String {
          Over a slow link:      ssh -C {port}{host}\n\
          As a guest with a key: ssh {port}guest@{host}\n"
     )
+}
+
+/// Where the configuration comes from: the file and the maps that it names, read at the start; the file again at each
+/// hang-up.
+struct Configuration {
+    /// `None` if the system has no folder for it.
+    file: Option<PathBuf>,
+    /// Whether the file was named, and so has to exist.
+    is_named: bool,
+    /// What the command line says, which goes before the file.
+    listen: Option<SocketAddr>,
+    maps_folder: Option<PathBuf>,
+    recordings: Option<PathBuf>,
+    /// The maps, which are read once.
+    maps: HostMaps,
+}
+
+impl Configuration {
+    /// Reads the file that `options` name, or else the default one, and the maps.
+    fn begin(options: &Serve) -> Result<(Self, Config), Error> {
+        let mut configuration = Self {
+            file: options.config.clone().or_else(|| configuration_file("serve.toml")),
+            is_named: options.config.is_some(),
+            listen: options.listen,
+            maps_folder: options.maps.clone(),
+            recordings: options.record_room.clone(),
+            maps: HostMaps::default(),
+        };
+        let text = configuration.text()?;
+        let config = configuration.parse(&text)?;
+        if let Some(folder) = &config.maps {
+            let maps = HostMaps::read(folder);
+            configuration.maps = maps.map_err(refused)?;
+        }
+        configuration.check_levels(&text)?;
+        Ok((configuration, config))
+    }
+
+    /// Reads the file again at each hang-up. With a fault in it, the configuration stays as it is.
+    async fn follow(self, mut hangups: Hangups, live: LiveConfig, logging: Logging) {
+        loop {
+            hangups.next().await;
+            match self.read_again() {
+                Ok(config) => {
+                    logging.set_filter(&config.log);
+                    let fixed = live.replace(config);
+                    logging::reloaded(self.file.as_deref(), &fixed);
+                }
+                Err(error) => error.to_string().lines().for_each(logging::configuration_fault),
+            }
+        }
+    }
+
+    fn read_again(&self) -> Result<Config, Error> {
+        let text = self.text()?;
+        let config = self.parse(&text)?;
+        // Other maps than those that were read have no effect until the next start.
+        self.check_levels(&text)?;
+        Ok(config)
+    }
+
+    fn parse(&self, text: &str) -> Result<Config, Error> {
+        let mut config = Config::parse(text, &self.file_name())?;
+        config.listen = self.listen.unwrap_or(config.listen);
+        config.maps = self.maps_folder.clone().or(config.maps);
+        config.recordings.clone_from(&self.recordings);
+        Ok(config)
+    }
+
+    fn check_levels(&self, text: &str) -> Result<(), Error> {
+        Ok(Config::check_levels(text, &self.file_name(), &self.maps.level_names())?)
+    }
+
+    /// The content of the file; an empty one if the default file does not exist.
+    fn text(&self) -> Result<String, Error> {
+        let Some(file) = &self.file else { return Ok(String::new()) };
+        match private::read_text(file, LARGEST) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !self.is_named => {
+                Ok(String::new())
+            }
+            text => text.map_err(|error| {
+                Error::mistake(format!("{} can't be read: {error}", self.file_name()))
+            }),
+        }
+    }
+
+    fn file_name(&self) -> String {
+        self.file.as_ref().map_or_else(String::new, |file| file.display().to_string())
+    }
+}
+
+fn refused(error: MapsError) -> Error {
+    match error {
+        MapsError::Sentence(sentence) => Error::mistake(sentence),
+        MapsError::Report(text) => Error::report_of(&text),
+    }
+}
+
+/// The signals of this process, caught.
+#[derive(Default)]
+struct Signals {
+    /// How often the server was asked to end.
+    count: watch::Sender<u32>,
+    drain: Arc<Notify>,
+}
+
+/// Hang-ups, one at a time. Elsewhere than on Unix there are none.
+struct Hangups {
+    #[cfg(unix)]
+    signal: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    /// Catches signals from now on. Call it within a runtime.
+    fn catch() -> io::Result<Self> {
+        let signals = Self::default();
+        listen(&signals.count)?;
+        Ok(signals)
+    }
+
+    /// What an operator notifies to end the server as a signal does.
+    fn drain(&self) -> Arc<Notify> {
+        self.drain.clone()
+    }
+
+    /// Ready when a signal or an operator asks the server to end.
+    fn first(&self) -> impl Future<Output = ()> + Send + use<> {
+        let (count, drain, asked) = (self.count.clone(), self.drain.clone(), self.asked(1));
+        async move {
+            tokio::select! {
+                () = asked => {}
+                () = drain.notified() => count.send_modify(|count| *count = 1.max(*count)),
+            }
+        }
+    }
+
+    /// Ready when a signal asks once more.
+    fn second(&self) -> impl Future<Output = ()> + Send + use<> {
+        self.asked(2)
+    }
+
+    fn asked(&self, times: u32) -> impl Future<Output = ()> + Send + use<> {
+        let mut count = self.count.subscribe();
+        async move { _ = count.wait_for(|count| *count >= times).await }
+    }
+}
+
+#[cfg(unix)]
+fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
+    use tokio::signal::unix::{SignalKind, signal};
+    for kind in [SignalKind::terminate(), SignalKind::interrupt()] {
+        let (mut signal, count) = (signal(kind)?, count.clone());
+        tokio::spawn(async move {
+            while signal.recv().await.is_some() {
+                count.send_modify(|count| *count += 1);
+            }
+        });
+    }
+    Ok(())
+}
+
+/// Ctrl-C alone.
+#[cfg(not(unix))]
+fn listen(count: &watch::Sender<u32>) -> io::Result<()> {
+    let count = count.clone();
+    tokio::spawn(async move {
+        while tokio::signal::ctrl_c().await.is_ok() {
+            count.send_modify(|count| *count += 1);
+        }
+    });
+    Ok(())
+}
+
+impl Hangups {
+    /// Catches them from now on. Call it within a runtime.
+    fn catch() -> io::Result<Self> {
+        #[cfg(unix)]
+        use tokio::signal::unix::{SignalKind, signal};
+        Ok(Self {
+            #[cfg(unix)]
+            signal: signal(SignalKind::hangup())?,
+        })
+    }
+
+    /// Waits for the next one.
+    async fn next(&mut self) {
+        #[cfg(unix)]
+        if self.signal.recv().await.is_some() {
+            return;
+        }
+        std::future::pending::<()>().await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::pin::pin;
+    use std::task::{Context, Waker};
+
+    use super::*;
+
+    fn is_ready(future: impl Future<Output = ()>) -> bool {
+        pin!(future).poll(&mut Context::from_waker(Waker::noop())).is_ready()
+    }
+
+    fn signal(signals: &Signals) {
+        signals.count.send_modify(|count| *count += 1);
+    }
+
+    #[test]
+    fn the_second_signal_is_told_from_the_first() {
+        let signals = Signals::default();
+        assert!(!is_ready(signals.first()));
+        signal(&signals);
+        assert!(is_ready(signals.first()));
+        assert!(!is_ready(signals.second()));
+        signal(&signals);
+        assert!(is_ready(signals.second()));
+    }
+
+    #[test]
+    fn a_signal_after_an_operator_is_the_second_one() {
+        let signals = Signals::default();
+        signals.drain().notify_one();
+        assert!(is_ready(signals.first()));
+        signal(&signals);
+        assert!(is_ready(signals.second()));
+    }
 }

@@ -15,7 +15,6 @@
 //!   of date, and the room decides.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -25,9 +24,10 @@ use tokio::time::{Instant, interval, sleep, timeout};
 use super::bus::{BusFault, Key};
 use super::host::HostContext;
 use super::message::{MemberWish, Record, to_bytes, version};
-use super::replica::{Beginning, MemberRequest, Replica};
+use super::replica::{MemberRequest, Replica};
 use super::visits::{ANNOUNCED, Visits};
 use crate::accounts::AccountKey;
+use crate::line::Line;
 use crate::lock::locked;
 use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
 #[cfg(test)]
@@ -35,7 +35,6 @@ use crate::rooms::room::RoomView;
 use crate::rooms::room::{Header, MemberId, Mode};
 use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomWish};
-use crate::sessions::line::Line;
 use cellcaster::rng;
 
 /// The time without a change after which the record of a running room says that its host is gone.
@@ -228,7 +227,7 @@ impl SharedRooms {
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
         let replicas = self.0.replicas.try_lock().ok()?;
         let handle = replicas.get(&id).filter(|handle| !handle.requests.is_closed())?;
-        handle.interface.shown.view()
+        handle.interface.view()
     }
 
     /// Becomes a member of a room.
@@ -236,7 +235,7 @@ impl SharedRooms {
         for _ in 0..TRIES {
             let handle = self.handle(id).await?;
             let (reply, answer) = oneshot::channel::<Result<MemberId, RoomRefusal>>();
-            let request = MemberRequest { wish: wish.clone(), reply };
+            let request = (wish.clone(), reply);
             if handle.requests.send(request).await.is_err() {
                 continue;
             }
@@ -258,13 +257,14 @@ impl SharedRooms {
             return Ok(handle.clone());
         }
         let broadcasts = context.bus.subscribe(id).await.map_err(not_now)?;
-        let (state, record) = context.load_state(id).await?;
+        let loaded = context.load_state(id).await?;
         let (requests, receiver) = mpsc::channel(MOST_REQUESTS);
         let closes_after = self.0.rooms.limits().closes_after;
-        let interface = RoomInterface::new(state.room(), record.stands, closes_after);
+        let interface = RoomInterface::new(&loaded.0.room, loaded.1.stands, closes_after);
         let handle = RoomHandle { interface: Arc::clone(&interface), requests };
-        let beginning = Beginning { id, record, interface, state, broadcasts, requests: receiver };
-        tokio::spawn(Replica::new(Arc::clone(context), beginning).run());
+        let context = Arc::clone(context);
+        let replica = Replica::new(context, id, loaded, interface, broadcasts, receiver);
+        tokio::spawn(replica.run());
         replicas.insert(id, handle.clone());
         Ok(handle)
     }
@@ -407,12 +407,6 @@ impl SharedRooms {
         let level = catalog.named(&wish.level).unwrap_or(&wish.level);
         catalog.world(level)?;
         Some(Header::new(level, wish.mode, wish.difficulty, self.0.context.chance()))
-    }
-}
-
-impl fmt::Debug for SharedRooms {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SharedRooms").finish_non_exhaustive()
     }
 }
 

@@ -74,21 +74,21 @@ impl SharedRoom {
     pub fn read(&mut self, bytes: &[u8]) {
         let Ok(message) = LogMessage::parse(&versioned(bytes)) else { return };
         assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
-        self.apply(self.state.number() + 1, &message);
+        self.apply(self.state.number + 1, &message);
     }
 
     /// A message of another sequencer with these entries, and the numbers that the room expects.
     pub fn follow(&mut self, steps: u64, entries: &str) {
         let message = LogMessage {
-            epoch: self.state.epoch(),
-            last: self.state.number(),
-            tick: self.state.tick(),
+            epoch: self.state.epoch,
+            last: self.state.number,
+            tick: self.state.tick,
             steps,
             check: None,
             entries: entries.lines().filter_map(Entry::parse).collect(),
         };
         if LogMessage::parse(&to_bytes(&message)).as_ref() == Ok(&message) {
-            self.apply(self.state.number() + 1, &message);
+            self.apply(self.state.number + 1, &message);
         }
     }
 
@@ -123,7 +123,7 @@ impl SharedRoom {
         self.now += Duration::from_millis(500);
         if self.sequencer.is_none() {
             self.leases.pass(LEASE);
-            let lease = self.leases.acquire("room", "host", LEASE, self.state.epoch());
+            let lease = self.leases.acquire("room", "host", LEASE, self.state.epoch);
             let lease = lease.expect("it is in memory").expect("the last one is over");
             self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
         }
@@ -131,7 +131,7 @@ impl SharedRoom {
         sequencer.set_unclaimed_away(self.now);
         let message = sequencer.next(&self.state, steps);
         assert_eq!(LogMessage::parse(&to_bytes(&message)).as_ref(), Ok(&message));
-        let number = self.state.number() + 1;
+        let number = self.state.number + 1;
         self.state.apply(Some(number), &message);
         for answer in sequencer.note(&message, &self.state, self.now) {
             assert_eq!(PeerMessage::parse(&to_bytes(&answer)), Ok(answer));
@@ -143,7 +143,7 @@ impl SharedRoom {
     /// # Panics
     /// If it does not.
     pub fn put(self) -> Self {
-        let record = self.record.next(self.state.room(), self.sequencer.is_some());
+        let record = self.record.next(&self.state.room, self.sequencer.is_some());
         assert_eq!(Record::parse(&to_bytes(&record)).as_ref(), Ok(&record));
         Self { record, ..self }
     }

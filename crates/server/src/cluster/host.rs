@@ -6,16 +6,16 @@ use tokio::sync::watch;
 use tokio::time::Instant;
 
 use super::bus::{Bus, Key};
-use super::lease_worker::LeaseWorker;
+use super::leases::Leases;
 use super::message::Record;
 use super::room_state::RoomState;
 use super::visits::Visits;
 use crate::accounts::HostNotice;
+use crate::load::Load;
 use crate::lock::locked;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::{RoomId, RoomRefusal};
-use crate::sessions::load::Load;
-use crate::sessions::visitors::Visitors;
+use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
 
 /// The state that all rooms of a host share.
@@ -23,7 +23,7 @@ pub(crate) struct HostContext {
     /// When the host was started.
     pub(crate) begun: Instant,
     pub(crate) bus: Box<dyn Bus>,
-    pub(crate) leases: LeaseWorker,
+    pub(crate) leases: Leases,
     pub(crate) visits: Visits,
     pub(crate) notice: HostNotice,
     pub(crate) catalog: Arc<Catalog>,

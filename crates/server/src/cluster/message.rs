@@ -11,11 +11,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::line::Line;
 use crate::rooms::room::{
     Command, Entry, Header, MemberId, NAME_COLUMNS, Phase, Room, line_within,
 };
 use crate::rooms::summary::{RoomId, RoomRefusal, RoomSummary};
-use crate::sessions::line::Line;
 use cellcaster::game::stored::{Reader, Unrestorable, appended, bits, check};
 use cellcaster::game::{PlayerColor, RULES_VERSION};
 

@@ -20,7 +20,7 @@ use tokio::time::{Instant, sleep, timeout, timeout_at};
 use super::directory::SharedRooms;
 use super::host::shown_name;
 use crate::accounts::HostRow;
-use crate::ops::admin::{AdminReply, AdminRequest, HostInfo};
+use crate::admin::{AdminReply, AdminRequest, HostInfo};
 use cellcaster::app::store::name_in_map_key;
 
 /// The most time that other hosts have for their answers.
@@ -32,17 +32,13 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// The most visitors in the answer of a host. Each is some 250 bytes, and NATS takes a megabyte.
 const MOST_ROWS: usize = 2_000;
 
-/// The answers of other hosts.
-#[derive(Debug, Default)]
-pub(crate) struct OtherHosts {
-    /// The answers, by the names of the hosts.
-    pub(crate) replies: BTreeMap<String, AdminReply>,
-    /// The present hosts that have not answered, by their names.
-    pub(crate) silent: BTreeMap<String, HostInfo>,
-    /// The seconds since each host has announced itself.
-    pub(crate) seconds: BTreeMap<String, u64>,
-    /// Remarks about the answers, for the operator.
-    pub(crate) remarks: Vec<String>,
+/// The answers of the other hosts.
+#[derive(Default)]
+struct OtherHosts {
+    /// By the names of the hosts.
+    replies: BTreeMap<String, AdminReply>,
+    /// The reasons why an answer may be missing, and what hosts have left out.
+    remarks: Vec<String>,
 }
 
 /// A host's question to the others.
@@ -61,7 +57,7 @@ struct HostAnswer {
 
 impl SharedRooms {
     /// The name of this host among all that there ever were.
-    pub(crate) fn own_name(&self) -> &str {
+    fn own_name(&self) -> &str {
         &self.context().notice.name
     }
 
@@ -70,49 +66,78 @@ impl SharedRooms {
         let context = self.context();
         HostInfo {
             visitors: context.visitors.count(),
-            rooms: Some(context.load.metrics().written_rooms()),
+            rooms: Some(context.load.metrics.written_rooms()),
             maps: Some(context.catalog.map_keys().map(str::to_owned).collect()),
             ..info(&HostRow { notice: context.notice.clone(), ago: Duration::ZERO })
         }
     }
 
-    /// Asks all other hosts.
-    pub(crate) async fn ask_others(&self, request: &AdminRequest) -> OtherHosts {
+    /// Asks the other hosts, and returns their answers together with the answer of this host.
+    pub(crate) async fn merged(&self, own: AdminReply, request: &AdminRequest) -> AdminReply {
+        let (rows, OtherHosts { replies, mut remarks }) = self.ask_others(request).await;
+        let reply = match own {
+            AdminReply::Count(own) => {
+                AdminReply::Count(replies.into_values().fold(own, |sum, reply| match reply {
+                    AdminReply::Count(count) => sum + count,
+                    _ => sum,
+                }))
+            }
+            AdminReply::Visitors(mut visitors) => {
+                for reply in replies.into_values() {
+                    if let AdminReply::Visitors(others) = reply {
+                        visitors.extend(others);
+                    }
+                }
+                AdminReply::Visitors(visitors)
+            }
+            AdminReply::Hosts(own) => {
+                // A host that has not answered is listed as the database knows it.
+                let mut hosts: BTreeMap<String, HostInfo> =
+                    rows.iter().map(|row| (row.notice.name.clone(), info(row))).collect();
+                let own = (self.own_name().to_owned(), AdminReply::Hosts(own));
+                for (name, reply) in replies.into_iter().chain([own]) {
+                    let AdminReply::Hosts(answers) = reply else { continue };
+                    let seconds = hosts.get(&name).map_or(0, |known| known.seconds);
+                    let answers = answers.into_iter();
+                    hosts.extend(answers.map(|it| (name.clone(), HostInfo { seconds, ..it })));
+                }
+                remarks.extend(hosts.values().filter_map(|host| self.map_difference(host)));
+                AdminReply::Hosts(hosts.into_values().collect())
+            }
+            other => other,
+        };
+        AdminReply::AllHosts { reply: Box::new(reply), remarks }
+    }
+
+    /// Asks the other hosts. Returns the hosts that the database knows, too.
+    async fn ask_others(&self, request: &AdminRequest) -> (Vec<HostRow>, OtherHosts) {
         let context = self.context();
         let question = Question { from: self.own_name().to_owned(), request: request.clone() };
         let question = serde_json::to_vec(&question).unwrap_or_default();
-        let asked_at = Instant::now();
+        let end = Instant::now() + PATIENCE;
         let (hosts, answers) = tokio::join!(
             timeout(DATABASE_PATIENCE, context.visits.hosts()),
             context.bus.ask_hosts(question),
         );
-        let hosts = hosts.ok().flatten();
         let mut others = OtherHosts::default();
-        let Some(rows) = &hosts else {
+        let Some(rows) = hosts.ok().flatten() else {
             let remark = "the database does not say which hosts there are";
             others.remarks.push(remark.to_owned());
-            others.hear(answers.ok(), asked_at + PATIENCE, None).await;
-            return others;
+            others.hear(answers.ok(), end, None).await;
+            return (Vec::new(), others);
         };
-        let seconds = |row: &HostRow| (row.notice.name.clone(), row.ago.as_secs());
-        others.seconds = rows.iter().map(seconds).collect();
-        let there = rows.iter().map(|row| row.notice.name.as_str());
-        let there: BTreeSet<&str> = there.filter(|name| *name != self.own_name()).collect();
-        others.hear(answers.ok(), asked_at + PATIENCE, Some(&there)).await;
-        let is_silent = |row: &&HostRow| {
-            let name = row.notice.name.as_str();
-            there.contains(name) && !others.replies.contains_key(name)
-        };
-        others.silent =
-            rows.iter().filter(is_silent).map(|row| (row.notice.name.clone(), info(row))).collect();
-        let silent = others.silent.values().map(|it| format!("host {} did not answer", it.host));
+        let names = rows.iter().map(|row| row.notice.name.as_str());
+        let there: BTreeSet<&str> = names.filter(|name| *name != self.own_name()).collect();
+        others.hear(answers.ok(), end, Some(&there)).await;
+        let silent = there.iter().filter(|name| !others.replies.contains_key(**name));
+        let silent = silent.map(|name| format!("host {} did not answer", shown_name(name)));
         others.remarks.extend(silent);
-        others
+        (rows, others)
     }
 
     /// A sentence about the differences between the maps of a host and of this host. `None` if there are none, or if the
     /// host did not answer.
-    pub(crate) fn map_difference(&self, host: &HostInfo) -> Option<String> {
+    fn map_difference(&self, host: &HostInfo) -> Option<String> {
         let own = self.context().catalog.map_keys().collect();
         let theirs = host.maps.as_ref()?.iter().map(String::as_str).collect();
         let difference = difference(&own, &theirs)?;
@@ -123,7 +148,7 @@ impl SharedRooms {
     /// Warns of hosts with other maps, once this host has started.
     pub(crate) async fn compare_maps(self) {
         sleep(PAUSE).await;
-        let others = self.ask_others(&AdminRequest::Hosts).await;
+        let (_, others) = self.ask_others(&AdminRequest::Hosts).await;
         let hosts = others.replies.into_values().filter_map(|reply| match reply {
             AdminReply::Hosts(hosts) => Some(hosts),
             _ => None,

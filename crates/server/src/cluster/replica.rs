@@ -18,30 +18,32 @@
 //!   waits, or another host takes it over. Members are told. See [`alone`].
 
 mod alone;
-mod requests;
-mod sequencing;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
+use tokio::sync::oneshot::error::TryRecvError;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinHandle;
-use tokio::time::{Instant, sleep_until};
+use tokio::time::{Instant, sleep, sleep_until};
 
-use super::bus::BusFault;
+use super::bus::{BusFault, Key};
 use super::host::HostContext;
-use super::lease_worker::Reply;
+use super::leases::{LEASE_TIME, Reply};
 use super::message::{LogMessage, MemberWish, PeerMessage, Record, Token, to_bytes};
 use super::room_state::{Position, RoomState};
 use super::sequencer::ClusterSequencer;
 use crate::accounts::Lease;
-use crate::ops::logging::events;
-use crate::ops::metrics::RoomFigures;
-use crate::rooms::room::MemberId;
-use crate::rooms::sequencer::{FAULT, RoomInterface, STEP, message as panic_message};
+use crate::logging;
+use crate::metrics::RoomFigures;
+use crate::rooms::room::{MemberId, Room};
+use crate::rooms::sequencer::{
+    FAULT, MOST_CAUGHT_UP, RoomInterface, STEP, message as panic_message,
+};
 use crate::rooms::summary::{RoomId, RoomRefusal};
+use cellcaster::game::PlayerColor;
 
 /// The time from one message of a sequencer to the next.
 pub(crate) const MESSAGE_PERIOD: Duration = STEP.saturating_mul(STEPS);
@@ -55,6 +57,16 @@ const STANDSTILL: Duration = Duration::from_millis(1_500);
 const LEAST_STAY: Duration = Duration::from_secs(3);
 /// The time between two claims, and between two renewals of the lease.
 const SECOND: Duration = Duration::from_secs(1);
+/// The time after which a request is sent again.
+const REQUEST_RETRY: Duration = Duration::from_millis(500);
+/// The time after which a request fails. Another host takes over a room in less.
+const TIMEOUT: Duration = Duration::from_secs(8);
+/// The most messages in which a host that ends waits for the log to have its last entries.
+const MOST_LAST_MESSAGES: usize = 15;
+/// The time from one checkpoint to the next.
+const CHECKPOINTS: Duration = Duration::from_secs(5);
+/// The time after which the lease is asked for again.
+const LEASE_RETRY: Duration = Duration::from_millis(500);
 
 /// A room on one host.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
@@ -151,14 +163,11 @@ struct Leasing {
     renewing: Option<Reply<bool>>,
 }
 
-/// A visitor's request to be a member.
-pub(crate) struct MemberRequest {
-    pub(crate) wish: MemberWish,
-    pub(crate) reply: MemberReply,
-}
-
-/// The way of a member's number to the visitor.
+/// Where the answer to a request goes.
 type MemberReply = oneshot::Sender<Result<MemberId, RoomRefusal>>;
+
+/// A request to be a member, from a visitor of this host.
+pub(crate) type MemberRequest = (MemberWish, MemberReply);
 
 /// A request that is neither granted nor refused.
 struct PendingRequest {
@@ -180,22 +189,18 @@ struct Alone {
     probed: Instant,
 }
 
-/// The parts of a new replica.
-pub(crate) struct Beginning {
-    pub(crate) id: RoomId,
-    pub(crate) record: Record,
-    pub(crate) interface: Arc<RoomInterface>,
-    pub(crate) state: RoomState,
-    pub(crate) broadcasts: mpsc::Receiver<Vec<u8>>,
-    pub(crate) requests: mpsc::Receiver<MemberRequest>,
-}
-
 impl Replica {
-    pub(crate) fn new(context: Arc<HostContext>, beginning: Beginning) -> Self {
-        let Beginning { id, record, interface, state, broadcasts, requests } = beginning;
+    pub(crate) fn new(
+        context: Arc<HostContext>,
+        id: RoomId,
+        (state, record): (RoomState, Record),
+        interface: Arc<RoomInterface>,
+        broadcasts: mpsc::Receiver<Vec<u8>>,
+        requests: mpsc::Receiver<MemberRequest>,
+    ) -> Self {
         let (now, ending) = (Instant::now(), context.ending.subscribe());
         let times = Times::new(now);
-        let figures = context.load.metrics().add_room(id.0);
+        let figures = context.load.metrics.add_room(id.0);
         Self {
             id,
             context,
@@ -254,7 +259,7 @@ impl Replica {
             self.reaches_bus = self.read().await.is_ok();
         }
         self.tell(now);
-        self.figures.members.set(self.state.room().len() as i64);
+        self.figures.members.set(self.state.room.len() as i64);
         self.figures.watchers.set(self.interface.watchers() as i64);
         self.figures.writes.set(self.sequencer.is_some().into());
     }
@@ -368,14 +373,14 @@ impl Replica {
             Position::Later => return false,
             Position::Next => {
                 if message.check.is_some() && self.sequencer.is_none() {
-                    self.context.load.metrics().checks(true).inc();
+                    self.context.load.metrics.checks(true).inc();
                     self.figures.checks(true).inc();
                 }
             }
             Position::Differs => {
                 let (room, tick) = (self.id, message.tick);
                 tracing::error!(%room, tick, "this host's state of a room differs: it is a bug");
-                self.context.load.metrics().checks(false).inc();
+                self.context.load.metrics.checks(false).inc();
                 self.figures.checks(false).inc();
                 _ = self.restore().await;
                 return false;
@@ -399,19 +404,19 @@ impl Replica {
     fn apply(&mut self, number: Option<u64>, message: &LogMessage) {
         let Self { state, interface, .. } = self;
         let apply = || {
-            interface.shown.replace(|| {
+            interface.replace_view(|| {
                 let changes = state.apply(number, message);
-                (state.room().view(), changes)
+                (state.room.view(), changes)
             })
         };
         let changes = match catch_unwind(AssertUnwindSafe(apply)) {
             Ok(changes) => changes,
             Err(panic) => {
-                events::room_failed(self.id.0, panic_message(&*panic));
+                logging::room_failed(self.id.0, panic_message(&*panic));
                 return self.interface.close(FAULT);
             }
         };
-        self.context.load.metrics().entries.inc_by(changes.entries);
+        self.context.load.metrics.entries.inc_by(changes.entries);
         self.figures.entries.inc_by(changes.entries);
         self.figures.steps.inc_by(message.steps);
         if let Some(run) = changes.finished {
@@ -427,7 +432,7 @@ impl Replica {
             self.restore().await?;
         }
         loop {
-            let next = self.context.bus.read(self.id, self.state.number()).await?;
+            let next = self.context.bus.read(self.id, self.state.number).await?;
             let Some((number, bytes)) = next else { return Ok(()) };
             let Ok(message) = LogMessage::parse(&bytes) else {
                 tracing::error!(room = %self.id, number, "a message of a room cannot be read");
@@ -450,18 +455,18 @@ impl Replica {
         self.times.restored = Some(now);
         let loaded = self.context.load_state(self.id).await;
         let (state, _) = loaded.map_err(|_| BusFault::Unknown)?;
-        self.interface.shown.replace(|| (state.room().view(), ()));
+        self.interface.replace_view(|| (state.room.view(), ()));
         self.state = state;
         self.is_diverged = false;
         // Its lease may have ended long ago.
-        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch());
+        self.sequencer.take_if(|sequencer| sequencer.epoch() < self.state.epoch);
         self.is_changed = true;
         Ok(())
     }
 
     /// Tells members when the room begins to wait, goes on alone, or goes on as usual.
     fn tell(&mut self, now: Instant) {
-        let has_members = self.state.room().len() > 0 && !self.interface.inbox.seated().is_empty();
+        let has_members = self.state.room.len() > 0 && !self.interface.inbox.seated().is_empty();
         let waits = has_members && now.duration_since(self.times.moved) >= STANDSTILL;
         let progress = match &self.alone {
             _ if waits => Progress::Waiting,
@@ -484,7 +489,7 @@ impl Replica {
         let has_work = self
             .sequencer
             .as_ref()
-            .is_some_and(|sequencer| self.state.room().len() > 0 || !sequencer.is_empty());
+            .is_some_and(|sequencer| self.state.room.len() > 0 || !sequencer.is_empty());
         let is_needed = has_work
             || !self.pending.is_empty()
             || !self.interface.inbox.seated().is_empty()
@@ -497,6 +502,376 @@ impl Replica {
         let is_idle = now.duration_since(self.times.needed) >= stay.max(LEAST_STAY);
         is_idle || *self.ending.borrow() || self.interface.inbox.is_closed()
     }
+}
+
+impl PendingRequest {
+    /// Whether it asks to return to a member who has left.
+    fn is_lost(&self, room: &Room) -> bool {
+        matches!(self.wish, MemberWish::Return(member) if room.has_lost(member))
+    }
+
+    /// The member to whom `room` lets it return.
+    fn granted(&self, room: &Room) -> Option<MemberId> {
+        let MemberWish::Return(member) = self.wish else { return None };
+        let kept = room.kept_place(member)?;
+        (kept.token == self.token.0).then_some(member)
+    }
+
+    fn refuse(self, refusal: RoomRefusal) {
+        if let Some(reply) = self.reply {
+            _ = reply.send(Err(refusal));
+        }
+    }
+}
+
+/// Requests to be a member, from visitors of this host, and the seats of this host's members.
+///
+/// A request has a token, by which its answer is found. A request to return is granted once the log has the token,
+/// whichever host has written it.
+impl Replica {
+    async fn receive_request(&mut self, (wish, reply): MemberRequest) {
+        if let MemberWish::Return(member) = wish
+            && self.interface.inbox.seated().contains(&member)
+        {
+            _ = reply.send(Err(RoomRefusal::Taken));
+            return;
+        }
+        self.begin_request(wish, Some(reply), Instant::now()).await;
+    }
+
+    async fn begin_request(&mut self, wish: MemberWish, reply: Option<MemberReply>, now: Instant) {
+        let token = Token(self.context.chance());
+        self.pending.push(PendingRequest {
+            token,
+            wish: wish.clone(),
+            reply,
+            since: now,
+            sent: now,
+        });
+        self.send_request(token, wish, now).await;
+    }
+
+    async fn send_request(&mut self, token: Token, wish: MemberWish, now: Instant) {
+        match &mut self.sequencer {
+            Some(sequencer) => {
+                if let Some(answer) = sequencer.request(token, &wish, now) {
+                    self.answer(&answer);
+                }
+            }
+            None => self.broadcast(&PeerMessage::Request(token, wish)).await,
+        }
+    }
+
+    /// Sends requests without an answer again.
+    async fn repeat_requests(&mut self, now: Instant) {
+        self.settle_requests(now);
+        let is_due =
+            |pending: &&mut PendingRequest| now.duration_since(pending.sent) >= REQUEST_RETRY;
+        let due = self.pending.iter_mut().filter(is_due).map(|pending| {
+            pending.sent = now;
+            (pending.token, pending.wish.clone())
+        });
+        for (token, wish) in due.collect::<Vec<_>>() {
+            self.send_request(token, wish, now).await;
+        }
+    }
+
+    /// Notes which requests the log has granted, and fails those that are too old.
+    fn settle_requests(&mut self, now: Instant) {
+        let Self { pending, state, tokens, interface, .. } = self;
+        let room = &state.room;
+        for granted in pending.extract_if(.., |pending| pending.granted(room).is_some()) {
+            let Some(member) = granted.granted(room) else { continue };
+            tokens.insert(member, granted.token);
+            let color = room.colors().find(|(other, _)| *other == member).map(|it| it.1);
+            if let Some((reply, color)) = granted.reply.zip(color) {
+                interface.inbox.admit(member, color);
+                if reply.send(Ok(member)).is_err() {
+                    interface.inbox.part(member);
+                }
+            }
+        }
+        let is_over = |pending: &mut PendingRequest| {
+            pending.is_lost(room) || now.duration_since(pending.since) >= TIMEOUT
+        };
+        for pending in pending.extract_if(.., is_over) {
+            let is_lost = pending.is_lost(room);
+            pending.refuse(if is_lost { RoomRefusal::Gone } else { RoomRefusal::NotNow });
+        }
+    }
+
+    /// Gives a seat to the visitor who has asked for it here.
+    fn admit(&mut self, token: Token, member: MemberId, color: PlayerColor) {
+        let Some(pending) = self.take_pending(token) else { return };
+        self.interface.inbox.admit(member, color);
+        if pending.reply.is_none_or(|reply| reply.send(Ok(member)).is_err()) {
+            self.interface.inbox.leave(member);
+        }
+    }
+
+    /// Refuses a request that was made here.
+    fn refuse_request(&mut self, token: Token, refusal: RoomRefusal) {
+        // The log may have granted it since.
+        self.settle_requests(Instant::now());
+        if let Some(pending) = self.take_pending(token) {
+            pending.refuse(refusal);
+        }
+    }
+
+    fn take_pending(&mut self, token: Token) -> Option<PendingRequest> {
+        let index = self.pending.iter().position(|pending| pending.token == token)?;
+        Some(self.pending.swap_remove(index))
+    }
+
+    /// Asks to return for the members of this host who were away while it was cut off.
+    async fn return_own(&mut self, now: Instant) {
+        self.settle_requests(now);
+        let is_pending = |member: &MemberId| {
+            self.pending.iter().any(|it| it.wish == MemberWish::Return(*member))
+        };
+        let room = &self.state.room;
+        let mut away = self.interface.inbox.seated();
+        away.retain(|member| room.is_away(*member) && self.is_own(*member) && !is_pending(member));
+        for member in away {
+            self.begin_request(MemberWish::Return(member), None, now).await;
+        }
+    }
+
+    /// Frees the seats of members who have left the room since this host last claimed them, or who are on another host
+    /// now.
+    fn dismiss_lost(&mut self) {
+        for member in self.interface.inbox.seated() {
+            // The log has not let in numbers from the next one on yet.
+            if self.state.room.has_lost(member) || !self.is_own(member) {
+                self.interface.inbox.dismiss(member);
+            }
+        }
+        let seated = self.interface.inbox.seated();
+        self.tokens.retain(|member, _| seated.contains(member));
+    }
+
+    /// Whether nobody has returned to a member elsewhere, as far as the log is known.
+    fn is_own(&self, member: MemberId) -> bool {
+        let token = self.state.room.kept_place(member).map_or(0, |kept| kept.token);
+        token == self.tokens.get(&member).map_or(0, |token| token.0)
+    }
+
+    /// Marks the members of this host away, since it ends. If it is the sequencer, the log has that afterwards.
+    async fn part_with_members(&mut self) {
+        for member in self.interface.inbox.seated() {
+            self.interface.inbox.part(member);
+        }
+        self.send_commands().await;
+        for _ in 0..MOST_LAST_MESSAGES {
+            if self.sequencer.as_ref().is_none_or(ClusterSequencer::is_settled) {
+                return;
+            }
+            sleep(MESSAGE_PERIOD).await;
+            self.sequence(Instant::now()).await;
+        }
+    }
+}
+
+/// The duties of the sequencer: the lease, the messages, the checkpoints.
+impl Replica {
+    /// Renews the lease, or asks for it if nobody seems to have it.
+    async fn keep_lease(&mut self, now: Instant) {
+        if let Some(reply) = &mut self.leasing.renewing {
+            match reply.try_recv() {
+                Err(TryRecvError::Empty) => {}
+                Ok(Ok(false)) => self.diverge(),
+                Ok(Ok(true)) => {
+                    self.note_lease();
+                    self.leasing.renewing = None;
+                }
+                // Without the database nobody else gets the lease; and the log refuses a host that has lost it.
+                _ => self.leasing.renewing = None,
+            }
+        }
+        if let Some(reply) = &mut self.leasing.acquiring {
+            match reply.try_recv() {
+                Err(TryRecvError::Empty) => return,
+                Ok(Ok(Some(lease))) => {
+                    self.note_lease();
+                    self.take_over(lease).await;
+                }
+                _ => {}
+            }
+            self.leasing.acquiring = None;
+        }
+        let leases = &self.context.leases;
+        match &self.sequencer {
+            Some(sequencer) if self.leasing.renewing.is_none() => {
+                if self.is_next_second(now) {
+                    self.leasing.renewing = Some(leases.renew(&sequencer.lease));
+                    self.times.leased = Some(now);
+                }
+            }
+            Some(_) => {}
+            None => {
+                let is_first = self.times.leased.is_none();
+                let is_time =
+                    is_first || self.is_silent(now) && is_due(self.times.leased, now, LEASE_RETRY);
+                // A host that cannot write the log would keep the room from hosts that can.
+                if is_time && self.reaches_bus {
+                    self.leasing.acquiring =
+                        Some(leases.acquire(&self.id.place(), self.state.epoch));
+                    self.times.leased = Some(now);
+                }
+            }
+        }
+    }
+
+    /// Whether a second of the host has begun since the lease was asked for. So all rooms of a host renew their
+    /// leases at the same time.
+    fn is_next_second(&self, now: Instant) -> bool {
+        let second = |time: Instant| time.duration_since(self.context.begun).as_secs();
+        self.times.leased.is_none_or(|leased| second(leased) < second(now))
+    }
+
+    /// Becomes the sequencer: its first message, of a new epoch, goes to the end of the log.
+    async fn take_over(&mut self, lease: Lease) {
+        let is_read = self.read().await.is_ok();
+        if self.state.epoch >= lease.epoch {
+            // The answer has come so late that others have had the room since.
+            return;
+        }
+        let now = Instant::now();
+        tracing::info!(room = %self.id, epoch = lease.epoch, "this host has a room now");
+        self.sequencer = Some(ClusterSequencer::new(lease, &self.state));
+        self.times.stepped = now;
+        self.is_append_unknown = !is_read;
+        self.is_changed = true;
+    }
+
+    /// Notes that the lease lasts from when it was asked for.
+    fn note_lease(&mut self) {
+        self.times.lease_ends = self.times.leased.map(|asked| asked + LEASE_TIME);
+    }
+
+    fn step_down(&mut self) {
+        if let Some(sequencer) = self.sequencer.take() {
+            tracing::warn!(room = %self.id, epoch = sequencer.epoch(), "this host has lost a room");
+        }
+        self.leasing.renewing = None;
+        self.times.lease_ends = None;
+    }
+
+    /// Appends the next message to the log, if one is due.
+    async fn sequence(&mut self, now: Instant) {
+        if self.alone.is_some() {
+            return self.go_on_alone(now).await;
+        }
+        if self.is_append_unknown {
+            if self.read().await.is_err() {
+                return self.lack_bus(now);
+            }
+            self.is_append_unknown = false;
+        }
+        let Some(sequencer) = &mut self.sequencer else { return };
+        if self.state.room.len() == 0 && sequencer.is_empty() {
+            (self.times.stepped, self.times.moved) = (now, now);
+            return;
+        }
+        let steps = steps_due(&mut self.times.stepped, now);
+        if steps == 0 && !sequencer.is_sending() {
+            return;
+        }
+        let message = sequencer.next(&self.state, steps);
+        match self.context.bus.append(self.id, message.last, to_bytes(&message)).await {
+            Ok(number) => {
+                self.times.published = Some(now);
+                self.take(number, &message).await;
+                self.broadcast(&PeerMessage::Appended(number, message)).await;
+            }
+            Err(BusFault::Refused) => self.is_append_unknown = self.read().await.is_err(),
+            Err(BusFault::Unknown) => self.is_append_unknown = true,
+        }
+    }
+
+    /// Keeps a checkpoint every few seconds, and the record of the room when it changes.
+    async fn keep(&mut self, now: Instant) {
+        let is_time = is_due(self.times.kept, now, CHECKPOINTS);
+        // A host that was replaced and has not noticed has appended nothing now, and must not keep an old state.
+        let is_surely_sequencer = self.times.published == Some(now);
+        if self.sequencer.is_none() || self.is_append_unknown || !(is_time || self.is_changed) {
+            return;
+        }
+        if is_time && is_surely_sequencer && self.keep_checkpoint().await.is_err() {
+            return;
+        }
+        if is_time {
+            self.times.kept = Some(now);
+        }
+        self.is_changed = self.keep_record(true).await.is_err();
+    }
+
+    async fn keep_checkpoint(&mut self) -> Result<(), BusFault> {
+        let bus = &self.context.bus;
+        bus.put(Key::Checkpoint(self.id), self.state.checkpoint()).await?;
+        bus.drop_before(self.id, self.state.number).await
+    }
+
+    async fn keep_record(&mut self, is_running: bool) -> Result<(), BusFault> {
+        let record = self.record.clone().next(&self.state.room, is_running);
+        self.context.bus.put(Key::Room(self.id), to_bytes(&record)).await?;
+        self.record = record;
+        Ok(())
+    }
+
+    /// Leaves the room to other hosts, or closes it if nobody needs it.
+    async fn end(mut self) {
+        if *self.ending.borrow() {
+            self.requests.close();
+            self.part_with_members().await;
+        }
+        let is_broken = self.interface.inbox.is_closed();
+        if let Some(sequencer) = self.sequencer.take_if(|_| !self.is_append_unknown) {
+            let is_empty = self.state.room.len() == 0;
+            let (context, mut is_gone) = (Arc::clone(&self.context), false);
+            if is_broken || is_empty && !self.record.stands {
+                // A standing room is made again under its number, and others may go on with a room that is broken or
+                // was not removed.
+                is_gone = self.close().await.is_ok() && !is_broken && !self.record.stands;
+            } else {
+                // The first call is refused if the predecessor has put the last checkpoint.
+                for _ in 0..2 {
+                    if self.keep_checkpoint().await.is_ok() {
+                        break;
+                    }
+                }
+                if self.keep_record(!is_empty).await.is_err() {
+                    _ = self.keep_record(!is_empty).await;
+                }
+            }
+            let lease = &sequencer.lease;
+            let leases = &context.leases;
+            _ = if is_gone { leases.forget(lease) } else { leases.release(lease) }.await;
+            self.broadcast(&PeerMessage::Released).await;
+        }
+        let ends = *self.ending.borrow();
+        let sentence =
+            if ends { "The server has ended." } else { "The room was empty and is closed." };
+        self.interface.close(sentence);
+    }
+
+    /// Removes everything of the room.
+    async fn close(&mut self) -> Result<(), BusFault> {
+        let bus = &self.context.bus;
+        let mut removed = Ok(());
+        for key in [Key::Room(self.id), Key::Checkpoint(self.id)] {
+            removed = removed.and(bus.remove(key).await);
+        }
+        removed.and(bus.drop_log(self.id).await)
+    }
+}
+
+/// The steps that are due since `stepped`, which is moved on.
+fn steps_due(stepped: &mut Instant, now: Instant) -> u64 {
+    const MOST: u64 = MOST_CAUGHT_UP as u64;
+    let due = now.saturating_duration_since(*stepped).div_duration_f64(STEP) as u64;
+    *stepped = if due > MOST { now } else { *stepped + STEP * due as u32 };
+    due.min(MOST)
 }
 
 /// Whether `pause` has passed since `last`.

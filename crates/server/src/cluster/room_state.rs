@@ -25,14 +25,14 @@ const MOST_SUMS: usize = 8;
 
 /// A room, and how far the log is applied to it.
 pub(crate) struct RoomState {
-    room: Room,
+    pub(crate) room: Room,
     log: RoundLog,
     /// The number of the last message.
-    number: u64,
+    pub(crate) number: u64,
     /// The steps that the room has taken in all rounds.
-    tick: u64,
+    pub(crate) tick: u64,
     /// The epoch of the newest message.
-    epoch: u64,
+    pub(crate) epoch: u64,
     /// Oldest first.
     sums: VecDeque<Check>,
 }
@@ -61,25 +61,6 @@ impl RoomState {
         Self { room, log, number, tick, epoch, sums: VecDeque::new() }
     }
 
-    pub(crate) fn room(&self) -> &Room {
-        &self.room
-    }
-
-    /// The number of the last message.
-    pub(crate) fn number(&self) -> u64 {
-        self.number
-    }
-
-    /// The steps that the room has taken in all rounds.
-    pub(crate) fn tick(&self) -> u64 {
-        self.tick
-    }
-
-    /// The epoch of the newest message.
-    pub(crate) fn epoch(&self) -> u64 {
-        self.epoch
-    }
-
     /// The newest checksum.
     pub(crate) fn sum(&self) -> Option<Check> {
         self.sums.back().copied()
@@ -100,11 +81,6 @@ impl RoomState {
         } else {
             Position::Differs
         }
-    }
-
-    /// Notes the number that the log has given to the message that was applied last.
-    pub(crate) fn set_number(&mut self, number: u64) {
-        self.number = number;
     }
 
     /// Applies the next message, which has no number as long as the log does not have it. A message of an older epoch
@@ -164,8 +140,8 @@ impl RoomState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::line::Line;
     use crate::rooms::room::{Command, MemberId, Mode};
-    use crate::sessions::line::Line;
     use cellcaster::game::PlayerColor;
     use cellcaster::game::stored::MOST_COUNT;
     use cellcaster::world::Difficulty;
@@ -179,7 +155,7 @@ mod tests {
         let command =
             Command::Join { color: PlayerColor::ALL[0], name: Line::of("Mara", 16).unwrap() };
         let entries = vec![Entry { step: 1, member: MemberId(1), command }];
-        let (last, tick) = (state.number(), state.tick());
+        let (last, tick) = (state.number, state.tick);
         LogMessage { epoch, last, tick, steps: 2, check, entries }
     }
 
@@ -189,7 +165,7 @@ mod tests {
         let first = message(&state, 1, None);
         assert_eq!(state.position(5, &first), Position::Next);
         assert!(state.apply(Some(5), &first).summary);
-        assert_eq!((state.number(), state.tick(), state.room().len()), (5, 2, 1));
+        assert_eq!((state.number, state.tick, state.room.len()), (5, 2, 1));
         assert_eq!(state.position(5, &first), Position::Known);
         let next = message(&state, 1, None);
         assert_eq!(state.position(9, &LogMessage { last: 8, ..next.clone() }), Position::Later);
@@ -197,7 +173,7 @@ mod tests {
         // Of an older epoch, it only counts.
         state.epoch = 2;
         state.apply(Some(9), &next);
-        assert_eq!((state.number(), state.tick()), (9, 2));
+        assert_eq!((state.number, state.tick), (9, 2));
     }
 
     #[test]
@@ -223,8 +199,8 @@ mod tests {
         state.apply(Some(4), &next);
         let bytes = state.checkpoint();
         let again = RoomState::restore(&catalog, &bytes).unwrap();
-        assert_eq!((again.number(), again.tick(), again.epoch), (4, 2, 3));
-        assert_eq!(again.room().checksum(), state.room().checksum());
+        assert_eq!((again.number, again.tick, again.epoch), (4, 2, 3));
+        assert_eq!(again.room.checksum(), state.room.checksum());
         for damaged in [&bytes[..bytes.len() / 2], b"", b"\n", &to_bytes(&(1_u64, 2_u64))] {
             assert!(RoomState::restore(&catalog, damaged).is_err());
         }
@@ -246,8 +222,8 @@ mod tests {
             let state = RoomState::restore(&catalog, &changed);
             assert_eq!(state.is_ok(), is_possible, "{numbers:?}");
             if let Ok(mut state) = state {
-                let next = message(&state, state.epoch() + 1, None);
-                state.apply(Some(state.number() + 1), &next);
+                let next = message(&state, state.epoch + 1, None);
+                state.apply(Some(state.number + 1), &next);
             }
         }
     }

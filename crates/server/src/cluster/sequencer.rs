@@ -21,10 +21,10 @@ use tokio::time::Instant;
 use super::message::{LogMessage, MemberWish, PeerMessage, Token};
 use super::room_state::RoomState;
 use crate::accounts::Lease;
+use crate::line::Line;
 use crate::rooms::room::{Command, Entry, MemberId, Room};
 use crate::rooms::sequencer::Inbox;
 use crate::rooms::summary::RoomRefusal;
-use crate::sessions::line::Line;
 use cellcaster::game::PlayerColor;
 
 /// How long a member may go unclaimed before they are marked away.
@@ -36,7 +36,7 @@ const MOST_REQUESTS: usize = 64;
 
 /// The commands that wait, the members who are claimed, and the message that is being appended.
 pub(crate) struct ClusterSequencer {
-    lease: Lease,
+    pub(crate) lease: Lease,
     inbox: Inbox,
     /// When each member was claimed last.
     claimed: BTreeMap<MemberId, Instant>,
@@ -85,7 +85,7 @@ impl ClusterSequencer {
     /// The sequencer of an epoch whose first message is still to be appended. Commands until then are lost: the
     /// predecessor may still append messages that change who is in the room.
     pub(crate) fn new(lease: Lease, state: &RoomState) -> Self {
-        let room = state.room();
+        let room = &state.room;
         let inbox = Inbox::new(room.header().mode, room.next_member());
         let mut sequencer = Self {
             lease,
@@ -97,14 +97,10 @@ impl ClusterSequencer {
             is_begun: false,
             is_alone: false,
             sending: None,
-            checked: state.tick(),
+            checked: state.tick,
         };
         sequencer.sending = Some(sequencer.message(state, 0));
         sequencer
-    }
-
-    pub(crate) fn lease(&self) -> &Lease {
-        &self.lease
     }
 
     pub(crate) fn epoch(&self) -> u64 {
@@ -114,11 +110,9 @@ impl ClusterSequencer {
     /// The message that is being appended; otherwise the next one, of `steps` steps.
     pub(crate) fn next(&mut self, state: &RoomState, steps: u64) -> LogMessage {
         let message = match self.sending.take() {
-            Some(sent) if sent.last == state.number() => sent,
+            Some(sent) if sent.last == state.number => sent,
             // The predecessor has written before it was fenced off.
-            Some(sent) => {
-                LogMessage { last: state.number(), tick: state.tick(), check: None, ..sent }
-            }
+            Some(sent) => LogMessage { last: state.number, tick: state.tick, check: None, ..sent },
             None => self.message(state, steps),
         };
         self.sending = Some(message.clone());
@@ -145,7 +139,7 @@ impl ClusterSequencer {
         if !self.is_begun {
             self.begin(state, now);
         }
-        self.forget_lost(state.room());
+        self.forget_lost(&state.room);
         self.answers()
     }
 
@@ -288,7 +282,7 @@ impl ClusterSequencer {
 
     /// Begins the epoch with the present members, who must be claimed within the usual time.
     fn begin(&mut self, state: &RoomState, now: Instant) {
-        let room = state.room();
+        let room = &state.room;
         self.is_begun = true;
         self.inbox = Inbox::new(room.header().mode, room.next_member());
         room.colors().for_each(|(member, color)| self.inbox.admit(member, color));
@@ -354,7 +348,7 @@ impl ClusterSequencer {
         }
         let check = state.sum().filter(|check| check.tick > self.checked);
         self.checked = check.map_or(self.checked, |check| check.tick);
-        let (epoch, last, tick) = (self.epoch(), state.number(), state.tick());
+        let (epoch, last, tick) = (self.epoch(), state.number, state.tick);
         LogMessage { epoch, last, tick, steps, check, entries }
     }
 }

@@ -34,14 +34,14 @@ use tokio::time::{Instant, sleep};
 use self::players::Player;
 use self::world::{Link, World, notice};
 use super::{Cluster, Entrant, SharedRooms};
-use crate::ops::metrics::Metrics;
+use crate::line::Line;
+use crate::load::{Load, Worker};
+use crate::metrics::Metrics;
 use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
 use crate::rooms::room::{Catalog, MemberId, Mode};
 use crate::rooms::summary::{RoomId, RoomWish};
-use crate::sessions::line::Line;
-use crate::sessions::load::{Load, Worker};
-use crate::sessions::visitors::Visitors;
 use crate::simulation::{HALL, catalog};
+use crate::visitors::Visitors;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Difficulty;
 
@@ -167,7 +167,7 @@ impl Host {
         let load = Arc::new(Load::simulated(Arc::clone(&metrics), Worker::default()));
         let recordings = Recordings::in_folder(None);
         let rooms = Rooms::new(limits, Arc::clone(catalog), recordings, Arc::clone(&load), seed);
-        let (bus, leases) = (world.bus(index), world.lease_worker(index));
+        let (bus, leases) = (world.bus(index), world.leases(index));
         let (notice, visits) = (notice(index), world.visits(index));
         let cluster = Cluster { bus, leases, visits, notice, seed };
         let visitors = Visitors::default();

@@ -16,22 +16,19 @@
 mod tests;
 
 use std::collections::BTreeSet;
-use std::io;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex};
-use std::thread;
 use std::time::Duration;
 
-use tokio::sync::{mpsc, oneshot};
 use tokio::time::{Instant, sleep};
 
+use crate::accounts::worker::{Answer, StoreWorker};
 use crate::accounts::{
     AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitBegin, VisitId, Visitor,
 };
+use crate::admission::{Refusal, counted_address};
 use crate::lock::locked;
-use crate::ops::logging::events;
-use crate::ssh::admission::Refusal;
-use crate::ssh::admission::counted_address;
+use crate::logging;
 
 /// The time from one announcement of a host to the next.
 pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);
@@ -39,15 +36,17 @@ pub(crate) const ANNOUNCED: Duration = Duration::from_secs(1);
 pub(crate) const THERE: Duration = Duration::from_secs(5);
 /// The time after which a visitor over a limit is counted again.
 const AGAIN: Duration = Duration::from_millis(250);
-/// The most calls that wait.
-const MOST_CALLS: usize = 256;
-
-/// The sender of calls to a thread, since the methods of [`HostStore`] block. Clones send to the same thread.
+/// The visits of this host. Clones are the same.
 #[derive(Clone, Debug)]
-pub(crate) struct Visits {
-    calls: mpsc::Sender<Call>,
+pub(crate) struct Visits(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    store: StoreWorker,
+    /// Locked by calls of the store alone.
+    registry: Mutex<Registry>,
     /// The visits that are still to be ended in the database.
-    ended: Arc<Mutex<Vec<VisitId>>>,
+    ended: Mutex<Vec<VisitId>>,
 }
 
 /// A visit that counts on all hosts until it is dropped.
@@ -78,36 +77,19 @@ pub(crate) enum VisitRefusal {
     NotNow(String),
 }
 
-/// What is asked of the thread.
-#[derive(Debug)]
-pub(crate) enum Call {
-    /// To begin a visit; its guard has the sender.
-    Begin(NewVisit, Visits, oneshot::Sender<Begun>),
-    /// To end what has ended.
-    End,
-    /// To announce the host with so many visitors.
-    Announce(u32),
-    /// The hosts that are there.
-    Hosts(oneshot::Sender<Result<Vec<HostRow>, StoreFailure>>),
-    /// To forget the host, which ends.
-    Leave(oneshot::Sender<()>),
-}
-
-type Begun = Result<Result<CountedVisit, TooMany>, StoreFailure>;
-
 /// A limit that is reached, counting only hosts that have announced themselves in the time `ago`.
 #[derive(Debug)]
-pub(crate) struct TooMany {
+struct TooMany {
     reason: Refusal,
     ago: Duration,
 }
 
-/// The visits of this host, as its thread knows them.
-pub(crate) struct VisitRegistry {
+/// The visits of this host, as the database should have them.
+#[derive(Debug)]
+struct Registry {
     notice: HostNotice,
     /// The visits that count and have not ended.
     counting: BTreeSet<VisitId>,
-    ended: Arc<Mutex<Vec<VisitId>>>,
     /// Whether the database may have visits of this host that nobody here has.
     is_unsure: bool,
     /// Whether the last call to the database failed.
@@ -116,22 +98,12 @@ pub(crate) struct VisitRegistry {
 }
 
 impl Visits {
-    /// A sender, and the receiver of its calls.
-    pub(crate) fn new() -> (Self, mpsc::Receiver<Call>) {
-        let (calls, queue) = mpsc::channel(MOST_CALLS);
-        (Self { calls, ended: Arc::default() }, queue)
-    }
-
-    /// Starts the thread, for the host of `notice`.
-    pub(crate) fn start(mut presence: HostStore, notice: HostNotice) -> io::Result<Self> {
-        let (visits, mut queue) = Self::new();
-        let mut registry = VisitRegistry::new(notice, &visits);
-        thread::Builder::new().name("visits".to_owned()).spawn(move || {
-            while let Some(call) = queue.blocking_recv() {
-                registry.run(&mut presence, call);
-            }
-        })?;
-        Ok(visits)
+    /// No visit yet, for the host of `notice`.
+    pub(crate) fn new(store: StoreWorker, notice: HostNotice) -> Self {
+        let counting = BTreeSet::new();
+        let registry =
+            Registry { notice, counting, is_unsure: false, is_away: false, has_left: false };
+        Self(Arc::new(Inner { store, registry: Mutex::new(registry), ended: Mutex::default() }))
     }
 
     /// Begins a visit.
@@ -139,9 +111,13 @@ impl Visits {
         let came = Instant::now();
         loop {
             let waited = came.elapsed();
-            let (reply, answer) = oneshot::channel();
-            self.call(Call::Begin(new_visit, self.clone(), reply));
-            let begun = answer.await.map_err(|_| "too many calls wait".to_owned());
+            let visits = self.clone();
+            // The guard is made by the call: a visitor who has gone before the answer counts no more.
+            let begun = self.call(move |registry, store| {
+                let begun = registry.begin(store, &new_visit)?;
+                Ok::<_, StoreFailure>(begun.map(|ids| CountedVisit { ids, visits }))
+            });
+            let begun = begun.await.map_err(|_| "too many calls wait".to_owned());
             let begun = begun.and_then(|begun| begun.map_err(|failure| failure.to_string()));
             match begun.map_err(VisitRefusal::NotNow)? {
                 Ok(visit) => return Ok(visit),
@@ -155,26 +131,37 @@ impl Visits {
 
     /// Announces the host with so many visitors.
     pub(crate) fn announce(&self, load: usize) {
-        self.call(Call::Announce(u32::try_from(load).unwrap_or(u32::MAX)));
+        let load = u32::try_from(load).unwrap_or(u32::MAX);
+        drop(self.call(move |registry, store| registry.announce(store, load)));
     }
 
     /// The hosts that are there; `None` if the database does not say.
     pub(crate) async fn hosts(&self) -> Option<Vec<HostRow>> {
-        let (reply, answer) = oneshot::channel();
-        self.call(Call::Hosts(reply));
-        answer.await.ok()?.ok()
+        self.call(|_, store| store.hosts(THERE)).await.ok()?.ok()
     }
 
     /// Forgets this host.
     pub(crate) async fn leave(&self) {
-        let (reply, answer) = oneshot::channel();
-        self.call(Call::Leave(reply));
-        _ = answer.await;
+        let left = self.call(|registry, store| {
+            registry.has_left = true;
+            registry.counting.clear();
+            registry.note(store.leave(&registry.notice.name));
+        });
+        _ = left.await;
     }
 
-    fn call(&self, call: Call) {
-        // The answer to a call that is not accepted is an error, since its sender is dropped.
-        _ = self.calls.try_send(call);
+    /// Ends the visits whose sessions have ended, and acts.
+    fn call<T: Send + 'static>(
+        &self,
+        act: impl FnOnce(&mut Registry, &mut HostStore) -> T + Send + 'static,
+    ) -> Answer<T> {
+        let inner = Arc::clone(&self.0);
+        self.0.store.call(move |store| {
+            locked(&inner.registry, |registry| {
+                registry.end_all(store, locked(&inner.ended, std::mem::take));
+                act(registry, store)
+            })
+        })
     }
 }
 
@@ -189,39 +176,12 @@ impl NewVisit {
 
 impl Drop for CountedVisit {
     fn drop(&mut self) {
-        locked(&self.visits.ended, |ended| ended.append(&mut self.ids));
-        self.visits.call(Call::End);
+        locked(&self.visits.0.ended, |ended| ended.append(&mut self.ids));
+        drop(self.visits.call(|_, _| ()));
     }
 }
 
-impl VisitRegistry {
-    pub(crate) fn new(notice: HostNotice, visits: &Visits) -> Self {
-        let (counting, ended) = (BTreeSet::new(), Arc::clone(&visits.ended));
-        Self { notice, counting, ended, is_unsure: false, is_away: false, has_left: false }
-    }
-
-    /// Does what a call asks for, and answers.
-    pub(crate) fn run(&mut self, presence: &mut HostStore, call: Call) {
-        self.end(presence);
-        match call {
-            Call::Begin(new_visit, visits, reply) => {
-                let begun = self.begin(presence, &new_visit);
-                let begun = begun.map(|begun| begun.map(|ids| CountedVisit { ids, visits }));
-                // A visit that nobody waits for any more ends when it is dropped.
-                _ = reply.send(begun);
-            }
-            Call::Announce(load) if !self.has_left => self.announce(presence, load),
-            Call::Announce(_) | Call::End => {}
-            Call::Hosts(reply) => _ = reply.send(presence.hosts(THERE)),
-            Call::Leave(reply) => {
-                self.has_left = true;
-                self.counting.clear();
-                self.note(presence.leave(&self.notice.name));
-                _ = reply.send(());
-            }
-        }
-    }
-
+impl Registry {
     /// Begins a visit by the key and by the address, or neither.
     fn begin(
         &mut self,
@@ -249,12 +209,6 @@ impl VisitRegistry {
         Ok(Ok(ids))
     }
 
-    /// Ends the visits whose sessions have ended.
-    fn end(&mut self, presence: &mut HostStore) {
-        let ended = locked(&self.ended, std::mem::take);
-        self.end_all(presence, ended);
-    }
-
     fn end_all(&mut self, presence: &mut HostStore, ids: Vec<VisitId>) {
         for id in ids {
             // One that this host has left has ended with all others.
@@ -265,6 +219,9 @@ impl VisitRegistry {
     }
 
     fn announce(&mut self, presence: &mut HostStore, load: u32) {
+        if self.has_left {
+            return;
+        }
         self.notice.load = load;
         let announced = presence.announce(&self.notice);
         self.note(announced);
@@ -289,7 +246,7 @@ impl VisitRegistry {
         if let Err(failure) = answer
             && !was_away
         {
-            events::store_failed(failure);
+            logging::store_failed(failure);
         }
     }
 }

@@ -17,15 +17,14 @@ use tokio::sync::watch;
 use tokio::time::timeout;
 
 pub(crate) use self::recording::Recordings;
+use crate::line::Line;
+use crate::load::Load;
 use crate::lock::locked;
-use crate::ops::config::Config;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::room::{Catalog, Command, Header, MemberId, Mode, Phase, Room, RoomView};
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun, RoomInterface, RoundLog, Sequencer};
 pub(crate) use crate::rooms::summary::RoomRefusal;
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use crate::sessions::line::Line;
-use crate::sessions::load::Load;
 use cellcaster::rng::SplitMix64;
 
 /// The time in which rooms end.
@@ -48,18 +47,6 @@ pub(crate) struct RoomLimits {
     pub(crate) closes_after: Duration,
     /// The rooms that are always open.
     pub(crate) standing: Vec<RoomWish>,
-}
-
-impl RoomLimits {
-    /// The limits in a configuration.
-    pub(crate) fn of(config: &Config) -> Self {
-        Self {
-            most: config.rooms as usize,
-            most_watchers: config.watchers as usize,
-            closes_after: config.empty_room,
-            standing: config.standing.iter().map(|room| room.0.clone()).collect(),
-        }
-    }
 }
 
 #[derive(Debug)]
@@ -264,20 +251,20 @@ impl Rooms {
     fn spawn(&self, new: NewRoom) {
         let NewRoom { id, room, interface } = new;
         let header = room.header();
-        events::room_opened(id.0, &header.level, header.mode.name());
+        logging::room_opened(id.0, &header.level, header.mode.name());
         self.publish();
         let log = RoundLog::new(self.0.recordings.open(id), &room);
         let load = Arc::clone(&self.0.load);
-        let sequencer = Sequencer::new(room, log, interface, load);
+        let sequencer = Sequencer { room, log, interface, load };
         let rooms = self.clone();
         tokio::spawn(async move {
             let ended = sequencer.run(|room| rooms.change(id, room)).await;
             locked(&rooms.0.open, |open| open.rooms.remove(&id));
             rooms.publish();
             match ended {
-                Ok(()) => events::room_closed(id.0),
+                Ok(()) => logging::room_closed(id.0),
                 Err(panic) => {
-                    events::room_failed(id.0, panic);
+                    logging::room_failed(id.0, panic);
                     rooms.open_standing();
                 }
             }
@@ -296,7 +283,7 @@ impl Rooms {
         if ends && before.is_some_and(|before| !is_over(before.phase)) {
             let view = room.view();
             let winner = view.winner().map(|member| member.name.as_str());
-            events::round_ended(id.0, view.step, winner);
+            logging::round_ended(id.0, view.step, winner);
         }
         self.publish();
     }
@@ -312,7 +299,7 @@ impl Rooms {
             let rooms = open.rooms.values().map(summary);
             let rooms = rooms.chain(locked(&self.0.shared, |shared| shared.clone()));
             let summaries: Arc<[RoomSummary]> = rooms.collect();
-            let metrics = self.0.load.metrics();
+            let metrics = &self.0.load.metrics;
             metrics.rooms.set(summaries.len() as i64);
             metrics.members.set(summaries.iter().map(|room| room.members.len() as i64).sum());
             metrics.watchers.set(summaries.iter().map(|room| room.watchers as i64).sum());
@@ -347,7 +334,7 @@ impl Place {
     }
 
     fn new(room: RoomId, role: Role, interface: Arc<RoomInterface>) -> Self {
-        let closed = interface.shown.closed();
+        let closed = interface.closed();
         let seat = match role {
             Role::Member(member) => interface.inbox.seat_number(member),
             Role::Watcher(_) => None,
@@ -370,7 +357,7 @@ impl Place {
     /// The newest snapshot; `None` after a fault of the room.
     pub(crate) fn view(&mut self) -> Option<Arc<RoomView>> {
         self.closed.mark_unchanged();
-        self.interface.shown.view()
+        self.interface.view()
     }
 
     /// Why the room is closed, if it is: a sentence.

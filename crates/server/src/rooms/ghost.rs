@@ -13,8 +13,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::accounts::{AccountId, HostStore, LevelBoard, StoreFailure};
+use crate::line::Line;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
-use crate::sessions::line::Line;
 use cellcaster::game::{Game, PlayerColor, Rules, Script};
 use cellcaster::world::{Difficulty, FieldOfView, Figure, Heading, SpriteId, World};
 
@@ -292,7 +292,7 @@ mod tests {
 
     fn account(store: &mut HostStore, number: u8, name: &str) -> Account {
         let key = AccountKey::new([number; 32]);
-        store.create_account(&key, &Name::new(name).unwrap(), UnixTime::new(7)).unwrap()
+        store.create_account(None, &key, &Name::new(name).unwrap(), UnixTime::new(7)).unwrap()
     }
 
     #[test]

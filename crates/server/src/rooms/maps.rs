@@ -15,7 +15,6 @@
 //! Rejected: maps that are read again while the server runs. The rooms in them, and the boards, would have two maps of
 //! one name.
 
-use std::fmt;
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -25,6 +24,7 @@ use cellcaster::app::store::map_key;
 use cellcaster::fault::{Faults, printable_path};
 use cellcaster::map::{self, Folder, builtin};
 use cellcaster::world::World;
+use thiserror::Error;
 
 /// The most maps of a host.
 pub const MOST_MAPS: usize = 100;
@@ -46,11 +46,13 @@ pub(crate) struct HostMap {
 }
 
 /// Why maps cannot be taken.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MapsError {
     /// A sentence.
+    #[error("{0}")]
     Sentence(String),
     /// Several sentences, or reports as `cellcaster check` writes them, in lines.
+    #[error("{0}")]
     Report(String),
 }
 
@@ -109,15 +111,6 @@ impl MapsError {
         Some(Self::Report(texts.join("\n")))
     }
 }
-
-impl fmt::Display for MapsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Sentence(text) | Self::Report(text)) = self;
-        f.write_str(text)
-    }
-}
-
-impl std::error::Error for MapsError {}
 
 impl From<Faults> for MapsError {
     fn from(faults: Faults) -> Self {

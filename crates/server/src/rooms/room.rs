@@ -31,11 +31,11 @@ pub(crate) use self::log::{
 };
 use self::member::{AWAY, Member, looking_only};
 pub(crate) use self::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
-pub(crate) use self::mode::Mode;
+pub use self::mode::Mode;
 use self::mode::SECOND;
 use self::round::{Field, Round};
 pub(crate) use self::round::{Finish, Phase, Role, Standing};
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::game::{Game, Input, Intents, PlayerColor, PlayerId, Rules};
 use cellcaster::rng;
 
@@ -193,7 +193,7 @@ impl Room {
 
     /// The phase of the round.
     pub(crate) fn phase(&self) -> Phase {
-        self.round.phase()
+        self.round.phase
     }
 
     /// The game of the round.
@@ -293,8 +293,8 @@ impl Room {
         for id in finished {
             self.announce_finish(id);
         }
-        if self.standings.len() != self.round.standings().len() {
-            self.standings = self.round.standings().into();
+        if self.standings.len() != self.round.standings.len() {
+            self.standings = self.round.standings.as_slice().into();
         }
     }
 
@@ -317,7 +317,7 @@ impl Room {
             game: Arc::clone(&self.game),
             header: Arc::clone(&self.header),
             step: self.step,
-            phase: self.round.phase(),
+            phase: self.round.phase,
             begun: self.round.begun(),
             members: self.members.iter().map(member).collect(),
             acted: self.members.iter().map(|member| member.acted).collect(),

@@ -12,25 +12,28 @@
 //!
 //! Rejected: a thread for each room. Rooms sleep most of the time, and their steps take microseconds.
 
-mod inbox;
-mod round_log;
-
 use std::any::Any;
+use std::collections::VecDeque;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use tokio::sync::watch;
+use tokio::sync::{Notify, watch};
 use tokio::time::{Instant, sleep, sleep_until};
 
-pub(crate) use self::inbox::{CommandRefusal, Inbox, STEP};
-pub(crate) use self::round_log::{Changes, FinishedRun, Recording, RoundLog};
-use crate::lock::locked;
-use crate::rooms::room::{Mode, Room, RoomView};
-use crate::sessions::load::Load;
+use super::summary::RoomRefusal;
+use crate::bucket::Bucket;
+use crate::line::Line;
+use crate::load::Load;
 #[cfg(test)]
-use crate::sessions::load::Work;
+use crate::load::Work;
+use crate::lock::locked;
+use crate::rooms::room::{Command, Entry, Header, MemberId, Mode, Room, RoomView};
+use cellcaster::game::{
+    self, Intents, LevelName, Outcome, PlayerColor, Recorder, Rules, STEPS_PER_SECOND, Stretch,
+};
 
 /// The most steps that follow at once after a delay.
 pub(crate) const MOST_CAUGHT_UP: u32 = 6;
@@ -43,43 +46,29 @@ pub(crate) struct RoomInterface {
     /// The commands of the members.
     pub(crate) inbox: Inbox,
     /// The newest snapshot.
-    pub(crate) shown: Shown,
+    /// The newest snapshot. Locked during a step, so that those who look during it wait for the next one.
+    ///
+    /// The snapshot before is dropped before a step, so that the step copies the game only if a session draws from it at
+    /// that moment. Rejected: a `watch` channel of snapshots, which would keep the snapshot, so that each step would copy
+    /// the game.
+    view: Mutex<Option<Arc<RoomView>>>,
+    /// Why the room is closed. It is marked as changed with each snapshot, too.
+    closed: watch::Sender<Option<Arc<str>>>,
     /// How long the room stays open without members; `None` if it always does.
     pub(crate) closes_after: watch::Sender<Option<Duration>>,
     /// The number of watchers.
     watchers: AtomicUsize,
 }
 
-/// The newest snapshot of a room, and news of the next one.
-///
-/// The snapshot before is dropped before a step, so that the step copies the game only if a session draws from it at
-/// that moment. Rejected: a `watch` channel of snapshots, which would keep the snapshot, so that each step would copy
-/// the game.
-#[derive(Debug)]
-pub(crate) struct Shown {
-    view: Mutex<Option<Arc<RoomView>>>,
-    /// Why the room is closed, if it is: a sentence. It is sent again with each snapshot, and so wakes sessions.
-    closed: watch::Sender<Option<Arc<str>>>,
-}
-
 /// A room with its log, which the sequencer alone changes.
 pub(crate) struct Sequencer {
-    room: Room,
-    log: RoundLog,
-    interface: Arc<RoomInterface>,
-    load: Arc<Load>,
+    pub(crate) room: Room,
+    pub(crate) log: RoundLog,
+    pub(crate) interface: Arc<RoomInterface>,
+    pub(crate) load: Arc<Load>,
 }
 
 impl Sequencer {
-    pub(crate) fn new(
-        room: Room,
-        log: RoundLog,
-        interface: Arc<RoomInterface>,
-        load: Arc<Load>,
-    ) -> Self {
-        Self { room, log, interface, load }
-    }
-
     /// Runs the room until it is closed. `on_change` is called when a lobby would show the room differently.
     ///
     /// # Errors
@@ -112,7 +101,7 @@ impl Sequencer {
     /// Waits until somebody joins; returns whether the room still exists then.
     async fn somebody_joins(&mut self) -> bool {
         self.log.flush();
-        let RoomInterface { inbox, shown, closes_after, .. } = &*self.interface;
+        let RoomInterface { inbox, closes_after, .. } = &*self.interface;
         let mut patience = closes_after.subscribe();
         loop {
             let wait = *patience.borrow_and_update();
@@ -123,7 +112,7 @@ impl Sequencer {
                 _ = patience.changed() => {}
                 () = sleep(wait.unwrap_or_default()), if wait.is_some() => {
                     if inbox.close_if_empty() {
-                        shown.close("The room was empty and is closed.");
+                        self.interface.close("The room was empty and is closed.");
                     }
                     return !inbox.is_closed();
                 }
@@ -147,13 +136,13 @@ impl Sequencer {
 
     fn step(&mut self, on_change: &mut impl FnMut(&Room)) {
         let Self { room, log, interface, .. } = self;
-        let changes = interface.shown.replace(|| {
+        let changes = interface.replace_view(|| {
             let changes = log.step(room, |pass| interface.inbox.take(pass));
             (room.view(), changes)
         });
         #[cfg(test)]
         self.load.spend(Work::Step);
-        self.load.metrics().entries.inc_by(changes.entries);
+        self.load.metrics.entries.inc_by(changes.entries);
         if let Some(run) = changes.finished {
             interface.inbox.finish(run);
         }
@@ -175,7 +164,8 @@ impl RoomInterface {
         };
         Arc::new(Self {
             inbox: Inbox::new(mode, room.next_member()),
-            shown: Shown::new(room.view()),
+            view: Mutex::new(Some(Arc::new(room.view()))),
+            closed: watch::Sender::default(),
             closes_after: watch::Sender::new(closes_after),
             watchers: AtomicUsize::new(0),
         })
@@ -184,7 +174,31 @@ impl RoomInterface {
     /// Closes the room for everybody, with a sentence.
     pub(crate) fn close(&self, sentence: &str) {
         self.inbox.close();
-        self.shown.close(sentence);
+        self.closed.send_modify(|closed| {
+            closed.get_or_insert_with(|| sentence.into());
+        });
+    }
+
+    /// The newest snapshot. During a step, it waits for the next one. `None` after a fault.
+    pub(crate) fn view(&self) -> Option<Arc<RoomView>> {
+        locked(&self.view, |view| view.clone())
+    }
+
+    /// Changes with the next snapshot, and when the room is closed.
+    pub(crate) fn closed(&self) -> watch::Receiver<Option<Arc<str>>> {
+        self.closed.subscribe()
+    }
+
+    /// Replaces the snapshot by the one after `step`.
+    pub(crate) fn replace_view<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
+        let result = locked(&self.view, |shown| {
+            *shown = None;
+            let (view, result) = step();
+            *shown = Some(Arc::new(view));
+            result
+        });
+        self.closed.send_modify(|_| {});
+        result
     }
 
     /// The number of watchers.
@@ -204,45 +218,463 @@ impl RoomInterface {
     }
 }
 
-impl Shown {
-    fn new(view: RoomView) -> Self {
-        let view = Mutex::new(Some(Arc::new(view)));
-        Self { view, closed: watch::Sender::default() }
-    }
-
-    /// The newest snapshot. During a step, it waits for the next one. `None` after a fault.
-    pub(crate) fn view(&self) -> Option<Arc<RoomView>> {
-        locked(&self.view, |view| view.clone())
-    }
-
-    /// Changes with the next snapshot, and when the room is closed.
-    pub(crate) fn closed(&self) -> watch::Receiver<Option<Arc<str>>> {
-        self.closed.subscribe()
-    }
-
-    /// Replaces the snapshot by the one after `step`.
-    pub(crate) fn replace<T>(&self, step: impl FnOnce() -> (RoomView, T)) -> T {
-        let result = locked(&self.view, |shown| {
-            *shown = None;
-            let (view, result) = step();
-            *shown = Some(Arc::new(view));
-            result
-        });
-        self.closed.send_modify(|_| {});
-        result
-    }
-
-    /// Tells everybody that the room is closed.
-    fn close(&self, sentence: &str) {
-        self.closed.send_modify(|closed| {
-            closed.get_or_insert_with(|| sentence.into());
-        });
-    }
-}
-
 /// The message of a panic.
 pub(crate) fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref().map(String::as_str));
     text.unwrap_or("a panic without a message").to_owned()
 }
+
+/// A recording of a room's log.
+pub(crate) trait Recording: Send {
+    /// Begins a round.
+    ///
+    /// # Errors
+    /// If the header cannot be written.
+    fn begin(&mut self, header: &Header) -> io::Result<()>;
+
+    /// Adds an entry, whose step is not before the step of the last entry.
+    ///
+    /// # Errors
+    /// If the entry cannot be written.
+    fn append(&mut self, entry: &Entry) -> io::Result<()>;
+
+    /// Writes out what waits in memory.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    fn flush(&mut self) -> io::Result<()>;
+}
+
+/// The log of a round, by which a room takes its steps. It may be recorded: all entries of a step are, before they change
+/// the room.
+pub(crate) struct RoundLog {
+    recording: Option<Box<dyn Recording>>,
+    /// Whether a fault was reported, so that a full disk is reported once.
+    has_failed: bool,
+    run: Run,
+}
+
+/// A level that somebody has won alone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FinishedRun {
+    pub(crate) member: MemberId,
+    /// The name of the level.
+    pub(crate) level: String,
+    /// The script, which is still to be verified.
+    pub(crate) script: String,
+}
+
+/// The changes of a step.
+#[derive(Debug, Default)]
+pub(crate) struct Changes {
+    /// The number of entries.
+    pub(crate) entries: u64,
+    /// Whether a lobby would show the room otherwise.
+    pub(crate) summary: bool,
+    pub(crate) finished: Option<FinishedRun>,
+}
+
+/// The intents of a member who plays alone, from the start of the round.
+#[derive(Debug, Default)]
+struct Run {
+    stretches: Vec<Stretch>,
+    is_finished: bool,
+}
+
+/// The steps after which a recording is written out: a killed server loses at most the entries of a
+/// second.
+const FLUSHED: u64 = STEPS_PER_SECOND as u64;
+
+impl RoundLog {
+    /// Begins the log of the round that `room` is in.
+    pub(crate) fn new(recording: Option<Box<dyn Recording>>, room: &Room) -> Self {
+        let mut log = Self { recording, has_failed: false, run: Run::default() };
+        log.begin(room);
+        log
+    }
+
+    /// Takes a step: the commands that `take` passes on become entries, the entries change the room, and the room
+    /// advances.
+    pub(crate) fn step(
+        &mut self,
+        room: &mut Room,
+        take: impl FnOnce(&mut dyn FnMut(MemberId, Command)),
+    ) -> Changes {
+        let mut changes = Changes::default();
+        if room.is_over() {
+            room.begin_next();
+            self.begin(room);
+            changes.summary = true;
+        }
+        let step = room.step();
+        let mut entries = Vec::new();
+        take(&mut |member, command| entries.push(Entry { step, member, command }));
+        for entry in &entries {
+            self.record(|recording| recording.append(entry));
+        }
+        if step.is_multiple_of(FLUSHED) {
+            self.flush();
+        }
+        let count = room.len();
+        for entry in &entries {
+            changes.summary |= matches!(entry.command, Command::Join { .. } | Command::Leave);
+            room.apply(entry);
+        }
+        changes.entries = entries.len() as u64;
+        let phase = room.phase();
+        room.advance();
+        changes.summary |= phase != room.phase() || count != room.len();
+        if room.header().mode == Mode::Alone {
+            changes.finished = self.run.step(room);
+        }
+        changes
+    }
+
+    /// Writes out what waits in memory.
+    pub(crate) fn flush(&mut self) {
+        self.record(|recording| recording.flush());
+    }
+
+    fn begin(&mut self, room: &Room) {
+        self.run = Run::default();
+        self.record(|recording| recording.begin(room.header()));
+    }
+
+    fn record(&mut self, write: impl FnOnce(&mut dyn Recording) -> io::Result<()>) {
+        if let Some(recording) = &mut self.recording
+            && let Err(error) = write(&mut **recording)
+            && !self.has_failed
+        {
+            self.has_failed = true;
+            tracing::error!(%error, "a recording of a room cannot be written");
+        }
+    }
+}
+
+impl Changes {
+    /// Adds the changes of a later step.
+    pub(crate) fn add(&mut self, later: Self) {
+        self.entries += later.entries;
+        self.summary |= later.summary;
+        self.finished = later.finished.or(self.finished.take());
+    }
+}
+
+impl Run {
+    /// Records the step that the room has taken; returns the run when it has reached the exit.
+    fn step(&mut self, room: &Room) -> Option<FinishedRun> {
+        let (member, player, intents) = room.first_member().filter(|_| !self.is_finished)?;
+        self.record(intents);
+        let outcome = room.game().seen_by(player)?.outcome();
+        self.is_finished = outcome == Outcome::Won;
+        let level = &room.header().level;
+        self.is_finished.then(|| FinishedRun {
+            member,
+            level: level.clone(),
+            script: self.script(room),
+        })
+    }
+
+    fn record(&mut self, intents: Intents) {
+        match self.stretches.last_mut() {
+            Some(last) if last.intents == intents && last.steps < Stretch::MOST_STEPS => {
+                last.steps += 1;
+            }
+            _ => self.stretches.push(Stretch { steps: 1, intents }),
+        }
+    }
+
+    fn script(&self, room: &Room) -> String {
+        let header = room.header();
+        let rules =
+            Rules { difficulty: header.difficulty, seed: header.mode.game_seed(header.seed) };
+        let header = game::Header::of(LevelName::new(&header.level), rules);
+        let mut text = Vec::new();
+        let mut recorder = Recorder::with_header(&mut text, header);
+        for stretch in &self.stretches {
+            // Memory accepts every byte.
+            _ = recorder.record(stretch.intents, u64::from(stretch.steps));
+        }
+        drop(recorder);
+        String::from_utf8(text).unwrap_or_default()
+    }
+}
+
+/// The time of a step.
+pub(crate) const STEP: Duration = Duration::from_nanos(1_000_000_000 / STEPS_PER_SECOND as u64);
+/// The lines that a member may say at once.
+const CHAT_BURST: f64 = 4.0;
+/// The most changes of intents that wait.
+const MOST_INTENTS: usize = 8;
+/// The most arrivals and departures that wait, each of which takes effect in the next step.
+const MOST_MOVES: usize = 64;
+
+/// The commands of a room's members, until the sequencer takes them.
+///
+/// Each member has a bounded queue of their own, so that a flood of one member's commands never delays those of
+/// another. Rejected: one queue for all members, since one of them could fill it. A member may say [`CHAT_BURST`]
+/// lines at once and show one emotion, and one of each a second.
+///
+/// Intents take effect in the order in which they came, one change in a step, so that a tap begins and ends in steps of
+/// its own. If [`MOST_INTENTS`] changes wait, the newest replaces the last one. Sessions limit the rate of changes.
+#[derive(Debug)]
+pub(crate) struct Inbox {
+    waiting: Mutex<Waiting>,
+    joined: Notify,
+}
+
+/// Why a command was not accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CommandRefusal {
+    /// The member does such things too often.
+    TooOften,
+    /// There is no such member, or members do not give such commands.
+    Impossible,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    is_closed: bool,
+    most: usize,
+    next: u32,
+    /// Members who have joined, whether the room knows it or not.
+    seats: Vec<Seat>,
+    /// The seats that were ever taken.
+    seats_taken: u64,
+    moves: VecDeque<(MemberId, Command)>,
+    /// The time of the steps in all rounds.
+    time: Duration,
+    finished: Option<FinishedRun>,
+}
+
+#[derive(Debug)]
+struct Seat {
+    id: MemberId,
+    /// A member who loses their seat and returns has another number.
+    number: u64,
+    color: PlayerColor,
+    intents: VecDeque<Command>,
+    talk: VecDeque<Command>,
+    chat: Bucket,
+    emotes: Bucket,
+}
+
+impl Inbox {
+    /// The inbox of a room without members, whose next member is `next`.
+    pub(crate) fn new(mode: Mode, next: MemberId) -> Self {
+        let waiting = Waiting {
+            is_closed: false,
+            most: mode.most(),
+            next: next.0,
+            seats: Vec::new(),
+            seats_taken: 0,
+            moves: VecDeque::new(),
+            time: Duration::ZERO,
+            finished: None,
+        };
+        Self { waiting: Mutex::new(waiting), joined: Notify::new() }
+    }
+
+    /// Adds a member.
+    pub(crate) fn join(&self, name: &Line) -> Result<MemberId, RoomRefusal> {
+        let id = locked(&self.waiting, |waiting| waiting.join(name))?;
+        self.joined.notify_one();
+        Ok(id)
+    }
+
+    /// Gives a seat to a member who has joined elsewhere.
+    pub(crate) fn admit(&self, id: MemberId, color: PlayerColor) {
+        locked(&self.waiting, |waiting| {
+            waiting.next = waiting.next.max(id.0.saturating_add(1));
+            waiting.seat(id, color);
+        });
+    }
+
+    /// Takes the seat of a member who is not in the room any more.
+    pub(crate) fn dismiss(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| waiting.seats.retain(|seat| seat.id != id));
+    }
+
+    /// Members with a seat.
+    pub(crate) fn seated(&self) -> Vec<MemberId> {
+        locked(&self.waiting, |waiting| waiting.seats.iter().map(|seat| seat.id).collect())
+    }
+
+    /// Takes the seat of a member, who leaves.
+    pub(crate) fn leave(&self, id: MemberId) {
+        self.unseat(id, Command::Leave);
+    }
+
+    /// Takes the seat of a member whose host ends. The room keeps their place.
+    pub(crate) fn part(&self, id: MemberId) {
+        self.unseat(id, Command::Away);
+    }
+
+    fn unseat(&self, id: MemberId, command: Command) {
+        locked(&self.waiting, |waiting| {
+            let count = waiting.seats.len();
+            waiting.seats.retain(|seat| seat.id != id);
+            if waiting.seats.len() < count {
+                waiting.moves.push_back((id, command));
+            }
+        });
+    }
+
+    /// Accepts a command of a member.
+    pub(crate) fn act(&self, id: MemberId, command: Command) -> Result<(), CommandRefusal> {
+        locked(&self.waiting, |waiting| {
+            let time = waiting.time;
+            let seat = waiting.seats.iter_mut().find(|seat| seat.id == id);
+            seat.ok_or(CommandRefusal::Impossible)?.act(command, time)
+        })
+    }
+
+    /// The number of a member's seat, which no other seat ever has; `None` if they have none.
+    pub(crate) fn seat_number(&self, id: MemberId) -> Option<u64> {
+        locked(&self.waiting, |waiting| {
+            waiting.seats.iter().find(|seat| seat.id == id).map(|seat| seat.number)
+        })
+    }
+
+    /// Whether somebody is about to join or leave.
+    pub(crate) fn has_moves(&self) -> bool {
+        locked(&self.waiting, |waiting| !waiting.moves.is_empty())
+    }
+
+    /// Marks a member away. They have their seat until the room removes them.
+    pub(crate) fn set_away(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| {
+            if let Some(seat) = waiting.seats.iter_mut().find(|seat| seat.id == id) {
+                seat.intents.clear();
+                seat.talk.clear();
+            }
+            waiting.moves.push_back((id, Command::Away));
+        });
+    }
+
+    /// Keeps the place of a member who has just joined.
+    pub(crate) fn keep(&self, id: MemberId) {
+        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Keep)));
+    }
+
+    /// Has a member go on, on another host.
+    pub(crate) fn take_back(&self, id: MemberId, token: u64) {
+        locked(&self.waiting, |waiting| waiting.moves.push_back((id, Command::Return { token })));
+    }
+
+    /// Whether nobody is in the room, and nobody is about to join or leave it.
+    pub(crate) fn is_empty(&self) -> bool {
+        locked(&self.waiting, |waiting| waiting.seats.is_empty() && waiting.moves.is_empty())
+    }
+
+    /// Waits until somebody joins, or the room is closed.
+    pub(crate) async fn joined(&self) {
+        while self.is_empty() && !self.is_closed() {
+            self.joined.notified().await;
+        }
+    }
+
+    pub(crate) fn is_closed(&self) -> bool {
+        locked(&self.waiting, |waiting| waiting.is_closed)
+    }
+
+    /// Nobody may join any more.
+    pub(crate) fn close(&self) {
+        locked(&self.waiting, |waiting| waiting.is_closed = true);
+        self.joined.notify_one();
+    }
+
+    /// Closes the room, unless somebody joins; returns whether it is closed.
+    pub(crate) fn close_if_empty(&self) -> bool {
+        locked(&self.waiting, |waiting| {
+            waiting.is_closed |= waiting.seats.is_empty();
+            waiting.is_closed
+        })
+    }
+
+    /// Keeps a run until its member takes it.
+    pub(crate) fn finish(&self, run: FinishedRun) {
+        locked(&self.waiting, |waiting| waiting.finished = Some(run));
+    }
+
+    /// The run that a member has finished since the last call.
+    pub(crate) fn finished(&self, id: MemberId) -> Option<FinishedRun> {
+        locked(&self.waiting, |waiting| waiting.finished.take_if(|run| run.member == id))
+    }
+
+    /// Passes on the commands that take effect in the next step, in their order.
+    pub(crate) fn take(&self, mut pass: impl FnMut(MemberId, Command)) {
+        locked(&self.waiting, |waiting| {
+            waiting.moves.drain(..).for_each(|(id, command)| pass(id, command));
+            for seat in &mut waiting.seats {
+                let intents = seat.intents.pop_front();
+                intents.into_iter().chain(seat.talk.drain(..)).for_each(|it| pass(seat.id, it));
+            }
+            waiting.time += STEP;
+        });
+    }
+}
+
+impl Waiting {
+    fn join(&mut self, name: &Line) -> Result<MemberId, RoomRefusal> {
+        if self.is_closed {
+            return Err(RoomRefusal::Gone);
+        }
+        if self.seats.len() >= self.most || self.moves.len() >= MOST_MOVES {
+            return Err(RoomRefusal::Full);
+        }
+        let worn = |color: &PlayerColor| self.seats.iter().filter(|it| it.color == *color).count();
+        let color = PlayerColor::ALL.into_iter().min_by_key(worn).ok_or(RoomRefusal::Full)?;
+        let id = MemberId(self.next);
+        if id > MemberId::MOST {
+            return Err(RoomRefusal::Full);
+        }
+        self.next += 1;
+        self.moves.push_back((id, Command::Join { color, name: name.clone() }));
+        self.seat(id, color);
+        Ok(id)
+    }
+
+    fn seat(&mut self, id: MemberId, color: PlayerColor) {
+        self.seats_taken += 1;
+        self.seats.push(Seat {
+            id,
+            number: self.seats_taken,
+            color,
+            intents: VecDeque::new(),
+            talk: VecDeque::new(),
+            chat: Bucket::new(1.0, CHAT_BURST, self.time),
+            emotes: Bucket::new(1.0, 1.0, self.time),
+        });
+    }
+}
+
+impl Seat {
+    fn act(&mut self, command: Command, time: Duration) -> Result<(), CommandRefusal> {
+        let bucket = match command {
+            Command::Intents { .. } => {
+                if self.intents.len() >= MOST_INTENTS {
+                    self.intents.pop_back();
+                }
+                self.intents.push_back(command);
+                return Ok(());
+            }
+            Command::Say(_) => &mut self.chat,
+            Command::Emote(_) | Command::Again => &mut self.emotes,
+            Command::Join { .. }
+            | Command::Leave
+            | Command::Keep
+            | Command::Away
+            | Command::Return { .. } => return Err(CommandRefusal::Impossible),
+        };
+        if !bucket.takes_one(time) {
+            return Err(CommandRefusal::TooOften);
+        }
+        self.talk.push_back(command);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -4,9 +4,10 @@ use std::fmt;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
+use crate::line::Line;
 use crate::rooms::room::{Mode, Phase, Room};
-use crate::sessions::line::Line;
 use cellcaster::world::Difficulty;
 
 /// The number of a room. It is not used again after the room is closed.
@@ -64,43 +65,35 @@ impl RoomSummary {
 
 /// A room that a visitor would like to open.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct RoomWish {
+pub struct RoomWish {
     /// The name of the level in the catalog.
-    pub(crate) level: String,
-    pub(crate) mode: Mode,
-    pub(crate) difficulty: Difficulty,
+    pub level: String,
+    pub mode: Mode,
+    pub difficulty: Difficulty,
 }
 
 /// The reason why somebody cannot be in a room.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Error)]
 pub(crate) enum RoomRefusal {
     /// There is no such room any more.
+    #[error("This room is closed.")]
     Gone,
     /// It is full.
+    #[error("This room is full.")]
     Full,
     /// One plays alone in it.
+    #[error("Somebody plays alone in this room; you can watch.")]
     Alone,
     /// There are as many rooms as the host allows.
+    #[error("There are as many rooms as this server allows; enter one of them.")]
     TooMany,
     /// This host does not have the level.
+    #[error("This host does not have the map of this room.")]
     NoLevel,
     /// The member is somewhere else.
+    #[error("You are in a room by another connection, and stay there.")]
     Taken,
     /// The hosts cannot agree now.
+    #[error("The room does not answer now; try again.")]
     NotNow,
-}
-
-impl fmt::Display for RoomRefusal {
-    /// Writes a sentence for the visitor.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gone => "This room is closed.",
-            Self::Full => "This room is full.",
-            Self::Alone => "Somebody plays alone in this room; you can watch.",
-            Self::TooMany => "There are as many rooms as this server allows; enter one of them.",
-            Self::NoLevel => "This host does not have the map of this room.",
-            Self::Taken => "You are in a room by another connection, and stay there.",
-            Self::NotNow => "The room does not answer now; try again.",
-        })
-    }
 }

@@ -12,12 +12,10 @@
 //! - A result counts when the store's thread has replayed its script. One that the store can't take now, because it
 //!   is away or full, waits in a file or in memory, and is recorded later.
 
-mod late_results;
 mod login;
 mod results;
 #[cfg(test)]
 mod simulated;
-mod store_worker;
 mod visit;
 
 use std::io;
@@ -25,7 +23,7 @@ use std::num::NonZero;
 use std::sync::atomic::AtomicU32;
 use std::sync::{Arc, Mutex, Weak};
 use std::thread::available_parallelism;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use tokio::sync::{Notify, Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
@@ -34,32 +32,29 @@ use self::login::NamesInUse;
 use self::results::Recorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
-use self::store_worker::StoreWorker;
 use self::visit::Driver;
-use crate::accounts::{HostStore, UnixTime, WaitingResults};
+use crate::accounts::worker::StoreWorker;
+use crate::accounts::{HostStore, WaitingResults};
+use crate::admin::RoomRow;
 use crate::cluster::{Cluster, SharedRooms};
-use crate::ops::admin::{Operator, RoomRow};
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::metrics::Metrics;
-use crate::rooms::directory::{Recordings, RoomLimits, Rooms};
+use crate::config::{Config, LiveConfig};
+use crate::line::Line;
+use crate::load::{Governor, Load};
+use crate::metrics::Metrics;
+use crate::operator::Operator;
+use crate::rooms::directory::{Recordings, Rooms};
 use crate::rooms::ghost::KeptRuns;
-use crate::rooms::maps::HostMaps;
 use crate::rooms::room::Catalog;
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::governor::Governor;
-use crate::sessions::line::Line;
-use crate::sessions::load::Load;
-use crate::sessions::visitors::Visitors;
 use crate::ssh::{Departure, Host, Link, Visitor};
+use crate::visitors::Visitors;
 
 /// The host of the game: rooms, accounts, and a session for each visitor.
-#[derive(Debug)]
 pub struct GameHost {
     shared: Arc<Shared>,
 }
 
 /// State shared by all drivers.
-#[derive(Debug)]
 struct Shared {
     config: LiveConfig,
     metrics: Arc<Metrics>,
@@ -68,8 +63,6 @@ struct Shared {
     rooms: Rooms,
     /// In a cluster, the ways into rooms.
     cluster: Option<SharedRooms>,
-    /// Whether another host keeps the places of players with accounts when this one ends.
-    keeps_places: bool,
     store: StoreWorker,
     recorder: Recorder,
     /// The runs of boards that walk along. Only the thread of the store uses them.
@@ -83,6 +76,8 @@ struct Shared {
 
 /// The time between two decisions of the governor.
 const GOVERNED: Duration = Duration::from_millis(250);
+/// The most calls of the store that wait.
+const MOST_CALLS: usize = 256;
 /// The most time that the store has for its end.
 const STORE_END: Duration = Duration::from_secs(10);
 
@@ -95,9 +90,11 @@ pub struct HostParts {
     pub(crate) recordings: Recordings,
     pub(crate) load: Load,
     pub(crate) store: StoreWorker,
+    /// The results that wait for the store. Those that come while it is away wait there, too.
     pub(crate) waiting: Option<WaitingResults>,
     /// The seed of all chance in rooms.
     pub(crate) seed: u64,
+    /// The cluster whose rooms the host shares.
     pub(crate) cluster: Option<Cluster>,
 }
 
@@ -118,7 +115,7 @@ impl HostParts {
             catalog: Catalog::builtin(),
             recordings: Recordings::in_folder(live.get().recordings.clone()),
             load: Load::new(Arc::clone(&metrics)),
-            store: StoreWorker::start(store)?,
+            store: StoreWorker::start("store", MOST_CALLS, store)?,
             waiting: None,
             // Without random numbers from the system there would be no keys, either.
             seed: getrandom::u64().unwrap_or_default(),
@@ -127,24 +124,6 @@ impl HostParts {
             cluster: None,
         })
     }
-
-    /// Adds the maps of the host to the built-in levels.
-    #[must_use]
-    pub fn with_maps(self, maps: &HostMaps) -> Self {
-        Self { catalog: Catalog::with(maps), ..self }
-    }
-
-    /// Adds the results that wait for the store. Those that come while it is away wait there, too.
-    #[must_use]
-    pub fn with_waiting(self, waiting: WaitingResults) -> Self {
-        Self { waiting: Some(waiting), ..self }
-    }
-
-    /// Has the host share the rooms of a cluster.
-    #[must_use]
-    pub fn in_cluster(self, cluster: Cluster) -> Self {
-        Self { cluster: Some(cluster), ..self }
-    }
 }
 
 impl GameHost {
@@ -152,33 +131,24 @@ impl GameHost {
     ///
     /// It is to be called within a runtime, on which the rooms run.
     pub fn start(parts: HostParts) -> Self {
-        let cluster = parts.cluster;
-        let HostParts {
-            live,
-            metrics,
-            visitors,
-            catalog,
-            recordings,
-            load,
-            store,
-            waiting,
-            seed,
-            ..
-        } = parts;
-        let (limits, load) = (RoomLimits::of(&live.get()), Arc::new(load));
-        let (limits, standing) = match &cluster {
-            Some(_) => (RoomLimits { standing: Vec::new(), ..limits.clone() }, limits.standing),
-            None => (limits, Vec::new()),
-        };
-        let rooms = Rooms::new(limits, Arc::new(catalog), recordings, Arc::clone(&load), seed);
-        let shared_rooms = cluster
-            .map(|cluster| cluster.rooms(&rooms, standing, Arc::clone(&load), visitors.clone()));
-        let keeps_places = shared_rooms.is_some();
+        let HostParts { live, metrics, visitors, .. } = parts;
+        let (mut limits, load) = (live.get().room_limits(), Arc::new(parts.load));
+        // The rooms of a cluster stand on the bus.
+        let shared_standing = parts
+            .cluster
+            .as_ref()
+            .map(|_| std::mem::take(&mut limits.standing))
+            .unwrap_or_default();
+        let catalog = Arc::new(parts.catalog);
+        let rooms = Rooms::new(limits, catalog, parts.recordings, Arc::clone(&load), parts.seed);
+        let cluster = parts.cluster.map(|cluster| {
+            cluster.rooms(&rooms, shared_standing, Arc::clone(&load), visitors.clone())
+        });
         let recorder = Recorder {
             catalog: Arc::clone(rooms.catalog()),
             metrics: Arc::clone(&metrics),
             visitors: visitors.clone(),
-            waiting: waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
+            waiting: parts.waiting.map(|waiting| Arc::new(Mutex::new(waiting))),
         };
         let processors = available_parallelism().map_or(1, NonZero::get);
         let shared = Arc::new(Shared {
@@ -187,9 +157,8 @@ impl GameHost {
             visitors,
             begun: Instant::now(),
             rooms,
-            cluster: shared_rooms,
-            keeps_places,
-            store,
+            cluster,
+            store: parts.store,
             recorder,
             runs: Arc::default(),
             names: NamesInUse::default(),
@@ -204,7 +173,7 @@ impl GameHost {
             shared.cluster.clone(),
         ));
         if shared.recorder.waiting.is_some() {
-            tokio::spawn(late_results::record_all(Arc::downgrade(&shared)));
+            tokio::spawn(results::record_all(Arc::downgrade(&shared)));
         }
         Self { shared }
     }
@@ -227,7 +196,6 @@ impl GameHost {
     /// An operator of this host, who notifies `drain` to end it.
     pub fn operator(&self, drain: Arc<Notify>) -> Operator {
         let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
-
         operator.in_cluster(self.shared.cluster.clone())
     }
 
@@ -294,7 +262,7 @@ async fn follow_limits(
     cluster: Option<SharedRooms>,
 ) {
     while config.changed().await.is_ok() {
-        let limits = RoomLimits::of(&config.borrow_and_update());
+        let limits = config.borrow_and_update().room_limits();
         match &cluster {
             Some(cluster) => cluster.set_limits(limits),
             None => rooms.set_limits(limits),
@@ -313,10 +281,4 @@ async fn govern(shared: Weak<Shared>) {
         let sample = shared.load.sample(GOVERNED);
         shared.load.set_frame_time(governor.decide(sample, most));
     }
-}
-
-/// The time of the clock on the wall.
-fn unix_time() -> UnixTime {
-    let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    UnixTime::new(time.as_secs())
 }

@@ -9,7 +9,7 @@ use tokio::time::{Instant, sleep, sleep_until};
 
 use super::emulator::{Emulator, Speaks};
 use crate::lock::locked;
-use crate::ops::metrics::Metrics;
+use crate::metrics::Metrics;
 use crate::sessions::driver::{Simulated, Visiting};
 use crate::ssh::{FarEnd, Parts, Visitor, pipe};
 use cellcaster::color::palette::ColorDepth;

@@ -27,8 +27,8 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::{Client, Conditions, ENTER, HALL, Rig, Speaks, Wish, catalog};
+use crate::load::Worker;
 use crate::rooms::room::Mode;
-use crate::sessions::load::Worker;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::rng::SplitMix64;
 

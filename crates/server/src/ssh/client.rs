@@ -18,14 +18,14 @@ use russh::server::{
 use russh::{Channel, ChannelId, ChannelOpenFailure, Error, Pty};
 use tokio::sync::oneshot;
 
-use super::admission::{Refusal, VisitId};
 use super::gate::Gate;
 use super::inbound::{Inlet, inbound};
 use super::outbox::Outbox;
 use super::visitor::{self, Departure, Link, MOST_VARIABLES, Visitor};
 use super::wire::Line;
 use crate::accounts::AccountKey;
-use crate::ops::logging::events;
+use crate::admission::{Refusal, VisitId};
+use crate::logging;
 use cellcaster::terminal::WindowSize;
 
 /// A session that begins.
@@ -177,7 +177,7 @@ impl Handler for Client {
 
     async fn auth_succeeded(&mut self, _: &mut Session) -> Result<(), Error> {
         self.line.log_in();
-        events::authenticated(self.peer.ip(), self.key);
+        logging::authenticated(self.peer.ip(), self.key);
         self.refusal = self.gate.log_in(self.visit, self.key, self.peer.ip()).err();
         Ok(())
     }

@@ -16,17 +16,15 @@ use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use super::admission::Outcome;
 use super::client::{Begun, Client};
-use super::explanation;
-use super::gate::{Entry, Gate, Phase};
-use super::hello::Stage;
+use super::gate::{Entry, Gate, Phase, VERSION};
 use super::host_key::HostKey;
 use super::outbox::Passage;
 use super::visitor::Host;
-use super::wire::{ByteLimits, Line, Wire};
-use crate::ops::config::LiveConfig;
-use crate::ops::logging::{ConnectionEvent, events};
+use super::wire::{ByteLimits, Line, Stage, Wire};
+use crate::admission::Outcome;
+use crate::config::LiveConfig;
+use crate::logging::{self, ConnectionEvent};
 
 /// The time for the first line of a client, its version, which no client has to think about.
 const VERSION_TIME: Duration = Duration::from_secs(3);
@@ -78,7 +76,7 @@ pub(crate) async fn serve<H: Host>(
     let outcome = match logged_in {
         Ok(begun) => {
             converse(&gate, &*host, &line, transport, begun).await;
-            events::disconnected(peer.ip(), line.begun.elapsed().as_secs());
+            logging::disconnected(peer.ip(), line.begun.elapsed().as_secs());
             Outcome::Served
         }
         Err(outcome) => {
@@ -273,7 +271,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
     const COMPRESSION: &[compression::Name] = &[compression::NONE, compression::ZLIB_LEGACY];
     let methods = [MethodKind::PublicKey, MethodKind::KeyboardInteractive];
     server::Config {
-        server_id: SshId::Standard(Cow::Borrowed(explanation::VERSION)),
+        server_id: SshId::Standard(Cow::Borrowed(VERSION)),
         methods: MethodSet::from(methods.as_slice()),
         // There is nothing to guess.
         auth_rejection_time: Duration::ZERO,

@@ -9,7 +9,7 @@ use super::connection::{self, ssh_config};
 use super::gate::Gate;
 use super::host_key::HostKey;
 use super::{Arrival, Departure, Host, Link, Visitor};
-use crate::ops::config::{Config, LiveConfig};
+use crate::config::{Config, LiveConfig};
 
 static KEY: LazyLock<HostKey> = LazyLock::new(|| HostKey::of_seed([7; 32]));
 

@@ -1,20 +1,34 @@
 //! The way into the server, for all of its connections: it admits and refuses them, and counts and logs what they do.
+//!
+//! # Telling the client of a refused connection why
+//!
+//! The client reads the version of the server and a message `SSH_MSG_DISCONNECT` (RFC 4253, sections 4.2 and
+//! 11.1), which is not encrypted as long as there are no keys. OpenSSH's client prints its text, and ends with
+//! status 255. Nothing is calculated for it.
+//!
+//! A flood must not cost more than closing its connections does, so few are told: at most [`MOST`] within
+//! [`LINGER`], and [`MOST_OF_NETWORK`] of one network. That bounds tasks and sockets, too, since none lasts
+//! longer. The others are closed without a word.
+//!
+//! Rejected: lines before the version, which the protocol allows as well. OpenSSH's client shows them with `-v`
+//! only.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout};
 
-use super::admission::{Admission, Admitted, Outcome, Refusal, VisitId};
-use super::explanation::Explanations;
 use crate::accounts::{AccountKey, AddressPrefix};
+use crate::admission::{Admission, Admitted, Outcome, Refusal, VisitId};
+use crate::config::LiveConfig;
 use crate::lock::locked;
-use crate::ops::config::LiveConfig;
-use crate::ops::logging::{ConnectionEvent, Throttle};
-use crate::ops::metrics::Metrics;
+use crate::logging::{ConnectionEvent, Throttle};
+use crate::metrics::Metrics;
 use cellcaster::rng::SplitMix64;
 
 /// The way in.
@@ -57,7 +71,7 @@ impl Gate {
     pub(crate) fn new(config: LiveConfig, metrics: Arc<Metrics>) -> Self {
         let state = Mutex::new(State {
             admission: Admission::new(config.get().admission),
-            chance: SplitMix64::new(seed()),
+            chance: SplitMix64::new(getrandom::u64().unwrap_or_default()),
             explanations: Explanations::default(),
             logged: Throttle::default(),
             open: BTreeMap::new(),
@@ -173,8 +187,105 @@ impl Gate {
     }
 }
 
-/// Unpredictable, so that nobody can time their connections by the chance of a refusal.
-fn seed() -> u64 {
-    // Without random numbers from the system there would be no keys, either.
-    getrandom::u64().unwrap_or_default()
+/// The refused connections that were told why in the last [`LINGER`].
+#[derive(Debug, Default)]
+struct Explanations(VecDeque<(Duration, AddressPrefix)>);
+
+/// The version of the server, without the end of its line.
+pub(crate) const VERSION: &str = "SSH-2.0-cellcaster";
+/// The longest time that one takes. A client closes the connection when it has read the message.
+const LINGER: Duration = Duration::from_secs(2);
+/// The most of them in that time.
+const MOST: usize = 64;
+/// The most of one network in that time.
+const MOST_OF_NETWORK: usize = 8;
+/// In bytes: the most that is read of what the client sends meanwhile. Its version and its offer of algorithms
+/// are some 2,000.
+const MOST_READ: u64 = 16 << 10;
+
+const DISCONNECT: u8 = 1;
+const TOO_MANY_CONNECTIONS: u32 = 12;
+
+impl Explanations {
+    /// Whether a connection of `network` that is refused at `now` is told why; counts it then.
+    fn allow(&mut self, network: AddressPrefix, now: Duration) -> bool {
+        while self.0.front().is_some_and(|(at, _)| *at + LINGER <= now) {
+            self.0.pop_front();
+        }
+        let of_network = self.0.iter().filter(|(_, other)| *other == network).count();
+        let is_allowed = self.0.len() < MOST && of_network < MOST_OF_NETWORK;
+        if is_allowed {
+            self.0.push_back((now, network));
+        }
+        is_allowed
+    }
+}
+
+/// Sends the sentence, and closes the connection.
+pub(crate) async fn explain(mut socket: TcpStream, sentence: String) {
+    let told = async {
+        socket.write_all(&message(&sentence)).await?;
+        socket.shutdown().await?;
+        // A socket that is closed before all was read resets the connection, and the client may lose the sentence.
+        tokio::io::copy(&mut (&mut socket).take(MOST_READ), &mut tokio::io::sink()).await
+    };
+    _ = timeout(LINGER, told).await;
+}
+
+/// The version, and a packet that is not encrypted (RFC 4253, section 6).
+fn message(sentence: &str) -> Vec<u8> {
+    let mut payload = vec![DISCONNECT];
+    payload.extend(TOO_MANY_CONNECTIONS.to_be_bytes());
+    for text in [sentence, ""] {
+        payload.extend((text.len() as u32).to_be_bytes());
+        payload.extend(text.as_bytes());
+    }
+    // At least four bytes, up to a multiple of eight of the whole.
+    let padding = 4 + (8 - (5 + payload.len() + 4) % 8) % 8;
+    let length = 1 + payload.len() + padding;
+    let mut message = format!("{VERSION}\r\n").into_bytes();
+    message.extend((length as u32).to_be_bytes());
+    message.push(padding as u8);
+    message.extend(payload);
+    message.resize(message.len() + padding, 0);
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::IpAddr;
+
+    use super::*;
+
+    #[test]
+    fn a_flood_is_told_seldom_and_leaves_room_for_other_networks() {
+        let mut explanations = Explanations::default();
+        let network = |number: u8| AddressPrefix::network_of(IpAddr::from([10, 0, number, 1]));
+        let told = |explanations: &mut Explanations, number, at: u64| {
+            let now = Duration::from_millis(at);
+            (0..1000).filter(|_| explanations.allow(network(number), now)).count()
+        };
+        assert_eq!(told(&mut explanations, 1, 0), 8);
+        assert_eq!(told(&mut explanations, 2, 1000), 8);
+        assert_eq!(told(&mut explanations, 1, 1999), 0);
+        assert_eq!(told(&mut explanations, 1, 2000), 8);
+        let all: usize = (0..=255).map(|number| told(&mut explanations, number, 9000)).sum();
+        assert_eq!(all, 64);
+        assert!(explanations.0.len() <= MOST);
+    }
+
+    #[test]
+    fn a_packet_is_whole() {
+        for length in 0..64 {
+            let sentence = "x".repeat(length);
+            let message = message(&sentence);
+            let packet = message.strip_prefix(b"SSH-2.0-cellcaster\r\n").unwrap();
+            assert_eq!(packet.len() % 8, 0);
+            let stated = u32::from_be_bytes(*packet.first_chunk().unwrap()) as usize;
+            let padding = usize::from(packet[4]);
+            assert!(stated == packet.len() - 4 && (4..12).contains(&padding), "{packet:?}");
+            let payload = &packet[5..packet.len() - padding];
+            assert_eq!(payload.len(), 1 + 4 + 4 + length + 4);
+        }
+    }
 }

@@ -18,12 +18,6 @@ pub struct HostKey {
     key: PrivateKey,
 }
 
-/// Why there is no host key.
-#[derive(Debug)]
-pub struct HostKeyError {
-    sentence: String,
-}
-
 /// The name of its file in the data folder.
 const NAME: &str = "host_key";
 /// In bytes; a key has about 400.
@@ -35,7 +29,7 @@ impl HostKey {
     ///
     /// # Errors
     /// Others can read the file; or it is no key of this kind; or the folder can't be read or written.
-    pub fn open(folder: &Path) -> Result<Self, HostKeyError> {
+    pub fn open(folder: &Path) -> Result<Self, String> {
         let path = folder.join(NAME);
         match private::open(&path) {
             Ok(file) => read(file, &path),
@@ -60,7 +54,7 @@ impl HostKey {
     }
 }
 
-fn read(file: File, path: &Path) -> Result<HostKey, HostKeyError> {
+fn read(file: File, path: &Path) -> Result<HostKey, String> {
     refuse_readable(&file, path)?;
     let mut text = String::new();
     let read = file.take(LARGEST).read_to_string(&mut text);
@@ -68,19 +62,18 @@ fn read(file: File, path: &Path) -> Result<HostKey, HostKeyError> {
     let key = PrivateKey::from_openssh(&text).ok().filter(|key| key.key_data().is_ed25519());
     let no_key = || {
         let path = printable_path(path);
-        error(format!(
+        format!(
             "{path} is no ed25519 key without a passphrase in OpenSSH's format; move it away to get a \
              new one"
-        ))
+        )
     };
     key.map(|key| HostKey { key }).ok_or_else(no_key)
 }
 
 /// Makes a key. Where two servers begin at once, both take the one whose file was there first.
-fn make(folder: &Path, path: &Path) -> Result<HostKey, HostKeyError> {
-    let not_written = |cause: &dyn fmt::Display| {
-        error(format!("{} can't be written: {cause}", printable_path(path)))
-    };
+fn make(folder: &Path, path: &Path) -> Result<HostKey, String> {
+    let not_written =
+        |cause: &dyn fmt::Display| format!("{} can't be written: {cause}", printable_path(path));
     let mut seed = [0; 32];
     getrandom::fill(&mut seed).map_err(|cause| not_written(&cause))?;
     let key = PrivateKey::from(Ed25519Keypair::from_seed(&seed));
@@ -118,7 +111,7 @@ fn private_file(path: &Path) -> io::Result<File> {
 }
 
 #[cfg(unix)]
-fn refuse_readable(file: &File, path: &Path) -> Result<(), HostKeyError> {
+fn refuse_readable(file: &File, path: &Path) -> Result<(), String> {
     use std::os::unix::fs::PermissionsExt;
     let mode = file.metadata().map_err(|error| unreadable(path, &error))?.permissions().mode();
     let others = 0o077;
@@ -126,23 +119,19 @@ fn refuse_readable(file: &File, path: &Path) -> Result<(), HostKeyError> {
         return Ok(());
     }
     let path = printable_path(path);
-    Err(error(format!(
+    Err(format!(
         "{path} can be read or written by others, so it is no secret; type \"chmod 600 {path}\" if \
          nobody has copied it, or move it away to get a new one"
-    )))
+    ))
 }
 
 #[cfg(not(unix))]
-fn refuse_readable(_: &File, _: &Path) -> Result<(), HostKeyError> {
+fn refuse_readable(_: &File, _: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn unreadable(path: &Path, cause: &io::Error) -> HostKeyError {
-    error(format!("{} can't be read: {cause}", printable_path(path)))
-}
-
-fn error(sentence: String) -> HostKeyError {
-    HostKeyError { sentence }
+fn unreadable(path: &Path, cause: &io::Error) -> String {
+    format!("{} can't be read: {cause}", printable_path(path))
 }
 
 impl fmt::Debug for HostKey {
@@ -151,11 +140,3 @@ impl fmt::Debug for HostKey {
         f.debug_tuple("HostKey").field(&self.fingerprint()).finish()
     }
 }
-
-impl fmt::Display for HostKeyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.sentence)
-    }
-}
-
-impl std::error::Error for HostKeyError {}

@@ -23,7 +23,7 @@ use tokio::sync::mpsc::UnboundedSender;
 use tokio::task::{unconstrained, yield_now};
 
 use crate::lock::locked;
-use crate::ops::metrics::Metrics;
+use crate::metrics::Metrics;
 
 /// The place for one frame. The next one has room when the last has drained.
 #[derive(Debug)]

@@ -11,13 +11,12 @@ use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use super::connection::{self, ssh_config};
-use super::explanation::explain;
-use super::gate::{Gate, Phase};
+use super::gate::{Gate, Phase, explain};
 use super::host_key::HostKey;
 use super::visitor::Host;
-use crate::ops::config::{Config, LiveConfig};
-use crate::ops::logging::events;
-use crate::ops::metrics::Metrics;
+use crate::config::{Config, LiveConfig};
+use crate::logging;
+use crate::metrics::Metrics;
 
 /// A server that listens.
 #[derive(Debug)]
@@ -99,7 +98,7 @@ impl Server {
                         Err(None) => {}
                     },
                     Err(error) => {
-                        events::fault("accept", error);
+                        logging::fault("accept", error);
                         sleep(ACCEPT_PAUSE).await;
                     }
                 },
@@ -107,7 +106,7 @@ impl Server {
         }
         drop(listener);
         let drain = config.get().drain;
-        events::draining(drain.as_secs());
+        logging::draining(drain.as_secs());
         let until_end = drain + LAST_WORDS.min(drain);
         for (next, time) in [(Phase::Draining, until_end), (Phase::Closing, CLOSING)] {
             gate.enter(next);

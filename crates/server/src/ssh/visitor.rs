@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::future::Future;
 use std::net::SocketAddr;
 
-use super::admission::Refusal;
 use super::inbound::Inbound;
 use super::outbox::Outbox;
 use crate::accounts::AccountKey;
+use crate::admission::Refusal;
 use cellcaster::terminal::WindowSize;
 
 /// A connected client with a terminal.

@@ -36,7 +36,7 @@ fn write(folder: &Path, first: u32) {
     let mut store = HostStore::open(folder).unwrap();
     for number in first.. {
         let name = Name::new(&format!("n{number}")).unwrap();
-        let account = store.create_account(&key(number), &name, NOW).unwrap();
+        let account = store.create_account(None, &key(number), &name, NOW).unwrap();
         store.record(account.id, &run, NOW).unwrap();
         println!("kept {number}");
     }

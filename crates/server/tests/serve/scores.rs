@@ -20,7 +20,7 @@ fn filled(folder: &Path) -> HostStore {
     let now = UnixTime::new(1_795_300_000);
     for (number, name, scripts) in [(1, "漢字", &[WON, HARD][..]), (2, "Ada", &[WON, MUSEUM])] {
         let (key, name) = (AccountKey::new([number; 32]), Name::new(name).unwrap());
-        let account = store.create_account(&key, &name, now).unwrap();
+        let account = store.create_account(None, &key, &name, now).unwrap();
         for script in scripts {
             let run = verify(script).unwrap();
             store.record(account.id, &run, now.after(u64::from(number))).unwrap();

@@ -11,13 +11,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use cellcaster_server::accounts::HostStore;
-use cellcaster_server::ops::admin::RoomRow;
-use cellcaster_server::ops::config::Config;
-use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::admin::RoomRow;
+use cellcaster_server::config::Config;
+use cellcaster_server::metrics::Metrics;
 use cellcaster_server::sessions::driver::{GameHost, HostParts};
-use cellcaster_server::sessions::visitors::Visitors;
 use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::visitors::Visitors;
 use russh::Error;
 use russh::client::{self, Handler};
 use russh::keys::PublicKeyOrCertificate;

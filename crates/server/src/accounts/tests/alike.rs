@@ -31,6 +31,11 @@ fn target(index: usize) -> BanTarget {
     }
 }
 
+/// A text as a store gets them: without U+0000.
+fn text() -> impl Strategy<Value = String> {
+    any::<String>().prop_map(|text| text.replace('\0', ""))
+}
+
 /// A call, and the days that pass before it.
 fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
     let account = || 1..4_i64;
@@ -40,9 +45,9 @@ fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
             .prop_map(|(network, key, name)| Call::CreateFrom(network, key, name)),
         3 => (account(), 0..NAMES.len()).prop_map(|(id, name)| Call::Rename(id, name)),
         1 => account().prop_map(Call::Visit),
-        1 => (account(), any::<bool>(), any::<String>())
+        1 => (account(), any::<bool>(), text())
             .prop_map(|(id, bell, text)| Call::Set(id, bell, text)),
-        1 => (0..10_usize, prop::option::of(0..20_u64), any::<String>())
+        1 => (0..10_usize, prop::option::of(0..20_u64), text())
             .prop_map(|(target, days, reason)| Call::Ban(target, days, reason)),
         1 => (0..10_usize).prop_map(Call::Unban),
         4 => (account(), 0..LEVELS.len(), 1..5_u64, 0..4_usize)
@@ -56,13 +61,13 @@ fn answer(store: &mut HostStore, call: &Call, now: UnixTime) -> String {
     let of_failure = |_: StoreFailure| "failure";
     match call {
         Call::Create(number, text) => {
-            format!("{:?}", store.create_account(&key(*number), &name(NAMES[*text]), now))
+            format!("{:?}", store.create_account(None, &key(*number), &name(NAMES[*text]), now))
         }
         Call::CreateFrom(network, number, text) => {
             let rate = AccountRate { per_hour: 1, at_once: 1 };
             let origin = Origin::new([192, 0, *network, 7].into(), rate);
             let (key, name) = (key(*number), name(NAMES[*text]));
-            format!("{:?}", store.create_account_from(Some(&origin), &key, &name, now))
+            format!("{:?}", store.create_account(Some(&origin), &key, &name, now))
         }
         Call::Rename(id, text) => {
             format!("{:?}", store.rename(AccountId(*id), &name(NAMES[*text]), now))

@@ -57,14 +57,14 @@ fn hosts_that_start_at_once_make_the_tables_once() {
 fn what_one_host_keeps_another_one_shows() {
     let address = PostgresServer::shared().address();
     let (mut one, mut other) = (open(&address), open(&address));
-    let ada = one.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let ada = one.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     one.record(ada.id, &run("cellar", 9, Rank::Ghost), at(0)).unwrap();
     assert_eq!(other.account(&key(1)).unwrap(), Some(ada.clone()));
     assert_eq!(other.level_scores(&board("cellar"), 9).unwrap()[0].name, ada.name);
     drop((one, other));
     let mut reader = HostStore::connect_to_read(&address).unwrap().unwrap();
     assert_eq!(reader.account(&key(1)).unwrap(), Some(ada));
-    let refused = reader.create_account(&key(2), &name("Bob"), at(0));
+    let refused = reader.create_account(None, &key(2), &name("Bob"), at(0));
     assert!(matches!(refused, Err(Refusal::Failed(_))), "{refused:?}");
     assert!(reader.note_visit(AccountId(1), at(1)).is_err());
 }
@@ -79,7 +79,7 @@ fn of_hosts_that_create_a_name_at_once_one_does() {
             [text.clone(), text.to_lowercase(), text.replace('B', "b"), text.replace("ll", "Il")];
         let answers = at_once(&address, 4, |host, store| {
             let name = name(&names[usize::from(host) - 1]);
-            store.create_account(&key(round * 8 + host), &name, at(0))
+            store.create_account(None, &key(round * 8 + host), &name, at(0))
         });
         assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
         let refused = answers.iter().filter(|answer| **answer == Err(Refusal::NameTaken));
@@ -92,7 +92,7 @@ fn of_hosts_that_create_the_account_of_a_key_at_once_one_does() {
     let address = PostgresServer::shared().address();
     for round in 0..12_u8 {
         let answers = at_once(&address, 4, |host, store| {
-            store.create_account(&key(round), &name(&format!("n-{round}-{host}")), at(0))
+            store.create_account(None, &key(round), &name(&format!("n-{round}-{host}")), at(0))
         });
         assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 1, "{answers:?}");
         let refused = answers.iter().filter(|answer| **answer == Err(Refusal::KeyKnown));
@@ -106,7 +106,10 @@ fn of_accounts_that_take_a_name_at_once_one_has_it() {
     let mut store = open(&address);
     let accounts: Vec<_> = (1..=4_u8)
         .map(|number| {
-            store.create_account(&key(number), &name(&format!("n-{number}")), at(0)).unwrap().id
+            store
+                .create_account(None, &key(number), &name(&format!("n-{number}")), at(0))
+                .unwrap()
+                .id
         })
         .collect();
     for round in 1..=8_u8 {
@@ -125,7 +128,7 @@ fn of_accounts_that_take_a_name_at_once_one_has_it() {
 #[test]
 fn results_that_come_at_once_leave_the_best() {
     let address = PostgresServer::shared().address();
-    let ada = open(&address).create_account(&key(1), &name("Ada"), at(0)).unwrap().id;
+    let ada = open(&address).create_account(None, &key(1), &name("Ada"), at(0)).unwrap().id;
     at_once(&address, 4, |host, store| {
         for round in 0..10_u64 {
             let steps = 1000 - round * 10 - u64::from(host);
@@ -148,7 +151,7 @@ fn databases_of_others_are_left_alone() {
         sentence
     };
     let newer = server.address();
-    open(&newer).create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    open(&newer).create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     server.sql(&format!("UPDATE {}.cellcaster SET version = 99", place(&newer)));
     assert!(refused(&newer).contains("has version 99, which a newer Cellcaster wrote"));
     let accounts = format!("SELECT count(*) FROM {}.accounts", place(&newer));

@@ -15,7 +15,7 @@ fn create(
 ) -> Result<Account, Refusal> {
     let name = name(&format!("n-{number}-x"));
     let now = UnixTime::new(1_795_300_000 + second);
-    store.create_account_from(Some(&origin(address)), &key(number), &name, now)
+    store.create_account(Some(&origin(address)), &key(number), &name, now)
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn a_network_makes_so_many_accounts() {
         create(store, "192.0.3.1", 3, 1).unwrap();
         create(store, "2001:db8::1", 4, 1).unwrap();
         let taken =
-            store.create_account_from(Some(&origin("192.0.3.2")), &key(10), &name("n-0-x"), at(0));
+            store.create_account(Some(&origin("192.0.3.2")), &key(10), &name("n-0-x"), at(0));
         assert_eq!(taken, Err(Refusal::NameTaken));
         create(store, "192.0.3.2", 5, 1).unwrap();
         create(store, "192.0.3.3", 6, 1).unwrap();
@@ -48,7 +48,7 @@ fn a_network_makes_so_many_accounts() {
         }
         assert!(create(store, "192.0.2.9", 15, 4000).is_err());
         // Without a network, any number.
-        store.create_account(&key(16), &name("Ada"), at(0)).unwrap();
+        store.create_account(None, &key(16), &name("Ada"), at(0)).unwrap();
     });
 }
 

@@ -24,7 +24,7 @@ fn cellar(store: &mut HostStore) -> Vec<LevelScore> {
 fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
     for (number, text) in [(1, "Ada"), (2, "Bob")] {
-        store.create_account(&key(number), &name(text), at(0)).unwrap();
+        store.create_account(None, &key(number), &name(text), at(0)).unwrap();
     }
     let mut before = waiting(&folder);
     before.add(result(2, 3, WON)).unwrap();
@@ -34,7 +34,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 
     let mut after = waiting(&folder);
     assert_eq!(after.len(), 2);
-    let mut away = HostStore::failing(StoreFailure::away("gone"));
+    let mut away = HostStore::failing(StoreFailure::Away("gone".into()));
     assert!(matches!(after.record(0, &mut away, |_| None, at(5)), Some(Late::NotNow)));
     assert_eq!(after.len(), 2);
     for text in ["Bob", "Ada"] {
@@ -58,7 +58,7 @@ fn results_outlive_the_host_and_are_recorded_at_their_own_time() {
 #[test]
 fn what_the_store_refuses_waits_for_a_week_and_what_does_not_count_not_at_all() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
-    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     let mut waiting = waiting(&folder);
     waiting.add(result(7, 0, WON)).unwrap();
     waiting.add(result(1, 0, "level cellar\n2 s forward\n")).unwrap();
@@ -113,14 +113,14 @@ fn nobody_else_reads_the_file() {
 #[test]
 fn what_cannot_be_written_waits_in_memory_until_it_can() {
     let (folder, mut store) = (Folder::new(), HostStore::in_memory());
-    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     let mut results = waiting(&folder);
     fs::remove_dir_all(&folder.0).unwrap();
     results.add(result(1, 1, WON)).unwrap();
     assert!(results.save().is_err());
     assert_eq!(results.len(), 1);
     // A store that is full takes nothing, however long it lasts.
-    let mut full = HostStore::failing(StoreFailure::full("no room"));
+    let mut full = HostStore::failing(StoreFailure::Full("no room".into()));
     assert!(matches!(results.record(0, &mut full, |_| None, at(99)), Some(Late::NotNow)));
     fs::create_dir_all(&folder.0).unwrap();
     results.save().unwrap();

@@ -16,8 +16,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::sequencing::steps_due;
-use super::{Alone, Replica, SECOND, STANDSTILL};
+use super::{Alone, Replica, SECOND, STANDSTILL, steps_due};
 use crate::cluster::bus::BusFault;
 use crate::cluster::message::{LogMessage, PeerMessage, to_bytes};
 use crate::cluster::sequencer::ClusterSequencer;
@@ -54,7 +53,7 @@ impl Replica {
                 return;
             }
         } else if alone.probe.is_none() && now.duration_since(alone.probed) >= SECOND {
-            let (context, id, number) = (self.context.clone(), self.id, self.state.number());
+            let (context, id, number) = (self.context.clone(), self.id, self.state.number);
             let probe = async move { context.bus.read(id, number).await.is_ok() };
             (alone.probe, alone.probed) = (Some(tokio::spawn(probe)), now);
         }
@@ -66,7 +65,7 @@ impl Replica {
         let steps = steps_due(&mut self.times.stepped, now);
         if steps > 0 {
             let message = sequencer.message(&self.state, steps);
-            self.context.load.metrics().steps_alone.inc_by(steps);
+            self.context.load.metrics.steps_alone.inc_by(steps);
             self.advance_alone(message);
         }
     }
@@ -87,7 +86,7 @@ impl Replica {
     async fn append_alone(&mut self) -> Result<(), BusFault> {
         self.confirm_sent().await?;
         while let Some(first) = self.alone.as_mut().and_then(|it| it.messages.front_mut()) {
-            first.last = self.state.number();
+            first.last = self.state.number;
             let message = first.clone();
             match self.context.bus.append(self.id, message.last, to_bytes(&message)).await {
                 Ok(number) => self.confirm(number).await,
@@ -108,9 +107,7 @@ impl Replica {
 
     /// Finds the message in the log that was sent without an answer.
     async fn confirm_sent(&mut self) -> Result<(), BusFault> {
-        while let Some((number, bytes)) =
-            self.context.bus.read(self.id, self.state.number()).await?
-        {
+        while let Some((number, bytes)) = self.context.bus.read(self.id, self.state.number).await? {
             let first = self.alone.as_ref().and_then(|it| it.messages.front());
             if first.is_none_or(|first| to_bytes(first) != bytes) {
                 self.diverge();
@@ -124,7 +121,7 @@ impl Replica {
     /// Notes that the log has the first message.
     async fn confirm(&mut self, number: u64) {
         let first = self.alone.as_mut().and_then(|it| it.messages.pop_front());
-        self.state.set_number(number);
+        self.state.number = number;
         if let Some(message) = first {
             self.broadcast(&PeerMessage::Appended(number, message)).await;
         }
@@ -157,7 +154,7 @@ impl Replica {
     }
 
     fn has_only_own_members(&self) -> bool {
-        let (own, room) = (self.interface.inbox.seated(), self.state.room());
+        let (own, room) = (self.interface.inbox.seated(), &self.state.room);
         // Members who are away have no host.
         room.colors().all(|(member, _)| own.contains(&member) || room.is_away(member))
     }
@@ -165,7 +162,7 @@ impl Replica {
     /// Leaves the room to hosts that reach the bus.
     fn release_lease(&mut self) {
         if let Some(sequencer) = &self.sequencer {
-            drop(self.context.leases.release(sequencer.lease()));
+            drop(self.context.leases.release(&sequencer.lease));
         }
         self.step_down();
         self.reaches_bus = false;

@@ -76,9 +76,9 @@ impl Run {
         let now = Instant::now();
         for (room, members) in there {
             let played = self.played(room);
-            let known = played.state.room().colors().map(|(member, _)| member);
+            let known = played.state.room.colors().map(|(member, _)| member);
             let known: BTreeSet<MemberId> =
-                known.filter(|member| !played.state.room().is_away(*member)).collect();
+                known.filter(|member| !played.state.room.is_away(*member)).collect();
             assert_eq!(known, members, "the members of room {room}");
             let is_going_on = played.last_at.is_some_and(|at| now.duration_since(at) < PAUSE);
             assert!(is_going_on, "room {room} stands still");
@@ -132,7 +132,7 @@ impl Run {
 
 impl Played {
     fn note(&mut self) {
-        let view = self.state.room().view();
+        let view = self.state.room.view();
         self.states.insert((view.header.round, view.step), view.game.checksum());
     }
 }

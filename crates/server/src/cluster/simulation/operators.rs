@@ -10,9 +10,9 @@ use tokio::time::{Instant, sleep};
 
 use super::{HOSTS, Run};
 use crate::accounts::AccountKey;
-use crate::ops::admin::Operator;
-use crate::ops::admin::{AdminReply, AdminRequest, Target};
-use crate::sessions::visitors::{Notice, Presence};
+use crate::admin::{AdminReply, AdminRequest, Target};
+use crate::operator::Operator;
+use crate::visitors::{Notice, Presence};
 
 /// Hosts with a visitor each, called `p0` and so on, and their operators.
 struct Hosts {

@@ -7,10 +7,10 @@ use super::super::message::LogMessage;
 use super::world::World;
 use super::{HOSTS, Run, wish};
 use crate::accounts::AccountKey;
+use crate::line::Line;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::{Command, MemberId};
 use crate::rooms::summary::RoomId;
-use crate::sessions::line::Line;
 use cellcaster::game::{Intent, Intents};
 
 /// The players from this one on are guests.

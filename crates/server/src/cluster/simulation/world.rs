@@ -8,10 +8,11 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep};
 
 use super::super::bus::{Bus, HostRequest, Key};
-use super::super::lease_worker::{self, Call, LeaseWorker};
-use super::super::visits::{VisitRegistry, Visits};
+use super::super::leases::Leases;
+use super::super::visits::Visits;
 use super::bus::SimulatedBus;
-use crate::accounts::{HostNotice, HostStore};
+use crate::accounts::worker::StoreWorker;
+use crate::accounts::{HostNotice, HostStore, StoreFailure};
 use crate::lock::locked;
 use crate::rooms::summary::RoomId;
 use cellcaster::rng::SplitMix64;
@@ -99,41 +100,33 @@ impl World {
     }
 
     /// The leases of a host, by the one clock of the database.
-    pub(crate) fn lease_worker(&self, host: usize) -> LeaseWorker {
-        let (worker, mut queue) = LeaseWorker::new();
+    pub(crate) fn leases(&self, host: usize) -> Leases {
+        let (store, host) = (self.worker(host), notice(host).name);
+        Leases { store, host, gathered: Duration::ZERO, renewals: Arc::default() }
+    }
+
+    /// The visits of a host, by the same clock.
+    pub(crate) fn visits(&self, host: usize) -> Visits {
+        Visits::new(self.worker(host), notice(host))
+    }
+
+    /// A task that calls the database for a host, as a thread does.
+    fn worker(&self, host: usize) -> StoreWorker {
+        let (worker, mut queue) = StoreWorker::new(256);
         let world = self.clone();
         tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
                 world.pass(host).await;
                 if world.link(host).has_no_database {
                     sleep(PATIENCE).await;
+                    call(&mut HostStore::failing(StoreFailure::Away("no database".into())));
                     continue;
                 }
-                world.run(call, host);
+                world.with(|inner| call(inner.store()));
                 world.pass(host).await;
             }
         });
         worker
-    }
-
-    /// The visits of a host, by the same clock.
-    pub(crate) fn visits(&self, host: usize) -> Visits {
-        let (visits, mut queue) = Visits::new();
-        let mut registry = VisitRegistry::new(notice(host), &visits);
-        let world = self.clone();
-        tokio::spawn(async move {
-            while let Some(call) = queue.recv().await {
-                world.pass(host).await;
-                if !world.link(host).has_no_database {
-                    world.with(|inner| registry.run(inner.store(), call));
-                }
-            }
-        });
-        visits
-    }
-
-    fn run(&self, call: Call, host: usize) {
-        self.with(|inner| lease_worker::run([call], inner.store(), &notice(host).name));
     }
 
     pub(crate) fn link(&self, host: usize) -> Link {

@@ -4,6 +4,7 @@ use tokio::runtime::Builder;
 use tokio::task::JoinHandle;
 
 use super::*;
+use crate::accounts::worker::Call;
 
 /// Some hosts and the database that they share.
 struct Hosts {
@@ -33,9 +34,9 @@ impl Hosts {
 
     /// A host that announces itself.
     fn add(&mut self, host: usize) {
-        let (visits, mut queue) = Visits::new();
+        let (worker, mut queue) = StoreWorker::new(256);
         let notice = HostNotice { name: format!("host {host}"), ..HostNotice::default() };
-        let mut registry = VisitRegistry::new(notice, &visits);
+        let visits = Visits::new(worker, notice);
         let database = Arc::clone(&self.database);
         let announcing = visits.clone();
         let announces = tokio::spawn(async move {
@@ -46,7 +47,7 @@ impl Hosts {
         });
         let keeps = tokio::spawn(async move {
             while let Some(call) = queue.recv().await {
-                locked(&database, |database| database.run(&mut registry, call));
+                locked(&database, |database| database.run(call));
             }
         });
         self.running.push(Running { visits, tasks: [announces, keeps] });
@@ -75,13 +76,13 @@ impl Hosts {
 }
 
 impl Database {
-    fn run(&mut self, registry: &mut VisitRegistry, call: Call) {
+    fn run(&mut self, call: Call) {
         self.pass();
         if self.is_away {
-            let failure = StoreFailure::away("the database does not answer");
-            registry.run(&mut HostStore::failing(failure), call);
+            let failure = StoreFailure::Away("the database does not answer".into());
+            call(&mut HostStore::failing(failure));
         } else {
-            registry.run(&mut self.store, call);
+            call(&mut self.store);
         }
     }
 

@@ -270,8 +270,8 @@ mod tests {
     use std::{env, process};
 
     use super::*;
+    use crate::line::Line;
     use crate::rooms::room::{CHAT_COLUMNS, Command, MemberId, Mode, parse_log};
-    use crate::sessions::line::Line;
     use cellcaster::world::Difficulty;
 
     const DAY: Duration = Duration::from_hours(24);

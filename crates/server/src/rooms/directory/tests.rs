@@ -3,9 +3,9 @@ use std::io;
 use tokio::runtime::Builder;
 
 use super::*;
-use crate::ops::logging::LogFormat;
-use crate::ops::logging::tests::logged;
-use crate::ops::metrics::Metrics;
+use crate::logging::LogFormat;
+use crate::logging::tests::logged;
+use crate::metrics::Metrics;
 use crate::rooms::room::{Entry, NAME_COLUMNS};
 use crate::rooms::sequencer::Recording;
 use cellcaster::game::PlayerColor;
@@ -14,9 +14,7 @@ use cellcaster::world::Difficulty;
 impl Rooms {
     /// The newest snapshot of a room; `None` if there is no such room.
     pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        locked(&self.0.open, |open| {
-            open.rooms.get(&id).and_then(|room| room.interface.shown.view())
-        })
+        locked(&self.0.open, |open| open.rooms.get(&id).and_then(|room| room.interface.view()))
     }
 
     /// Ends a room as a fault does.

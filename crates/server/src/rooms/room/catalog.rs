@@ -12,7 +12,7 @@ use cellcaster::world::World;
 /// Levels by name, in their order. The name of a host's map is its key, which differs between two texts of the map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Catalog {
-    names: Vec<String>,
+    pub(crate) names: Vec<String>,
     levels: BTreeMap<String, Listed>,
 }
 
@@ -48,11 +48,6 @@ impl Catalog {
     /// Adds a level, or replaces the one with the same name.
     pub(crate) fn add(&mut self, name: &str, world: World) {
         self.list(name, name, Arc::new(world));
-    }
-
-    /// The names, in their order.
-    pub(crate) fn names(&self) -> &[String] {
-        &self.names
     }
 
     /// The keys of the host's own maps.

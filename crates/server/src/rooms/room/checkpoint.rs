@@ -15,7 +15,7 @@ use super::catalog::no_level;
 use super::member::Member;
 use super::{CHAT_COLUMNS, Catalog, Header, KeptPlace, MemberId, NAME_COLUMNS, Room, SAID, Said};
 use crate::accounts::printable;
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::game::PlayerColor;
 use cellcaster::game::stored::{Reader, Unrestorable, check, checksum, written};
 use cellcaster::rng;
@@ -83,7 +83,7 @@ impl Room {
         (self.said, self.said_count) = input.read()?;
         (self.step, self.next_member, self.round) = input.read()?;
         (self.members, self.again, self.emotes) = input.read()?;
-        self.standings = self.round.standings().into();
+        self.standings = self.round.standings.as_slice().into();
         let start = self.game.as_ref().clone();
         self.game = Arc::new(start.restored(input.rest())?);
         self.check()

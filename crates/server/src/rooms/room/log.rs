@@ -14,19 +14,15 @@
 //! round 3
 //! next 2
 //! member 1 red 250 Mara
-//! kept 1 9f3ac1 1200
 //! 12 want 1 9 forward run turn:1.5
 //! 40 say 1 behind you
 //! 41 emote 1 wave
-//! 41 keep 1
-//! 80 away 1
-//! 85 return 1 9f3ac1
 //! 90 leave 1
 //! 95 join 2 green Jon
 //! ```
 //!
-//! A `member` line holds a member's number, colour, points and name; a `kept` line holds the number of the member, the
-//! token of the last return and, if they are away, the steps that are left to them.
+//! A `member` line holds a member's number, colour, points and name. Places are kept in clusters alone, whose rooms are
+//! not recorded.
 //!
 //! An entry begins with the step before which it takes effect; after its verb comes the number of the member. The
 //! number after that in `want` is the step of the picture that the member saw. The angles of `want` count in one
@@ -38,7 +34,8 @@ use serde::{Deserialize, Serialize};
 
 use super::member::{KeptPlace, MemberId, NAME_COLUMNS, line_within};
 use super::mode::Mode;
-use crate::sessions::line::Line;
+use crate::line::Line;
+use cellcaster::app::parts::{Choice, Value as _};
 use cellcaster::cli::ROOM_RECORDING;
 use cellcaster::game::stored::bits;
 use cellcaster::game::{Intents, PlayerColor};
@@ -155,13 +152,7 @@ impl Header {
         let seed = value("seed")?.parse().ok()?;
         let round = value("round")?.parse().ok()?;
         let next_member = value("next")?.parse().ok()?;
-        let mut members: Vec<Seat> = Vec::new();
-        for line in lines {
-            match line.strip_prefix("kept ") {
-                Some(words) => read_kept(&mut members, words)?,
-                None => members.push(Seat::parse(line)?),
-            }
-        }
+        let members = lines.map(Seat::parse).collect::<Option<_>>()?;
         let header = Self { level, mode, difficulty, seed, round, next_member, members };
         header.is_possible().then_some(header)
     }
@@ -184,8 +175,7 @@ impl fmt::Display for Header {
         writeln!(f, "{ROOM_RECORDING}{VERSION}\nlevel {}\nmode {}", self.level, self.mode.name())?;
         writeln!(f, "difficulty {}\nseed {}", self.difficulty.name(), self.seed)?;
         writeln!(f, "round {}\nnext {}", self.round, self.next_member)?;
-        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))?;
-        self.members.iter().try_for_each(|seat| write_kept(f, seat))
+        self.members.iter().try_for_each(|seat| writeln!(f, "{seat}"))
     }
 }
 
@@ -206,58 +196,21 @@ impl fmt::Display for Seat {
     }
 }
 
-/// Writes the `kept` line of a member with an account.
-fn write_kept(f: &mut fmt::Formatter<'_>, seat: &Seat) -> fmt::Result {
-    match seat.kept {
-        None => Ok(()),
-        Some(KeptPlace { token, away: None }) => writeln!(f, "kept {} {token:x}", seat.id),
-        Some(KeptPlace { token, away: Some(left) }) => {
-            writeln!(f, "kept {} {token:x} {left}", seat.id)
-        }
-    }
-}
-
-/// Reads the words after `kept`.
-fn read_kept(members: &mut [Seat], words: &str) -> Option<()> {
-    let mut words = words.split(' ');
-    let id = MemberId::parse(words.next()?)?;
-    let token = u64::from_str_radix(words.next()?, 16).ok()?;
-    let away = match words.next() {
-        Some(left) => Some(left.parse().ok()?),
-        None => None,
-    };
-    let seat = members.iter_mut().find(|seat| seat.id == id)?;
-    seat.kept = Some(KeptPlace { token, away });
-    words.next().is_none().then_some(())
+impl Choice for Emote {
+    const ALL: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Wave, "wave", "waves"),
+        (Self::Yes, "yes", "nods"),
+        (Self::No, "no", "shakes their head"),
+        (Self::Laugh, "laugh", "laughs"),
+        (Self::Help, "help", "calls for help"),
+        (Self::Here, "here", "calls: over here!"),
+    ];
 }
 
 impl Emote {
-    /// All of them, in the order of their keys.
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Wave, Self::Yes, Self::No, Self::Laugh, Self::Help, Self::Here];
-
-    /// The name in logs.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Wave => "wave",
-            Self::Yes => "yes",
-            Self::No => "no",
-            Self::Laugh => "laugh",
-            Self::Help => "help",
-            Self::Here => "here",
-        }
-    }
-
-    /// The text that others read beside the name.
-    pub(crate) const fn text(self) -> &'static str {
-        match self {
-            Self::Wave => "waves",
-            Self::Yes => "nods",
-            Self::No => "shakes their head",
-            Self::Laugh => "laughs",
-            Self::Help => "calls for help",
-            Self::Here => "calls: over here!",
-        }
+    /// What others read of the member: "Mara waves".
+    pub(crate) fn text(self) -> String {
+        self.label()
     }
 }
 
@@ -303,7 +256,7 @@ impl Entry {
                 Command::Intents { seen: seen.parse().ok()?, intents: Intents::from_words(words)? }
             }
             "say" => Command::Say(Line::of(rest, CHAT_COLUMNS)?),
-            "emote" => Command::Emote(Emote::ALL.into_iter().find(|it| it.name() == rest)?),
+            "emote" => Command::Emote(Emote::named(rest)?),
             _ => return None,
         };
         Some(Self { step: step.parse().ok()?, member: MemberId::parse(member)?, command })
@@ -361,7 +314,7 @@ mod tests {
             Just(Command::Again),
             (any::<u64>(), intents).prop_map(|(seen, intents)| Command::Intents { seen, intents }),
             line(CHAT_COLUMNS).prop_map(Command::Say),
-            prop::sample::select(&Emote::ALL).prop_map(Command::Emote),
+            prop::sample::select(Emote::ALL).prop_map(|it| Command::Emote(it.0)),
         ]
     }
 
@@ -412,8 +365,6 @@ mod tests {
         };
         let mut header = Header::new("museum", Mode::Tag, Difficulty::Hard, u64::MAX);
         header.members = vec![seat(1, 250, "Mara"), seat(7, 0, "a b c")];
-        header.members[0].kept = Some(KeptPlace { token: u64::MAX, away: None });
-        header.members[1].kept = Some(KeptPlace { token: 0, away: Some(1_200) });
         header.next_member = 9;
         let text = header.to_string();
         assert_eq!(Header::parse(text.lines()), Some(header));
@@ -432,7 +383,6 @@ mod tests {
         assert_eq!(read("2147483649", ""), None);
         assert_eq!(read("7", "member 7 red 0 Mara"), None);
         assert_eq!(read("7", "member 3 red 0 Mara\nmember 3 red 0 Bo"), None);
-        assert_eq!(read("7", "member 3 red 0 Mara\nkept 3 1 3601"), None);
         let many: Vec<String> = (1..=99).map(|id| format!("member {id} red 0 Mara")).collect();
         assert_eq!(read("100", &many.join("\n")), None);
     }

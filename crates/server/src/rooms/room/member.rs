@@ -6,7 +6,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::mode::SECOND;
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::game::stored::bits;
 use cellcaster::game::{Intent, Intents, Look, PlayerColor, PlayerId};
 

@@ -10,7 +10,7 @@ pub(crate) const SECOND: u64 = STEPS_PER_SECOND as u64;
 
 /// A game that can be played in a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) enum Mode {
+pub enum Mode {
     /// Walking about, without guards and without an end.
     Roam,
     /// A level of the campaign with its guards, for all together.

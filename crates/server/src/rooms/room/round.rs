@@ -100,10 +100,10 @@ impl Field<'_> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Round {
     mode: Mode,
-    phase: Phase,
+    pub(crate) phase: Phase,
     play: Play,
     chance: SplitMix64,
-    standings: Vec<Standing>,
+    pub(crate) standings: Vec<Standing>,
 }
 
 /// The state of a round that only its mode has.
@@ -133,22 +133,13 @@ impl Round {
         let is_possible = match (&self.play, self.mode) {
             (Play::Roam, Mode::Roam) => true,
             (Play::ToExit(finishes), Mode::Together | Mode::Alone | Mode::Race) => {
-                finishes.begun() <= step
+                finishes.begun <= step
             }
-            (Play::Tag(tag), Mode::Tag) => tag.begins_until(step),
-            (Play::Hide(hide), Mode::Hide) => hide.begins_until(step),
+            (Play::Tag(tag), Mode::Tag) => tag.since <= step,
+            (Play::Hide(hide), Mode::Hide) => hide.since.is_none_or(|since| since <= step),
             _ => false,
         };
         check(is_possible, "what is played")
-    }
-
-    pub(crate) fn phase(&self) -> Phase {
-        self.phase
-    }
-
-    /// The standings, the winner first; empty before the end.
-    pub(crate) fn standings(&self) -> &[Standing] {
-        &self.standings
     }
 
     /// Whether the next round is due.
@@ -179,7 +170,7 @@ impl Round {
     /// The step in which the play began, while it goes on in a mode that ends at the exit.
     pub(crate) fn begun(&self) -> Option<u64> {
         let is_played = matches!(self.phase, Phase::Playing { .. });
-        self.finishes().filter(|_| is_played).map(Finishes::begun)
+        self.finishes().filter(|_| is_played).map(|finishes| finishes.begun)
     }
 
     fn finishes(&self) -> Option<&Finishes> {
@@ -237,7 +228,7 @@ impl Round {
             tag.choose(field, &mut self.chance);
         }
         if let Play::ToExit(finishes) = &mut self.play {
-            finishes.begin(field.step);
+            finishes.begun = field.step;
         }
         self.phase = Phase::Playing { ends: field.step + self.mode.longest() };
     }
@@ -310,15 +301,6 @@ struct Finishes {
 }
 
 impl Finishes {
-    fn begin(&mut self, step: u64) {
-        self.begun = step;
-    }
-
-    /// The step in which the play began.
-    fn begun(&self) -> u64 {
-        self.begun
-    }
-
     fn role(&self, member: MemberId) -> Role {
         if self.times.contains_key(&member) { Role::Done } else { Role::Player }
     }
@@ -406,10 +388,6 @@ impl Tag {
         self.since = field.step;
     }
 
-    fn begins_until(&self, step: u64) -> bool {
-        self.since <= step
-    }
-
     fn role(&self, member: MemberId) -> Role {
         if self.it == Some(member) { Role::Seeker } else { Role::Player }
     }
@@ -473,10 +451,6 @@ impl Hide {
             let chosen = ids.remove(chance.below(ids.len()));
             self.seekers.insert(chosen, None);
         }
-    }
-
-    fn begins_until(&self, step: u64) -> bool {
-        self.since.is_none_or(|since| since <= step)
     }
 
     fn role(&self, member: MemberId) -> Role {

@@ -3,16 +3,16 @@
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
-use super::{Shared, unix_time};
+use super::Shared;
 use crate::accounts::{
     Account, AccountId, AccountKey, AccountSettings, Ban, BanTarget, HostStore, Identity, Name,
-    Origin, Refusal, StoreFailure,
+    Origin, Refusal, StoreFailure, UnixTime,
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
+use crate::line::Line;
 use crate::lock::locked;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
-use crate::sessions::line::Line;
 use crate::ssh::{Departure, Visitor};
 use cellcaster::terminal::{Options, locale_without_utf8};
 
@@ -50,7 +50,7 @@ impl Shared {
         let key = visitor.key;
         let address = visitor.peer.ip();
         let answer = self.store.call(move |store| {
-            let now = unix_time();
+            let now = UnixTime::now();
             let account = key.map(|key| store.account(&key)).transpose()?.flatten();
             let name = account.as_ref().map(|account| &account.name);
             let identity = Identity { address: Some(address), key: key.as_ref(), name };
@@ -68,12 +68,12 @@ impl Shared {
             Ok(Ok(known)) => known,
             failed => {
                 self.metrics.store_errors.inc();
-                events::store_failed(format!("{failed:?}"));
+                logging::store_failed(format!("{failed:?}"));
                 return Err((NOT_KNOWN.to_owned(), Departure::FAILED));
             }
         };
         if let Some(ban) = ban {
-            events::banned_visitor(address, &ban.target);
+            logging::banned_visitor(address, &ban.target);
             return Err((banned(&ban), Departure::REFUSED));
         }
         let offer = match &account {
@@ -98,12 +98,12 @@ pub(crate) fn choose_name(
     account: Option<AccountId>,
     name: &Name,
 ) -> Result<Option<Account>, String> {
-    let now = unix_time();
+    let now = UnixTime::now();
     let sentence = |refusal: Refusal| refusal.to_string();
     match (key, account) {
         (_, Some(account)) => store.rename(account, name, now).map(Some).map_err(sentence),
         (Some(key), None) => {
-            let account = store.create_account_from(Some(origin), &key, name, now);
+            let account = store.create_account(Some(origin), &key, name, now);
             account.map(Some).map_err(sentence)
         }
         (None, None) => match guest_may_use(store, name) {
@@ -117,7 +117,7 @@ pub(crate) fn choose_name(
 fn guest_may_use(store: &mut HostStore, name: &Name) -> Result<bool, StoreFailure> {
     let is_taken = store.account_named(name)?.is_some();
     let identity = Identity { name: Some(name), ..Identity::default() };
-    Ok(!is_taken && store.ban_of(&identity, unix_time())?.is_none())
+    Ok(!is_taken && store.ban_of(&identity, UnixTime::now())?.is_none())
 }
 
 fn banned(ban: &Ban) -> String {
@@ -188,7 +188,7 @@ impl Shared {
             }
             VisitRefusal::NotNow(failure) => {
                 self.metrics.store_errors.inc();
-                events::store_failed(failure);
+                logging::store_failed(failure);
                 (NOT_KNOWN.to_owned(), Departure::FAILED)
             }
         })

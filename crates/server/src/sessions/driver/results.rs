@@ -1,20 +1,29 @@
 //! Results: a run counts after its script was replayed.
+//!
+//! Results that have waited for the store: recorded as soon as it answers.
+//!
+//! Each is a call of its own, so that those of players come in between. While the store refuses results although
+//! it answers, they are tried again less often. Results that a full disk keeps in memory are written as soon as
+//! there is room.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, Weak};
+use std::time::Duration;
 
-use super::unix_time;
+use tokio::time::sleep;
+
+use super::Shared;
 use crate::accounts::{
-    Account, AccountId, HostStore, LevelBoard, StoreFailure, UnixTime, VerifiedRun, WaitingResult,
-    WaitingResults, verify_with,
+    Account, AccountId, HostStore, Late, LevelBoard, LevelScore, StoreFailure, UnixTime,
+    VerifiedRun, WaitingResult, WaitingResults, verify_with,
 };
+use crate::line::Line;
 use crate::lock::locked;
-use crate::ops::logging::events;
-use crate::ops::metrics::Metrics;
+use crate::logging;
+use crate::metrics::Metrics;
 use crate::rooms::room::{Catalog, NAME_COLUMNS};
 use crate::rooms::sequencer::FinishedRun;
-use crate::sessions::line::Line;
 use crate::sessions::session::BoardRow;
-use crate::sessions::visitors::Visitors;
+use crate::visitors::Visitors;
 use cellcaster::app::parts::of_steps;
 use cellcaster::app::store::Improved;
 use cellcaster::world::{Difficulty, World};
@@ -44,12 +53,12 @@ impl Recorder {
             Ok(run) => run,
             Err(reason) => {
                 self.metrics.results(false).inc();
-                events::result_refused(account.name.as_str(), &run.level, &reason);
+                logging::result_refused(account.name.as_str(), &run.level, &reason);
                 return format!("The result does not count. {reason}");
             }
         };
         self.metrics.results(true).inc();
-        let now = unix_time();
+        let now = UnixTime::now();
         match store.record(account.id, &run, now) {
             Ok(improved) => self.placed(store, account, &run, improved),
             Err(failure) => {
@@ -68,7 +77,7 @@ impl Recorder {
 
     pub(crate) fn failed(&self, failure: &StoreFailure) {
         self.metrics.store_errors.inc();
-        events::store_failed(failure);
+        logging::store_failed(failure);
     }
 
     /// What a run that was recorded has improved.
@@ -80,7 +89,7 @@ impl Recorder {
         improved: Improved,
     ) -> String {
         let (steps, rank) = (run.tally().steps, run.rank());
-        events::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
+        logging::result_verified(account.name.as_str(), run.board().level(), steps, rank.name());
         let what = if improved.time { "your best" } else { "not your best" };
         let what = format!("{}, rank {rank}: {what}.", of_steps(steps));
         let scores = store.level_scores(run.board(), MOST_ROWS).unwrap_or_else(|failure| {
@@ -103,10 +112,10 @@ impl Recorder {
         });
         self.metrics.results_waiting.set(count as i64);
         for failure in [&added, &saved].into_iter().filter_map(|it| it.as_ref().err()) {
-            events::store_failed(failure);
+            logging::store_failed(failure);
         }
         if added.is_ok() {
-            events::result_waits(account.name.as_str(), run.board().level());
+            logging::result_waits(account.name.as_str(), run.board().level());
         }
         added.is_ok()
     }
@@ -114,12 +123,14 @@ impl Recorder {
 
 /// What a player is told whose result waits because of `failure`.
 fn kept(failure: &StoreFailure) -> &'static str {
-    if failure.is_away() {
-        "The host can't reach its database; your result is kept and will be recorded."
-    } else if failure.is_full() {
-        "The host's disk is full; your result waits until there is room."
-    } else {
-        "The host can't record your result now; it is kept and will be recorded."
+    match failure {
+        StoreFailure::Away(_) => {
+            "The host can't reach its database; your result is kept and will be recorded."
+        }
+        StoreFailure::Full(_) => "The host's disk is full; your result waits until there is room.",
+        StoreFailure::Refused(_) => {
+            "The host can't record your result now; it is kept and will be recorded."
+        }
     }
 }
 
@@ -132,10 +143,10 @@ pub(crate) fn board(
 ) -> Vec<BoardRow> {
     let Some(board) = LevelBoard::new(level, difficulty) else { return Vec::new() };
     let scores = store.level_scores(&board, MOST_ROWS).unwrap_or_else(|failure| {
-        events::store_failed(failure);
+        logging::store_failed(failure);
         Vec::new()
     });
-    let row = |score: crate::accounts::LevelScore| {
+    let row = |score: LevelScore| {
         Some(BoardRow {
             name: Line::of(score.name.as_str(), NAME_COLUMNS)?,
             steps: score.tally.steps,
@@ -144,4 +155,93 @@ pub(crate) fn board(
         })
     };
     scores.into_iter().filter_map(row).collect()
+}
+
+/// The time from one round to the next.
+const PERIOD: Duration = Duration::from_secs(2);
+/// The same after a round in which the store has refused results.
+const REFUSED_PERIOD: Duration = Duration::from_mins(1);
+
+/// Records what waits, again and again, as long as the host exists.
+pub(crate) async fn record_all(shared: Weak<Shared>) {
+    loop {
+        let mut refused = 0;
+        loop {
+            // The host is not held while the store is waited for: its last owner ends the thread of the store.
+            let Some(answer) = shared.upgrade().map(|shared| {
+                let recorder = shared.recorder.clone();
+                shared.store.call(move |store| recorder.record_late(store, refused))
+            }) else {
+                return;
+            };
+            match answer.await {
+                Ok(Next::Recorded) => {}
+                Ok(Next::Refused) => refused += 1,
+                Ok(Next::None) | Err(_) => break,
+            }
+        }
+        sleep(if refused > 0 { REFUSED_PERIOD } else { PERIOD }).await;
+    }
+}
+
+/// What comes after a result.
+enum Next {
+    /// The result waits no more.
+    Recorded,
+    /// It waits on, and the next one may be tried.
+    Refused,
+    /// None: the store is away or full, or no more results wait.
+    None,
+}
+
+impl Recorder {
+    /// Records the result that waits after `skipped` others.
+    fn record_late(&self, store: &mut HostStore, skipped: usize) -> Next {
+        let Some(waiting) = &self.waiting else { return Next::None };
+        let (late, count) = locked(waiting, |waiting| {
+            let late = waiting.record(skipped, store, |name| self.world(name), UnixTime::now());
+            if matches!(late, None | Some(Late::NotNow)) {
+                // The failure was logged when the first of them began to wait. It is tried again.
+                _ = waiting.save();
+            }
+            (late, waiting.len())
+        });
+        self.metrics.results_waiting.set(count as i64);
+        match late {
+            None | Some(Late::NotNow) => return Next::None,
+            Some(Late::Refused(failure)) => {
+                self.failed(&failure);
+                return Next::Refused;
+            }
+            Some(Late::Recorded(account, run)) => {
+                let (level, steps) = (run.board().level(), run.tally().steps);
+                logging::result_verified(account.name.as_str(), level, steps, run.rank().name());
+                let level = self.catalog.title(level);
+                let line = format!("your result in {level}, {}, is recorded now.", of_steps(steps));
+                self.visitors.say_to(&account.key, &line);
+            }
+            Some(Late::Refuted(result, reason)) => {
+                self.metrics.results(false).inc();
+                logging::result_lost(&result.key, reason);
+            }
+            Some(Late::GivenUp(result, failure)) => logging::result_lost(&result.key, failure),
+        }
+        Next::Recorded
+    }
+
+    /// Leaves everything on the disk when the host ends: results that wait in memory, and the log of the store.
+    pub(crate) fn end(&self, store: &mut HostStore) {
+        if let Some(waiting) = &self.waiting
+            && locked(waiting, WaitingResults::save).is_err()
+        {
+            // The store may lie on another disk.
+            while matches!(self.record_late(store, 0), Next::Recorded) {}
+            if let Err(failure) = locked(waiting, WaitingResults::save) {
+                logging::store_failed(format!("results that wait are lost: {failure}"));
+            }
+        }
+        if let Err(failure) = store.checkpoint() {
+            logging::store_failed(failure);
+        }
+    }
 }

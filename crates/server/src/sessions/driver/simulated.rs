@@ -5,19 +5,20 @@ use std::time::Duration;
 
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
+use tokio::time::sleep;
 
-use super::store_worker::StoreWorker;
 use super::visit::Driver;
 use super::{GameHost, HostParts, Shared, login, refuse};
 use crate::accounts::HostStore;
-use crate::ops::config::LiveConfig;
-use crate::ops::metrics::Metrics;
+use crate::accounts::worker::StoreWorker;
+use crate::config::LiveConfig;
+use crate::load::{Load, Worker};
+use crate::metrics::Metrics;
 use crate::rooms::directory::{Place, Recordings, Rooms};
 use crate::rooms::room::{Catalog, RoomView};
-use crate::sessions::load::{Load, Worker};
 use crate::sessions::session::Session;
-use crate::sessions::visitors::Visitors;
 use crate::ssh::{Link, Visitor};
+use crate::visitors::Visitors;
 use cellcaster::terminal::Options;
 
 /// A host in simulated time.
@@ -50,7 +51,14 @@ impl Simulated {
     /// It is to be called within a runtime.
     pub(crate) fn new(setup: Setup) -> Self {
         let metrics = Arc::<Metrics>::default();
-        let time = setup.store_time;
+        let (store, mut queue) = StoreWorker::new(super::MOST_CALLS);
+        let (mut database, time) = (setup.store, setup.store_time);
+        tokio::spawn(async move {
+            while let Some(call) = queue.recv().await {
+                sleep(time).await;
+                call(&mut database);
+            }
+        });
         let host = GameHost::start(HostParts {
             live: setup.live,
             visitors: setup.visitors,
@@ -58,7 +66,7 @@ impl Simulated {
             recordings: setup.recordings,
             load: Load::simulated(Arc::clone(&metrics), setup.worker),
             metrics,
-            store: StoreWorker::simulated(setup.store, time),
+            store,
             waiting: None,
             seed: setup.seed,
             cluster: None,

@@ -17,22 +17,22 @@ use tokio::time::sleep_until;
 
 use super::login::{self, Known, NameInUse};
 use super::{Shared, results};
-use crate::accounts::{Account, AccountKey, AccountSettings, Name, Origin};
+use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin};
 use crate::cluster::Entrant;
+use crate::line::Line;
+#[cfg(test)]
+use crate::load::Work;
 use crate::lock::locked;
-use crate::ops::logging::events;
+use crate::logging;
 use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::line::Line;
-#[cfg(test)]
-use crate::sessions::load::Work;
 use crate::sessions::session::{
     HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
 };
-use crate::sessions::visitors::{Notice, Presence};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
+use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
 use cellcaster::terminal::Options;
 use cellcaster::world::Difficulty;
@@ -214,7 +214,7 @@ impl Driver {
                     self.session.written(now);
                     self.is_sending = false;
                     if let Some(key) = self.answers_key.take() {
-                        self.shared.metrics.key_time.observe(now.saturating_sub(key).as_secs_f64());
+                        self.shared.metrics.key_time.observe(now.saturating_sub(key));
                     }
                 }
                 DriverEvent::RoomsChanged => {
@@ -265,7 +265,7 @@ impl Driver {
             #[cfg(test)]
             self.shared.load.spend(Work::Frame);
             let time = self.shared.now().saturating_sub(now);
-            self.shared.metrics.frame_time.observe(time.as_secs_f64());
+            self.shared.metrics.frame_time.observe(time);
             self.answers_key = self.session.answered();
         } else if let Some(view) = &view {
             self.session.look_at(view);
@@ -376,10 +376,10 @@ impl Driver {
             let sentence = "A guest's result does not rank: come with a public key.";
             return self.notify(SessionEvent::Result(sentence.to_owned()));
         };
-        let (replies, recorder) = (self.replies.clone(), self.shared.recorder.clone());
-        let is_accepted = self.shared.store.run(move |store| {
+        let recorder = self.shared.recorder.clone();
+        let is_accepted = self.call_store(move |store| {
             let sentence = recorder.record(store, &account, &run);
-            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Result(sentence)));
+            Some(Reply::SessionEvent(SessionEvent::Result(sentence)))
         });
         if !is_accepted {
             self.notify(SessionEvent::Result("The host can't check your result now.".to_owned()));
@@ -403,10 +403,9 @@ impl Driver {
         }
         let (key, account) = (self.key, self.account.as_ref().map(|account| account.id));
         let origin = Origin::new(self.address, self.shared.config.get().accounts);
-        let replies = self.replies.clone();
-        let is_accepted = self.shared.store.run(move |store| {
+        let is_accepted = self.call_store(move |store| {
             let result = login::choose_name(store, &origin, key, account, &name);
-            _ = replies.try_send(Reply::Named(name, result));
+            Some(Reply::Named(name, result))
         });
         if !is_accepted {
             self.notify(SessionEvent::Named(Err("The host is busy; try again.".to_owned())));
@@ -425,7 +424,7 @@ impl Driver {
         }
         let line = login::line(&name);
         self.presence.set_name(name.as_str());
-        events::named(self.key.as_ref(), name.as_str());
+        logging::named(self.key.as_ref(), name.as_str());
         self.account = account.or(self.account.take());
         self.name = Some(name);
         SessionEvent::Named(Ok(line))
@@ -440,14 +439,9 @@ impl Driver {
 
     fn show_board(&mut self, level: String, difficulty: Difficulty) {
         let own = self.account.as_ref().map(|account| account.id);
-        let replies = self.replies.clone();
-        self.shared.store.run(move |store| {
+        self.call_store(move |store| {
             let rows = results::board(store, &level, difficulty, own).into();
-            _ = replies.try_send(Reply::SessionEvent(SessionEvent::Board {
-                level,
-                difficulty,
-                rows,
-            }));
+            Some(Reply::SessionEvent(SessionEvent::Board { level, difficulty, rows }))
         });
     }
 
@@ -455,21 +449,19 @@ impl Driver {
     /// other ones.
     fn show_ghosts(&mut self, level: String, difficulty: Difficulty) {
         let own = self.account.as_ref().map(|account| account.id);
-        let (replies, runs) = (self.replies.clone(), Arc::clone(&self.shared.runs));
-        let catalog = Arc::clone(self.shared.rooms.catalog());
-        self.shared.store.run(move |store| {
+        let (runs, catalog) =
+            (Arc::clone(&self.shared.runs), Arc::clone(self.shared.rooms.catalog()));
+        self.call_store(move |store| {
             let board = (level.as_str(), difficulty);
-            let ghosts = locked(&runs, |runs| runs.ghosts(store, &catalog, board, own));
-            match ghosts {
+            match locked(&runs, |runs| runs.ghosts(store, &catalog, board, own)) {
                 Ok(ghosts) => {
                     let ghosts = ghosts.into();
-                    _ = replies.try_send(Reply::SessionEvent(SessionEvent::Ghosts {
-                        level,
-                        difficulty,
-                        ghosts,
-                    }));
+                    Some(Reply::SessionEvent(SessionEvent::Ghosts { level, difficulty, ghosts }))
                 }
-                Err(failure) => events::store_failed(failure),
+                Err(failure) => {
+                    logging::store_failed(failure);
+                    None
+                }
             }
         });
     }
@@ -478,9 +470,22 @@ impl Driver {
         let Some(account) = self.account.as_ref().map(|account| account.id) else { return };
         self.shared.store.run(move |store| {
             if let Err(failure) = store.set_settings(account, &settings) {
-                events::store_failed(failure);
+                logging::store_failed(failure);
             }
         });
+    }
+
+    /// Acts on the store, whose reply is heard later; returns whether it will.
+    fn call_store(
+        &self,
+        act: impl FnOnce(&mut HostStore) -> Option<Reply> + Send + 'static,
+    ) -> bool {
+        let replies = self.replies.clone();
+        self.shared.store.run(move |store| {
+            if let Some(reply) = act(store) {
+                _ = replies.try_send(reply);
+            }
+        })
     }
 }
 
@@ -572,7 +577,7 @@ impl Driver {
 
     /// Whether a visitor finds the room as it was on another host.
     fn can_return(&self) -> bool {
-        self.shared.keeps_places && self.account.is_some()
+        self.shared.cluster.is_some() && self.account.is_some()
     }
 
     /// Takes a visitor with an account back to the room in which their last host has left them.

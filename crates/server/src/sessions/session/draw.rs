@@ -16,8 +16,8 @@ use super::pages::Page;
 use super::stay::{SeenGhost, seconds_left};
 use super::talk;
 use super::ui::Ui;
+use crate::line;
 use crate::rooms::room::{Phase, RoomView};
-use crate::sessions::line;
 use cellcaster::app::parts::{
     DrawOptions, Menu, Overlay, draw_banner, hint, is_too_small, leaving, message,
     picture_and_status, too_small, whole_seconds,

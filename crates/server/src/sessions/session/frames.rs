@@ -3,11 +3,11 @@
 //!
 //! - **Pace.** The answer to a key is drawn early, so that the frame rate does not delay it, but on credit: a
 //!   visitor who holds a key gets no more frames in the long run than others. Without credit, the keys of
-//!   300 visitors drew all their frames, and the [governor](crate::sessions::governor) governed nothing.
+//!   300 visitors drew all their frames, and the [governor](crate::load) governed nothing.
 //! - **Answers.** A frame answers a key if it shows the effect. What a key changes on the screen is in the next picture.
 //!   What it wants of the room is in the first picture of a snapshot in which the room has acted on it, if the room
 //!   has changed then. Keys without an effect are not answered: with each key counted until the next frame, whatever
-//!   that showed, the mean of [`Metrics::key_time`](crate::ops::metrics::Metrics::key_time) was 2.5 s.
+//!   that showed, the mean of [`Metrics::key_time`](crate::metrics::Metrics::key_time) was 2.5 s.
 //! - **Steps.** The visitor sees the step of the newest frame that their terminal has answered.
 
 use std::collections::VecDeque;

@@ -3,7 +3,7 @@
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::accounts::printable;
-use crate::sessions::line::Line;
+use crate::line::Line;
 use cellcaster::terminal::{Key, KeyEvent};
 
 /// A line that is being typed. What is typed is what [`printable`] leaves of it, except for a blank at

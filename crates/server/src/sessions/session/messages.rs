@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use super::endings::IdleLimits;
 use crate::accounts::AccountSettings;
+use crate::line::Line;
 use crate::rooms::ghost::Ghost;
 use crate::rooms::room::{Catalog, Command, MemberId};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use crate::sessions::line::Line;
 use cellcaster::app::Configuration;
 use cellcaster::app::store::Preferences;
 use cellcaster::game::Rank;

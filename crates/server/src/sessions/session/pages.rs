@@ -7,11 +7,11 @@
 use super::draw::COMPRESSION;
 use super::messages::{Request, Way};
 use super::ui::Ui;
+use crate::line::Line;
 use crate::rooms::directory::RoomRefusal;
 use crate::rooms::room::{Command, Emote, Mode};
 use crate::rooms::summary::{RoomId, RoomSummary, RoomWish};
-use crate::sessions::line::Line;
-use cellcaster::app::parts::{self, Kind, Menu, of_steps};
+use cellcaster::app::parts::{self, Choice as _, Kind, Menu, of_steps};
 use cellcaster::world::Difficulty;
 
 /// The rooms that the lobby lists itself; the others are on a page of their own.
@@ -175,7 +175,7 @@ impl Ui {
             Target::Existing(room) if watches => Way::Watch(room),
             Target::Existing(room) => Way::Enter(room),
             Target::New { mode, level, difficulty } => {
-                let Some(level) = self.host.catalog.names().get(level).cloned() else { return };
+                let Some(level) = self.host.catalog.names.get(level).cloned() else { return };
                 Way::Open(RoomWish { level, mode, difficulty })
             }
         };
@@ -187,7 +187,7 @@ impl Ui {
     pub(crate) fn ask_for_board(&mut self) {
         self.board.rows = None;
         let difficulty = self.identity.preferences.difficulty;
-        if let Some(level) = self.host.catalog.names().get(self.board.level).cloned() {
+        if let Some(level) = self.host.catalog.names.get(self.board.level).cloned() {
             self.ask(Request::Board { level, difficulty });
         }
     }
@@ -280,7 +280,7 @@ impl Ui {
     }
 
     fn first_walk(&self) -> Target {
-        let names = self.host.catalog.names();
+        let names = &self.host.catalog.names;
         let level = names.iter().position(|name| name == FIRST_LEVEL).unwrap_or(0);
         Target::New { mode: Mode::Roam, level, difficulty: self.identity.preferences.difficulty }
     }
@@ -306,7 +306,7 @@ impl Ui {
         let catalog = &self.host.catalog;
         let name = match target {
             Target::Existing(id) => self.room(id).map(|room| room.level.as_str()),
-            Target::New { level, .. } => catalog.names().get(level).map(String::as_str),
+            Target::New { level, .. } => catalog.names.get(level).map(String::as_str),
         };
         name.map_or_else(String::new, |name| catalog.title(name).to_owned())
     }
@@ -350,7 +350,7 @@ impl Ui {
         choice: impl Fn(usize) -> Choice,
     ) -> Menu<Choice> {
         let catalog = &self.host.catalog;
-        let levels = catalog.names().iter().enumerate();
+        let levels = catalog.names.iter().enumerate();
         levels
             .filter(|(_, name)| catalog.suits(name, mode))
             .fold(menu, |menu, (index, name)| menu.entry(catalog.title(name), choice(index)))
@@ -358,7 +358,7 @@ impl Ui {
 
     fn board_menu(&self) -> Menu<Choice> {
         let catalog = &self.host.catalog;
-        let level = catalog.names().get(self.board.level).map_or("", |name| catalog.title(name));
+        let level = catalog.names.get(self.board.level).map_or("", |name| catalog.title(name));
         let difficulty = self.identity.preferences.difficulty.name();
         let menu = Menu::new(level).line(format!("On {difficulty}; left and right change it."));
         match &self.board.rows {
@@ -445,7 +445,7 @@ fn modes_menu() -> Menu<Choice> {
 }
 
 fn emotes_menu() -> Menu<Choice> {
-    (1..).zip(Emote::ALL).fold(Menu::new("show"), |menu, (number, emote)| {
-        menu.entry_with(emote.text(), number.to_string(), Choice::Emote(emote))
+    (1..).zip(Emote::ALL).fold(Menu::new("show"), |menu, (number, &(emote, _, text))| {
+        menu.entry_with(text, number.to_string(), Choice::Emote(emote))
     })
 }

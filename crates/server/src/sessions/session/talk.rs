@@ -7,8 +7,8 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line as TextLine, Span};
 
 use super::draw::overhead;
+use crate::line::Line;
 use crate::rooms::room::Said;
-use crate::sessions::line::Line;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::PlayerColor;
 use cellcaster::tui::canvas::Canvas;

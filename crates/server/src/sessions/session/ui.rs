@@ -9,9 +9,9 @@ use super::line_entry::LineEntry;
 use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
 use super::pages::{Choice, Page};
 use super::stay::Stay;
+use crate::line::Line;
 use crate::rooms::room::{Command, NAME_COLUMNS, RoomView};
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::line::Line;
 use cellcaster::app::parts::{
     Clock, Controls, Detection, KeyContext, Pages, Pointer, Stats, StatusLine, TerminalLook,
 };
@@ -280,7 +280,7 @@ impl Ui {
                 self.leave_room(Some(sentence));
             }
             SessionEvent::Board { level, difficulty, rows } => {
-                let asked = self.host.catalog.names().get(self.board.level);
+                let asked = self.host.catalog.names.get(self.board.level);
                 let is_asked = self.identity.preferences.difficulty == difficulty;
                 if asked == Some(&level) && is_asked {
                     self.board.rows = Some(rows);

@@ -99,7 +99,7 @@ fn bans_work_while_no_server_runs() {
     let folder = folder();
     let mut store = HostStore::open(&folder).unwrap();
     let (key, now) = (AccountKey::new([1; 32]), UnixTime::new(1_795_300_000));
-    store.create_account(&key, &Name::new("Ada").unwrap(), now).unwrap();
+    store.create_account(None, &key, &Name::new("Ada").unwrap(), now).unwrap();
     drop(store);
     assert_eq!(written(&folder, &["bans"]), "nobody is banned\n");
     // The key of an account goes with its name.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cellcaster_server::ops::config::Config;
+use cellcaster_server::config::Config;
 
 use crate::support::server;
 use crate::transport::folder;

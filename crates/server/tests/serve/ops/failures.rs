@@ -73,7 +73,7 @@ fn host_that_has_run() -> PathBuf {
     let run = verify(WON).unwrap();
     let mut store = HostStore::open(&data).unwrap();
     let now = UnixTime::new(1_795_300_000);
-    let account = store.create_account(&KEY, &Name::new("Mara").unwrap(), now).unwrap();
+    let account = store.create_account(None, &KEY, &Name::new("Mara").unwrap(), now).unwrap();
     store.record(account.id, &run, now).unwrap();
     drop(store);
     start_and_end(&data, None);
@@ -125,7 +125,8 @@ fn a_host_that_starts_and_ends_loses_nothing_to_a_failure_of_a_system_call() {
     // While this store is open, its last change is in the log beside the file, as after a crash. The host copies it.
     let mut open = HostStore::open(&before).unwrap();
     let other = AccountKey::new([8; 32]);
-    open.create_account(&other, &Name::new("Jon").unwrap(), UnixTime::new(1_795_300_001)).unwrap();
+    open.create_account(None, &other, &Name::new("Jon").unwrap(), UnixTime::new(1_795_300_001))
+        .unwrap();
     let start = |failure: Option<&Failure>| {
         let data = copied(&before);
         let traced = Traced::new(&data, &paths(&data), failure);

@@ -8,11 +8,11 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use cellcaster_server::accounts::HostStore;
-use cellcaster_server::ops::config::Config;
+use cellcaster_server::config::Config;
 use cellcaster_server::sessions::driver::{GameHost, HostParts};
-use cellcaster_server::sessions::visitors::Visitors;
 use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
+use cellcaster_server::visitors::Visitors;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 

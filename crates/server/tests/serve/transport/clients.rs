@@ -4,7 +4,7 @@ use std::io::Read;
 use std::net::{TcpListener, TcpStream};
 use std::process::Command;
 
-use cellcaster_server::ssh::admission::Refusal;
+use cellcaster_server::admission::Refusal;
 use rustix::process::Signal;
 
 use super::house::{House, wait_until};

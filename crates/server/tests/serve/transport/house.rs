@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use cellcaster_server::ops::config::Config;
-use cellcaster_server::ops::metrics::Metrics;
+use cellcaster_server::config::Config;
+use cellcaster_server::metrics::Metrics;
 use cellcaster_server::ssh::Server;
 use cellcaster_server::ssh::host_key::HostKey;
 use tokio::runtime::{Builder, Runtime};

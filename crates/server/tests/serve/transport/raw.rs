@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use cellcaster::rng::SplitMix64;
-use cellcaster_server::ssh::admission::Refusal;
+use cellcaster_server::admission::Refusal;
 use tokio::net::TcpSocket;
 use tokio::runtime::Runtime;
 

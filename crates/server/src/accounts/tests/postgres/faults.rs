@@ -32,7 +32,7 @@ fn what_was_acknowledged_survives_a_crash_amid_writes() {
                 for number in 0..=250_u8 {
                     let key = AccountKey::new([round, number].repeat(16).try_into().unwrap());
                     let name = name(&format!("n-{round}-{number}-x"));
-                    match store.create_account(&key, &name, at(0)) {
+                    match store.create_account(None, &key, &name, at(0)) {
                         Ok(account) => _ = sender.send(account),
                         Err(failure) => return Some(failure),
                     }
@@ -62,24 +62,24 @@ fn without_a_server_each_call_fails_at_once_and_later_none() {
     let server = PostgresServer::start();
     let address = server.address_over_tcp();
     let mut store = open(&address);
-    let ada = store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    let ada = store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     server.crash();
     for _ in 0..3 {
         let start = Instant::now();
         let failure = store.account(&key(1)).unwrap_err();
-        assert!(failure.is_away());
+        assert!(matches!(failure, StoreFailure::Away(_)));
         let failure = failure.to_string();
         assert!(failure.contains("can't be used") && failure.lines().count() == 1, "{failure}");
-        assert!(store.create_account(&key(2), &name("Bob"), at(0)).is_err());
+        assert!(store.create_account(None, &key(2), &name("Bob"), at(0)).is_err());
         assert!(start.elapsed() < MOST, "{:?}", start.elapsed());
     }
     assert!(HostStore::connect(&address).is_err());
     server.restart();
     until_it_answers(&mut store);
     assert_eq!(store.account(&key(1)).unwrap(), Some(ada));
-    store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
+    store.create_account(None, &key(2), &name("Bob"), at(0)).unwrap();
     let refused = store.record(AccountId(99), &run("cellar", 9, Rank::Ghost), at(0)).unwrap_err();
-    assert!(!refused.is_away(), "{refused}");
+    assert!(!matches!(refused, StoreFailure::Away(_)), "{refused}");
 }
 
 #[test]
@@ -92,17 +92,18 @@ fn a_server_that_does_not_answer_holds_no_call_for_long() {
         let start = Instant::now();
         let failure = store.note_visit(AccountId(1), at(1)).unwrap_err();
         assert!(
-            failure.is_away() && failure.to_string().ends_with("no answer in time"),
+            matches!(failure, StoreFailure::Away(_))
+                && failure.to_string().ends_with("no answer in time"),
             "{failure}"
         );
-        let changed = store.create_account(&key(1), &name("Ada"), at(0));
+        let changed = store.create_account(None, &key(1), &name("Ada"), at(0));
         assert!(matches!(changed, Err(Refusal::Failed(_))), "{changed:?}");
         assert!(start.elapsed() < 2 * MOST, "{:?}", start.elapsed());
         thread::sleep(Duration::from_millis(1100));
     }
     server.resume();
     until_it_answers(&mut store);
-    store.create_account(&key(2), &name("Bob"), at(0)).unwrap();
+    store.create_account(None, &key(2), &name("Bob"), at(0)).unwrap();
 }
 
 #[test]
@@ -116,7 +117,7 @@ fn a_connection_that_was_dropped_is_made_again_unnoticed() {
         if number % 2 == 0 {
             assert_eq!(store.account(&key(9)).unwrap(), None);
         } else {
-            store.create_account(&key(number), &name(&format!("n-{number}")), at(0)).unwrap();
+            store.create_account(None, &key(number), &name(&format!("n-{number}")), at(0)).unwrap();
         }
     }
 }
@@ -129,7 +130,7 @@ fn a_change_that_may_be_kept_is_told_and_not_made_twice() {
     for (number, is_passed_on) in [(1_u8, true), (2, false), (3, true)] {
         proxy.cut(Cut { at: "COMMIT", is_passed_on });
         let name = name(&format!("n-{number}"));
-        let answer = store.create_account(&key(number), &name, at(0));
+        let answer = store.create_account(None, &key(number), &name, at(0));
         let Err(Refusal::Failed(failure)) = answer else { panic!("{answer:?}") };
         assert!(failure.to_string().ends_with("the last change may be kept or not"), "{failure}");
         assert!(proxy.has_cut());
@@ -150,7 +151,8 @@ fn a_change_that_is_not_kept_is_made_again() {
         let proxy = Proxy::before(server.port());
         let mut store = open(&proxy.address(&address, server.port()));
         proxy.cut(Cut { at: text, is_passed_on });
-        let account = store.create_account(&key(number), &name(&format!("n-{number}")), at(0));
+        let account =
+            store.create_account(None, &key(number), &name(&format!("n-{number}")), at(0));
         assert_eq!(store.account(&key(number)).unwrap(), Some(account.unwrap()));
         assert!(proxy.has_cut());
     }
@@ -165,7 +167,7 @@ fn a_password_is_needed_and_never_shown() {
         format!("postgres://guarded:{password}@127.0.0.1:{}/postgres", server.port())
     };
     let mut store = open(&address("ge%40heim"));
-    store.create_account(&key(1), &name("Ada"), at(0)).unwrap();
+    store.create_account(None, &key(1), &name("Ada"), at(0)).unwrap();
     assert!(!format!("{store:?}").contains("heim"));
     for password in ["geheim", "ge@heim", "", "ge%40heim1"] {
         let sentence = HostStore::connect(&address(password)).unwrap_err().to_string();

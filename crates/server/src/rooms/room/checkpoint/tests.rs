@@ -13,6 +13,7 @@ use self::crowd::Crowd;
 use super::*;
 use crate::rooms::room::{Command, Emote, Entry, MemberId, Mode};
 use crate::simulation;
+use cellcaster::app::parts::Choice as _;
 use cellcaster::game::stored::first_line;
 use cellcaster::game::{Intents, PlayerColor, RULES_VERSION, Script};
 use cellcaster::map::builtin::LEVELS;
@@ -68,7 +69,7 @@ impl Party {
             let command = match random.below(400) {
                 0 if slot > 0 => Some(Command::Leave),
                 1 => Some(Command::Say(line("behind you"))),
-                2 => Some(Command::Emote(Emote::ALL[random.below(6)])),
+                2 => Some(Command::Emote(Emote::ALL[random.below(6)].0)),
                 3 => Some(Command::Again),
                 4 => Some(Command::Keep),
                 5 => Some(Command::Away),

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::*;
 use crate::accounts::AccountKey;
+use crate::line::Line;
 use crate::rooms::room::{Room, parse_log};
 use crate::rooms::summary::RoomId;
-use crate::sessions::line::Line;
 use crate::sessions::session::pages::Page;
 use crate::simulation::guest;
 use crate::ssh::Visitor;

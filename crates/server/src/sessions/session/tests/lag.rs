@@ -5,7 +5,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::*;
-use crate::ops::config::Config;
+use crate::config::Config;
 
 #[test]
 fn who_does_nothing_among_others_who_do_nothing_costs_no_bytes() {
@@ -118,11 +118,11 @@ fn keys_that_change_nothing_are_not_timed_to_a_later_frame() {
         rig.press(other, "\x1b[119;1:1u\x1b[119;1:3u");
     }
     // Keys that a frame answers: what the screen shows, and what the room does.
-    let before = rig.metrics().key_time.count();
+    let before = rig.metrics().key_time.0.count();
     for key in ["\x1b[109;1:1u\x1b[109;1:3u", "\x1b[1;1:1C", "\x1b[1;1:3C"] {
         rig.press(one, key);
     }
-    let key_time = &rig.metrics().key_time;
+    let key_time = &rig.metrics().key_time.0;
     let (count, mean) = (key_time.count(), key_time.sum() / key_time.count() as f64);
     assert!((2..=3).contains(&(count - before)), "{before} and {count}");
     assert!(mean < 0.05, "{mean} s");

@@ -165,7 +165,7 @@ fn a_line_that_is_pasted_is_whole() {
         ('a'..='z').cycle().take(60).flat_map(|letter| [letter, '\u{301}']).collect();
     rig.press(one, &format!("/{line} and more that does not fit\r"));
     let said = rig.view().said.last().map(|said| said.text.clone());
-    assert_eq!(said, crate::sessions::line::Line::of(&line, 60).map(|line| line.to_string()));
+    assert_eq!(said, crate::line::Line::of(&line, 60).map(|line| line.to_string()));
 }
 
 #[test]

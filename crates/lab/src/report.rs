@@ -1,0 +1,214 @@
+//! Reports: tables of figures, which every format writes alike.
+//!
+//! Every measurement is a [`Table`] of the same shape, so one writer for each format serves all tables and leaves none
+//! out. A row has three keys: the problem, the method, and the method's parameter. A [`Diagram`] names two columns: it has
+//! a panel for each problem, and a line for each method, joined through the parameter, as the work-precision diagrams of
+//! `SciML` have (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five formats needed
+//! code for each of them, and CSV and the plots left most of them out.
+
+mod formats;
+mod plot;
+
+use std::time::Instant;
+
+pub use formats::{Format, markdown};
+pub(crate) use formats::{Origin, Report};
+
+/// A table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// A short name without spaces.
+    pub name: &'static str,
+    /// The subject, in one or two sentences without the last full stop.
+    pub title: String,
+    /// The headings of the keys. A key without a heading is empty in every row.
+    pub keys: [&'static str; 3],
+    /// The headings of the values: a name, followed by a comma and the unit if there is one. A heading begins with `time`
+    /// exactly if the values differ from run to run.
+    pub columns: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// The diagrams of this table.
+    pub diagrams: Vec<Diagram>,
+}
+
+/// A row of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The problem, the method and its parameter.
+    pub keys: [String; 3],
+    /// A value for each column.
+    pub values: Vec<Value>,
+}
+
+/// A figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// There is no such figure.
+    None,
+    /// A number of things.
+    Count(u64),
+    /// A fraction, from 0 to 1.
+    Share(f64),
+    /// Any other number.
+    Number(f64),
+    /// A time with its quartiles.
+    Time(Timing),
+}
+
+/// A plot of one column over another: an error over its cost. Both axes are logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diagram {
+    /// The indices of the columns across and up.
+    pub columns: [usize; 2],
+    /// The least and the largest error that matter. Others are drawn at the end of the axis.
+    pub range: [f64; 2],
+}
+
+/// The headings of columns.
+pub(crate) fn headings<const COUNT: usize>(names: [&str; COUNT]) -> Vec<String> {
+    names.map(str::to_owned).into()
+}
+
+impl Table {
+    /// The problems (`key` 0) or the methods (`key` 1), in order.
+    fn distinct(&self, key: usize) -> Vec<&str> {
+        let mut distinct: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            if !distinct.contains(&row.keys[key].as_str()) {
+                distinct.push(&row.keys[key]);
+            }
+        }
+        distinct
+    }
+}
+
+impl Row {
+    pub(crate) fn new(keys: [&str; 3], values: Vec<Value>) -> Self {
+        Self { keys: keys.map(str::to_owned), values }
+    }
+}
+
+impl Value {
+    /// The number; the median of a time.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::Count(count) => Some(count as f64),
+            Self::Share(number) | Self::Number(number) => Some(number),
+            Self::Time(timing) => Some(timing.median),
+        }
+    }
+
+    /// `number`, if there is one.
+    pub(crate) fn maybe(number: Option<f64>) -> Self {
+        number.map_or(Self::None, Self::Number)
+    }
+
+    /// The fraction of `all` that `part` is.
+    pub(crate) fn share(part: usize, all: usize) -> Self {
+        Self::Share(part as f64 / all.max(1) as f64)
+    }
+}
+
+impl Diagram {
+    /// The range of diagrams that show every error.
+    pub(crate) const ALL: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
+
+    /// The cost and the error of `row`, the error within the range; `None` if there is no such point.
+    fn point(&self, row: &Row) -> Option<(f64, f64)> {
+        let [cost, error] = self.columns.map(|index| row.values.get(index)?.number());
+        let (cost, error) = (cost?, error?);
+        (cost > 0.0 && !error.is_nan()).then(|| (cost, error.clamp(self.range[0], self.range[1])))
+    }
+}
+
+// Times of candidates that take turns.
+
+/// The time of a candidate over several rounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// The median over all rounds.
+    pub median: f64,
+    /// The lower quartile.
+    pub lower_quartile: f64,
+    /// The upper quartile.
+    pub upper_quartile: f64,
+}
+
+impl Timing {
+    fn of(mut times: Vec<f64>) -> Option<Self> {
+        times.sort_unstable_by(f64::total_cmp);
+        let last = times.len().checked_sub(1)?;
+        let at = |share: f64| times[(share * last as f64).round() as usize];
+        Some(Self { median: at(0.5), lower_quartile: at(0.25), upper_quartile: at(0.75) })
+    }
+}
+
+/// The times of `count` candidates, as `time` returns them for each index.
+///
+/// In each of `rounds` rounds, every candidate is timed once, so that a slow phase of the machine
+/// affects all of them. Without rounds, there are no times.
+pub(crate) fn time_in_rounds(
+    count: usize,
+    rounds: usize,
+    mut time: impl FnMut(usize) -> f64,
+) -> Vec<Value> {
+    let mut times: Vec<Vec<f64>> = vec![Vec::with_capacity(rounds); count];
+    for _ in 0..rounds {
+        for (index, times) in times.iter_mut().enumerate() {
+            times.push(time(index));
+        }
+    }
+    let value = |times| Timing::of(times).map_or(Value::None, Value::Time);
+    times.into_iter().map(value).collect()
+}
+
+/// The duration of `work`, in seconds.
+pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64()
+}
+
+/// The median of `values`; 0 if there are none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_within_the_range() {
+        let diagram = Diagram { columns: [0, 1], range: [0.5, 8.0] };
+        let point = |cost, error| diagram.point(&Row::new([""; 3], vec![cost, error]));
+        let count = Value::Count(3);
+        assert_eq!(point(count, Value::Number(0.0)), Some((3.0, 0.5)));
+        assert_eq!(point(count, Value::Number(f64::INFINITY)), Some((3.0, 8.0)));
+        assert_eq!(point(count, Value::Share(0.75)), Some((3.0, 0.75)));
+        assert_eq!(point(count, Value::Number(f64::NAN)), None);
+        assert_eq!(point(Value::None, count), None);
+    }
+
+    #[test]
+    fn quartiles_are_in_order() {
+        let Timing { median, lower_quartile, upper_quartile } =
+            Timing::of(vec![5.0, 1.0, 4.0, 2.0, 3.0]).unwrap();
+        assert_eq!((lower_quartile, median, upper_quartile), (2.0, 3.0, 4.0));
+    }
+
+    #[test]
+    fn candidates_take_turns() {
+        let mut order = Vec::new();
+        let times = time_in_rounds(2, 2, |index| {
+            order.push(index);
+            index as f64
+        });
+        assert_eq!(order, [0, 1, 0, 1]);
+        assert_eq!(times[1].number(), Some(1.0));
+        assert_eq!(time_in_rounds(1, 0, |_| 1.0), [Value::None]);
+    }
+}

@@ -1,0 +1,88 @@
+//! Stores without a file, for tests.
+
+use std::time::Duration;
+
+use rusqlite::Connection;
+#[cfg(fuzzing)]
+use rusqlite::params_from_iter;
+#[cfg(fuzzing)]
+use rusqlite::types::Value;
+
+use super::HostStore;
+#[cfg(test)]
+use super::StoreFailure;
+use super::sqlite::make_tables;
+#[cfg(fuzzing)]
+use super::sqlite::tables;
+use super::store::Database;
+
+impl HostStore {
+    /// A store that ends with the program. Its clock stands still, and [passes](Self::pass) time when it is told to.
+    ///
+    /// # Panics
+    /// Without memory for it.
+    #[doc(hidden)]
+    pub fn in_memory() -> Self {
+        let mut connection = Connection::open_in_memory().unwrap();
+        connection.execute_batch("PRAGMA foreign_keys = ON").unwrap();
+        make_tables(&mut connection).unwrap();
+        let clock = "DROP VIEW clock; CREATE TABLE clock (ms INTEGER); \
+                     INSERT INTO clock VALUES (1000000000000)";
+        connection.execute_batch(clock).unwrap();
+        Self { database: Database::File(connection) }
+    }
+
+    /// A store whose calls all fail.
+    #[cfg(test)]
+    pub(crate) fn failing(failure: StoreFailure) -> Self {
+        Self { database: Database::Failing(failure) }
+    }
+
+    /// The SQLite connection.
+    ///
+    /// # Panics
+    /// If it is another database.
+    pub(crate) fn connection(&self) -> &Connection {
+        let Database::File(connection) = &self.database else { panic!("not a file") };
+        connection
+    }
+
+    /// Lets time pass for leases, hosts and visits.
+    pub(crate) fn pass(&mut self, time: Duration) {
+        let time = i64::try_from(time.as_millis()).unwrap();
+        self.connection().execute("UPDATE clock SET ms = ms + ?1", [time]).unwrap();
+    }
+
+    /// Removes all rows.
+    ///
+    /// # Panics
+    /// Without memory for it.
+    #[cfg(fuzzing)]
+    #[doc(hidden)]
+    pub fn clear(&mut self) {
+        let connection = self.connection();
+        let tables = tables(connection).unwrap().into_iter().rev().map(|(table, _)| table);
+        for table in tables.filter(|it| it != "clock").chain(["sqlite_sequence".to_owned()]) {
+            connection.execute_batch(&format!("DELETE FROM {table}")).unwrap();
+        }
+    }
+
+    /// Puts a row into the table with that number, whatever refers to what. Returns whether the table takes it.
+    ///
+    /// # Panics
+    /// If the database does not stop to look at references.
+    #[cfg(fuzzing)]
+    #[doc(hidden)]
+    pub fn put(&mut self, table: usize, values: &[Value]) -> bool {
+        let connection = self.connection();
+        let open = "PRAGMA foreign_keys = OFF; PRAGMA ignore_check_constraints = ON";
+        connection.execute_batch(open).unwrap();
+        let tables = tables(connection).unwrap();
+        let (table, columns) = &tables[table % tables.len()];
+        let count = columns.split(", ").count();
+        let parameters = vec!["?"; count].join(", ");
+        let sql = format!("INSERT OR REPLACE INTO {table} ({columns}) VALUES ({parameters})");
+        let values = values.iter().chain(std::iter::repeat(&Value::Null)).take(count);
+        connection.execute(&sql, params_from_iter(values)).is_ok()
+    }
+}

@@ -1,0 +1,87 @@
+//! A store on a thread of its own, since its methods block.
+//!
+//! Calls wait in a bounded queue; if it is full, a call fails at once. Calls that wait when the last sender is dropped are
+//! done before the thread ends, so that no result is lost.
+//!
+//! A host has one such thread for sessions, and in a cluster one for leases and one for visits: a result that is
+//! replayed delays neither.
+//!
+//! In simulated time, a task takes the place of the thread, whose time nobody could simulate.
+
+use std::fmt;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread::{self, JoinHandle};
+
+use tokio::sync::{mpsc, oneshot};
+
+use super::HostStore;
+
+/// A call that waits.
+pub(crate) type Call = Box<dyn FnOnce(&mut HostStore) + Send>;
+
+/// The answer to a call. It is an error if the call was not accepted, or has panicked.
+pub(crate) type Answer<T> = oneshot::Receiver<T>;
+
+/// The sender of calls to a store.
+pub(crate) struct StoreWorker {
+    calls: Option<mpsc::Sender<Call>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl StoreWorker {
+    /// Starts a thread called `name`, for which at most `most` calls wait.
+    pub(crate) fn start(name: &str, most: usize, mut store: HostStore) -> io::Result<Self> {
+        let (mut worker, mut queue) = Self::new(most);
+        let thread = thread::Builder::new().name(name.to_owned()).spawn(move || {
+            while let Some(call) = queue.blocking_recv() {
+                // A fault in one call is no reason to answer no other.
+                _ = catch_unwind(AssertUnwindSafe(|| call(&mut store)));
+            }
+        })?;
+        worker.thread = Some(thread);
+        Ok(worker)
+    }
+
+    /// A sender of calls, and their receiver.
+    pub(crate) fn new(most: usize) -> (Self, mpsc::Receiver<Call>) {
+        let (calls, queue) = mpsc::channel(most);
+        (Self { calls: Some(calls), thread: None }, queue)
+    }
+
+    /// Acts on the store, and answers. The answer is an error if too many calls wait.
+    pub(crate) fn call<T: Send + 'static>(
+        &self,
+        act: impl FnOnce(&mut HostStore) -> T + Send + 'static,
+    ) -> Answer<T> {
+        let (answer, receiver) = oneshot::channel();
+        self.run(move |store| _ = answer.send(act(store)));
+        receiver
+    }
+
+    /// Acts on the store; returns whether it will, which it does not if too many calls wait.
+    pub(crate) fn run(&self, act: impl FnOnce(&mut HostStore) + Send + 'static) -> bool {
+        let calls = self.calls.as_ref();
+        let is_accepted = calls.is_some_and(|calls| calls.try_send(Box::new(act)).is_ok());
+        if !is_accepted {
+            tracing::warn!("a call of the store was dropped: too many wait");
+        }
+        is_accepted
+    }
+}
+
+impl Drop for StoreWorker {
+    fn drop(&mut self) {
+        self.calls = None;
+        // The last sender may be dropped by a call.
+        if let Some(thread) = self.thread.take_if(|it| it.thread().id() != thread::current().id()) {
+            _ = thread.join();
+        }
+    }
+}
+
+impl fmt::Debug for StoreWorker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StoreWorker").finish_non_exhaustive()
+    }
+}

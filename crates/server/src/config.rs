@@ -1,0 +1,685 @@
+//! The configuration of a server: where it listens, and every limit.
+//!
+//! ```toml
+//! listen = "[::]:2222"
+//! connections = 400
+//! connections-per-address = 100    # behind a proxy, all visitors have one address
+//! message = "Races every Friday at 20:00"
+//! log = "info,connections=warn"
+//! maps = "/var/lib/cellcaster/maps"
+//!
+//! [metrics]
+//! listen = "127.0.0.1:9464"
+//!
+//! [[room]]
+//! mode = "race"
+//! level = "cellar"
+//! ```
+//!
+//! All faults of a file are reported in one run, each with its place. Only whether a level exists is
+//! checked after the maps were read, by [`Config::check_levels`]: the file says where they are.
+
+use std::fmt;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::ops::{Range, RangeInclusive};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::watch;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::accounts::AccountRate;
+use crate::admission::Limits;
+use crate::logging::LogFilter;
+use crate::rooms::directory::RoomLimits;
+use crate::rooms::room::Mode;
+use crate::rooms::summary::RoomWish;
+use cellcaster::app::parts::{Field, Setting, Value as _, reject_range, toml_string};
+use cellcaster::fault::document::{self, Entry, FaultList};
+use cellcaster::fault::{Fault, Faults, nearest, quoted};
+use cellcaster::world::Difficulty;
+
+/// The content of a configuration file, with defaults for missing settings.
+///
+/// Its `Display` output is a complete file with comments, which parses to the same configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// The address and port to listen at.
+    pub listen: SocketAddr,
+    /// The name of the host: one line, which the lobby shows.
+    pub name: String,
+    /// The message of the day: one line, which the lobby shows; may be empty.
+    pub message: String,
+    /// What is logged.
+    pub log: LogFilter,
+    /// The folder of the host's own maps, if there is one.
+    pub maps: Option<PathBuf>,
+    /// Where metrics are read by HTTP; nowhere if `None`.
+    pub metrics: Option<SocketAddr>,
+    /// Which connections are admitted.
+    pub admission: Limits,
+    /// How many accounts a network may make.
+    pub accounts: AccountRate,
+    /// The time in which a client sends its half of the key exchange. Its version has to arrive within three
+    /// seconds.
+    pub handshake: Duration,
+    /// The time in which a session begins. Its user may have to check the host key and to type a
+    /// passphrase.
+    pub login: Duration,
+    /// The most bytes that a client sends before authentication.
+    pub login_bytes: u32,
+    /// The most bytes that a client sends in a second after it.
+    pub bytes_per_second: u32,
+    /// A client from which nothing comes for this time, not even an answer, has gone.
+    pub silence: Duration,
+    /// A client that takes no bytes for this time is disconnected, even if it answers.
+    pub stall: Duration,
+    /// The most columns of a window; further ones are left blank.
+    pub columns: u16,
+    /// The most rows of a window.
+    pub rows: u16,
+    /// The time that sessions have for their end when the server ends.
+    pub drain: Duration,
+    /// The most rooms.
+    pub rooms: u32,
+    /// The most who watch one room.
+    pub watchers: u32,
+    /// The time after which a room without members is closed.
+    pub empty_room: Duration,
+    /// The most frames that a session gets in a second.
+    pub frames_per_second: u32,
+    /// The rooms that are always there.
+    pub standing: Vec<RoomWish>,
+    /// The folder in which rooms are recorded, if they are.
+    pub recordings: Option<PathBuf>,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 2222)),
+            name: "Cellcaster".to_owned(),
+            message: String::new(),
+            log: LogFilter::default(),
+            maps: None,
+            metrics: None,
+            admission: Limits::default(),
+            accounts: AccountRate::default(),
+            handshake: Duration::from_secs(20),
+            login: Duration::from_mins(2),
+            login_bytes: 64 << 10,
+            bytes_per_second: 64 << 10,
+            silence: Duration::from_secs(12),
+            stall: Duration::from_mins(1),
+            columns: 500,
+            rows: 200,
+            drain: Duration::from_secs(10),
+            rooms: 200,
+            watchers: 32,
+            empty_room: Duration::from_mins(1),
+            frames_per_second: 30,
+            // One to walk about in, and one to play in.
+            standing: [Mode::Roam, Mode::Tag].map(in_mode).into(),
+            recordings: None,
+        }
+    }
+}
+
+impl Config {
+    /// Parses a configuration file, which faults refer to as `name`.
+    ///
+    /// # Errors
+    /// All faults of the file.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Faults> {
+        let faults = FaultList::default();
+        let document = document::parse(text, &faults);
+        let mut config = Self::default();
+        if faults.is_empty() {
+            config.read(&document, &faults);
+        }
+        if faults.is_empty() { Ok(config) } else { Err(Faults::new(name, text, faults.take())) }
+    }
+
+    fn read(&mut self, document: &DeTable, faults: &FaultList) {
+        let settings = || TEXTS.iter().chain(&NUMBERS);
+        for entry in document::entries(document, faults) {
+            if let Some(setting) = settings().find(|setting| setting.key == entry.key) {
+                setting.value.read(&entry, self);
+            } else if entry.key == "metrics" {
+                self.read_metrics(&entry);
+            } else if entry.key == "room" {
+                self.standing = read_rooms(&entry).unwrap_or_default();
+            } else {
+                let keys = settings().map(|setting| setting.key);
+                let known: Vec<&str> = keys.chain(["metrics", "room"]).collect();
+                faults.push(entry.unknown_key("the configuration", &known));
+            }
+        }
+        self.check_room_count(document, faults);
+    }
+
+    /// The limits of rooms, and the standing rooms.
+    pub(crate) fn room_limits(&self) -> RoomLimits {
+        RoomLimits {
+            most: self.rooms as usize,
+            most_watchers: self.watchers as usize,
+            closes_after: self.empty_room,
+            standing: self.standing.clone(),
+        }
+    }
+
+    fn check_room_count(&self, document: &DeTable, faults: &FaultList) {
+        let (standing, most) = (self.standing.len(), self.rooms as usize);
+        if let Some((key, _)) = document.get_key_value("room").filter(|_| standing > most) {
+            let message = format!("{standing} standing rooms are more than the limit of rooms");
+            let help = format!("write rooms = {standing} or more");
+            faults.push(Fault::new(key.span(), message).help(help));
+        }
+    }
+
+    fn read_metrics(&mut self, metrics: &Entry<'_, '_>) {
+        let Some(table) = metrics.table("[metrics]") else { return };
+        for entry in metrics.entries(table) {
+            if entry.key == METRICS_LISTEN.key {
+                METRICS_LISTEN.value.read(&entry, self);
+            } else {
+                entry.faults.push(entry.unknown_key("[metrics]", &[METRICS_LISTEN.key]));
+            }
+        }
+    }
+}
+
+impl fmt::Display for Config {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, Setting { key, about, value }) in TEXTS.iter().enumerate() {
+            let blank = if index > 0 { "\n" } else { "" };
+            writeln!(f, "{blank}# {about}")?;
+            match value.write(self) {
+                value if value.is_empty() => writeln!(f, "# {MAPS_EXAMPLE}")?,
+                value => writeln!(f, "{key} = {value}")?,
+            }
+        }
+        if self.standing.is_empty() {
+            writeln!(f, "\n# no standing rooms\nroom = []")?;
+        }
+        for Setting { key, about, value } in &NUMBERS {
+            if !about.is_empty() {
+                writeln!(f, "\n# {}", about.replace('\n', "\n# "))?;
+            }
+            writeln!(f, "{key} = {}", value.write(self))?;
+        }
+        writeln!(f, "\n# {}\n[metrics]", METRICS_LISTEN.about)?;
+        match METRICS_LISTEN.value.write(self) {
+            value if value.is_empty() => writeln!(f, "# {METRICS_EXAMPLE}")?,
+            value => writeln!(f, "{} = {value}", METRICS_LISTEN.key)?,
+        }
+        if !self.standing.is_empty() {
+            writeln!(f, "\n# the rooms that are always there")?;
+        }
+        self.standing.iter().try_for_each(|RoomWish { level, mode, difficulty }| {
+            writeln!(f, "[[room]]\nmode = \"{}\"\nlevel = \"{level}\"", mode.name())?;
+            writeln!(f, "difficulty = \"{}\"", difficulty.name())
+        })
+    }
+}
+
+/// The configuration in force, which can change while the server runs. Clones share it.
+#[derive(Clone, Debug)]
+pub struct LiveConfig(Arc<watch::Sender<Arc<Config>>>);
+
+impl LiveConfig {
+    /// The configuration of a server that starts.
+    pub fn new(config: Config) -> Self {
+        Self(Arc::new(watch::Sender::new(Arc::new(config))))
+    }
+
+    /// The configuration now.
+    pub fn get(&self) -> Arc<Config> {
+        self.0.borrow().clone()
+    }
+
+    /// Tells changes.
+    pub fn subscribe(&self) -> watch::Receiver<Arc<Config>> {
+        self.0.subscribe()
+    }
+
+    /// Replaces the configuration, except for addresses that the server listens at and the folder of
+    /// maps. Returns the names of settings that `wanted` would change and that stay until the next
+    /// start.
+    pub fn replace(&self, mut wanted: Config) -> Vec<&'static str> {
+        let now = self.get();
+        let fixed = [("listen", LISTEN), ("metrics.listen", METRICS_LISTEN), ("maps", MAPS)];
+        let fixed = fixed.into_iter().filter_map(|(name, Setting { value, .. })| {
+            let differs = value.differs(&wanted, &now);
+            value.copy(&now, &mut wanted);
+            differs.then_some(name)
+        });
+        let fixed = fixed.collect();
+        // Of the command line alone.
+        wanted.recordings.clone_from(&now.recordings);
+        self.0.send_replace(Arc::new(wanted));
+        fixed
+    }
+}
+
+/// The most standing rooms.
+const MOST_ROOMS: usize = 32;
+
+impl Config {
+    /// Checks that there are the levels of the standing rooms in `text`, a configuration that was parsed
+    /// without a fault. `levels` are all names of levels.
+    ///
+    /// # Errors
+    /// A fault for each unknown level.
+    pub fn check_levels(text: &str, name: &str, levels: &[&str]) -> Result<(), Faults> {
+        let faults = FaultList::default();
+        let document = document::parse(text, &faults);
+        for (level, place) in named_levels(&document) {
+            if !levels.contains(&level) {
+                let message = format!("there is no level {}", quoted(level));
+                let help = match nearest(level, levels) {
+                    Some(meant) => format!("the nearest level is {}", quoted(meant)),
+                    None => format!("the levels are {}", levels.join(", ")),
+                };
+                faults.push(Fault::new(place, message).help(help));
+            }
+        }
+        if faults.is_empty() { Ok(()) } else { Err(Faults::new(name, text, faults.take())) }
+    }
+}
+
+/// The levels of the standing rooms, with their places.
+fn named_levels<'a>(document: &'a DeTable<'_>) -> Vec<(&'a str, Range<usize>)> {
+    let Some(DeValue::Array(rooms)) = document.get("room").map(Spanned::get_ref) else {
+        return Vec::new();
+    };
+    let tables = rooms.iter().filter_map(|room| match room.get_ref() {
+        DeValue::Table(table) => Some(table),
+        _ => None,
+    });
+    let levels = tables.filter_map(|table| {
+        let value = table.get("level")?;
+        let DeValue::String(level) = value.get_ref() else { return None };
+        Some((level.as_ref(), value.span()))
+    });
+    levels.collect()
+}
+
+/// The standing rooms of an entry `room`; `None` after a fault of the whole list.
+fn read_rooms(entry: &Entry<'_, '_>) -> Option<Vec<RoomWish>> {
+    const EXAMPLE: &str = "[[room]]";
+    let Some(list) = entry.list() else {
+        entry.faults.push(entry.wrong_type("a list of tables", EXAMPLE));
+        return None;
+    };
+    if list.len() > MOST_ROOMS {
+        let message = format!("there are {} standing rooms, of at most {MOST_ROOMS}", list.len());
+        entry.faults.push(Fault::new(entry.key_place.clone(), message));
+        return None;
+    }
+    let rooms = list.iter().filter_map(|room| Some(read_room(room, room.table(EXAMPLE)?)));
+    Some(rooms.collect())
+}
+
+fn read_room(room: &Entry<'_, '_>, table: &DeTable<'_>) -> RoomWish {
+    let mut wish = in_mode(Mode::Roam);
+    for entry in room.entries(table) {
+        match entry.key {
+            "mode" => wish.mode = mode(&entry).unwrap_or(wish.mode),
+            "level" => {
+                if let Some(level) = entry.string("level = \"museum\"") {
+                    level.clone_into(&mut wish.level);
+                }
+            }
+            "difficulty" => {
+                wish.difficulty = Difficulty::read(&entry).unwrap_or(wish.difficulty);
+            }
+            _ => {
+                let known = ["mode", "level", "difficulty"];
+                entry.faults.push(entry.unknown_key("[[room]]", &known));
+            }
+        }
+    }
+    wish
+}
+
+fn mode(entry: &Entry<'_, '_>) -> Option<Mode> {
+    const ALONE: &str =
+        "a standing room can't be in the mode \"alone\": such a room ends with its player";
+    let text = entry.string("mode = \"roam\"")?;
+    let is_possible = |mode: &Mode| *mode != Mode::Alone;
+    Mode::named(text).filter(is_possible).or_else(|| {
+        let is_alone = text == Mode::Alone.name();
+        let unknown = || format!("there is no mode {}", quoted(text));
+        let message = if is_alone { ALONE.to_owned() } else { unknown() };
+        let names: Vec<&str> = Mode::ALL.into_iter().filter(is_possible).map(Mode::name).collect();
+        entry.reject(message, "", format!("write one of {}", names.join(", ")))
+    })
+}
+
+fn in_mode(mode: Mode) -> RoomWish {
+    RoomWish { level: "museum".to_owned(), mode, difficulty: Difficulty::default() }
+}
+
+/// In characters: the longest message of the day.
+const LONGEST_MESSAGE: usize = 200;
+/// In characters: the longest name of a host.
+const LONGEST_NAME: usize = 40;
+
+/// Examples of entries.
+const LISTEN_EXAMPLE: &str = "listen = \"127.0.0.1:2222\"";
+const LOG_EXAMPLE: &str = "log = \"info,connections=warn\"";
+const MAPS_EXAMPLE: &str = "maps = \"/var/lib/cellcaster/maps\"";
+const METRICS_EXAMPLE: &str = "listen = \"127.0.0.1:9464\"";
+
+const LISTEN: Setting<Config> = Setting {
+    key: "listen",
+    about: "the address and port to listen at",
+    value: &Text {
+        at: |it| &mut it.listen,
+        read: |entry| address(entry, LISTEN_EXAMPLE),
+        write: |listen| format!("\"{listen}\""),
+    },
+};
+
+/// Without a value, nothing is written.
+const MAPS: Setting<Config> = Setting {
+    key: "maps",
+    about: "the folder of the host's own maps; none without this line",
+    value: &Text {
+        at: |it| &mut it.maps,
+        read: |entry| folder(entry).map(Some),
+        write: |maps| {
+            maps.as_ref().map_or_else(String::new, |it| toml_string(&it.to_string_lossy()))
+        },
+    },
+};
+
+/// The only setting in the table `[metrics]`. Without a value, nothing is written.
+const METRICS_LISTEN: Setting<Config> = Setting {
+    key: "listen",
+    about: "where Prometheus reads metrics; nowhere without this line",
+    value: &Text {
+        at: |it| &mut it.metrics,
+        read: |entry| Some(address(entry, METRICS_EXAMPLE)),
+        write: |metrics| metrics.map_or_else(String::new, |address| format!("\"{address}\"")),
+    },
+};
+
+/// The settings that are texts, in the order of a file.
+const TEXTS: [Setting<Config>; 5] = [
+    LISTEN,
+    Setting {
+        key: "name",
+        about: "the name of the host, which the lobby shows",
+        value: &Text { at: |it| &mut it.name, read: name, write: |name| toml_string(name) },
+    },
+    Setting {
+        key: "message",
+        about: "the message of the day, which the lobby shows",
+        value: &Text { at: |it| &mut it.message, read: message, write: |text| toml_string(text) },
+    },
+    Setting {
+        key: "log",
+        about: "what is logged: off, error, warn, info, debug or trace, and others for the topics host, \
+                connections, rooms, results and admin",
+        value: &Text { at: |it| &mut it.log, read: log, write: |log| format!("\"{log}\"") },
+    },
+    MAPS,
+];
+
+/// The settings that are numbers, in the order of a file. They follow the texts.
+const NUMBERS: [Setting<Config>; 21] = [
+    Setting {
+        key: "connections",
+        about: "the most visitors at a time who have logged in",
+        value: &Number(1..=100_000, Place::U32(|it| &mut it.admission.connections)),
+    },
+    Setting {
+        key: "connections-per-address",
+        about: "the most connections of one address, or of one /64 of IPv6; behind a proxy, all\n\
+                visitors have the same",
+        value: &Number(1..=100_000, Place::U32(|it| &mut it.admission.per_address)),
+    },
+    Setting {
+        key: "connections-per-key",
+        about: "the most connections with one public key",
+        value: &Number(1..=1000, Place::U32(|it| &mut it.admission.per_key)),
+    },
+    Setting {
+        key: "startups",
+        about: "the most connections at a time that have not logged in, besides; one more displaces\n\
+                the oldest one of the busiest network",
+        value: &Number(1..=10_000, Place::U32(|it| &mut it.admission.startups)),
+    },
+    Setting {
+        key: "failures",
+        about: "failed connections of one network after which nearly all of its new ones are\n\
+                refused for a while; successful ones make up for failed ones",
+        value: &Number(2..=1_000_000, Place::U32(|it| &mut it.admission.failures)),
+    },
+    Setting {
+        key: "forget-seconds",
+        about: "the time after which one of them is forgotten",
+        value: &Number(1..=86_400, Place::Seconds(|it| &mut it.admission.forget)),
+    },
+    Setting {
+        key: "accounts-per-hour",
+        about: "the new accounts that one network (/24, /64) may make in an hour",
+        value: &Number(1..=1_000_000, Place::U32(|it| &mut it.accounts.per_hour)),
+    },
+    Setting {
+        key: "accounts-at-once",
+        about: "how many of them at once",
+        value: &Number(1..=1_000_000, Place::U32(|it| &mut it.accounts.at_once)),
+    },
+    Setting {
+        key: "handshake-seconds",
+        about: "the time in which a client exchanges keys; its version has to arrive within 3",
+        value: &Number(1..=600, Place::Seconds(|it| &mut it.handshake)),
+    },
+    Setting {
+        key: "login-seconds",
+        about: "the time in which a session begins; people look at a host key, and type a passphrase",
+        value: &Number(1..=3600, Place::Seconds(|it| &mut it.login)),
+    },
+    Setting {
+        key: "login-bytes",
+        about: "the most bytes of a client before it is authenticated",
+        value: &Number(8192..=16 << 20, Place::U32(|it| &mut it.login_bytes)),
+    },
+    Setting {
+        key: "bytes-per-second",
+        about: "the most bytes that a client sends in a second after that; more have to wait",
+        value: &Number(1024..=1 << 30, Place::U32(|it| &mut it.bytes_per_second)),
+    },
+    Setting {
+        key: "silence-seconds",
+        about: "the time after which a client that answers nothing has gone",
+        value: &Number(2..=3600, Place::Seconds(|it| &mut it.silence)),
+    },
+    Setting {
+        key: "stall-seconds",
+        about: "the time after which a client that takes nothing is disconnected",
+        value: &Number(2..=86_400, Place::Seconds(|it| &mut it.stall)),
+    },
+    Setting {
+        key: "columns",
+        about: "the largest window",
+        value: &Number(20..=2048, Place::U16(|it| &mut it.columns)),
+    },
+    Setting { key: "rows", about: "", value: &Number(10..=1024, Place::U16(|it| &mut it.rows)) },
+    Setting {
+        key: "drain-seconds",
+        about: "the time for which sessions go on when the server ends",
+        value: &Number(0..=3600, Place::Seconds(|it| &mut it.drain)),
+    },
+    Setting {
+        key: "rooms",
+        about: "the most rooms at a time",
+        value: &Number(2..=10_000, Place::U32(|it| &mut it.rooms)),
+    },
+    Setting {
+        key: "watchers",
+        about: "the most visitors who watch one room",
+        value: &Number(0..=10_000, Place::U32(|it| &mut it.watchers)),
+    },
+    Setting {
+        key: "empty-room-seconds",
+        about: "the time after which a room without members is closed",
+        value: &Number(0..=86_400, Place::Seconds(|it| &mut it.empty_room)),
+    },
+    Setting {
+        key: "frames-per-second",
+        about: "the most frames that a visitor gets in a second; fewer, if the processor is busy",
+        value: &Number(5..=60, Place::U32(|it| &mut it.frames_per_second)),
+    },
+];
+
+/// A value that is read and written by functions of its own.
+struct Text<T> {
+    at: fn(&mut Config) -> &mut T,
+    read: fn(&Entry<'_, '_>) -> Option<T>,
+    write: fn(&T) -> String,
+}
+
+impl<T> Text<T> {
+    fn get(&self, of: &Config) -> T
+    where
+        T: Clone,
+    {
+        (self.at)(&mut of.clone()).clone()
+    }
+}
+
+impl<T: Clone + PartialEq> Field<Config> for Text<T> {
+    fn read(&self, entry: &Entry<'_, '_>, into: &mut Config) {
+        if let Some(value) = (self.read)(entry) {
+            *(self.at)(into) = value;
+        }
+    }
+
+    fn write(&self, of: &Config) -> String {
+        (self.write)(&self.get(of))
+    }
+
+    fn differs(&self, one: &Config, other: &Config) -> bool {
+        self.get(one) != self.get(other)
+    }
+
+    fn copy(&self, from: &Config, into: &mut Config) {
+        *(self.at)(into) = self.get(from);
+    }
+}
+
+/// A whole number in a range.
+struct Number(RangeInclusive<u32>, Place);
+
+/// The place of a number.
+enum Place {
+    U16(fn(&mut Config) -> &mut u16),
+    U32(fn(&mut Config) -> &mut u32),
+    Seconds(fn(&mut Config) -> &mut Duration),
+}
+
+impl Number {
+    fn get(&self, of: &Config) -> u32 {
+        let mut of = of.clone();
+        match self.1 {
+            Place::U16(at) => u32::from(*at(&mut of)),
+            Place::U32(at) => *at(&mut of),
+            Place::Seconds(at) => u32::try_from(at(&mut of).as_secs()).unwrap_or(u32::MAX),
+        }
+    }
+
+    fn set(&self, of: &mut Config, value: u32) {
+        match self.1 {
+            Place::U16(at) => *at(of) = value as u16,
+            Place::U32(at) => *at(of) = value,
+            Place::Seconds(at) => *at(of) = Duration::from_secs(u64::from(value)),
+        }
+    }
+}
+
+impl Field<Config> for Number {
+    fn read(&self, entry: &Entry<'_, '_>, into: &mut Config) {
+        let example = format!("{} = {}", entry.key, self.get(&Config::default()));
+        let DeValue::Integer(_) = entry.value else {
+            return entry.faults.push(entry.wrong_type("a whole number", &example));
+        };
+        let (least, most) = (*self.0.start(), *self.0.end());
+        let in_range = |number: &f64| (f64::from(least)..=f64::from(most)).contains(number);
+        let wanted = format!("a whole number from {least} to {most}");
+        match entry.number().filter(in_range) {
+            Some(number) => self.set(into, number as u32),
+            None => _ = reject_range::<()>(entry, &wanted, &example),
+        }
+    }
+
+    fn write(&self, of: &Config) -> String {
+        self.get(of).to_string()
+    }
+
+    fn differs(&self, one: &Config, other: &Config) -> bool {
+        self.get(one) != self.get(other)
+    }
+
+    fn copy(&self, from: &Config, into: &mut Config) {
+        self.set(into, self.get(from));
+    }
+}
+
+fn address(entry: &Entry<'_, '_>, example: &str) -> Option<SocketAddr> {
+    let text = entry.string(example)?;
+    text.parse().ok().or_else(|| {
+        let help = format!("write {example}; [::] is all addresses of this machine");
+        entry.reject(format!("{} is no address with a port", quoted(text)), "", help)
+    })
+}
+
+fn message(entry: &Entry<'_, '_>) -> Option<String> {
+    let text = entry.string("message = \"Welcome\"")?;
+    line(entry, text, "the message of the day", LONGEST_MESSAGE)
+}
+
+fn name(entry: &Entry<'_, '_>) -> Option<String> {
+    let text = entry.string("name = \"Cellcaster\"")?;
+    if text.trim().is_empty() {
+        let help = "leave the setting out for \"Cellcaster\"";
+        return entry.reject("the name of the host is empty", "", help);
+    }
+    line(entry, text, "the name of the host", LONGEST_NAME)
+}
+
+/// `text`, if it is one line of at most `longest` characters. `what` names it in the fault.
+fn line(entry: &Entry<'_, '_>, text: &str, what: &str, longest: usize) -> Option<String> {
+    if text.chars().count() > longest || text.contains(char::is_control) {
+        return entry.reject(format!("{what} is one line of at most {longest} characters"), "", "");
+    }
+    Some(text.to_owned())
+}
+
+fn folder(entry: &Entry<'_, '_>) -> Option<PathBuf> {
+    let path = Path::new(entry.string(MAPS_EXAMPLE)?);
+    // A service starts in a folder that nobody thinks of.
+    if !path.is_absolute() {
+        let message = format!("{} is not an absolute path", quoted(&path.to_string_lossy()));
+        return entry.reject(message, "", format!("write {MAPS_EXAMPLE}"));
+    }
+    Some(path.to_owned())
+}
+
+fn log(entry: &Entry<'_, '_>) -> Option<LogFilter> {
+    entry.string(LOG_EXAMPLE)?.parse().map_or_else(
+        |part: String| {
+            let help = format!("write {LOG_EXAMPLE}; {}", LogFilter::GRAMMAR);
+            entry.reject(format!("{} is no level of the log", quoted(&part)), "", help)
+        },
+        Some,
+    )
+}
+
+#[cfg(test)]
+mod tests;

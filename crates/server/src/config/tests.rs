@@ -1,0 +1,127 @@
+use super::*;
+use cellcaster::fault::Faults;
+
+fn faults(text: &str) -> String {
+    Config::parse(text, "serve.toml").unwrap_err().to_string()
+}
+
+#[test]
+fn an_empty_file_is_the_default() -> Result<(), Faults> {
+    assert_eq!(Config::parse("", "serve.toml")?, Config::default());
+    Ok(())
+}
+
+#[test]
+fn what_is_written_parses_to_the_same() -> Result<(), Faults> {
+    let mut config = Config { listen: "[::1]:22".parse().unwrap(), ..Config::default() };
+    config.admission.startups = 7;
+    config.drain = Duration::ZERO;
+    config.message = "\"Races\" at 20:00 \\o/".to_owned();
+    config.log = "warn,rooms=debug".parse().unwrap();
+    config.metrics = Some("127.0.0.1:9464".parse().unwrap());
+    config.name = "Mara's \"cellar\"".to_owned();
+    config.maps = Some("/srv/maps".into());
+    assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
+    config.standing.pop();
+    assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
+    config.standing.clear();
+    assert_eq!(Config::parse(&config.to_string(), "serve.toml")?, config);
+    Ok(())
+}
+
+/// The range of a number, as its fault tells it.
+fn range(key: &str) -> [u64; 2] {
+    let faults = faults(&format!("{key} = 99999999999"));
+    let range = faults.split("a whole number from ").nth(1).and_then(|it| it.lines().next());
+    let (least, most) = range.and_then(|it| it.split_once(" to ")).unwrap();
+    [least, most].map(|end| end.parse().unwrap())
+}
+
+#[test]
+fn every_number_has_an_effect_of_its_own() -> Result<(), Faults> {
+    let default = Config::default();
+    for setting in &NUMBERS {
+        for value in range(setting.key) {
+            let config = Config::parse(&format!("{} = {value}", setting.key), "serve.toml")?;
+            assert_eq!(setting.value.write(&config), value.to_string(), "{}", setting.key);
+            for other in NUMBERS.iter().filter(|other| other.key != setting.key) {
+                assert!(!other.value.differs(&config, &default), "{}", other.key);
+            }
+            let mut copy = default.clone();
+            setting.value.copy(&config, &mut copy);
+            assert_eq!(copy, config);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_comment_about_the_log_tells_its_grammar() {
+    assert!(TEXTS.iter().any(|setting| setting.about.ends_with(LogFilter::GRAMMAR)));
+}
+
+#[test]
+fn all_faults_are_named_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "listen = \"localhost\"\nconnection = 5\nrows = \"many\"\ncolumns = 19\n\
+         connections = 1.5\nsilence-seconds = 99999999999999999999\nwhat = 1\n"
+    ));
+}
+
+#[test]
+fn faults_of_texts_are_named_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "message = \"two\\nlines\"\nlog = \"info,conections=warn\"\n\
+         [metrics]\nlisten = \"9464\"\nport = 9464\n"
+    ));
+}
+
+#[test]
+fn faults_of_rooms_are_named_with_their_lines() {
+    insta::assert_snapshot!(faults(
+        "name = \"\"\nmaps = \"maps\"\n\
+         [[room]]\nmode = \"alone\"\n\
+         [[room]]\nmode = \"tig\"\ndificulty = \"easy\"\n\
+         [[room]]\nlevel = 5\ndifficulty = \"dire\"\n"
+    ));
+    insta::assert_snapshot!(faults("room = [1]\n"));
+    insta::assert_snapshot!(faults(&"[[room]]\n".repeat(33)));
+}
+
+#[test]
+fn levels_of_rooms_are_checked_against_those_that_there_are() {
+    let text = "[[room]]\nlevel = \"cellar\"\n[[room]]\nmode = \"race\"\nlevel = \"celar\"\n\
+                [[room]]\nlevel = \"moss\"\n";
+    let levels = ["cellar", "museum"];
+    let faults = Config::check_levels(text, "serve.toml", &levels).unwrap_err();
+    insta::assert_snapshot!(faults);
+    let rooms = Config::parse(text, "serve.toml").unwrap().standing;
+    let levels: Vec<&str> = rooms.iter().map(|room| room.level.as_str()).collect();
+    assert_eq!(levels, ["cellar", "celar", "moss"]);
+    assert!(Config::check_levels(text, "serve.toml", &levels).is_ok());
+}
+
+#[test]
+fn a_running_server_keeps_what_cannot_change() {
+    let live = LiveConfig::new(Config::default());
+    let mut seen = live.subscribe();
+    let mut wanted = Config { message: "Welcome".to_owned(), ..Config::default() };
+    assert!(live.replace(wanted.clone()).is_empty());
+    assert!(seen.has_changed().unwrap());
+    assert_eq!(seen.borrow_and_update().message, "Welcome");
+    wanted.listen = "[::1]:22".parse().unwrap();
+    wanted.metrics = Some("127.0.0.1:9464".parse().unwrap());
+    wanted.rows = 100;
+    wanted.empty_room = Duration::ZERO;
+    wanted.maps = Some("/srv/maps".into());
+    assert_eq!(live.replace(wanted), ["listen", "metrics.listen", "maps"]);
+    let config = live.get();
+    assert_eq!((config.rows, config.listen), (100, Config::default().listen));
+    assert_eq!((config.metrics, config.maps.as_ref()), (None, None));
+    assert_eq!(config.empty_room, Duration::ZERO);
+}
+
+#[test]
+fn a_text_that_is_not_toml_has_a_place() {
+    insta::assert_snapshot!(faults("listen = \"127.0.0.1:2222\"\nconnections = \n"));
+}

@@ -1,0 +1,366 @@
+//! Figures about a running server, in Prometheus' text format.
+//!
+//! [`Metrics`] has a handle for each figure. Parts of the server add to it, and [`text`](Metrics::text) writes all of
+//! them, with those of the process. A responder on an address of its own answers `GET /metrics` with that text.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, Weak};
+use std::time::Duration;
+use std::{fmt, io};
+
+use prometheus_client::collector::Collector;
+use prometheus_client::encoding::prometheus_text::{self, CONTENT_TYPE};
+use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric};
+use prometheus_client::metrics::MetricType;
+use prometheus_client::metrics::counter::{ConstCounter, Counter};
+use prometheus_client::metrics::family::Family;
+use prometheus_client::metrics::gauge::{ConstGauge, Gauge};
+use prometheus_client::metrics::histogram::Histogram;
+use prometheus_client::registry::Registry;
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, copy, sink};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime::Handle;
+
+use crate::admission::Refusal;
+use crate::lock::locked;
+use crate::service::serve_each;
+
+/// The figures of a server.
+#[derive(Debug, Default)]
+pub struct Metrics {
+    /// The name of the host in a cluster, which is then a label of every sample.
+    pub host: OnceLock<String>,
+    /// Connections that are open.
+    pub connections: Gauge,
+    /// Visitors whose session runs.
+    pub sessions: Gauge,
+    /// Connections that were accepted.
+    pub accepted: Counter,
+    refused: Family<Label, Counter>,
+    /// Bytes of frames that wait for clients.
+    pub held: Gauge,
+    /// Frames that were sent.
+    pub frames: Counter,
+    /// Their bytes, before compression and encryption.
+    pub frame_bytes: Counter,
+    /// Rooms that are open.
+    pub rooms: Gauge,
+    /// Members of all rooms.
+    pub members: Gauge,
+    /// Visitors who watch a room.
+    pub watchers: Gauge,
+    /// Entries of the logs of all rooms.
+    pub entries: Counter,
+    checks: Family<Label, Counter>,
+    /// Steps of rooms that went on while the bus of the cluster did not answer.
+    pub steps_alone: Counter,
+    /// How late the steps of rooms are, in seconds.
+    pub step_lateness: Seconds,
+    /// The time in which a frame is drawn and encoded, in seconds.
+    pub frame_time: Seconds,
+    /// The time from the arrival of a key to the departure of the frame that shows its effect, in seconds.
+    pub key_time: Seconds,
+    results: Family<Label, Counter>,
+    /// Results that wait for a store that is away.
+    pub results_waiting: Gauge,
+    /// Calls of the store that failed.
+    pub store_errors: Counter,
+    room_figures: Mutex<BTreeMap<u32, Weak<RoomFigures>>>,
+}
+
+/// A histogram of times.
+#[derive(Clone, Debug)]
+pub struct Seconds(pub(crate) Histogram);
+
+/// The figures of a room that a host of a cluster runs.
+#[derive(Debug, Default)]
+pub struct RoomFigures {
+    /// Members on all hosts.
+    pub members: Gauge,
+    /// Visitors on this host who watch it.
+    pub watchers: Gauge,
+    /// 1 while this host writes the log, otherwise 0.
+    pub writes: Gauge,
+    /// Steps that the room has taken on this host.
+    pub steps: Counter,
+    /// Entries of its log.
+    pub entries: Counter,
+    /// For each of [`CHECK_RESULTS`].
+    checks: [Counter; 2],
+}
+
+/// The name and the value of a label.
+type Label = [(&'static str, &'static str); 1];
+
+/// The upper bounds of the histograms' buckets, in seconds. A frame takes less than a millisecond, a step of a room is
+/// one of 0.016667, and above 0.05 a player feels the delay of a key.
+const BOUNDS: [f64; 15] = [
+    0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.016_667, 0.025, 0.05, 0.1, 0.25, 0.5,
+    1.0, 2.5,
+];
+const CHECK_RESULTS: [&str; 2] = ["different", "equal"];
+const VERDICTS: [&str; 2] = ["refused", "verified"];
+
+impl Metrics {
+    /// The refusals of connections for `reason`, which include connections that were refused or displaced later.
+    pub fn refused(&self, reason: Refusal) -> Counter {
+        self.refused.get_or_create_owned(&[("reason", reason.name())])
+    }
+
+    /// Results that a replay has confirmed, or refuted.
+    pub(crate) fn results(&self, is_verified: bool) -> Counter {
+        self.results.get_or_create_owned(&[("verdict", VERDICTS[usize::from(is_verified)])])
+    }
+
+    /// Checksums of rooms that were equal to those of another host, or different, which is a bug.
+    pub(crate) fn checks(&self, is_equal: bool) -> Counter {
+        self.checks.get_or_create_owned(&[("result", CHECK_RESULTS[usize::from(is_equal)])])
+    }
+
+    /// Adds a room with figures of its own. It takes the place of an earlier one with its number, and is listed until its
+    /// figures are dropped.
+    pub(crate) fn add_room(&self, room: u32) -> Arc<RoomFigures> {
+        let figures = Arc::<RoomFigures>::default();
+        locked(&self.room_figures, |rooms| rooms.insert(room, Arc::downgrade(&figures)));
+        figures
+    }
+
+    /// The rooms whose logs this host writes.
+    pub(crate) fn written_rooms(&self) -> Vec<u32> {
+        let rooms = self.room_figures();
+        rooms.into_iter().filter(|(_, it)| it.writes.get() > 0).map(|(room, _)| room).collect()
+    }
+
+    fn room_figures(&self) -> Vec<(u32, Arc<RoomFigures>)> {
+        locked(&self.room_figures, |rooms| {
+            rooms.retain(|_, figures| figures.strong_count() > 0);
+            rooms.iter().filter_map(|(room, it)| Some((*room, it.upgrade()?))).collect()
+        })
+    }
+
+    /// All figures, with those of this process.
+    pub fn text(&self) -> String {
+        let host = self.host.get().map(|host| (Cow::Borrowed("host"), Cow::Owned(host.clone())));
+        let mut registry = Registry::with_labels(host.into_iter());
+        self.register(registry.sub_registry_with_prefix("cellcaster"));
+        register_process(&mut registry);
+        let mut text = String::new();
+        // Memory accepts every byte.
+        _ = prometheus_text::encode(&mut text, &registry);
+        text
+    }
+
+    fn register(&self, page: &mut Registry) {
+        // Figures that are still zero are samples, too.
+        Refusal::ALL.into_iter().for_each(|reason| drop(self.refused(reason)));
+        for is_good in [false, true] {
+            drop((self.results(is_good), self.checks(is_good)));
+        }
+        let alone = "Steps of rooms that went on while the bus of the cluster did not answer";
+        for (name, help, counter) in [
+            ("connections_accepted", "Connections that were accepted", &self.accepted),
+            ("frames", "Frames that were sent", &self.frames),
+            (
+                "frame_bytes",
+                "Bytes of frames, before compression and encryption",
+                &self.frame_bytes,
+            ),
+            ("log_entries", "Entries of the logs of all rooms", &self.entries),
+            ("room_steps_alone", alone, &self.steps_alone),
+            ("store_errors", "Calls of the store that failed", &self.store_errors),
+        ] {
+            page.register(name, help, counter.clone());
+        }
+        for (name, help, family) in [
+            ("connections_refused", "Connections that were refused", &self.refused),
+            ("room_checks", "Checksums of rooms, compared with those of other hosts", &self.checks),
+            ("results", "Results that were replayed, by what the replay says", &self.results),
+        ] {
+            page.register(name, help, family.clone());
+        }
+        for (name, help, gauge) in [
+            ("connections", "Connections that are open", &self.connections),
+            ("sessions", "Visitors whose session runs", &self.sessions),
+            ("held_bytes", "Bytes of frames that wait for clients", &self.held),
+            ("rooms", "Rooms that are open", &self.rooms),
+            ("members", "Members of all rooms", &self.members),
+            ("watchers", "Visitors who watch a room", &self.watchers),
+            (
+                "results_waiting",
+                "Results that wait for a store that is away",
+                &self.results_waiting,
+            ),
+        ] {
+            page.register(name, help, gauge.clone());
+        }
+        for (name, help, histogram) in [
+            ("step_lateness_seconds", "How late the steps of rooms are", &self.step_lateness),
+            ("frame_seconds", "The time to draw and encode a frame", &self.frame_time),
+            (
+                "key_seconds",
+                "The time from a key to the departure of the next frame",
+                &self.key_time,
+            ),
+        ] {
+            page.register(name, help, histogram.0.clone());
+        }
+        if let Ok(runtime) = Handle::try_current() {
+            let help = "Tasks: a few of the server, and some for each connection and room";
+            let tasks = runtime.metrics().num_alive_tasks();
+            page.register("tasks", help, ConstGauge::new(tasks as u64));
+        }
+        page.register_collector(Box::new(Rooms(self.room_figures())));
+    }
+}
+
+impl Default for Seconds {
+    fn default() -> Self {
+        Self(Histogram::new(BOUNDS))
+    }
+}
+
+impl Seconds {
+    /// Adds a time.
+    pub fn observe(&self, time: Duration) {
+        self.0.observe(time.as_secs_f64());
+    }
+}
+
+impl RoomFigures {
+    /// Checksums that were equal to those of another host, or different, which is a bug.
+    pub(crate) fn checks(&self, is_equal: bool) -> &Counter {
+        &self.checks[usize::from(is_equal)]
+    }
+}
+
+/// Rooms with their figures, as they are at one time.
+#[derive(Debug)]
+struct Rooms(Vec<(u32, Arc<RoomFigures>)>);
+
+/// The name, the help and the figure of a room.
+type RoomFigure<F> = (&'static str, &'static str, fn(&RoomFigures) -> &F);
+
+impl Collector for Rooms {
+    fn encode(&self, mut page: DescriptorEncoder<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return Ok(());
+        }
+        let gauges: [RoomFigure<Gauge>; 3] = [
+            ("room_members", "Members of a room, on all hosts.", |it| &it.members),
+            ("room_watchers", "Visitors of this host who watch a room.", |it| &it.watchers),
+            ("room_writes", "Whether this host writes the log of a room.", |it| &it.writes),
+        ];
+        for (name, help, figure) in gauges {
+            let mut lines = page.encode_descriptor(name, help, None, MetricType::Gauge)?;
+            for (room, figures) in &self.0 {
+                figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
+            }
+        }
+        let counters: [RoomFigure<Counter>; 2] = [
+            ("room_steps", "Steps that a room has taken on this host.", |it| &it.steps),
+            ("room_entries", "Entries of the log of a room.", |it| &it.entries),
+        ];
+        for (name, help, figure) in counters {
+            let mut lines = page.encode_descriptor(name, help, None, MetricType::Counter)?;
+            for (room, figures) in &self.0 {
+                figure(figures).encode(lines.encode_family(&[("room", *room)])?)?;
+            }
+        }
+        let help = "Checksums of a room, compared with those of other hosts.";
+        let mut lines =
+            page.encode_descriptor("each_room_checks", help, None, MetricType::Counter)?;
+        for (room, figures) in &self.0 {
+            for (count, result) in figures.checks.iter().zip(CHECK_RESULTS) {
+                let labels = ([("room", *room)], [("result", result)]);
+                count.encode(lines.encode_family(&labels)?)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The figures of the process, by the names that Prometheus' own clients use.
+fn register_process(page: &mut Registry) {
+    if let Some(time) = cpu_time() {
+        let time = ConstCounter::new(time.as_secs_f64());
+        page.register("process_cpu_seconds", "Processor time of all threads", time);
+    }
+    if let Some(bytes) = resident_bytes() {
+        page.register("process_resident_memory_bytes", "Memory in use", ConstGauge::new(bytes));
+    }
+}
+
+/// The processor time that all threads of this process have used.
+#[cfg(unix)]
+pub(crate) fn cpu_time() -> Option<Duration> {
+    use rustix::time::{ClockId, clock_gettime};
+    Duration::try_from(clock_gettime(ClockId::ProcessCPUTime)).ok()
+}
+
+#[cfg(not(unix))]
+pub(crate) fn cpu_time() -> Option<Duration> {
+    None
+}
+
+/// The memory that is in use, in bytes, where the system tells it as Linux does.
+fn resident_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let size = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: u64 = size.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes << 10)
+}
+
+/// The page of metrics is answered by hand, and not by a server library: a request of Prometheus is one line. Of a
+/// request, so many bytes are read.
+const MOST_BYTES: u64 = 4096;
+const TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Answers `GET /metrics` with the figures, until the future is dropped.
+pub async fn respond(listener: TcpListener, metrics: Arc<Metrics>) {
+    let answer = |stream| answer(stream, Arc::clone(&metrics));
+    serve_each(|context| listener.poll_accept(context), TIMEOUT, answer).await;
+}
+
+async fn answer(mut stream: TcpStream, metrics: Arc<Metrics>) -> io::Result<()> {
+    let request = request(&mut stream).await?;
+    stream.write_all(response(&request, || metrics.text()).as_bytes()).await?;
+    stream.shutdown().await?;
+    // Closed with unread bytes, the connection would be reset, and the client might lose the answer.
+    copy(&mut stream, &mut sink()).await?;
+    Ok(())
+}
+
+/// The head of a request, or its first [`MOST_BYTES`].
+async fn request(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
+    let mut stream = BufReader::new(stream.take(MOST_BYTES));
+    let mut request = Vec::new();
+    while !ends(&request) && stream.read_until(b'\n', &mut request).await? > 0 {}
+    Ok(request)
+}
+
+fn ends(request: &[u8]) -> bool {
+    request.ends_with(b"\r\n\r\n")
+}
+
+fn response(request: &[u8], text: impl Fn() -> String) -> String {
+    let line = request.split(|&byte| byte == b'\r').next().unwrap_or_default();
+    let mut words = line.split(|&byte| byte == b' ');
+    let (method, target, version) = (words.next(), words.next(), words.next());
+    let is_http = version.is_some_and(|version| version.starts_with(b"HTTP/1."));
+    let (status, body) = match (method, target) {
+        _ if !ends(request) || !is_http => ("400 Bad Request", "no request of HTTP/1.1\n".into()),
+        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text()),
+        (Some(b"GET"), _) => ("404 Not Found", "the page is /metrics\n".into()),
+        _ => ("405 Method Not Allowed", "the method is GET\n".into()),
+    };
+    let allow = if status.starts_with("405") { "Allow: GET\r\n" } else { "" };
+    format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {CONTENT_TYPE}\r\n\
+         Content-Length: {}\r\n{allow}Connection: close\r\n\r\n{body}",
+        body.len()
+    )
+}
+
+#[cfg(test)]
+mod tests;

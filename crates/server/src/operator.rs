@@ -1,0 +1,152 @@
+//! What a request does: on this host, and on all hosts of a cluster.
+
+#[cfg(unix)]
+pub mod socket;
+
+use std::sync::Arc;
+
+use tokio::sync::Notify;
+
+use crate::admin::{AdminReply, AdminRequest, RoomRow, Target, VisitorRow};
+use crate::cluster::SharedRooms;
+use crate::line::Line;
+use crate::logging;
+use crate::visitors::{Present, SessionId, Visitors};
+
+/// What an operator can see and change in a server. Clones are the same.
+#[derive(Clone)]
+pub struct Operator {
+    /// Who is on.
+    visitors: Visitors,
+    /// The rooms now.
+    rooms: Arc<dyn Fn() -> Vec<RoomRow> + Send + Sync>,
+    /// Notified when the server has to end.
+    drain: Arc<Notify>,
+    /// The other hosts of a cluster.
+    pub(crate) cluster: Option<SharedRooms>,
+}
+
+/// The longest line that an operator says, in columns.
+const SAID_COLUMNS: usize = 200;
+/// The longest reason, in columns.
+const REASON_COLUMNS: usize = 200;
+/// What an operator reads who asks for hosts where there is one.
+const NO_CLUSTER: &str = "this host is in no cluster";
+
+impl Operator {
+    /// One who sees these visitors and rooms, and notifies `drain` to end the server.
+    pub fn new(
+        visitors: Visitors,
+        rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
+        drain: Arc<Notify>,
+    ) -> Self {
+        Self { visitors, rooms: Arc::new(rooms), drain, cluster: None }
+    }
+
+    /// Has the operator see the other hosts of a cluster, too.
+    pub(crate) fn in_cluster(self, cluster: Option<SharedRooms>) -> Self {
+        Self { cluster, ..self }
+    }
+
+    /// Does what is asked, on all hosts of a cluster.
+    pub async fn answer(&self, request: &AdminRequest) -> AdminReply {
+        let own = self.answer_alone(request);
+        if let Some(cluster) = &self.cluster
+            && request.is_for_all_hosts()
+            && !matches!(own, AdminReply::Fault(_))
+        {
+            return cluster.merged(own, request).await;
+        }
+        own
+    }
+
+    /// Answers the operators of other hosts, as long as the future is not dropped.
+    pub async fn answer_others(self) {
+        if let Some(cluster) = self.cluster.clone() {
+            cluster.answer_others(|request| self.answer_alone(request)).await;
+        }
+    }
+
+    /// Does what is asked, on this host.
+    pub(crate) fn answer_alone(&self, request: &AdminRequest) -> AdminReply {
+        match request {
+            AdminRequest::Who => {
+                let host = self.host();
+                let rows = self.visitors.list().into_iter().map(|it| row(it, host.clone()));
+                AdminReply::Visitors(rows.collect())
+            }
+            AdminRequest::Hosts => match &self.cluster {
+                Some(cluster) => AdminReply::Hosts(vec![cluster.own_info()]),
+                None => AdminReply::Fault(NO_CLUSTER.to_owned()),
+            },
+            AdminRequest::Rooms => AdminReply::Rooms((self.rooms)()),
+            AdminRequest::Remove { target, reason, banned } => {
+                match self.remove(target, &farewell(reason, *banned), *banned) {
+                    Err(sentence) => AdminReply::Fault(sentence),
+                    Ok(count) => AdminReply::Count(count),
+                }
+            }
+            AdminRequest::Say { text } => match Line::of(text, SAID_COLUMNS) {
+                None => AdminReply::Fault("there is nothing to say".to_owned()),
+                Some(line) => {
+                    let count = self.visitors.say(line.as_str());
+                    logging::said(count);
+                    AdminReply::Count(count)
+                }
+            },
+            AdminRequest::Drain => {
+                self.drain.notify_one();
+                AdminReply::Count(self.visitors.list().len())
+            }
+        }
+    }
+
+    /// Ends the sessions of `target`, and returns their number.
+    fn remove(&self, target: &Target, sentence: &str, is_banned: bool) -> Result<usize, String> {
+        if let Target::Session(text) = target
+            && !is_banned
+        {
+            let session = SessionId::parse(text).ok_or("a session is written as 3f9a-7")?;
+            let count = usize::from(self.visitors.remove_session(session, sentence));
+            logging::removed_session(session, count);
+            return Ok(count);
+        }
+        let target = target.to_ban()?;
+        let count = self.visitors.remove(&target, sentence);
+        logging::removed(&target, count, is_banned);
+        Ok(count)
+    }
+
+    /// The name of this host in a cluster.
+    fn host(&self) -> Option<String> {
+        self.cluster.as_ref().map(|cluster| cluster.own_info().host)
+    }
+}
+
+/// The sentence for those who are sent away.
+pub(crate) fn farewell(reason: &str, is_banned: bool) -> String {
+    let what = if is_banned {
+        "You are banned from this host"
+    } else {
+        "The operator of this host has ended your session"
+    };
+    match Line::of(reason, REASON_COLUMNS) {
+        Some(reason) => format!("{what}: {reason}"),
+        None => format!("{what}."),
+    }
+}
+
+fn row(present: Present, host: Option<String>) -> VisitorRow {
+    VisitorRow {
+        session: present.session.to_string(),
+        name: present.name.map(|name| name.as_str().to_owned()),
+        address: present.address.to_string(),
+        key: present.key.map(|key| key.to_string()),
+        room: present.room,
+        seconds: present.since.elapsed().as_secs(),
+        host,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,150 @@
+//! The socket `admin.sock` of a data folder: the server's end, and the operator's.
+
+use std::fs::{self, Permissions};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
+use std::os::unix::fs::{FileTypeExt, PermissionsExt};
+use std::os::unix::net::UnixStream as BlockingStream;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use thiserror::Error;
+use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+use tokio::net::{UnixListener, UnixStream};
+
+use super::Operator;
+use crate::admin::{AdminReply, AdminRequest};
+use crate::service::serve_each;
+use cellcaster::fault::printable_path;
+
+/// A socket at which an operator can ask. It is removed when this is dropped.
+#[derive(Debug)]
+pub struct AdminSocket {
+    listener: UnixListener,
+    path: PathBuf,
+}
+
+/// Why a server has not answered.
+#[derive(Debug, Error)]
+pub enum AdminFailure {
+    /// No server runs with this data folder.
+    #[error("no server runs with the data in {}", printable_path(.0))]
+    NoServer(PathBuf),
+    /// The socket belongs to another user.
+    #[error("{} belongs to another user: ask as that user, or as root", printable_path(.0))]
+    NotAllowed(PathBuf),
+    /// The server was too slow.
+    #[error(
+        "the server at {} has not answered for {} s", printable_path(.0), CLIENT_TIMEOUT.as_secs()
+    )]
+    TimedOut(PathBuf),
+    /// The connection failed.
+    #[error("the server at {} does not answer: {}", printable_path(.0), .1)]
+    Failed(PathBuf, io::Error),
+}
+
+/// In bytes: the longest line of a request.
+const MOST_REQUEST: u64 = 4096;
+/// In bytes: the longest line of a reply. A hundred thousand visitors are less.
+const MOST_REPLY: u64 = 32 << 20;
+/// The time in which a server has to answer a request.
+const SERVER_TIMEOUT: Duration = Duration::from_secs(5);
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
+
+impl AdminSocket {
+    /// Listens in a data folder. A socket that a killed server has left there is replaced.
+    ///
+    /// # Errors
+    /// [`ErrorKind::AddrInUse`] if a server listens there; otherwise that of the system.
+    pub fn bind(folder: &Path) -> io::Result<Self> {
+        let path = socket_of(folder);
+        if BlockingStream::connect(&path).is_ok() {
+            return Err(io::Error::new(ErrorKind::AddrInUse, "another server uses this folder"));
+        }
+        if fs::symlink_metadata(&path).is_ok_and(|found| found.file_type().is_socket()) {
+            fs::remove_file(&path)?;
+        }
+        let listener = UnixListener::bind(&path)?;
+        let socket = Self { listener, path };
+        fs::set_permissions(&socket.path, Permissions::from_mode(0o600))?;
+        Ok(socket)
+    }
+
+    /// Answers requests until the future is dropped.
+    pub async fn serve(self, operator: Operator) {
+        let answer = |stream| {
+            let operator = operator.clone();
+            async move { converse(stream, &operator).await }
+        };
+        serve_each(|context| self.listener.poll_accept(context), SERVER_TIMEOUT, answer).await;
+    }
+}
+
+impl Drop for AdminSocket {
+    fn drop(&mut self) {
+        _ = fs::remove_file(&self.path);
+    }
+}
+
+async fn converse(mut stream: UnixStream, operator: &Operator) -> io::Result<()> {
+    let user = stream.peer_cred()?.uid();
+    // Between its creation and the change of its mode, others may have connected.
+    if user != 0 && user != rustix::process::geteuid().as_raw() {
+        return Ok(());
+    }
+    answer(&mut stream, operator).await
+}
+
+/// Answers the one request of a connection.
+pub(crate) async fn answer<S>(stream: &mut S, operator: &Operator) -> io::Result<()>
+where
+    S: AsyncRead + AsyncWrite + Unpin,
+{
+    let reply = match request(stream).await?.map(|line| serde_json::from_slice(&line)) {
+        Some(Ok(request)) => operator.answer(&request).await,
+        Some(Err(error)) => AdminReply::Fault(format!("this is no request: {error}")),
+        None => AdminReply::Fault(format!("a request is a line of at most {MOST_REQUEST} bytes")),
+    };
+    let mut line = serde_json::to_vec(&reply)?;
+    line.push(b'\n');
+    stream.write_all(&line).await
+}
+
+/// The first line; `None` if it is too long or has no end.
+async fn request(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<Option<Vec<u8>>> {
+    let mut line = Vec::new();
+    let mut stream = tokio::io::BufReader::new(stream.take(MOST_REQUEST));
+    stream.read_until(b'\n', &mut line).await?;
+    Ok((line.pop() == Some(b'\n')).then_some(line))
+}
+
+/// Asks the server of a data folder.
+///
+/// # Errors
+/// [`AdminFailure`], which is one sentence.
+pub fn ask(folder: &Path, request: &AdminRequest) -> Result<AdminReply, AdminFailure> {
+    let socket = socket_of(folder);
+    exchange(&socket, request).map_err(|error| match error.kind() {
+        ErrorKind::NotFound | ErrorKind::ConnectionRefused => {
+            AdminFailure::NoServer(folder.to_owned())
+        }
+        ErrorKind::PermissionDenied => AdminFailure::NotAllowed(socket),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => AdminFailure::TimedOut(socket),
+        _ => AdminFailure::Failed(socket, error),
+    })
+}
+
+fn exchange(socket: &Path, request: &AdminRequest) -> io::Result<AdminReply> {
+    let mut stream = BlockingStream::connect(socket)?;
+    stream.set_read_timeout(Some(CLIENT_TIMEOUT))?;
+    stream.set_write_timeout(Some(CLIENT_TIMEOUT))?;
+    let mut line = serde_json::to_vec(request)?;
+    line.push(b'\n');
+    stream.write_all(&line)?;
+    let mut reply = Vec::new();
+    BufReader::new(stream.take(MOST_REPLY)).read_until(b'\n', &mut reply)?;
+    Ok(serde_json::from_slice(&reply)?)
+}
+
+fn socket_of(folder: &Path) -> PathBuf {
+    folder.join("admin.sock")
+}

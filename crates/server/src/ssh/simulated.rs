@@ -1,0 +1,80 @@
+//! Links without a network, for simulations.
+//!
+//! The far end of a pipe does what a connection does with a link: it passes on what arrives, takes the
+//! parts of frames one at a time, and says when each was written.
+
+use std::sync::{Arc, Weak};
+
+use bytes::Bytes;
+use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
+
+use super::Link;
+use super::inbound::{Inlet, inbound};
+use super::outbox::{Outbox, Passage};
+use super::wire::ByteLimits;
+use crate::config::Config;
+use crate::metrics::Metrics;
+use cellcaster::terminal::WindowSize;
+
+/// The client's end of a pipe. Clones are the same end.
+#[derive(Clone, Debug)]
+pub(crate) struct FarEnd {
+    inlet: Inlet,
+    passage: Weak<Passage>,
+}
+
+/// What a session sends.
+#[derive(Debug)]
+pub(crate) struct Parts {
+    parts: UnboundedReceiver<Bytes>,
+    passage: Weak<Passage>,
+}
+
+/// A link whose frames `metrics` count, and its other end.
+pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
+    let passage = Arc::new(Passage::new(metrics));
+    let (sender, parts) = unbounded_channel();
+    let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
+    let (inlet, inbound) = inbound(limits);
+    let [for_end, for_parts] = [(); 2].map(|()| Arc::downgrade(&passage));
+    let link = Link { inbound, outbox: Outbox::into_pipe(sender, passage) };
+    (link, FarEnd { inlet, passage: for_end }, Parts { parts, passage: for_parts })
+}
+
+impl FarEnd {
+    /// Sends bytes, and waits where the session does not take them.
+    pub(crate) async fn send(&self, bytes: &[u8]) {
+        self.inlet.bytes(bytes).await;
+    }
+
+    pub(crate) fn resize(&self, size: WindowSize) {
+        self.inlet.resize(size);
+    }
+
+    pub(crate) fn drain(&self) {
+        self.inlet.drain();
+    }
+
+    /// Ends the link: nothing arrives any more, and nothing can be sent.
+    pub(crate) fn end(&self) {
+        if let Some(passage) = self.passage.upgrade() {
+            passage.close();
+        }
+        self.inlet.end();
+    }
+}
+
+impl Parts {
+    /// Waits for the next part of a frame; `None` after the end of the session. The session learns with
+    /// [`Parts::written`] that the part has left.
+    pub(crate) async fn next(&mut self) -> Option<Bytes> {
+        self.parts.recv().await
+    }
+
+    /// The last part has left, and so has been dropped.
+    pub(crate) fn written(&self) {
+        if let Some(passage) = self.passage.upgrade() {
+            passage.flushed();
+        }
+    }
+}

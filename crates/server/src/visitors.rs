@@ -1,0 +1,240 @@
+//! The visitors who are on a server, as its operator sees them, and the operator's notices to them.
+//!
+//! The driver of a session holds a [`Presence`], says in it what the visitor is called and where they
+//! are, and waits for its [notices](Presence::notice). An operator lists visitors, says a line to all
+//! of them, and removes some.
+//!
+//! At most `MAX_LINES` lines wait for a session; then the oldest one is dropped. So a session that
+//! does not take them costs no memory.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex};
+
+use tokio::sync::Notify;
+use tokio::time::Instant;
+
+use crate::accounts::{AccountKey, BanTarget, Identity, Name};
+use crate::lock::locked;
+
+/// The visitors of a server. Clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct Visitors(Arc<Mutex<Table>>);
+
+/// A visitor among the [`Visitors`], until it is dropped.
+#[derive(Debug)]
+pub struct Presence {
+    number: u64,
+    visitors: Visitors,
+    inbox: Arc<Inbox>,
+}
+
+/// An operator's notice to a visitor's session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// A line from the host.
+    Said(String),
+    /// The session ends, with this sentence.
+    Removed(String),
+}
+
+/// A session among those of all hosts, and of all their earlier runs: written as `3f9a-7`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SessionId {
+    /// Of the run of the host, by chance.
+    run: u16,
+    number: u64,
+}
+
+/// A visitor, as an operator sees them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Present {
+    /// Their session.
+    pub session: SessionId,
+    /// The name; `None` until it is chosen.
+    pub name: Option<Name>,
+    /// The address that they connect from.
+    pub address: IpAddr,
+    /// Their key; `None` for a guest.
+    pub key: Option<AccountKey>,
+    /// The room that they are in, in a few words; `None` for the lobby.
+    pub room: Option<String>,
+    /// When they came.
+    pub since: Instant,
+}
+
+#[derive(Debug)]
+struct Table {
+    run: u16,
+    next: u64,
+    /// In the order in which they came.
+    entries: BTreeMap<u64, (Present, Arc<Inbox>)>,
+}
+
+#[derive(Debug, Default)]
+struct Inbox {
+    notices: Mutex<Notices>,
+    changed: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Notices {
+    lines: VecDeque<String>,
+    removed: Option<String>,
+}
+
+/// The most lines that wait for a session.
+const MAX_LINES: usize = 8;
+
+impl Default for Table {
+    fn default() -> Self {
+        // Without random numbers from the system there would be no keys, either.
+        let run = getrandom::u32().unwrap_or_default() as u16;
+        Self { run, next: 1, entries: BTreeMap::new() }
+    }
+}
+
+impl SessionId {
+    /// The session of a text such as `3f9a-7`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (run, number) = text.split_once('-')?;
+        let is_plain = run.len() == 4
+            && run.bytes().all(|byte| byte.is_ascii_hexdigit())
+            && number.bytes().all(|byte| byte.is_ascii_digit());
+        let id =
+            || Some(Self { run: u16::from_str_radix(run, 16).ok()?, number: number.parse().ok()? });
+        is_plain.then(id)?
+    }
+}
+
+impl fmt::Display for SessionId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04x}-{}", self.run, self.number)
+    }
+}
+
+impl Visitors {
+    /// Adds a visitor.
+    pub fn arrive(&self, address: IpAddr, key: Option<AccountKey>) -> Presence {
+        let inbox = Arc::<Inbox>::default();
+        let number = locked(&self.0, |table| {
+            let number = table.next;
+            table.next += 1;
+            let (session, since) = (SessionId { run: table.run, number }, Instant::now());
+            let address = address.to_canonical();
+            let present = Present { session, name: None, address, key, room: None, since };
+            table.entries.insert(number, (present, inbox.clone()));
+            number
+        });
+        Presence { number, visitors: self.clone(), inbox }
+    }
+
+    /// Everybody, in the order in which they came.
+    pub fn list(&self) -> Vec<Present> {
+        locked(&self.0, |table| table.entries.values().map(|it| it.0.clone()).collect())
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        locked(&self.0, |table| table.entries.len())
+    }
+
+    /// Says a line to everybody, and returns to how many.
+    pub fn say(&self, line: &str) -> usize {
+        self.each(|_| true, |inbox| inbox.say(line))
+    }
+
+    /// Says a line to the visitors with a key.
+    pub(crate) fn say_to(&self, key: &AccountKey, line: &str) {
+        self.each(|it| it.key.as_ref() == Some(key), |inbox| inbox.say(line));
+    }
+
+    /// Says a line to the visitors in a room.
+    pub(crate) fn say_in(&self, room: &str, line: &str) {
+        self.each(|it| it.room.as_deref() == Some(room), |inbox| inbox.say(line));
+    }
+
+    /// Ends the sessions to which `target` applies with a sentence, and returns how many.
+    pub fn remove(&self, target: &BanTarget, sentence: &str) -> usize {
+        let is_meant = |it: &Present| {
+            let (address, key, name) = (Some(it.address), it.key.as_ref(), it.name.as_ref());
+            target.applies_to(&Identity { address, key, name })
+        };
+        self.each(is_meant, |inbox| inbox.remove(sentence))
+    }
+
+    /// Ends a session with a sentence, and returns whether there is one of that number.
+    pub fn remove_session(&self, session: SessionId, sentence: &str) -> bool {
+        self.each(|it| it.session == session, |inbox| inbox.remove(sentence)) > 0
+    }
+
+    /// Acts on the inboxes of some, and returns of how many.
+    fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&Inbox)) -> usize {
+        locked(&self.0, |table| {
+            let meant = table.entries.values().filter(|(present, _)| is_meant(present));
+            meant.map(|(_, inbox)| act(inbox)).count()
+        })
+    }
+}
+
+impl Presence {
+    /// Records the visitor's name: of an account, or chosen by a guest.
+    pub fn set_name(&self, name: &str) {
+        self.change(|it| it.name = Some(Name::kept(name)));
+    }
+
+    /// Records the room that the visitor is in, in a few words; `None` for the lobby.
+    pub fn set_room(&self, room: Option<String>) {
+        self.change(|it| it.room = room);
+    }
+
+    /// Waits for the next notice. It may be dropped before it is ready.
+    pub async fn notice(&mut self) -> Notice {
+        loop {
+            if let Some(notice) = self.inbox.take() {
+                return notice;
+            }
+            self.inbox.changed.notified().await;
+        }
+    }
+
+    fn change(&self, act: impl FnOnce(&mut Present)) {
+        locked(&self.visitors.0, |table| {
+            table.entries.get_mut(&self.number).map(|(present, _)| act(present))
+        });
+    }
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        locked(&self.visitors.0, |table| table.entries.remove(&self.number));
+    }
+}
+
+impl Inbox {
+    fn say(&self, line: &str) {
+        locked(&self.notices, |notices| {
+            notices.lines.push_back(line.to_owned());
+            let surplus = notices.lines.len().saturating_sub(MAX_LINES);
+            notices.lines.drain(..surplus);
+        });
+        self.changed.notify_one();
+    }
+
+    fn remove(&self, sentence: &str) {
+        locked(&self.notices, |notices| notices.removed = Some(sentence.to_owned()));
+        self.changed.notify_one();
+    }
+
+    /// A removal comes before lines.
+    fn take(&self) -> Option<Notice> {
+        locked(&self.notices, |notices| {
+            let removed = notices.removed.take().map(Notice::Removed);
+            removed.or_else(|| notices.lines.pop_front().map(Notice::Said))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
