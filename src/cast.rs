@@ -33,15 +33,18 @@
 mod dyn_caster;
 mod exact;
 mod major_axis;
+mod order;
 mod ray;
 mod through;
 mod walk;
 
 pub(crate) use dyn_caster::AnyCaster;
 pub use dyn_caster::DynCaster;
-pub(crate) use exact::{CommonOrder, ExactOnLevel};
-pub use exact::{Exact, ExactOrder, RoundedOrder};
+pub use exact::Exact;
+pub(crate) use exact::ExactOnLevel;
 pub(crate) use major_axis::MajorAxisTraversal;
+pub(crate) use order::CommonOrder;
+pub use order::{ExactOrder, Order, RoundedOrder};
 #[cfg(feature = "tui")]
 pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
@@ -52,7 +55,7 @@ pub(crate) use through::Passage;
 pub(crate) use walk::WalkFromInside;
 pub use walk::first_line;
 pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
-pub use walk::{Crossing, Order, Walk};
+pub use walk::{Crossing, Walk};
 
 use crate::world::{Grid, World};
 

@@ -63,17 +63,14 @@ pub use intent::{Intent, Intents, Look};
 pub use multiplayer::view::{OtherPlayer, PlayerView};
 pub use player::FRICTION;
 pub use report::Outcome;
-pub use rules::{Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules, Sees, Strikes};
+pub use rules::{
+    Input, MOST_LAG, MOST_PLAYERS, MultiplayerRules, PlayerId, Rules, STEP, STEPS_PER_SECOND, Sees,
+    Strikes,
+};
 pub use script::{Header, LevelName, Recorder, Script, Section, Stretch};
 pub use sound::{Heard, Sound, SoundKind, Source};
 pub use stored::{RULES_VERSION, Unrestorable};
 pub use tally::{Rank, Share, Tally};
-
-/// The duration of a step, in seconds.
-pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
-
-/// The steps of a game in a second.
-pub const STEPS_PER_SECOND: u32 = 60;
 
 /// A world, a player in it, and the time since the start.
 ///

@@ -228,10 +228,11 @@ impl App {
         if self.controls.held.has_taps() {
             return Some(self.clock.step_after(0));
         }
-        let quiet = Some(self.quiet_steps(self.wanted())).filter(|&quiet| quiet < u64::MAX);
-        let before_animation = self.steps_to_animation().map(|steps| steps.saturating_sub(1));
-        let steps = quiet.into_iter().chain(before_animation).min()?;
-        Some(self.clock.step_after(steps))
+        if !self.is_at_rest(self.wanted()) {
+            return Some(self.clock.step_after(0));
+        }
+        let steps = self.steps_to_animation()?;
+        Some(self.clock.step_after(steps.saturating_sub(1)))
     }
 
     /// Whether the player wants nothing, and the next step changes only what others do.
@@ -241,7 +242,7 @@ impl App {
             && self.demo.is_none()
             && wanted.is_empty()
             && !self.controls.held.has_taps()
-            && self.quiet_steps(wanted) == 0
+            && !self.is_at_rest(wanted)
     }
 }
 

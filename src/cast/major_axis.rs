@@ -23,7 +23,7 @@
 
 use glam::DVec2;
 
-use super::exact::decide;
+use super::order::decide;
 use super::{Crossing, Ray, Side};
 use crate::world::{BeamTable, Beams, Cell, DistanceField, FRACTION_BITS, Grid, STRIP, TileId};
 

@@ -11,7 +11,7 @@
 mod from_inside;
 mod mirrored;
 
-use super::{ExactOrder, Ray, Side};
+use super::{ExactOrder, Order, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 #[cfg(feature = "tui")]
 pub(crate) use from_inside::WalkFromInside;
@@ -26,16 +26,6 @@ pub struct Crossing {
     pub tile: TileId,
     /// The kind of line that the ray crosses.
     pub side: Side,
-}
-
-/// Decides which line a ray crosses next.
-pub trait Order {
-    /// [`Side::X`] if the ray meets the line at `x` first, [`Side::Y`] if it meets the line at `y`
-    /// first. The walk crosses that line.
-    ///
-    /// Both lines are ahead of the ray. Along an axis on which the ray does not move, there is no
-    /// line ahead and its position is infinite. Selecting it ends the walk.
-    fn next(&mut self, x: f64, y: f64) -> Side;
 }
 
 /// The cells of a map that a ray enters, from near to far, open ones included.

@@ -126,11 +126,6 @@ impl Flash {
         f64::from(self.left.min(Self::FADE)) / f64::from(Self::FADE)
     }
 
-    /// The number of steps in which it does not fade.
-    pub(crate) fn quiet_steps(self) -> u64 {
-        u64::from(self.left.saturating_sub(Self::FADE))
-    }
-
     /// A flash for `harm`.
     pub(crate) fn hurt(harm: &Harm) -> Self {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }

@@ -100,12 +100,9 @@ impl Player {
         presses.without(self.pressed)
     }
 
-    /// The number of steps in which nothing changes but the player's clocks; `None` if nothing ever
-    /// will.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        let flash = self.flash.map(Flash::quiet_steps);
-        let quiet = [self.notice.quiet_steps(), self.hearing.quiet_steps(), flash];
-        quiet.into_iter().flatten().min()
+    /// Whether the player sees a message or a flash, or hears a sound.
+    pub(crate) fn is_shown_anything(&self) -> bool {
+        self.notice.text().is_some() || self.flash.is_some() || !self.hearing.heard().is_empty()
     }
 
     /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a
@@ -182,11 +179,6 @@ impl Notice {
     /// The current message.
     pub(crate) fn text(&self) -> Option<&str> {
         (self.steps_left > 0).then_some(&self.text)
-    }
-
-    /// The number of steps until the message ends; `None` if there is none.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        self.steps_left.checked_sub(1)
     }
 
     /// Advances by `steps` steps, and returns whether the message ended.

@@ -1,17 +1,17 @@
 //! Rest: steps in which nothing changes but clocks.
 //!
-//! A program that shows a game sleeps through such steps, and then advances the clocks at once. The
+//! A program that shows a game sleeps while it rests, and then advances the clocks at once. The
 //! two ways give the same game, bit for bit.
 //!
-//! A game for several rests while nobody plays in it. It was not made to rest while all of its
-//! players stand still: there is always somebody who does not.
+//! A game for several players rests while nobody plays in it. Rejected: a game that also rests while all of its
+//! players stand still, because one of them nearly always moves.
 
 use super::Game;
 use super::intent::Intents;
 
 impl Game {
     /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
-    /// of [`Game::step`] if `steps` is at most [`Game::quiet_steps`].
+    /// of [`Game::step`] if the game [is at rest](Game::is_at_rest).
     pub fn wait(&mut self, steps: u64) {
         if self.members.is_some() {
             // Every further step without players is equal to the first.
@@ -34,36 +34,23 @@ impl Game {
     /// player stands still or pushes against a wall, all doors are closed, nobody else moves, and
     /// there is no message.
     pub fn is_at_rest(&self, intents: Intents) -> bool {
-        self.quiet_steps(intents) == u64::MAX
-    }
-
-    /// The number of steps with these intents in which nothing changes but clocks: the game's own,
-    /// and those of what the player is told. [`u64::MAX`] if the game is [at
-    /// rest](Game::is_at_rest).
-    pub fn quiet_steps(&self, intents: Intents) -> u64 {
         if self.members.is_some() {
-            return if self.is_deserted() { u64::MAX } else { 0 };
+            return self.is_deserted();
         }
-        if self.is_finished() {
-            return u64::MAX;
-        }
-        let presses = self.presses(intents);
         if self.is_dead() {
-            return if presses == self.player.pressed { u64::MAX } else { 0 };
+            return self.presses(intents) == self.player.pressed;
         }
-        if self.would_change(intents) {
-            return 0;
-        }
-        self.player.quiet_steps().unwrap_or(u64::MAX)
+        self.is_finished() || !self.would_change(intents)
     }
 
-    /// Whether a step with these intents would change anything but clocks. Doors that wait, spikes, water, and guards
-    /// who lie on the floor count as changes, for they have clocks of their own.
+    /// Whether a step with these intents would change anything but clocks. Messages, doors that wait, spikes, water and
+    /// guards on the floor count as changes, because they have clocks of their own.
     fn would_change(&self, intents: Intents) -> bool {
         let intents = self.at_a_door(intents);
         let motion = self.player.motion;
         motion.stepped(&self.world, &[], intents, self.pace()) != motion
             || self.presses(intents) != self.player.pressed
+            || self.player.is_shown_anything()
             || self.door_wanted(intents).is_some_and(|(cell, door)| self.would_answer(cell, door))
             || self.find().is_some()
             || self.is_at_a_new_checkpoint()

@@ -5,6 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::intent::Intents;
 use crate::world::Difficulty;
 
+/// The duration of a step, in seconds.
+pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
+
+/// The steps of a game in a second.
+pub const STEPS_PER_SECOND: u32 = 60;
+
 /// The most players in a game.
 pub const MOST_PLAYERS: usize = 16;
 

@@ -247,6 +247,7 @@ impl Hearing {
     ) -> bool {
         let before = self.heard.len();
         self.wait(1);
+        self.fade();
         let has_faded = self.heard.len() != before;
         let mut has_heard = false;
         for sound in sounds.iter().filter(|sound| sound.by != Source::Player(listener)) {
@@ -269,16 +270,14 @@ impl Hearing {
         check(is_known && self.heard.iter().all(is_audible), "what a player hears")
     }
 
-    /// The number of steps in which no sound fades away; `None` if there is none.
-    pub(crate) fn quiet_steps(&self) -> Option<u64> {
-        self.heard.iter().map(|heard| u64::from(heard.left.saturating_sub(1))).min()
-    }
-
-    /// Advances the clocks by `steps`.
+    /// Advances the clock by `steps` in which no sound is left to hear.
     pub(crate) fn wait(&mut self, steps: u64) {
         self.steps = self.steps.saturating_add(steps);
-        let steps = u16::try_from(steps).unwrap_or(u16::MAX);
-        self.heard.iter_mut().for_each(|heard| heard.left = heard.left.saturating_sub(steps));
+    }
+
+    /// Forgets the sounds that are no longer heard in this step.
+    fn fade(&mut self) {
+        self.heard.iter_mut().for_each(|heard| heard.left -= 1);
         while let Some(index) = self.heard.iter().position(|heard| heard.left == 0) {
             self.remove(index);
         }

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::STEP;
+use super::rules::STEP;
 use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::approach;
 use crate::world::Camera;

@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Game, STEPS_PER_SECOND};
+use super::Game;
+use super::rules::STEPS_PER_SECOND;
 
 /// A part of a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]

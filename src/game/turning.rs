@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::STEP;
 use super::intent::{Intent, Intents};
+use super::rules::STEP;
 use super::stored::{Unrestorable, check};
 use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::world::Pitch;

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 const WIDTH: u32 = 60;
 const HEIGHT: u32 = 40;
 /// The number of rays for each column of pixels.
-const RAYS: u32 = 256;
+const RAYS: u32 = 1024;
 
 const WALL: Rgb = Rgb::new(0xe0, 0x80, 0x30);
 const PLANE: Rgb = Rgb::new(0x20, 0x40, 0xc0);

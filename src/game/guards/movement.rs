@@ -8,10 +8,10 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::ways::{DROP, Footing, Gait, Terrain};
-use crate::game::STEP;
 use crate::game::collision::{Body, Obstacles, Place, Radius, Stature, is_clear, slide};
 use crate::game::fall::Flight;
 use crate::game::player::STEP_HEIGHT;
+use crate::game::rules::STEP;
 use crate::world::{Cell, Heading, Outline, World};
 
 /// The radius of all guards, in cells.

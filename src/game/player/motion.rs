@@ -3,10 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::STEP;
 use crate::game::collision::{Body, Place, Radius, Stature, overlaps, slide};
 use crate::game::fall::{Flight, GRAVITY, Room};
 use crate::game::intent::{Intent, Intents};
+use crate::game::rules::STEP;
 use crate::game::stance::Stance;
 use crate::game::stored::{Unrestorable, check_on_map};
 use crate::game::turning::{PitchControl, Turning};

@@ -62,7 +62,15 @@ fn every_script_that_wins_goes_on_from_any_step() {
                 game.step(intents);
                 for other in &mut restored {
                     other.step(intents);
-                    assert_eq!(other.checksum(), game.checksum(), "{} {step}", level.name);
+                }
+                // A difference stays, so that it is found some steps later.
+                if step % 32 == 0 {
+                    let sums = restored.iter().map(Game::checksum);
+                    assert!(
+                        sums.eq(vec![game.checksum(); restored.len()]),
+                        "{} {step}",
+                        level.name
+                    );
                 }
             }
             for other in &restored {
@@ -89,7 +97,6 @@ fn played(world: World, script: Vec<Intents>, seed: u64, steps: usize) {
     let mut other = again(&start, &game);
     for step in 0..1200 {
         crowd.step(&mut [&mut game, &mut other]);
-        assert_eq!(other.checksum(), game.checksum(), "step {step}");
         if step % 100 == 0 {
             assert_same(&other, &game);
         }

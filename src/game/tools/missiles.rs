@@ -7,11 +7,11 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::game::STEP;
 use crate::game::collision::{Place, Radius, Stature, fly};
 use crate::game::fall::GRAVITY;
 use crate::game::guards::Guards;
 use crate::game::player::{Motion, RADIUS};
+use crate::game::rules::STEP;
 use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, World};

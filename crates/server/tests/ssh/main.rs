@@ -36,6 +36,9 @@ const LETTER_END: &str = "u";
 /// Plays a level without guards, in which walks can go anywhere.
 const PLAY: &str = concat!("play ", env!("CARGO_MANIFEST_DIR"), "/../../tests/maps/citadel.toml");
 
+/// The duration of a walk: some 200 frames and 20 keys on the slow links.
+const WALK: Duration = Duration::from_secs(10);
+
 /// A link such as a phone has on a train.
 const SLOW: Link = Link {
     delay: Duration::from_millis(50),
@@ -208,7 +211,7 @@ fn shown_fidelity(emulator: &Emulator) -> Option<String> {
 #[test]
 fn on_a_slow_link_it_is_fast_and_fresh() {
     let guest = Guest::connect(SLOW, &format!("{PLAY} --stats"));
-    let walk = guest.play(Duration::from_secs(20));
+    let walk = guest.play(WALK);
     walk.report("1 Mbit/s, 50 ms each way");
     assert!(walk.frames_per_second >= 15.0);
     assert!(walk.latency(0.5) <= Duration::from_millis(350));
@@ -218,7 +221,7 @@ fn on_a_slow_link_it_is_fast_and_fresh() {
 #[test]
 fn on_a_fast_link_every_frame_is_there_and_exact() {
     let guest = Guest::connect(UNLIMITED, &format!("{PLAY} --stats"));
-    let walk = guest.play(Duration::from_secs(10));
+    let walk = guest.play(WALK);
     walk.report("no limit");
     assert!(walk.frames_per_second >= 28.0);
     assert!(!walk.fidelities.is_empty());
@@ -228,7 +231,7 @@ fn on_a_fast_link_every_frame_is_there_and_exact() {
 #[test]
 fn a_link_that_jitters_shows_exact_frames_or_nearly() {
     let guest = Guest::connect(JITTERY, &format!("{PLAY} --stats"));
-    let walk = guest.play(Duration::from_secs(20));
+    let walk = guest.play(WALK);
     walk.report("no limit, 20 ms and up to 100 ms of jitter each way");
     // Alone on a machine they are exact. Where jitter was taken for a slow link, most were at 48.
     let is_near = |fidelity: &&String| fidelity.parse::<Fidelity>().unwrap() <= Fidelity::HIGH;
@@ -240,7 +243,7 @@ fn a_link_that_jitters_shows_exact_frames_or_nearly() {
 #[test]
 fn compressed_it_is_about_exact_on_a_slow_link() {
     let guest = Guest::connect_with(&["-C"], SLOW, &format!("{PLAY} --stats"));
-    let walk = guest.play(Duration::from_secs(20));
+    let walk = guest.play(WALK);
     walk.report("1 Mbit/s, 50 ms each way, with -C");
     // Without compression there is hardly one below 16.
     let is_fine = |fidelity: &&String| matches!(fidelity.as_str(), "exact" | "1" | "2" | "3" | "4");
@@ -251,15 +254,14 @@ fn compressed_it_is_about_exact_on_a_slow_link() {
 /// On the server, `ssh -C` and a slow link must not cost more frames than behind sshd.
 #[track_caller]
 fn compares_with_sshd(window: (u16, u16), options: &[&str], link: Link) {
-    const TIME: Duration = Duration::from_secs(20);
     let name = |server: &str| format!("{server}, {window:?}, {options:?}, {link:?}");
     let sshd = Guest::connect_in(window, options, link, &format!("{PLAY} --stats"));
-    let behind_sshd = sshd.play(TIME);
+    let behind_sshd = sshd.play(WALK);
     behind_sshd.report(&name("sshd"));
     drop(sshd);
     let host = Guest::visit(window, options, link);
     host.player.send("i");
-    let on_host = host.play(TIME);
+    let on_host = host.play(WALK);
     on_host.report(&name("host"));
     assert!(on_host.frames_per_second >= 0.9 * behind_sshd.frames_per_second);
 }
