@@ -101,13 +101,12 @@ pub fn report(
     mut progress: impl FnMut(Part),
 ) -> Option<Vec<Table>> {
     let museum;
-    let world = match map {
-        Some(map) => map,
-        None => {
-            // The built-in level with the most features.
-            museum = builtin::LEVELS.iter().find(|level| level.name == "museum")?.world().ok()?;
-            &museum
-        }
+    let world = if let Some(map) = map {
+        map
+    } else {
+        // The built-in level with the most features.
+        museum = builtin::LEVELS.iter().find(|level| level.name == "museum")?.world().ok()?;
+        &museum
     };
     let parts = if plan.parts.is_empty() { Part::value_variants() } else { &plan.parts };
     let mut tables = Vec::new();

@@ -401,6 +401,9 @@ fn views(cameras: impl IntoIterator<Item = (DVec2, f64)>, degrees: f64) -> Vec<R
 }
 
 /// A typical camera ray: from any point of the map, with any heading, and about 1 long.
+///
+/// # Panics
+/// Never: rays are drawn until one is valid.
 pub fn random_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
     let [width, height] = [grid.width(), grid.height()].map(f64::from);
     let mut ray = || {

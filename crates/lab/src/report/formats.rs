@@ -58,7 +58,7 @@ impl Report<'_> {
 
     fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
         for table in self.tables {
-            writeln!(output, "## {}\n\n{}.\n\n{}", table.name, table.title, markdown(table))?;
+            writeln!(output, "### {}\n\n{}.\n\n{}", table.name, table.title, markdown(table))?;
         }
         writeln!(output, "{}", self.origin.sentence())
     }

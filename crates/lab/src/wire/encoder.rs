@@ -63,7 +63,7 @@ enum Kind {
     /// Ratatui's own backend for crossterm.
     Stock(CrosstermBackend<Sink>),
     /// Cellcaster's.
-    Ours(CellWriter<Sink>),
+    Ours(Box<CellWriter<Sink>>),
 }
 
 impl Encoder {
@@ -84,7 +84,7 @@ impl Encoder {
         writer.set_fidelity(fidelity);
         writer.set_repeats(extensions);
         writer.set_palette(extensions && depth == ColorDepth::True);
-        Self { sink, kind: Kind::Ours(writer) }
+        Self { sink, kind: Kind::Ours(Box::new(writer)) }
     }
 
     /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
@@ -92,7 +92,7 @@ impl Encoder {
     pub(crate) fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>) {
         match &mut self.kind {
             Kind::Stock(backend) => send(backend, changes),
-            Kind::Ours(writer) => send(writer, changes),
+            Kind::Ours(writer) => send(&mut **writer, changes),
         }
         bytes.append(&mut self.sink.0.borrow_mut());
     }

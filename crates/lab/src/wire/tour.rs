@@ -243,7 +243,7 @@ fn measure_palettes(
             });
         }
     });
-    runs.map(|run| run.figures())
+    runs.map(MethodRun::figures)
 }
 
 /// Draws a frame in the nearest palette colours.

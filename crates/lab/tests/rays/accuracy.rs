@@ -178,7 +178,7 @@ fn assert_page_is_current(part: &str) {
     let arguments = ["accuracy", "--part", part, "--rounds", "0", "--format", "markdown"];
     let report = String::from_utf8(output_of(&arguments)).unwrap();
     let mut compared = 0;
-    for section in report.split("\n## ").map(|section| section.trim_start_matches("## ")) {
+    for section in report.split("\n### ").map(|section| section.trim_start_matches("### ")) {
         let name = section.lines().next().unwrap();
         let now = cells(section);
         let (_, kept) =
