@@ -51,10 +51,6 @@ impl Device {
         match *self {}
     }
 
-    pub(crate) fn restore_attributes(&self) -> io::Result<()> {
-        match *self {}
-    }
-
     pub(crate) fn size(&self) -> WindowSize {
         match *self {}
     }
@@ -67,7 +63,7 @@ impl Device {
         match *self {}
     }
 
-    pub(crate) fn discard_input(&self) -> io::Result<()> {
+    pub(crate) fn give_back(&self) {
         match *self {}
     }
 
