@@ -38,7 +38,7 @@ pub(crate) enum Signal {
 
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
-pub fn take_keys_from_terminal() -> io::Result<()> {
+pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
