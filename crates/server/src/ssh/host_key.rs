@@ -44,7 +44,7 @@ impl HostKey {
     }
 
     /// The key of a seed that everybody knows.
-    #[cfg(fuzzing)]
+    #[cfg(feature = "fuzzing")]
     pub(crate) fn of_seed(seed: [u8; 32]) -> Self {
         Self { key: PrivateKey::from(Ed25519Keypair::from_seed(&seed)) }
     }
