@@ -30,7 +30,7 @@ pub mod parts {
         picture_and_status, too_small,
     };
     pub use crate::app::picture::{DrawOptions, MapPanel, Overlay, TerminalLook, widened};
-    pub use crate::app::run::Watch;
+    pub use crate::app::played::Watch;
     pub use crate::app::setting::{At, Choice, Field, Setting, Value, reject_range, toml_string};
     pub use crate::app::settings::{Choices, settings_menu};
     pub use crate::app::status::{
@@ -47,16 +47,16 @@ use detection::Detection;
 pub use levels::Levels;
 use page::Pages;
 use picture::{MapPanel, TerminalLook};
-use played::{Goal, Played, Viewpoint, Views};
-use recording::{Ghost, RunLog, ScriptRecorder};
-pub use recording::{Recording, Replay};
-use run::Watch;
-pub use run::{Farewell, Opening, play};
+use played::{Goal, Played, Viewpoint, Views, Watch};
+pub use recording::Recording;
+use recording::{Ghost, RunLog, ScriptRecorder, Steps};
+pub use run::{Farewell, Opening, Replay, play};
 use screen::{Choice, Screen};
-pub use settings::{Configuration, Given, MapDisplay, Origin, Settings};
+pub use setting::MapDisplay;
+pub use settings::{Configuration, Given, Origin, Settings};
 use status::{Stats, StatusLine};
 use store::{Improved, Reached, Store};
-use title::{Demo, TmuxOrder};
+use title::TmuxOrder;
 pub use title::{FindMaps, LoadMap, Offers, OwnLevel, OwnMap};
 
 use crate::color::palette::ColorDepth;
@@ -99,8 +99,8 @@ struct App {
     /// The offers of the title; `None` if there is no title to return to.
     offers: Option<Offers>,
     own_maps: Vec<OwnMap>,
-    /// The level behind the title, while there is no game.
-    demo: Option<Demo>,
+    /// The rest of the script that plays the level behind the title, while there is no game.
+    demo: Option<Steps>,
     settings: Settings,
     terminal: TerminalLook,
     controls: Controls,

@@ -4,7 +4,6 @@
 //! system is one sentence with status 1. If a reader closes the pipe, the program ends silently. No
 //! argument causes a panic.
 
-mod asciicast;
 mod cast;
 mod check;
 pub mod config;

@@ -36,7 +36,7 @@ mod minimap;
 
 pub use self::correction::Correction;
 pub use self::first_person::{FirstPerson, View};
-pub use self::glyphs::{CellAspect, GlyphSet, color_at};
+pub use self::glyphs::{CellAspect, GlyphSet, color_at, rgb_of};
 pub use self::held::{CHORD, HeldKeys, Hold, LINGER, Press, tap_steps, wanted};
 pub use self::minimap::{Explored, MapMark, Minimap};
 

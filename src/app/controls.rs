@@ -150,7 +150,7 @@ impl Bindings {
         self.in_order()
     }
 
-    /// The bindings without those of `keys`.
+    /// Removes the bindings of `keys`.
     #[must_use]
     pub fn without(mut self, keys: &[Key]) -> Self {
         self.keys.retain(|(key, _)| !keys.contains(key));
@@ -202,13 +202,14 @@ pub enum Preset {
 impl Preset {
     /// The bindings for that keyboard.
     pub(crate) fn bindings(self) -> Bindings {
-        let turns = [('h', Intent::TurnLeft), ('l', Intent::TurnRight)];
         // The letters that replace others, and further keys.
-        let (letters, further): (&[(char, char)], &[(char, Intent)]) = match self {
-            Self::Qwerty => (&[], &[]),
-            Self::Azerty => (&[('w', 'z'), ('a', 'q'), ('q', 'a')], &[]),
-            Self::Hjkl => (&[('w', 'k'), ('s', 'j'), ('l', 'z')], &turns),
+        let letters: &[(char, char)] = match self {
+            Self::Qwerty => &[],
+            Self::Azerty => &[('w', 'z'), ('a', 'q'), ('q', 'a')],
+            Self::Hjkl => &[('w', 'k'), ('s', 'j'), ('l', 'z')],
         };
+        let turns = [('h', Intent::TurnLeft), ('l', Intent::TurnRight)];
+        let further = if self == Self::Hjkl { &turns[..] } else { &[] };
         let on_keyboard = |key| {
             let own = letters.iter().find(|&&(usual, _)| key == Key::Char(usual));
             own.map_or(key, |&(_, own)| Key::Char(own))

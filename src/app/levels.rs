@@ -14,17 +14,16 @@ use std::time::Duration;
 use std::{fmt, iter};
 
 use ratatui::layout::Rect;
-use ratatui::text::{Line, Text};
+use ratatui::text::Line;
 
 use crate::app::App;
-use crate::app::page::{self, Menu, wrapped};
-use crate::app::played::{Goal, Played};
+use crate::app::page::{Menu, panel, wrapped};
+use crate::app::played::{Goal, Played, Watch};
 use crate::app::recording::{Ghost, RunLog};
-use crate::app::run::Watch;
 use crate::app::screen::{Choice, Screen};
 use crate::app::status::whole_seconds;
 use crate::app::store::{Descent, Reached, Save};
-use crate::app::title::{Demo, OwnLevel};
+use crate::app::title::OwnLevel;
 use crate::fault::Faults;
 use crate::game::{Game, Intent, Intents, LevelName, Rules, STEP};
 use crate::generate::descent;
@@ -194,6 +193,27 @@ impl App {
         self.ask_about_saved();
     }
 
+    /// Begins the built-in level with that index.
+    pub(crate) fn begin_builtin(&mut self, index: usize) {
+        if let Some(levels) = Levels::builtin(index) {
+            self.begin(levels);
+        }
+    }
+
+    /// Begins the map with that index in the list of own maps.
+    pub(crate) fn begin_own_map(&mut self, index: usize) {
+        let Some(map) = self.own_maps.get(index) else { return };
+        match (map.load)() {
+            Ok(level) => {
+                self.difficulty = self.store.preferences().difficulty;
+                self.begin(Levels::own(level));
+            }
+            Err(fault) => {
+                self.say_in_menu(&fault);
+            }
+        }
+    }
+
     /// Begins the first of `levels`.
     pub(crate) fn set_up(&mut self, levels: Levels) {
         let Some(game) = levels.stage.begin(self.difficulty) else { return };
@@ -259,17 +279,14 @@ impl App {
         self.script = None;
         self.levels.reload = None;
         self.ghost = None;
-        match Demo::begin() {
-            Some((demo, game)) => (self.demo, self.game) = (Some(demo), game),
-            None => self.game = Played::default(),
-        }
+        self.begin_demo();
         self.release_keys();
         self.show(Screen::Title);
     }
 
     fn begin_level(&mut self, game: Played) {
         let best_run = self.best_run().zip(game.grid());
-        self.ghost = best_run.map(|(cursor, game)| Ghost::new(game.clone(), cursor));
+        self.ghost = best_run.map(|(steps, game)| Ghost::new(game.clone(), steps));
         self.watch = Watch::begin(game.grid());
         self.game = game;
         self.improved = None;
@@ -330,13 +347,7 @@ impl App {
         let lines = wrapped(fault, usize::from(picture.width.saturating_sub(4)).max(1));
         let height = (lines.len() as u16).saturating_add(2).min(picture.height);
         let area = Rect { y: picture.bottom() - height, height, ..picture };
-        let inside = page::framed(canvas, area, "the map has faults");
-        let text: Text = lines.into_iter().map(Line::from).collect();
-        let padded = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        for side in [inside.x, inside.right().saturating_sub(1)] {
-            canvas.draw_widget(Text::default(), Rect { x: side, width: 1, ..inside });
-        }
-        canvas.draw_widget(text, padded);
+        panel(canvas, area, "the map has faults", lines.into_iter().map(Line::from).collect());
     }
 }
 

@@ -143,11 +143,9 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
     /// Replaces the menu, after something that it shows has changed. The selected choice stays selected if it
     /// still exists. The first entry stays selected whatever it offers now.
     pub fn renew(&mut self, menu: Menu<C>) {
-        let (selected, choice) = (self.menu.selected(), self.menu.choice());
-        self.menu = menu.selecting(selected);
-        if let Some(choice) = choice.filter(|_| selected > 0) {
-            self.menu.select_choice(choice);
-        }
+        let (selected, choice) = (self.menu.selected, self.menu.choice());
+        let index = menu.entries.iter().position(|entry| Some(entry.choice) == choice);
+        self.menu = menu.selecting(index.filter(|_| selected > 0).unwrap_or(selected));
     }
 
     /// Handles a press of `key` while the keys in `held` are down.
@@ -176,27 +174,18 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
                 _ => Effect::None,
             },
             Kind::Menu { has_values } => {
-                if let Some(selection) = Selection::by(key, bindings) {
-                    self.menu.select(selection);
+                if let Some(selected) = self.menu.selected_by(key, bindings) {
+                    self.menu.selected = selected;
                     Effect::Redraw
                 } else if let Some(forward) = changes_by(key, bindings).filter(|_| has_values) {
                     Effect::Change { forward }
-                } else if self.chooses(key) {
+                } else if self.menu.chosen_by(key).is_some() {
                     self.press_to_answer(key, press, bindings, now)
                 } else {
                     Effect::Other
                 }
             }
             Kind::Help | Kind::Bare => Effect::Other,
-        }
-    }
-
-    /// Whether `key` chooses an entry of the menu.
-    fn chooses(&self, key: Key) -> bool {
-        match key {
-            Key::Enter | Key::Char(' ') => true,
-            Key::Char(digit) => self.menu.has_number(digit),
-            _ => false,
         }
     }
 
@@ -228,13 +217,14 @@ impl<P: Page, C: Copy + PartialEq> Pages<P, C> {
                 let leaves = bindings.action(key) == Some(Action::Leave) && key != Key::Escape;
                 Effect::Leave(leaves || key == Key::Enter)
             }
-            Kind::Menu { .. } | Kind::Result if self.chooses(key) => {
-                if let Key::Char(digit) = key {
-                    self.menu.select_number(digit);
+            Kind::Menu { .. } | Kind::Result => match self.menu.chosen_by(key) {
+                Some(chosen) => {
+                    self.menu.selected = chosen;
+                    Effect::Choose
                 }
-                Effect::Choose
-            }
-            _ => Effect::Answer(key),
+                None => Effect::Answer(key),
+            },
+            Kind::Help | Kind::Bare => Effect::Answer(key),
         }
     }
 
@@ -275,44 +265,8 @@ pub struct Menu<C> {
 struct Entry<C> {
     label: String,
     /// Shown at the right.
-    pub value: String,
+    value: String,
     choice: C,
-}
-
-/// A movement of the selection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Selection {
-    /// The entry before.
-    Previous,
-    /// The next entry.
-    Next,
-    /// The entry a page above.
-    PageUp,
-    /// The entry a page below.
-    PageDown,
-    /// The first entry.
-    First,
-    /// The last entry.
-    Last,
-}
-
-impl Selection {
-    /// The movement of the selection by `key`: the keys to walk, and keys that every terminal has.
-    pub(crate) fn by(key: Key, bindings: &Bindings) -> Option<Self> {
-        Some(match key {
-            Key::Up => Self::Previous,
-            Key::Down => Self::Next,
-            Key::PageUp => Self::PageUp,
-            Key::PageDown => Self::PageDown,
-            Key::Home => Self::First,
-            Key::End => Self::Last,
-            _ => match bindings.action(key)? {
-                Action::Want(Intent::Forward) => Self::Previous,
-                Action::Want(Intent::Back) => Self::Next,
-                _ => return None,
-            },
-        })
-    }
 }
 
 /// Whether `key` changes a value to the next one, or to the one before; `None` if it does neither.
@@ -405,16 +359,6 @@ impl<C: Copy> Menu<C> {
         self.entries.get(self.selected).map(|entry| entry.label.clone())
     }
 
-    /// Whether there is an entry with the number `digit`, counted from 1.
-    pub fn has_number(&self, digit: char) -> bool {
-        self.index_of(digit).is_some()
-    }
-
-    /// Selects the entry with the number `digit`, counted from 1, if there is one.
-    pub fn select_number(&mut self, digit: char) {
-        self.selected = self.index_of(digit).unwrap_or(self.selected);
-    }
-
     /// Selects the next entry, or the one before, if there is one.
     fn select_neighbour(&mut self, forward: bool) {
         let last = self.entries.len().saturating_sub(1);
@@ -422,33 +366,36 @@ impl<C: Copy> Menu<C> {
         self.selected = if forward { (selected + 1).min(last) } else { selected.saturating_sub(1) };
     }
 
-    /// Selects the entry with that choice, if there is one. Returns whether there is.
-    pub fn select_choice(&mut self, choice: C) -> bool
-    where
-        C: PartialEq,
-    {
-        let index = self.entries.iter().position(|entry| entry.choice == choice);
-        self.selected = index.unwrap_or(self.selected);
-        index.is_some()
+    /// The index of the entry that `key` chooses: the selected one, or the one with that number, counted from 1.
+    fn chosen_by(&self, key: Key) -> Option<usize> {
+        match key {
+            Key::Enter | Key::Char(' ') => Some(self.selected),
+            Key::Char(digit) => {
+                let index = digit.to_digit(10)?.checked_sub(1)? as usize;
+                (index < self.entries.len()).then_some(index)
+            }
+            _ => None,
+        }
     }
 
-    fn index_of(&self, digit: char) -> Option<usize> {
-        let index = digit.to_digit(10)?.checked_sub(1)? as usize;
-        (index < self.entries.len()).then_some(index)
-    }
-
-    /// Moves the selection. From the last entry, the next one is the first.
-    fn select(&mut self, selection: Selection) {
+    /// The index of the entry that `key` selects, if it is a key to walk, or a key for lists that every terminal has.
+    /// After the last entry comes the first.
+    fn selected_by(&self, key: Key, bindings: &Bindings) -> Option<usize> {
         let (count, page) = (self.entries.len().max(1), self.page.max(1));
-        let last = count - 1;
-        self.selected = match selection {
-            Selection::Previous => (self.selected + last) % count,
-            Selection::Next => (self.selected + 1) % count,
-            Selection::PageUp => self.selected.saturating_sub(page),
-            Selection::PageDown => (self.selected + page).min(last),
-            Selection::First => 0,
-            Selection::Last => last,
-        };
+        let (previous, next) = ((self.selected + count - 1) % count, (self.selected + 1) % count);
+        Some(match key {
+            Key::Up => previous,
+            Key::Down => next,
+            Key::PageUp => self.selected.saturating_sub(page),
+            Key::PageDown => (self.selected + page).min(count - 1),
+            Key::Home => 0,
+            Key::End => count - 1,
+            _ => match bindings.action(key)? {
+                Action::Want(Intent::Forward) => previous,
+                Action::Want(Intent::Back) => next,
+                _ => return None,
+            },
+        })
     }
 
     /// Draws the menu in the middle of `room`.
@@ -735,6 +682,11 @@ pub fn message(canvas: &mut impl Canvas, picture: Rect, title: &str, text: Text)
     let height = Constraint::Length((text.height() as u16).saturating_add(BORDERS));
     let [area] = Layout::horizontal([width]).flex(Flex::Center).areas(picture);
     let [area] = Layout::vertical([height]).flex(Flex::Center).areas(area);
+    panel(canvas, area, title, text);
+}
+
+/// Draws a panel with a text.
+pub(crate) fn panel(canvas: &mut impl Canvas, area: Rect, title: &str, text: Text) {
     let inside = framed(canvas, area, title);
     let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
     canvas.draw_widget(Paragraph::new(text).block(padded), inside);

@@ -16,13 +16,11 @@
 use glam::DVec2;
 use ratatui::layout::{Rect, Size};
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Padding, Paragraph};
+use ratatui::text::Line;
 
-use crate::app::MapDisplay;
 use crate::app::controls::MapChange;
-use crate::app::page::{self, BORDERS, PADDING, framed, wrapped};
-use crate::app::store::Preferences;
+use crate::app::page::{self, BORDERS, PADDING, framed, panel, wrapped};
+use crate::app::setting::{MapDisplay, Preferences};
 use crate::color::Rgb;
 use crate::color::palette::{ColorDepth, ShadeInk};
 use crate::game::{Flash, FlashKind, Game, Heard, PlayerId, PlayerView, SoundKind};
@@ -247,10 +245,7 @@ pub(crate) fn draw_note(canvas: &mut impl Canvas, picture: Rect, note: &str) {
         width,
         height,
     };
-    let inside = framed(canvas, area, "note");
-    let text: Text = lines.into_iter().map(Line::from).collect();
-    let padded = Block::new().padding(Padding::horizontal(PADDING / 2));
-    canvas.draw_widget(Paragraph::new(text).block(padded), inside);
+    panel(canvas, area, "note", lines.into_iter().map(Line::from).collect());
 }
 
 /// Marks the middle of a picture that is painted in half blocks.
@@ -292,48 +287,33 @@ fn draw_sounds(
 
 /// Whether the sound means that somebody has noticed the player or is about to strike.
 fn is_threat(kind: SoundKind) -> bool {
-    word(kind).is_some()
+    sign(kind).1.is_some()
 }
 
-/// What the guard behind the sound does, if it threatens the player.
-const fn word(kind: SoundKind) -> Option<&'static str> {
+/// The character of a kind of sound, and what the guard behind it does, if that threatens the player.
+const fn sign(kind: SoundKind) -> (char, Option<&'static str>) {
     match kind {
-        SoundKind::Wonder => Some("wonders"),
-        SoundKind::Shout => Some("shouts"),
-        SoundKind::Bell => Some("rings"),
-        SoundKind::Bark => Some("barks"),
-        SoundKind::Windup => Some("attacks"),
-        SoundKind::Draw => Some("aims"),
-        SoundKind::Shot => Some("shoots"),
-        SoundKind::Swing => Some("strikes"),
-        _ => None,
-    }
-}
-
-/// The character of a kind of sound.
-const fn character(kind: SoundKind) -> char {
-    match kind {
-        SoundKind::Walking => '.',
-        SoundKind::Running => ':',
-        SoundKind::Landing => '_',
-        SoundKind::Splash => '~',
-        SoundKind::Door => '+',
-        SoundKind::Mechanism => '=',
-        SoundKind::Spikes => 'i',
-        SoundKind::Knock => 'o',
-        SoundKind::Crash => '*',
-        SoundKind::Blow => 'x',
-        SoundKind::Cry => 'a',
-        SoundKind::Fall => 'u',
-        SoundKind::Wonder => '?',
-        SoundKind::GiveUp => ',',
-        SoundKind::Shout => '!',
-        SoundKind::Bell => '&',
-        SoundKind::Bark => 'w',
-        SoundKind::Windup => '/',
-        SoundKind::Draw => ')',
-        SoundKind::Shot => '-',
-        SoundKind::Swing => '\\',
+        SoundKind::Walking => ('.', None),
+        SoundKind::Running => (':', None),
+        SoundKind::Landing => ('_', None),
+        SoundKind::Splash => ('~', None),
+        SoundKind::Door => ('+', None),
+        SoundKind::Mechanism => ('=', None),
+        SoundKind::Spikes => ('i', None),
+        SoundKind::Knock => ('o', None),
+        SoundKind::Crash => ('*', None),
+        SoundKind::Blow => ('x', None),
+        SoundKind::Cry => ('a', None),
+        SoundKind::Fall => ('u', None),
+        SoundKind::Wonder => ('?', Some("wonders")),
+        SoundKind::GiveUp => (',', None),
+        SoundKind::Shout => ('!', Some("shouts")),
+        SoundKind::Bell => ('&', Some("rings")),
+        SoundKind::Bark => ('w', Some("barks")),
+        SoundKind::Windup => ('/', Some("attacks")),
+        SoundKind::Draw => (')', Some("aims")),
+        SoundKind::Shot => ('-', Some("shoots")),
+        SoundKind::Swing => ('\\', Some("strikes")),
     }
 }
 
@@ -365,9 +345,9 @@ impl Side {
 
 fn mark(heard: &Heard, heading: Heading, has_words: bool) -> String {
     let strength = usize::from(heard.strength.clamp(1, 3));
-    let characters: String = std::iter::repeat_n(character(heard.kind), strength).collect();
-    let word = word(heard.kind).filter(|_| has_words);
-    let characters = match (word, Side::of(angle(heard, heading))) {
+    let (character, word) = sign(heard.kind);
+    let characters: String = std::iter::repeat_n(character, strength).collect();
+    let characters = match (word.filter(|_| has_words), Side::of(angle(heard, heading))) {
         (None, _) => characters,
         (Some(word), Side::Right) => format!("{word} {characters}"),
         (Some(word), _) => format!("{characters} {word}"),
@@ -440,24 +420,12 @@ const GAIN_OPACITY: f64 = 130.0;
 const NEAR_SIDE: f64 = 0.3;
 const OTHER_SIDES: f64 = 0.08;
 
-/// The sides of the picture on which the flash is: one, or all of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Sides(Option<Side>);
-
-impl Sides {
-    /// All of them, or the one from which the player was hurt.
-    fn of(flash: &Flash, heading: Heading) -> Self {
-        let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else {
-            return Self(None);
-        };
-        let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
-        let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
-        Self(Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4]))
-    }
-
-    fn contains(self, side: Side) -> bool {
-        self.0.is_none_or(|only| only == side)
-    }
+/// The side of the picture on which the flash is, from which the player was hurt; `None` for all of them.
+fn side_of(flash: &Flash, heading: Heading) -> Option<Side> {
+    let FlashKind::Hurt { bearing: Some(bearing) } = flash.kind else { return None };
+    let clockwise = (bearing.degrees() - heading.degrees()).rem_euclid(360.0);
+    let clockwise_from_ahead = [Side::Ahead, Side::Right, Side::Behind, Side::Left];
+    Some(clockwise_from_ahead[(clockwise / 90.0).round() as usize % 4])
 }
 
 /// Tints the pixels at the edge of `frame`.
@@ -467,13 +435,13 @@ pub(crate) fn tint(frame: &mut Frame, flash: &Flash, heading: Heading) {
         FlashKind::Gain => (GAIN, GAIN_OPACITY),
     };
     let opacity = opacity * flash.strength();
-    let sides = Sides::of(flash, heading);
+    let hit = side_of(flash, heading);
     // A flash without a direction is thin on all sides.
     let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
     // Half blocks are square; the pixels of other glyphs are higher than wide.
     let aspect = frame.pixel_aspect().height_over_width();
     let side = width.min(height * aspect);
-    let reach = |which| side * if sides.0 == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
+    let reach = |which| side * if hit == Some(which) { NEAR_SIDE } else { OTHER_SIDES };
     let share = |distance: f64, reach: f64| (1.0 - distance / reach.max(1.0)).max(0.0);
     for (y, row) in frame.rows_mut().enumerate() {
         let (top, bottom) = ((y as f64 + 0.5) * aspect, (height - y as f64 - 0.5) * aspect);
@@ -495,17 +463,18 @@ fn draw_edge(canvas: &mut impl Canvas, picture: Rect, flash: &Flash, heading: He
         FlashKind::Hurt { .. } => '#',
         FlashKind::Gain => '+',
     };
-    let sides = Sides::of(flash, heading);
+    let hit = side_of(flash, heading);
+    let is_hit = |side| hit.is_none_or(|only| only == side);
     let mut draw = |x, y| canvas.draw_character(x, y, character, [Color::Reset; 2]);
     let (last_column, last_row) =
         (picture.right().saturating_sub(1), picture.bottom().saturating_sub(1));
     for x in picture.left()..picture.right() {
         let rows = [(Side::Ahead, picture.top()), (Side::Behind, last_row)];
-        rows.into_iter().filter(|row| sides.contains(row.0)).for_each(|(_, y)| draw(x, y));
+        rows.into_iter().filter(|row| is_hit(row.0)).for_each(|(_, y)| draw(x, y));
     }
     for y in picture.top()..picture.bottom() {
         let columns = [(Side::Left, picture.left()), (Side::Right, last_column)];
-        columns.into_iter().filter(|column| sides.contains(column.0)).for_each(|(_, x)| draw(x, y));
+        columns.into_iter().filter(|column| is_hit(column.0)).for_each(|(_, x)| draw(x, y));
     }
 }
 

@@ -10,8 +10,8 @@ use glam::DVec3;
 use ratatui::layout::{Rect, Size};
 
 use crate::app::picture::DrawOptions;
-use crate::app::settings::MapDisplay;
-use crate::game::{Flight, Game, Intents, Rules, STEPS_PER_SECOND};
+use crate::app::setting::MapDisplay;
+use crate::game::{Alarm, Flight, Game, Intents, PlayerId, Rules, STEPS_PER_SECOND};
 use crate::map::Level;
 use crate::space;
 use crate::tui::View;
@@ -263,5 +263,41 @@ impl Goal {
     /// Counts `steps` steps in which the player wanted something.
     pub(crate) fn moved(&mut self, steps: u64) {
         self.steps_left = self.steps_left.saturating_sub(steps);
+    }
+}
+
+/// The last state, to compare the next one with.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    alarm: Alarm,
+    health: u8,
+    /// Whether something has happened since [`Watch::take_ring`].
+    rings: bool,
+}
+
+impl Watch {
+    /// A watch that begins with the state of the player of `game`.
+    pub(crate) fn begin(game: Option<&Game>) -> Self {
+        game.map_or_else(Self::default, |game| Self::of(game, PlayerId::FIRST))
+    }
+
+    /// A watch that begins with the state of `player` in `game`.
+    pub fn of(game: &Game, player: PlayerId) -> Self {
+        let mut watch = Self::default();
+        watch.look_at(game, player);
+        Self { rings: false, ..watch }
+    }
+
+    /// Looks at the state of `player` after a step.
+    pub fn look_at(&mut self, game: &Game, player: PlayerId) {
+        let alarm = game.alarm();
+        let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
+        self.rings |= alarm > self.alarm || health < self.health;
+        (self.alarm, self.health) = (alarm, health);
+    }
+
+    /// Whether something has happened since the last call.
+    pub fn take_ring(&mut self) -> bool {
+        std::mem::take(&mut self.rings)
     }
 }

@@ -1,21 +1,17 @@
-//! Runs as scripts: recorded while the game is played, and played again by the ghost of the best run and off screen.
+//! Runs as scripts: recorded while the game is played, and played again by the ghost of the best run.
 //!
 //! The ghost is a game of its own. Rejected: recorded positions. A script is a hundredth of their size,
 //! and is kept anyway.
 
-use std::fmt;
 use std::io::Write;
-use std::num::NonZeroU32;
+use std::iter::{self, FlatMap, RepeatN};
+use std::{fmt, vec};
 
-use ratatui::buffer::Buffer;
-use ratatui::layout::{Rect, Size};
-
+use crate::app::App;
 use crate::app::played::Goal;
-use crate::app::{App, Levels, Screen, Settings};
-use crate::game::{self, Game, Intents, STEPS_PER_SECOND, Script, Stretch};
+use crate::game::{self, Game, Intents, Script, Stretch};
 use crate::terminal;
 use crate::tui::MapMark;
-use crate::tui::canvas::Canvas;
 use crate::world::{Camera, FieldOfView, Figure, SpriteId};
 
 /// The recordings to make of a game; by default, none.
@@ -99,36 +95,15 @@ impl RunLog {
     }
 }
 
-/// A script and the number of its steps that are over.
-#[derive(Clone, Debug)]
-pub(crate) struct ScriptCursor {
-    stretches: Vec<Stretch>,
-    /// The stretch of the next step, and how many of its steps are over.
-    index: usize,
-    passed: u32,
-}
+/// The intents of each step of a script.
+pub(crate) type Steps =
+    FlatMap<vec::IntoIter<Stretch>, RepeatN<Intents>, fn(Stretch) -> RepeatN<Intents>>;
 
-impl ScriptCursor {
-    /// The start of `script`.
-    pub(crate) fn new(script: &Script) -> Self {
-        let stretches = script.sections().iter().flat_map(|section| &section.stretches);
-        Self { stretches: stretches.copied().collect(), index: 0, passed: 0 }
-    }
-
-    /// The intents of the next step, which is then over; `None` at the end.
-    pub(crate) fn next(&mut self) -> Option<Intents> {
-        let stretch = self.stretches.get(self.index)?;
-        self.passed += 1;
-        if self.passed >= stretch.steps {
-            (self.index, self.passed) = (self.index + 1, 0);
-        }
-        Some(stretch.intents)
-    }
-
-    /// Returns to the start.
-    pub(crate) fn rewind(&mut self) {
-        (self.index, self.passed) = (0, 0);
-    }
+/// The intents of each step of `script`.
+pub(crate) fn steps(script: &Script) -> Steps {
+    let stretches = script.sections().iter().flat_map(|section| section.stretches.iter().copied());
+    let steps = |stretch: Stretch| iter::repeat_n(stretch.intents, stretch.steps as usize);
+    stretches.collect::<Vec<_>>().into_iter().flat_map(steps as fn(Stretch) -> RepeatN<Intents>)
 }
 
 /// How much of the ghost shows, of 255.
@@ -138,7 +113,7 @@ const OPACITY: u8 = 96;
 #[derive(Debug)]
 pub(crate) struct Ghost {
     game: Game,
-    cursor: ScriptCursor,
+    steps: Steps,
     /// The intents of the next step; `None` at the end of the script.
     next: Option<Intents>,
 }
@@ -162,16 +137,16 @@ impl App {
 
 impl Ghost {
     /// The best run at its start, in `game` at its start.
-    pub(crate) fn new(game: Game, mut cursor: ScriptCursor) -> Self {
-        let next = cursor.next();
-        Self { game, cursor, next }
+    pub(crate) fn new(game: Game, mut steps: Steps) -> Self {
+        let next = steps.next();
+        Self { game, steps, next }
     }
 
     /// Advances by one step.
     pub(crate) fn step(&mut self) {
         if let Some(intents) = self.next {
             self.game.step(intents);
-            self.next = self.cursor.next();
+            self.next = self.steps.next();
         }
     }
 
@@ -209,83 +184,6 @@ impl Ghost {
     }
 }
 
-/// A game without a terminal, one step at a time. It draws the picture, minimap and status line
-/// that a player with the same intents would see.
-///
-/// After a level's exit is reached, the next step is the first one of the next level.
-pub struct Replay {
-    app: App,
-    picture: Buffer,
-}
-
-impl Replay {
-    /// Begins `levels` in a window of `size`.
-    pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
-        let area = Rect::from(size);
-        Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
-    }
-
-    /// Advances by one step with `intents`.
-    pub fn step(&mut self, intents: Intents) {
-        if self.app.screen() == Screen::LevelDone {
-            self.app.next_level();
-        }
-        if self.app.screen() == Screen::Playing {
-            self.app.game.step(intents);
-            self.app.goal.moved(u64::from(!intents.is_empty()));
-            if self.app.game.is_finished() {
-                self.app.show(Screen::LevelDone);
-            }
-        }
-    }
-
-    /// Plays `script` and calls `show` with its frames, `frames_per_second` per second; the first
-    /// shows the state before the first step. The arguments are the frame's number, the section of
-    /// the script that led to it, and its cells.
-    ///
-    /// # Errors
-    /// The first error of `show`.
-    pub fn play<E>(
-        &mut self,
-        script: &Script,
-        frames_per_second: NonZeroU32,
-        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let mut frame = 0;
-        show(frame, 0, self.picture())?;
-        for (steps, (section, intents)) in (1..).zip(script.iter()) {
-            self.step(intents);
-            let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
-            while frame < frames {
-                frame += 1;
-                show(frame, section, self.picture())?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Draws the current state.
-    pub fn draw(&mut self, canvas: &mut impl Canvas) {
-        self.app.draw(canvas);
-    }
-
-    /// The current picture. As in a game, it is redrawn only if something has changed.
-    pub fn picture(&mut self) -> &Buffer {
-        if self.app.is_stale() {
-            self.picture.reset();
-            self.app.draw(&mut self.picture);
-            self.app.drawn();
-        }
-        &self.picture
-    }
-}
-
-impl fmt::Debug for Replay {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Replay").field("game", &self.app.game).finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -311,15 +209,6 @@ mod tests {
     fn it_gives_the_steps_of_the_script() {
         let text = "2 steps forward\n[b]\n1 step stand\n3 steps run\n";
         let script = Script::parse(text, "it").unwrap_or_else(|faults| panic!("{faults}"));
-        let expected: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
-        let mut cursor = ScriptCursor::new(&script);
-        for _ in 0..2 {
-            let mut steps = Vec::new();
-            while let Some(intents) = cursor.next() {
-                steps.push(intents);
-            }
-            assert_eq!(steps, expected);
-            cursor.rewind();
-        }
+        assert!(steps(&script).eq(script.iter().map(|(_, intents)| intents)));
     }
 }

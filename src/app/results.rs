@@ -3,7 +3,7 @@
 
 use crate::app::App;
 use crate::app::page::Menu;
-use crate::app::recording::{RunLog, ScriptCursor};
+use crate::app::recording::{self, RunLog, Steps};
 use crate::app::screen::Choice;
 use crate::app::status::{tenths, whole_seconds};
 use crate::app::store::{Improved, Run};
@@ -73,9 +73,9 @@ impl App {
     }
 
     /// The best run of the level as a script, to walk along.
-    pub(crate) fn best_run(&self) -> Option<ScriptCursor> {
+    pub(crate) fn best_run(&self) -> Option<Steps> {
         let text = self.store.script(self.levels.stage.name()?, self.difficulty)?;
-        Script::parse(&text, "the best run").ok().map(|script| ScriptCursor::new(&script))
+        Script::parse(&text, "the best run").ok().map(|script| recording::steps(&script))
     }
 
     /// The index of the first built-in level that was not won at the preferred difficulty, if any

@@ -1,4 +1,5 @@
-//! The main loop, which has a terminal and a clock, and the steps of the game that pass with time.
+//! The main loop, which has a terminal and a clock, the steps of the game that pass with time, and replays without
+//! either.
 //!
 //! It sleeps until a key, a signal or the next frame is due. While nothing moves there is no next
 //! frame, so that nothing is computed or written.
@@ -19,9 +20,13 @@
 //! Steps that take long are not caught up with: the game slows down, and keys are read between two
 //! steps, whatever a step takes.
 
-use std::env;
+use std::num::NonZeroU32;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
+use std::{env, fmt};
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Rect, Size};
 
 use crate::app::App;
 use crate::app::controls::{self, Clock};
@@ -34,7 +39,7 @@ use crate::app::settings::Settings;
 use crate::app::status::Meter;
 use crate::app::store::Store;
 use crate::app::title::Offers;
-use crate::game::{Alarm, Game, Intents, PlayerId};
+use crate::game::{Game, Intents, PlayerId, STEPS_PER_SECOND, Script};
 #[cfg(debug_assertions)]
 use crate::terminal::Key;
 use crate::terminal::{Detected, Error, Event, Options, Session, locale_without_utf8};
@@ -74,7 +79,7 @@ pub fn play(
     let ascii_locale = ascii_locale(settings.glyphs);
     options.is_ascii = ascii_locale.is_some();
     let mut session = Session::enter_recorded(options, recording.terminal)?;
-    let mut presenter = Presenter::new(settings.frame_time);
+    let mut presenter = Presenter::default();
     let mut app = App::opened(opening, settings, store);
     app.script = recording.script;
     app.detection.ascii_locale = ascii_locale;
@@ -92,7 +97,6 @@ pub fn play(
         if app.take_tmux_order() {
             session.tell_tmux();
         }
-        presenter.frame_time = app.settings.frame_time;
         presenter.update(&mut app, &mut session, time.now())?;
         let wakes_at = presenter.wakes_at(&app, &session, time.now());
         let timeout = wakes_at.and_then(|wakes| time.until(wakes));
@@ -140,8 +144,8 @@ pub struct Farewell {
 
 /// Shows the newest state of the game, at most at the given frame rate and only when the terminal
 /// is ready.
+#[derive(Default)]
 struct Presenter {
-    frame_time: Duration,
     next_frame: Duration,
     /// Whether a frame is due and the terminal is not ready; it will report when it is.
     waits: bool,
@@ -151,11 +155,6 @@ struct Presenter {
 }
 
 impl Presenter {
-    fn new(frame_time: Duration) -> Self {
-        let meter = Meter::default();
-        Self { frame_time, next_frame: Duration::ZERO, waits: false, is_idle: false, meter }
-    }
-
     /// Draws or refines a frame, if one is due, and unless an event comes first.
     fn update(&mut self, app: &mut App, session: &mut Session, now: Duration) -> Result<(), Error> {
         let may_be_due = now >= self.next_frame;
@@ -188,9 +187,9 @@ impl Presenter {
         }
         // Counted from the time at which this frame was due: the time for drawing must not slow
         // frames down.
-        self.next_frame = Some(self.next_frame + self.frame_time)
+        self.next_frame = Some(self.next_frame + app.settings.frame_time)
             .filter(|&next| now < next)
-            .unwrap_or(now + self.frame_time);
+            .unwrap_or(now + app.settings.frame_time);
         Ok(())
     }
 
@@ -198,13 +197,13 @@ impl Presenter {
     fn wakes_at(&self, app: &App, session: &Session, now: Duration) -> Option<Duration> {
         let (frame, soonest) = if self.waits {
             // The game continues while the terminal is not ready.
-            (None, now + self.frame_time)
+            (None, now + app.settings.frame_time)
         } else {
             (is_unfinished(app, session).then_some(self.next_frame), self.next_frame)
         };
         // While others move out of view and the player does not, a look at each step is in vain.
         let rests = self.is_idle && app.waits_for_others();
-        let soonest = if rests { now + self.frame_time } else { soonest };
+        let soonest = if rests { now + app.settings.frame_time } else { soonest };
         let change = app.next_change().map(|change| change.max(soonest));
         let expiry = app.controls.held.next_expiry();
         frame.into_iter().chain(change).chain(expiry).chain(app.next_reload()).min()
@@ -335,15 +334,6 @@ impl App {
         self.settle(now);
     }
 
-    /// Advances the level behind the title by one step.
-    fn step_demo(&mut self) {
-        let Some(demo) = &mut self.demo else { return };
-        match demo.next().filter(|_| !self.game.is_finished()) {
-            Some(intents) => self.game.step(intents),
-            None => self.game = demo.rewind().unwrap_or_default(),
-        }
-    }
-
     /// Advances by one step that ends at `now`, or by up to `most` steps while the game rests.
     /// Returns their number.
     fn pass(&mut self, now: Duration, most: u64, moves: &mut u64) -> u64 {
@@ -394,38 +384,79 @@ impl App {
     }
 }
 
-/// The last state, to compare the next one with.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Watch {
-    alarm: Alarm,
-    health: u8,
-    /// Whether something has happened since [`Watch::take_ring`].
-    rings: bool,
+/// A game without a terminal, one step at a time. It draws the picture, minimap and status line
+/// that a player with the same intents would see.
+///
+/// After a level's exit is reached, the next step is the first one of the next level.
+pub struct Replay {
+    app: App,
+    picture: Buffer,
 }
 
-impl Watch {
-    /// A watch that begins with the state of the player of `game`.
-    pub(crate) fn begin(game: Option<&Game>) -> Self {
-        game.map_or_else(Self::default, |game| Self::of(game, PlayerId::FIRST))
+impl Replay {
+    /// Begins `levels` in a window of `size`.
+    pub fn new(levels: Levels, settings: Settings, size: Size) -> Self {
+        let area = Rect::from(size);
+        Self { app: App::new(levels, settings), picture: Buffer::empty(area) }
     }
 
-    /// A watch that begins with the state of `player` in `game`.
-    pub fn of(game: &Game, player: PlayerId) -> Self {
-        let mut watch = Self::default();
-        watch.look_at(game, player);
-        Self { rings: false, ..watch }
+    /// Advances by one step with `intents`.
+    pub fn step(&mut self, intents: Intents) {
+        if self.app.screen() == Screen::LevelDone {
+            self.app.next_level();
+        }
+        if self.app.screen() == Screen::Playing {
+            self.app.game.step(intents);
+            self.app.goal.moved(u64::from(!intents.is_empty()));
+            if self.app.game.is_finished() {
+                self.app.show(Screen::LevelDone);
+            }
+        }
     }
 
-    /// Looks at the state of `player` after a step.
-    pub fn look_at(&mut self, game: &Game, player: PlayerId) {
-        let alarm = game.alarm();
-        let health = game.seen_by(player).map_or(self.health, |player| player.health().points);
-        self.rings |= alarm > self.alarm || health < self.health;
-        (self.alarm, self.health) = (alarm, health);
+    /// Plays `script` and calls `show` with its frames, `frames_per_second` per second; the first
+    /// shows the state before the first step. The arguments are the frame's number, the section of
+    /// the script that led to it, and its cells.
+    ///
+    /// # Errors
+    /// The first error of `show`.
+    pub fn play<E>(
+        &mut self,
+        script: &Script,
+        frames_per_second: NonZeroU32,
+        mut show: impl FnMut(u64, usize, &Buffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut frame = 0;
+        show(frame, 0, self.picture())?;
+        for (steps, (section, intents)) in (1..).zip(script.iter()) {
+            self.step(intents);
+            let frames = steps * u64::from(frames_per_second.get()) / u64::from(STEPS_PER_SECOND);
+            while frame < frames {
+                frame += 1;
+                show(frame, section, self.picture())?;
+            }
+        }
+        Ok(())
     }
 
-    /// Whether something has happened since the last call.
-    pub fn take_ring(&mut self) -> bool {
-        std::mem::take(&mut self.rings)
+    /// Draws the current state.
+    pub fn draw(&mut self, canvas: &mut impl Canvas) {
+        self.app.draw(canvas);
+    }
+
+    /// The current picture. As in a game, it is redrawn only if something has changed.
+    pub fn picture(&mut self) -> &Buffer {
+        if self.app.is_stale() {
+            self.picture.reset();
+            self.app.draw(&mut self.picture);
+            self.app.drawn();
+        }
+        &self.picture
+    }
+}
+
+impl fmt::Debug for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Replay").field("game", &self.app.game).finish_non_exhaustive()
     }
 }

@@ -11,9 +11,9 @@
 
 use super::levels::{date_of, save_of_descent};
 use super::page::Menu;
+use super::played::Watch;
 use super::recording::RunLog;
 use super::results::{builtin_named, shown_name};
-use super::run::Watch;
 use super::screen::{Choice, capitalized};
 use super::status::whole_seconds;
 use super::{App, Levels, Screen};
@@ -22,33 +22,16 @@ use crate::game::{Game, Intents, Outcome, Rules, STEP, Script};
 use crate::map::builtin;
 use crate::world::Difficulty;
 
-/// The effect of leaving on the game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Leaving {
-    /// Nothing has been played, or the game is over.
-    LosesNothing,
-    Saves,
-    FindsNoRoom,
-    /// The level has no name to find it by.
-    Loses,
-}
-
 impl App {
     /// Saves a game that has begun and is not over, if its level has a name to find it by.
     ///
     /// # Errors
     /// If the store does not take it.
     pub(crate) fn save_game(&mut self) -> Result<(), NotSaved> {
-        match self.game_to_save() {
-            Some(saved) => self.store.save(&saved),
-            None => Ok(()),
-        }
-    }
-
-    fn game_to_save(&self) -> Option<SavedGame> {
-        let game = self.game.grid().filter(|_| self.is_unfinished())?;
-        let save = Save { checksum: Some(game.checksum()), ..self.as_save()? };
-        Some(SavedGame { save, script: self.run_script(game) })
+        let game = self.game.grid().filter(|_| self.is_unfinished());
+        let Some((game, save)) = game.zip(self.as_save()) else { return Ok(()) };
+        let save = Save { checksum: Some(game.checksum()), ..save };
+        self.store.save(&SavedGame { save, script: self.run_script(game) })
     }
 
     /// The description under which the game that is played would be saved, without a checksum; `None` if
@@ -80,24 +63,18 @@ impl App {
         game.is_some_and(|game| !is_over(game))
     }
 
-    fn leaving(&self) -> Leaving {
-        if !self.is_unfinished() {
-            return Leaving::LosesNothing;
-        }
-        match self.as_save() {
-            Some(save) if self.store.has_room_for(save.id()) => Leaving::Saves,
-            Some(_) => Leaving::FindsNoRoom,
-            None => Leaving::Loses,
-        }
-    }
-
     /// The effect of leaving the program, for the question whether to leave.
     pub(crate) fn effect_of_leaving(&self) -> &'static str {
-        match self.leaving() {
-            Leaving::LosesNothing => "leaves the program",
-            Leaving::Saves => "leaves the program\nthe game is saved",
-            Leaving::FindsNoRoom => "leaves the program\nno room to save the game",
-            Leaving::Loses => "leaves the program\nthis game cannot be saved",
+        if !self.is_unfinished() {
+            return "leaves the program";
+        }
+        match self.as_save() {
+            Some(save) if self.store.has_room_for(save.id()) => {
+                "leaves the program\nthe game is saved"
+            }
+            Some(_) => "leaves the program\nno room to save the game",
+            // The level has no name to find it by.
+            None => "leaves the program\nthis game cannot be saved",
         }
     }
 
@@ -215,28 +192,31 @@ impl App {
 
     /// Goes on with the saved game, if its script still leads to the state in which it was left.
     pub(crate) fn continue_saved(&mut self, id: SaveId) {
-        let begun = self.read_saved(id).and_then(|(saved, script)| {
-            self.begin_saved(&saved.save)?;
-            Ok((saved, script))
-        });
-        match begun {
-            Ok((saved, script)) => self.repeat(&saved.save, &script),
-            Err(sentence) => self.say_in_menu(&sentence),
-        }
+        self.repeat_after(id, Self::begin_saved);
     }
 
     /// Goes on with the saved game of the level that has just begun.
     pub(crate) fn resume(&mut self, id: SaveId) {
-        match self.read_saved(id) {
-            Ok((saved, script)) => self.repeat(&saved.save, &script),
-            Err(sentence) => self.say_in_menu(&sentence),
-        }
+        self.repeat_after(id, |_, _| Ok(()));
     }
 
-    fn read_saved(&self, id: SaveId) -> Result<(SavedGame, Script), String> {
-        let saved = self.store.saved(id).ok_or("The saved game can't be read.")?;
-        let script = Script::parse(&saved.script, "the saved game");
-        Ok((saved, script.map_err(|_| "The saved game is damaged.")?))
+    /// Reads a saved game, and repeats it after `begin`.
+    fn repeat_after(
+        &mut self,
+        id: SaveId,
+        begin: impl FnOnce(&mut Self, &Save) -> Result<(), String>,
+    ) {
+        let read = || {
+            let SavedGame { save, script } =
+                self.store.saved(id).ok_or("The saved game can't be read.")?;
+            let script = Script::parse(&script, "the saved game");
+            Ok((save, script.map_err(|_| "The saved game is damaged.")?))
+        };
+        let read: Result<_, String> = read();
+        match read.and_then(|(save, script)| begin(self, &save).map(|()| (save, script))) {
+            Ok((save, script)) => self.repeat(&save, &script),
+            Err(sentence) => self.say_in_menu(&sentence),
+        }
     }
 
     /// Begins the level of a saved game, or the first floor of its descent.

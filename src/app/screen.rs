@@ -3,12 +3,12 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use crate::app::App;
 use crate::app::controls::{Action, KeyContext};
 use crate::app::page::{Effect, Kind, Menu, Page};
 use crate::app::picture::widened;
 use crate::app::status::{of_steps, whole_seconds};
 use crate::app::store::{Preferences, SaveId};
-use crate::app::{App, Levels};
 use crate::game::{Game, Intents};
 use crate::map::builtin;
 use crate::terminal::{Key, KeyEvent, MouseEvent};
@@ -224,25 +224,6 @@ impl App {
             Choice::ToTitle => self.return_to_title(),
             Choice::TellTmux => self.order_tmux(),
             Choice::Leave => self.leave(),
-        }
-    }
-
-    fn begin_builtin(&mut self, index: usize) {
-        if let Some(levels) = Levels::builtin(index) {
-            self.begin(levels);
-        }
-    }
-
-    fn begin_own_map(&mut self, index: usize) {
-        let Some(map) = self.own_maps.get(index) else { return };
-        match (map.load)() {
-            Ok(level) => {
-                self.difficulty = self.store.preferences().difficulty;
-                self.begin(Levels::own(level));
-            }
-            Err(fault) => {
-                self.say_in_menu(&fault);
-            }
         }
     }
 
@@ -473,16 +454,9 @@ impl App {
         match self.screen() {
             Screen::Playing => {}
             Screen::Title => self.leave(),
-            screen if screen.is_before_start() => self.give_up_beginning(),
-            _ => self.close(),
-        }
-    }
-
-    /// Returns to the title from a question before a level, or leaves where there is no title.
-    fn give_up_beginning(&mut self) {
-        match self.offers {
-            Some(_) => self.return_to_title(),
-            None => self.leave(),
+            screen if !screen.is_before_start() => self.close(),
+            _ if self.offers.is_some() => self.return_to_title(),
+            _ => self.leave(),
         }
     }
 

@@ -186,6 +186,31 @@ impl Choice for Difficulty {
     ];
 }
 
+/// The content of the minimap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum MapDisplay {
+    /// The cells that the player has seen so far.
+    #[default]
+    Seen,
+    /// The whole map.
+    All,
+    /// Nothing, until the player switches it on; then the seen cells.
+    Off,
+}
+
+impl Choice for MapDisplay {
+    const ALL: &'static [Named<Self>] = &[
+        (Self::Seen, "seen", "what was seen"),
+        (Self::All, "all", "all"),
+        (Self::Off, "off", "off"),
+    ];
+
+    /// Shows the map or hides it. The content of a map that is shown again is its panel's affair.
+    fn neighbour(self, _forward: bool) -> Self {
+        if self == Self::Off { Self::Seen } else { Self::Off }
+    }
+}
+
 impl Choice for Preset {
     const ALL: &'static [Named<Self>] = &[
         (Self::Qwerty, "qwerty", "qwerty"),

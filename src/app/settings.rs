@@ -35,8 +35,7 @@ use crate::app::App;
 use crate::app::controls::{Action, Bindings, Preset};
 use crate::app::page::Menu;
 use crate::app::screen;
-use crate::app::setting::{At, Choice, FRAME_RATE, Setting, toml_string};
-use crate::app::store::Preferences;
+use crate::app::setting::{At, Choice, FRAME_RATE, MapDisplay, Preferences, Setting, toml_string};
 use crate::color::palette::ColorDepth;
 use crate::fault::document::{self, Entry, FaultList};
 use crate::fault::{Fault, Faults, quoted};
@@ -117,18 +116,6 @@ impl Settings {
     }
 }
 
-/// The content of the minimap.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum MapDisplay {
-    /// The cells that the player has seen so far.
-    #[default]
-    Seen,
-    /// The whole map.
-    All,
-    /// Nothing, until the player switches it on; then the seen cells.
-    Off,
-}
-
 /// The content of a configuration file, with defaults for missing settings.
 ///
 /// Its `Display` output is a complete file with comments, which parses to the same configuration:
@@ -162,19 +149,6 @@ pub struct Configuration {
     pub minimap: MapDisplay,
     /// The fidelity of frames; `None` for the highest that the link to the terminal allows.
     pub fidelity: Option<Fidelity>,
-}
-
-impl Choice for MapDisplay {
-    const ALL: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Seen, "seen", "what was seen"),
-        (Self::All, "all", "all"),
-        (Self::Off, "off", "off"),
-    ];
-
-    /// Shows the map or hides it. The content of a map that is shown again is its panel's affair.
-    fn neighbour(self, _forward: bool) -> Self {
-        if self == Self::Off { Self::Seen } else { Self::Off }
-    }
 }
 
 impl Default for Configuration {

@@ -212,11 +212,8 @@ impl StatusLine {
             (mouse, "mouse"),
             (lamp, "lamp"),
         ];
-        for (index, (_, mode)) in modes.into_iter().filter(|(is_on, _)| *is_on).enumerate() {
-            let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Modes, format_args!("{comma}{mode}"))?;
-        }
-        Ok(())
+        let modes = modes.into_iter().filter(|(is_on, _)| *is_on);
+        self.list(Part::Modes, modes.map(|(_, mode)| mode))
     }
 
     /// Writes the figures of frames and the link.
@@ -228,9 +225,14 @@ impl StatusLine {
 
     /// Writes the names of the keys that the player has.
     pub fn write_keys<'k>(&mut self, keys: impl Iterator<Item = &'k str>) -> fmt::Result {
-        for (index, key) in keys.enumerate() {
+        self.list(Part::Keys, keys.map(|key| fmt::from_fn(move |f| write!(f, "{key} key"))))
+    }
+
+    /// Writes items between commas.
+    fn list(&mut self, part: Part, items: impl Iterator<Item: Display>) -> fmt::Result {
+        for (index, item) in items.enumerate() {
             let comma = if index > 0 { ", " } else { "" };
-            self.both(Part::Keys, format_args!("{comma}{key} key"))?;
+            self.both(part, format_args!("{comma}{item}"))?;
         }
         Ok(())
     }

@@ -21,8 +21,8 @@
 //! - **A damaged file is kept.** It is renamed to `progress.toml.damaged-1`, everything in it that can be
 //!   read is kept in force, and a sentence says so. The newest three such files stay. A file of a newer
 //!   version is left alone.
-//! - **Nobody else reads it.** Folders and files are made for their owner alone. What is no regular file,
-//!   such as a named pipe, is not opened.
+//! - **Nobody else reads it.** Only the owner can read its folders and files. Only regular files are opened, and no
+//!   named pipe, for example.
 //! - **A failure does not stop the game.** Changes that can't be written stay in memory, are tried
 //!   again with the next change, and [`Store::trouble`] is one sentence about them.
 //!

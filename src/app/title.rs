@@ -20,10 +20,10 @@ use ratatui::widgets::Block;
 use crate::app::App;
 use crate::app::page::Menu;
 use crate::app::played::Played;
-use crate::app::recording::ScriptCursor;
+use crate::app::recording::{self, Steps};
 use crate::app::screen::{Choice, Screen};
 use crate::color::palette::ColorDepth;
-use crate::game::{Intents, Script};
+use crate::game::Script;
 use crate::map::{Level, builtin};
 use crate::terminal::{ColorSource, TmuxClient};
 use crate::tui::GlyphSet;
@@ -33,38 +33,13 @@ use crate::tui::canvas::Canvas;
 const LEVEL: &str = "citadel";
 const SCRIPT: &str = include_str!("../../maps/showcase.script");
 
-/// A level that a script plays, again and again.
-pub(crate) struct Demo {
-    level: &'static builtin::Level,
-    cursor: ScriptCursor,
-}
-
-impl Demo {
-    /// The demo and its level at the start. Only this level is read, as the first picture of the
-    /// program needs no other.
-    pub(crate) fn begin() -> Option<(Self, Played)> {
-        let level = builtin::LEVELS.iter().find(|level| level.name == LEVEL)?;
-        let script = Script::parse(SCRIPT, "showcase").ok()?;
-        let demo = Self { level, cursor: ScriptCursor::new(&script) };
-        let played = demo.again()?;
-        Some((demo, played))
-    }
-
-    /// The intents of the next step; `None` at the end of the script.
-    pub(crate) fn next(&mut self) -> Option<Intents> {
-        self.cursor.next()
-    }
-
-    /// Returns to the start of the script, and returns the level at its start.
-    pub(crate) fn rewind(&mut self) -> Option<Played> {
-        self.cursor.rewind();
-        self.again()
-    }
-
-    fn again(&self) -> Option<Played> {
-        let world = self.level.world().ok()?.without_guards();
-        Some(Played::new(Level::from(world)))
-    }
+/// The demo's level at its start, and the intents of its steps. Only this level is read, as the first picture of the
+/// program needs no other.
+fn demo() -> Option<(Played, Steps)> {
+    let level = builtin::LEVELS.iter().find(|level| level.name == LEVEL)?;
+    let script = Script::parse(SCRIPT, "showcase").ok()?;
+    let world = level.world().ok()?.without_guards();
+    Some((Played::new(Level::from(world)), recording::steps(&script)))
 }
 
 /// The offers of the title screen, beside the built-in levels.
@@ -133,6 +108,21 @@ pub(crate) enum TmuxOrder {
 }
 
 impl App {
+    /// Begins the level behind the title.
+    pub(crate) fn begin_demo(&mut self) {
+        let (game, steps) = demo().unzip();
+        (self.game, self.demo) = (game.unwrap_or_default(), steps);
+    }
+
+    /// Advances the level behind the title by one step. It begins again at its end.
+    pub(crate) fn step_demo(&mut self) {
+        let Some(demo) = &mut self.demo else { return };
+        match demo.next().filter(|_| !self.game.is_finished()) {
+            Some(intents) => self.game.step(intents),
+            None => self.begin_demo(),
+        }
+    }
+
     /// The command that is offered; `None` if nothing is offered.
     pub(crate) fn tmux_remedy(&self) -> Option<String> {
         let decides = self.detection.source == Some(ColorSource::Tmux);
@@ -303,17 +293,16 @@ mod tests {
 
     #[test]
     fn the_demo_moves_and_comes_to_its_end() {
-        let (mut demo, mut played) = Demo::begin().unwrap();
+        let (mut played, intents_of_steps) = demo().unwrap();
         let start = played.grid().unwrap().clone();
         let mut steps = 0;
-        while let Some(intents) = demo.next() {
+        for intents in intents_of_steps {
             played.step(intents);
             steps += 1;
         }
         assert!(steps > 600, "{steps} steps");
         assert_ne!(*played.grid().unwrap(), start);
-        assert_eq!(*demo.rewind().unwrap().grid().unwrap(), start);
-        assert!(demo.next().is_some());
+        assert_eq!(*demo().unwrap().0.grid().unwrap(), start);
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! `cellcaster config`: the settings in force, as a configuration file.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
 use super::Error;
 use super::machine::configuration_file;
+use super::output_file::print;
 use crate::app::Configuration;
 use crate::app::store::private;
 use crate::fault::printable;
@@ -47,7 +48,7 @@ pub(crate) fn run(options: Config) -> Result<(), Error> {
         }
     };
     let text = format!("{}\n\n{configuration}", printable(&place));
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
+    print(text.as_bytes())
 }
 
 /// The configuration of the named file, or of the user's own file if it exists.

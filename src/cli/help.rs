@@ -8,6 +8,7 @@ use clap_complete::Shell;
 use clap_mangen::Man;
 
 use super::Error;
+use super::output_file::print;
 use crate::app::Bindings;
 use crate::map::builtin::LEVELS;
 
@@ -35,7 +36,7 @@ impl Completions {
     pub(crate) fn run(&self, mut program: Command) -> Result<(), Error> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut program, "cellcaster", &mut script);
-        io::stdout().write_all(&script).map_err(|error| Error::of_output(&error))
+        print(&script)
     }
 }
 
@@ -45,7 +46,7 @@ impl Manual {
     pub(crate) fn run(program: Command) -> Result<(), Error> {
         let page =
             page(program).map_err(|error| Error::machine(format!("no manual page: {error}")))?;
-        io::stdout().write_all(&page).map_err(|error| Error::of_output(&error))
+        print(&page)
     }
 }
 

@@ -1,14 +1,13 @@
 //! `cellcaster levels`: the built-in levels, and what the player has reached in them.
 
-use std::io::{self, Write};
-
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::Error;
-use super::machine::data_folder;
+use super::machine::open_store;
+use super::output_file::print;
 use crate::app::status::{of_steps, tenths};
-use crate::app::store::{Best, Store};
+use crate::app::store::Best;
 use crate::game::STEPS_PER_SECOND;
 use crate::map::builtin;
 use crate::sort;
@@ -46,10 +45,7 @@ struct Entry {
 
 /// Writes the list that `options` request.
 pub(crate) fn run(options: &Levels) -> Result<(), Error> {
-    let (store, damage) = match data_folder() {
-        Some(folder) => Store::open(&folder),
-        None => (Store::in_memory(), None),
-    };
+    let (store, damage) = open_store();
     if let Some(sentence) = damage {
         Error::machine(sentence).warn();
     }
@@ -64,7 +60,7 @@ pub(crate) fn run(options: &Levels) -> Result<(), Error> {
             format!("{}\n", json!(entries.iter().map(object).collect::<Vec<_>>()))
         }
     };
-    io::stdout().write_all(text.as_bytes()).map_err(|error| Error::of_output(&error))
+    print(text.as_bytes())
 }
 
 fn table(entries: &[Entry]) -> String {

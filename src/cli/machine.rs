@@ -7,6 +7,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use etcetera::base_strategy::choose_native_strategy;
 use etcetera::{BaseStrategy, choose_base_strategy};
 
+use crate::app::store::Store;
 use crate::generate::daily_seed;
 
 /// `cellcaster` in the platform's folder for data, or the folder that `CELLCASTER_DATA` names.
@@ -17,6 +18,11 @@ pub fn data_folder() -> Option<PathBuf> {
         let folder = choose_native_strategy().ok()?.data_dir();
         Some(folder.join("cellcaster"))
     })
+}
+
+/// The player's store in [`data_folder`], or one in memory, and a sentence about damage to it.
+pub(crate) fn open_store() -> (Store, Option<String>) {
+    data_folder().map_or_else(|| (Store::in_memory(), None), |folder| Store::open(&folder))
 }
 
 /// A file in `cellcaster` in the platform's folder for configuration.

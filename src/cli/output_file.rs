@@ -1,6 +1,6 @@
-//! The file that a command writes: complete, or as it was before.
+//! What a command writes: standard output, and a file that is complete, or as it was before.
 //!
-//! It is written under another name and renamed, as in the store, so that a full disk costs neither
+//! A file is written under another name and renamed, as in the store, so that a full disk costs neither
 //! the file before nor leaves a part of the new one. Pipes and devices are written directly.
 
 use std::fs::{self, File};
@@ -8,6 +8,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::Error;
+
+/// Writes `text` to standard output.
+pub fn print(text: &[u8]) -> Result<(), Error> {
+    io::stdout().write_all(text).map_err(|error| Error::of_output(&error))
+}
 
 /// A file that is not in its place yet, or a pipe or a device.
 pub struct OutputFile {

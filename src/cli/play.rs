@@ -8,13 +8,12 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 
-use super::machine::{data_folder, today};
+use super::machine::{data_folder, open_store, today};
 use super::options::{Look, Place, STANDARD_INPUT, choice, fidelity, frames};
 use super::parse::Takes;
 use super::recording::RecordingFile;
 use super::{Error, config, level};
 use crate::app;
-use crate::app::store::Store;
 use crate::app::{Configuration, Farewell, Given, Levels, Offers, Opening, Origin, Settings};
 use crate::game::{Header, LevelName, Rules};
 use crate::render::DynCaster;
@@ -128,10 +127,7 @@ pub(crate) fn run(options: Play, caster: &DynCaster) -> Result<(), Error> {
     };
     let file = options.record.as_deref();
     let file = file.map(|path| RecordingFile::create(path, options.force)).transpose()?;
-    let (store, damage) = match data_folder() {
-        Some(folder) => Store::open(&folder),
-        None => (Store::in_memory(), None),
-    };
+    let (store, damage) = open_store();
     let difficulty = options.difficulty.unwrap_or(store.preferences().difficulty);
     let header = header(&opening, level, difficulty);
     let recording = file.as_ref().map(|file| file.recording(header)).unwrap_or_default();

@@ -1,12 +1,11 @@
 //! `cellcaster replay`: plays a script off screen, into a recording or into a report about what it achieves.
 
-use std::cell::Cell;
 use std::fmt::{self, Write as _};
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
+use std::mem;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
@@ -17,10 +16,10 @@ use ratatui::backend::Backend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
-use super::asciicast::Asciicast;
 use super::external::External;
 use super::options::{Place, View, fidelity, frames, window};
-use super::output_file::OutputFile;
+use super::output_file::{OutputFile, print};
+use super::recording::Asciicast;
 use super::{Error, level};
 use crate::app;
 use crate::app::Settings;
@@ -138,49 +137,26 @@ fn write(
     options: &Replay,
     output: impl Write,
 ) -> io::Result<()> {
-    let size = options.size;
-    let now = Rc::new(Cell::new(Duration::ZERO));
-    let mut screen = Screen { asciicast: Asciicast::begin(output, size)?, now: Rc::clone(&now) };
-    screen.send(|bytes| queue!(bytes, EnterAlternateScreen, Hide))?;
-    let mut writer = CellWriter::new(screen, size);
+    let (size, frames_per_second) = (options.size, options.frames_per_second);
+    let (mut asciicast, mut bytes) = (Asciicast::begin(output, size)?, Vec::new());
+    queue!(bytes, EnterAlternateScreen, Hide)?;
+    let mut now = Duration::ZERO;
+    asciicast.sent(now, &bytes)?;
+    let mut writer = CellWriter::new(Vec::new(), size);
     writer.set_fidelity(options.fidelity);
     let mut before = Buffer::empty(size.into());
-    let frames_per_second = options.frames_per_second;
     replay.play(script, frames_per_second, |frame, _, picture| {
-        now.set(Duration::from_secs(frame) / frames_per_second.get());
         writer.draw(before.diff(picture).into_iter())?;
         writer.flush()?;
         before.clone_from(picture);
-        Ok::<(), io::Error>(())
+        let bytes = mem::take(writer.output_mut());
+        now = Duration::from_secs(frame) / frames_per_second.get();
+        if bytes.is_empty() { Ok(()) } else { asciicast.sent(now, &bytes) }
     })?;
-    let mut screen = writer.into_output();
-    screen.send(|bytes| queue!(bytes, Show, LeaveAlternateScreen))?;
-    screen.asciicast.finish()
-}
-
-/// A terminal whose output becomes events: each write is one event at the time `now`.
-struct Screen<W> {
-    asciicast: Asciicast<W>,
-    now: Rc<Cell<Duration>>,
-}
-
-impl<W: Write> Screen<W> {
-    fn send(&mut self, queue: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> io::Result<()> {
-        let mut bytes = Vec::new();
-        queue(&mut bytes)?;
-        self.write_all(&bytes)
-    }
-}
-
-impl<W: Write> Write for Screen<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.asciicast.sent(self.now.get(), bytes)?;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
+    bytes.clear();
+    queue!(bytes, Show, LeaveAlternateScreen)?;
+    asciicast.sent(now, &bytes)?;
+    asciicast.finish()
 }
 
 /// Whether the file is the recording of a server's room, which has the game's rules and more.
@@ -204,7 +180,7 @@ fn verify(options: &Replay, script: &Script) -> Result<(), Error> {
         Some(floor) => descend(&name, floor, world, rules, script),
         None => play(&name, world, rules, script),
     };
-    io::stdout().write_all(report.as_bytes()).map_err(|error| Error::of_output(&error))?;
+    print(report.as_bytes())?;
     if wins { Ok(()) } else { Err(Error::failed()) }
 }
 

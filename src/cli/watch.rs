@@ -16,7 +16,7 @@ use crate::map::{self, Folder, Level, TextureFileError, TextureFiles};
 /// A map file, and the versions of it and its textures at the last load.
 pub(crate) struct Watch {
     map: PathBuf,
-    watched: Vec<WatchedFile>,
+    watched: Vec<(PathBuf, FileVersion)>,
     /// The faults of a file that has just changed, and may be incomplete.
     unconfirmed: Option<Faults>,
 }
@@ -32,7 +32,7 @@ impl Watch {
     /// only if the file has not changed between two calls, because an editor may be writing or
     /// replacing it.
     pub(crate) fn change(&mut self) -> Option<Result<Level, Faults>> {
-        if self.watched.iter().all(WatchedFile::is_up_to_date) {
+        if self.watched.iter().all(|(path, version)| version_of(path) == *version) {
             return self.unconfirmed.take().map(Err);
         }
         let (level, watched) = load(&self.map);
@@ -50,13 +50,13 @@ impl Watch {
     }
 }
 
-fn load(map: &Path) -> (Result<Level, Faults>, Vec<WatchedFile>) {
+fn load(map: &Path) -> (Result<Level, Faults>, Vec<(PathBuf, FileVersion)>) {
     let files = TrackedFiles {
         files: Folder::of(map),
         folder: map.parent().unwrap_or(Path::new("")),
         // The version is taken before the file is read, so that a change in between causes a
         // reload.
-        watched: RefCell::new(vec![WatchedFile::now(map.to_owned())]),
+        watched: RefCell::new(vec![(map.to_owned(), version_of(map))]),
     };
     let level = map::load_level_with(map, &files);
     (level, files.watched.into_inner())
@@ -66,45 +66,24 @@ fn load(map: &Path) -> (Result<Level, Faults>, Vec<WatchedFile>) {
 struct TrackedFiles<'a> {
     files: Folder,
     folder: &'a Path,
-    watched: RefCell<Vec<WatchedFile>>,
+    watched: RefCell<Vec<(PathBuf, FileVersion)>>,
 }
 
 impl TextureFiles for TrackedFiles<'_> {
     fn read(&self, name: &str) -> Result<Vec<u8>, TextureFileError> {
-        self.watched.borrow_mut().push(WatchedFile::now(self.folder.join(name)));
+        let path = self.folder.join(name);
+        let version = version_of(&path);
+        self.watched.borrow_mut().push((path, version));
         self.files.read(name)
     }
 }
 
-/// A file and the version of it that was last read.
-struct WatchedFile {
-    path: PathBuf,
-    version: Option<FileVersion>,
-}
+/// What distinguishes two versions of a file: the modification time and the length; `None` if there is no file.
+type FileVersion = Option<(Option<SystemTime>, u64)>;
 
-impl WatchedFile {
-    fn now(path: PathBuf) -> Self {
-        Self { version: FileVersion::of(&path), path }
-    }
-
-    fn is_up_to_date(&self) -> bool {
-        FileVersion::of(&self.path) == self.version
-    }
-}
-
-/// The properties that distinguish two versions of a file.
-#[derive(PartialEq)]
-struct FileVersion {
-    modified: Option<SystemTime>,
-    length: u64,
-}
-
-impl FileVersion {
-    /// `None` if the file does not exist.
-    fn of(path: &Path) -> Option<Self> {
-        let metadata = fs::metadata(path).ok()?;
-        Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
-    }
+fn version_of(path: &Path) -> FileVersion {
+    let metadata = fs::metadata(path).ok()?;
+    Some((metadata.modified().ok(), metadata.len()))
 }
 
 #[cfg(test)]

@@ -109,11 +109,6 @@ impl<W: Write> CellWriter<W> {
         &mut self.output
     }
 
-    /// Returns the output.
-    pub fn into_output(self) -> W {
-        self.output
-    }
-
     /// Sets the fidelity of colours from the next frame on.
     pub fn set_fidelity(&mut self, fidelity: Fidelity) {
         self.fidelity = fidelity;

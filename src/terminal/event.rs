@@ -394,14 +394,9 @@ pub(crate) fn base_key(key: Key, told: Option<char>) -> Option<Key> {
         return None;
     }
     let told = told.filter(char::is_ascii_graphic);
-    told.or_else(|| known_base(letter)).map(Key::typing)
-}
-
-fn known_base(letter: char) -> Option<char> {
-    let place = |(letters, keys): (&str, &str)| {
-        letters.chars().zip(keys.chars()).find(|&(known, _)| known == letter)
-    };
-    PLACES.into_iter().find_map(place).map(|(_, key)| key)
+    let mut places = PLACES.iter().flat_map(|(letters, keys)| letters.chars().zip(keys.chars()));
+    let known = || places.find(|&(known, _)| known == letter).map(|(_, key)| key);
+    told.or_else(known).map(Key::typing)
 }
 
 /// Whether `letter` is in one of Unicode's Latin blocks.

@@ -62,14 +62,24 @@ impl Guard {
             output_queue: Mutex::default(),
             recorder: recorder.map(Mutex::new),
         });
-        protect(&guard)?;
+        let mut current = current();
+        if current.is_some() {
+            return Err(Kind::AlreadyTaken.into());
+        }
+        *current = Some(Arc::clone(&guard));
+        HOOK.call_once(install_hook);
+        drop(current);
         Ok(guard)
     }
 
     /// Gives the terminal back at the end of the session.
     pub(crate) fn uninstall(&self) {
         self.give_back();
-        release(self);
+        // Panics are then handled as before.
+        let mut current = current();
+        if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), self)) {
+            *current = None;
+        }
     }
 
     pub(crate) fn device(&self) -> &Device {
@@ -196,23 +206,23 @@ impl Guard {
             state.changes.forget_key_flags();
         }
         let text = state.changes.end(self.now());
-        let accepted = self.write_patiently(&text);
+        let accepted = self.write_within_timeout(&text);
         if !accepted.as_ref().is_ok_and(|&length| length == text.len()) {
             // The frame that the terminal has not accepted gives way.
             if accepted.is_ok_and(|length| length > 0) {
                 state.changes.doubt_key_flags();
             }
             _ = self.device.discard_output();
-            _ = self.write_patiently(&state.changes.end_after_loss());
+            _ = self.write_within_timeout(&state.changes.end_after_loss());
         }
         self.discard_answers(&mut state.changes);
-        _ = self.write_patiently(&sequence::of(LeaveAlternateScreen));
+        _ = self.write_within_timeout(&sequence::of(LeaveAlternateScreen));
         _ = self.device.discard_input();
         _ = self.device.restore_attributes();
     }
 
     /// Writes `text`, and returns the length of the part that the terminal accepts in time.
-    fn write_patiently(&self, text: &str) -> io::Result<usize> {
+    fn write_within_timeout(&self, text: &str) -> io::Result<usize> {
         self.record(|recorder| recorder.sent(text.as_bytes()));
         let deadline = Instant::now() + WRITE_TIMEOUT;
         self.device.write(text.as_bytes(), || Instant::now() < deadline)
@@ -309,32 +319,13 @@ impl OutputQueue {
 /// The guard of the current session. The hook runs in all threads, so that this belongs to the
 /// process and not to the session.
 static CURRENT: Mutex<Option<Arc<Guard>>> = Mutex::new(None);
-
-/// Sets the guard that the hook uses.
-fn protect(guard: &Arc<Guard>) -> Result<(), Error> {
-    static HOOK: Once = Once::new();
-    let mut current = lock();
-    if current.is_some() {
-        return Err(Kind::AlreadyTaken.into());
-    }
-    *current = Some(Arc::clone(guard));
-    HOOK.call_once(install_hook);
-    Ok(())
-}
-
-/// Removes `guard`; panics are then handled as before.
-fn release(guard: &Guard) {
-    let mut current = lock();
-    if current.as_ref().is_some_and(|known| std::ptr::eq(Arc::as_ptr(known), guard)) {
-        *current = None;
-    }
-}
+static HOOK: Once = Once::new();
 
 /// Installs a panic hook that gives the terminal back before the message is printed. It calls the previous hook for
 /// panics outside of sessions. It is never removed: this would also remove a hook installed after it.
 fn install_hook() {
     let outside = panic::take_hook();
-    panic::set_hook(Box::new(move |info| match lock().clone() {
+    panic::set_hook(Box::new(move |info| match current().clone() {
         Some(guard) => {
             guard.give_back();
             report(info);
@@ -365,7 +356,7 @@ fn message(payload: &dyn Any) -> &str {
         .unwrap_or("it does not say which")
 }
 
-fn lock() -> MutexGuard<'static, Option<Arc<Guard>>> {
+fn current() -> MutexGuard<'static, Option<Arc<Guard>>> {
     CURRENT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -137,7 +137,7 @@ impl Decoder {
     }
 
     /// The time to wait for more bytes after the last one; `None` if no unit is incomplete.
-    pub(crate) fn patience(&self) -> Option<Duration> {
+    pub(crate) fn timeout(&self) -> Option<Duration> {
         /// Longer than the gaps within a sequence, shorter than a noticeable delay.
         const KEY: Duration = Duration::from_millis(50);
         /// This is certainly a sequence, but the link may be slow.
@@ -229,7 +229,8 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::Character { missing: 3 })
         }
         (State::Ground | State::Escape, 0x80..) => Step::Abandon,
-        (State::Character { missing: 1 }, 0x80..=0xbf) => Step::Complete(Kind::Key),
+        (State::Character { missing: 1 }, 0x80..=0xbf)
+        | (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
         (State::Character { missing }, 0x80..=0xbf) => {
             Step::Continue(State::Character { missing: missing - 1 })
         }
@@ -241,7 +242,6 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::String(Kind::OtherString))
         }
         (State::Ground | State::Escape, _) => Step::Complete(Kind::Key),
-        (State::SingleShift | State::ConsoleKey, b' '..=b'~') => Step::Complete(Kind::Key),
         (State::ControlSequenceStart, b'[') => Step::Continue(State::ConsoleKey),
         (State::ControlSequenceStart, b'M') => Step::Continue(State::MouseBytes { missing: 3 }),
         (State::ControlSequenceStart | State::ControlSequence, b' '..=b'?') => {
@@ -255,9 +255,8 @@ fn step(state: State, byte: u8) -> Step {
             Step::Continue(State::MouseBytes { missing: missing - 1 })
         }
         (State::String(kind), ESCAPE) => Step::Continue(State::StringEscape(kind)),
-        (State::String(kind), BELL) => Step::Complete(kind),
+        (State::String(kind), BELL) | (State::StringEscape(kind), b'\\') => Step::Complete(kind),
         (State::String(kind), b' '..=b'~' | 0x80..) => Step::Continue(State::String(kind)),
-        (State::StringEscape(kind), b'\\') => Step::Complete(kind),
         (State::StringEscape(_), _) => Step::RestartEscaped,
         _ => Step::Restart,
     }
@@ -325,7 +324,7 @@ fn device_control(unit: &[u8]) -> Option<Answer> {
     capability.starts_with(sequence::RGB_CAPABILITY.as_bytes()).then_some(Answer::TrueColor)
 }
 
-/// The key event of `unit`; `None` if it is not a key, or one that cannot be bound.
+/// The key event of `unit`; `None` if it is not a key, or cannot be bound.
 fn key_event(unit: &[u8]) -> Option<KeyEvent> {
     match unit {
         [0x1b, character] => {
@@ -344,7 +343,7 @@ fn told_base(unit: &[u8]) -> Option<char> {
     char::from_u32(str::from_utf8(number).ok()?.parse().ok()?)
 }
 
-/// The parser's event for `unit`. Each unit has a new parser: one that has kept bytes of an unknown
+/// The parser's event for `unit`. Each unit has a new parser: a parser that has kept bytes of an unknown
 /// unit would prefix them to the next.
 fn reported(unit: &[u8]) -> Option<termina::event::KeyEvent> {
     let mut parser = termina::Parser::default();

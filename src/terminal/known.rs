@@ -215,7 +215,7 @@ fn of(term: &str) -> Detected {
 }
 
 /// Values of `TERM` for terminals that cannot move their cursors, all without `cup` in the database
-/// of terminals: those that programs and systems set, and teletypes.
+/// of terminals: the values that programs and systems set, and teletypes.
 const TELETYPES: [&str; 12] = [
     "dumb", "unknown", "vanilla", "emacs", "glasstty", "printer", "lpr", "tty33", "tty35", "tty37",
     "tty40", "tty43",

@@ -21,7 +21,7 @@ use std::time::Duration;
 use crossterm::terminal::LeaveAlternateScreen;
 use ratatui::backend::Backend;
 
-use super::event::{MouseReport, MouseUnits};
+use super::event::MouseUnits;
 use super::flow::{Flow, Request};
 use super::input::{Answer, Decoder, Input};
 use super::known::{Colors, Known};
@@ -77,10 +77,7 @@ pub struct Protocol {
     tmux: Option<TmuxClient>,
     /// Whether the terminal has not answered yet if it reports key releases.
     awaits_key_releases: bool,
-    /// Whether the terminal can report positions of the mouse in pixels.
-    has_mouse_pixels: bool,
-    /// Whether reports of the mouse may still be in the previous unit.
-    mouse_is_changing: bool,
+    mouse: Mouse,
     flow: Flow,
     /// The frame that is encoded and not yet in `output`.
     drawn: Option<Drawn>,
@@ -101,6 +98,15 @@ enum Drawn {
     Refinement,
 }
 
+/// The state of mouse reports, whose unit is among the changes of the terminal.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mouse {
+    /// Whether the terminal can report positions in pixels.
+    has_pixels: bool,
+    /// Whether reports may still be in the previous unit.
+    is_changing: bool,
+}
+
 impl Protocol {
     /// The protocol with a terminal that has these `options`. Nothing is sent yet.
     pub fn new(options: Options, size: WindowSize) -> Self {
@@ -117,8 +123,7 @@ impl Protocol {
             known: Known::default(),
             tmux: None,
             awaits_key_releases: false,
-            has_mouse_pixels: false,
-            mouse_is_changing: false,
+            mouse: Mouse::default(),
             flow: Flow::new(options.is_remote),
             drawn: None,
             palette: PaletteProbe::default(),
@@ -177,7 +182,7 @@ impl Protocol {
         self.flow.forget();
         self.changes.fences.forget();
         self.decoder = Decoder::default();
-        self.mouse_is_changing = false;
+        self.mouse.is_changing = false;
     }
 
     /// Undoes all changes of the terminal's state, except that it shows the alternate screen until
@@ -289,7 +294,7 @@ impl Protocol {
     /// terminal can report them.
     pub fn set_mouse(&mut self, is_reported: bool) {
         if self.changes.mouse.is_some() != is_reported && !self.is_ending {
-            self.mouse_is_changing = false;
+            self.mouse.is_changing = false;
             self.change_mouse(is_reported.then(|| self.mouse_units()));
         }
     }
@@ -310,7 +315,7 @@ impl Protocol {
 
     /// The time at which half a key is taken for a whole one.
     pub(crate) fn gives_up_at(&self) -> Option<Duration> {
-        self.decoder.patience().map(|patience| self.received_at + patience)
+        self.decoder.timeout().map(|timeout| self.received_at + timeout)
     }
 
     /// Stops waiting for the rest of a key.
@@ -334,7 +339,9 @@ impl Protocol {
             Input::Focus(false) => self.events.push_back(Event::FocusLost),
             Input::Mouse(report) => {
                 self.flow.received_input();
-                self.events.extend(self.mouse_event(report));
+                let units = self.changes.mouse.filter(|_| !self.mouse.is_changing);
+                let event = units.and_then(|units| report.event(units, self.size));
+                self.events.extend(event.map(Event::Mouse));
             }
             Input::Answer(answer) => self.take_answer(answer, now),
         }
@@ -343,7 +350,7 @@ impl Protocol {
     fn take_answer(&mut self, answer: Answer, now: Duration) {
         match answer {
             Answer::PixelMouse => {
-                self.has_mouse_pixels = true;
+                self.mouse.has_pixels = true;
                 self.update_mouse_units(now);
             }
             Answer::KeyFlags => self.settle_key_releases(true),
@@ -363,7 +370,7 @@ impl Protocol {
             }
             Answer::Fence => {
                 self.changes.fences.answered();
-                self.mouse_is_changing &= self.changes.fences.are_open();
+                self.mouse.is_changing &= self.changes.fences.are_open();
                 self.flow.fence_answered(now);
                 self.changes.awaits_statuses = self.flow.awaits_answers();
                 self.confirm_key_flags();
@@ -375,15 +382,9 @@ impl Protocol {
         }
     }
 
-    /// The event of `report`; `None` if the mouse is not reported or its unit is changing.
-    fn mouse_event(&self, report: MouseReport) -> Option<Event> {
-        let units = self.changes.mouse.filter(|_| !self.mouse_is_changing)?;
-        report.event(units, self.size).map(Event::Mouse)
-    }
-
     /// The finest unit in which the terminal reports positions.
     fn mouse_units(&self) -> MouseUnits {
-        if self.has_mouse_pixels && self.size.pixels.is_some() {
+        if self.mouse.has_pixels && self.size.pixels.is_some() {
             MouseUnits::Pixels
         } else {
             MouseUnits::Cells
@@ -396,7 +397,7 @@ impl Protocol {
         if self.changes.mouse.is_none_or(|units| units == finest) || self.is_ending {
             return;
         }
-        self.mouse_is_changing = true;
+        self.mouse.is_changing = true;
         self.change_mouse(Some(finest));
         // Reports after the answer are in the new unit.
         self.queue_queries("", now);
@@ -434,17 +435,13 @@ impl Protocol {
     fn identify(&mut self, known: Known, now: Duration) {
         match known.colors {
             Colors::True => self.raise_color_depth(),
-            Colors::Ask => self.ask_for_true_color(now),
-            Colors::Unknown => {}
+            Colors::Ask if matches!(self.options.color_depth, Detected::Guess(_)) => {
+                self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
+            }
+            Colors::Ask | Colors::Unknown => {}
         }
         // In tmux, its answer about the terminal around it says more.
-        if self.tmux.is_none() {
-            self.set_known(known);
-        }
-    }
-
-    fn set_known(&mut self, known: Known) {
-        if self.known != known {
+        if self.tmux.is_none() && self.known != known {
             self.known = known;
             self.events.push_back(Event::Identified);
         }
@@ -466,12 +463,6 @@ impl Protocol {
             self.known = client.known();
             self.tmux = Some(client);
             self.events.push_back(Event::Identified);
-        }
-    }
-
-    fn ask_for_true_color(&mut self, now: Duration) {
-        if matches!(self.options.color_depth, Detected::Guess(_)) {
-            self.queue_queries(sequence::QUERY_TRUE_COLOR, now);
         }
     }
 

@@ -332,13 +332,6 @@ impl Session {
         Ok(())
     }
 
-    /// Sends the bytes that the terminal has not accepted yet.
-    fn send_queued(&mut self) -> io::Result<()> {
-        self.guard.write_queued()?;
-        self.update_written();
-        Ok(())
-    }
-
     fn update_written(&mut self) {
         if self.guard.has_written_all() {
             self.protocol.written(self.guard.now());
@@ -357,7 +350,8 @@ impl Session {
             self.receive_input()?;
         }
         if ready.output && !self.is_ending() {
-            self.send_queued()?;
+            self.guard.write_queued()?;
+            self.update_written();
         }
         Ok(ready.input || ready.signals || ready.output)
     }

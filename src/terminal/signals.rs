@@ -117,7 +117,9 @@ impl Signals {
     /// Stops this program and the ones started with it until the shell continues them.
     /// Returns at once if there is no shell to continue them.
     pub(crate) fn stop_until_continued(&mut self) -> io::Result<()> {
-        if !is_a_job()? {
+        // A shell gives every job a process group of its own. In the session's first group, no parent can continue a
+        // stopped program.
+        if getpgrp() == getsid(None)? {
             return Ok(());
         }
         kill_current_process_group(ProcessSignal::STOP)?;
@@ -158,12 +160,6 @@ impl Drop for Signals {
     }
 }
 
-/// Whether a shell has given the program a process group of its own, as it does for every job. In
-/// the session's first group, no parent can continue a stopped program.
-fn is_a_job() -> io::Result<bool> {
-    Ok(getpgrp() != getsid(None)?)
-}
-
 /// Whether signals have their default effects. A handler stays for the life of the process; without
 /// this flag, Ctrl-C would have no effect after a session.
 fn default_effects() -> io::Result<&'static AtomicBool> {
@@ -185,7 +181,7 @@ fn default_effects() -> io::Result<&'static AtomicBool> {
 fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
     for info in incoming.forever() {
         let number = info.si_signo;
-        if is_nameless(number) {
+        if NAMELESS.iter().any(|numbers| numbers.contains(&number)) {
             guard.give_back_and(|| exit(STATUS + number));
             continue;
         }
@@ -208,10 +204,6 @@ fn pass_on(mut incoming: Incoming, mut sender: &UnixStream, guard: &Guard) {
 
 fn nameless() -> impl Iterator<Item = i32> {
     NAMELESS.into_iter().flatten()
-}
-
-fn is_nameless(number: i32) -> bool {
-    NAMELESS.iter().any(|numbers| numbers.contains(&number))
 }
 
 /// Gives the terminal back and ends the program by this signal.

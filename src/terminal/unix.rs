@@ -47,15 +47,14 @@ impl Device {
                 return Err(Kind::NotATerminal { stream: name }.into());
             }
         }
-        Self::of_terminals(input, output).map_err(Error::while_doing("opening the terminal"))
-    }
-
-    fn of_terminals(input: BorrowedFd, output: BorrowedFd) -> io::Result<Self> {
-        Ok(Self {
-            input: open_again(input, OFlags::RDONLY)?,
-            output: open_again(output, OFlags::WRONLY)?,
-            attributes: tcgetattr(input)?,
-        })
+        let open = || {
+            Ok(Self {
+                input: open_again(input, OFlags::RDONLY)?,
+                output: open_again(output, OFlags::WRONLY)?,
+                attributes: tcgetattr(input)?,
+            })
+        };
+        open().map_err(Error::while_doing("opening the terminal"))
     }
 
     /// Sets raw mode: keys arrive one by one, without echo or interpretation.
@@ -95,19 +94,13 @@ impl Device {
     /// Writes `bytes` and returns the length of the accepted part. While the terminal accepts no more,
     /// waits as long as `go_on` returns `true`.
     pub(crate) fn write(&self, bytes: &[u8], go_on: impl Fn() -> bool) -> io::Result<usize> {
+        const MOMENT: Duration = Duration::from_millis(50);
         let mut written = self.write_some(bytes)?;
         while written < bytes.len() && go_on() {
-            self.wait_for_room()?;
+            wait(&mut [PollFd::new(&self.output, PollFlags::OUT)], Some(MOMENT))?;
             written += self.write_some(&bytes[written..])?;
         }
         Ok(written)
-    }
-
-    /// Waits until the terminal accepts bytes again, or for a short time.
-    fn wait_for_room(&self) -> io::Result<()> {
-        const MOMENT: Duration = Duration::from_millis(50);
-        let mut output = [PollFd::new(&self.output, PollFlags::OUT)];
-        wait(&mut output, Some(MOMENT))
     }
 
     /// Discards written bytes that the terminal has not received.

@@ -93,6 +93,15 @@ impl Default for CellAspect {
     }
 }
 
+/// The colour that represents `color` outside a terminal; `None` for the terminal's own colours.
+pub fn rgb_of(color: Color) -> Option<Rgb> {
+    match color {
+        Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
+        Color::Indexed(index) => Some(palette::of_256(index)),
+        _ => None,
+    }
+}
+
 /// `color` as a terminal of that depth shows it best.
 #[inline]
 pub fn color_at(depth: ColorDepth, color: Rgb) -> Color {

@@ -149,7 +149,8 @@ impl<K: Copy + Eq> HeldKeys<K> {
         if held.is_held() {
             self.timing = held.timing;
         }
-        if let Some(expiry) = held.expiry(self.timing) {
+        // A pressed or repeating key does not linger.
+        if let Some(expiry) = held.expiry(self.timing, Duration::ZERO) {
             self.lingers_until = expiry + LINGER;
         }
         self.keys.push(held);
@@ -185,20 +186,15 @@ impl<K: Copy + Eq> HeldKeys<K> {
 
     /// Releases the keys whose repetition has not come by `now`.
     pub fn advance(&mut self, now: Duration) {
-        for held in &mut self.keys {
-            let expiry = match held.state {
-                State::Lingers => Some(self.lingers_until),
-                _ => held.expiry(self.timing),
-            };
-            if expiry.is_some_and(|expiry| expiry <= now) {
-                held.mark_as_up();
-            }
-        }
+        let (timing, lingers_until) = (self.timing, self.lingers_until);
+        let keys = self.keys.iter_mut();
+        keys.filter(|held| held.expiry(timing, lingers_until).is_some_and(|expiry| expiry <= now))
+            .for_each(HeldKey::mark_as_up);
     }
 
     /// Advances taps by one step of the game.
     pub fn step(&mut self) {
-        self.keys.iter_mut().for_each(HeldKey::step);
+        self.keys.iter_mut().for_each(|held| held.tap.step());
     }
 
     /// Holds the keys whose repetition a newer key has ended until [`LINGER`] after `now`. Call it
@@ -233,11 +229,7 @@ impl<K: Copy + Eq> HeldKeys<K> {
 
     /// When the next key expires if no event of it comes until then.
     pub fn next_expiry(&self) -> Option<Duration> {
-        let expiries = self.keys.iter().filter_map(|held| match held.state {
-            State::Lingers => Some(self.lingers_until),
-            _ => held.expiry(self.timing),
-        });
-        expiries.min()
+        self.keys.iter().filter_map(|held| held.expiry(self.timing, self.lingers_until)).min()
     }
 
     /// Whether any key is in the steps of its tap, so that its state may change with the next step.
@@ -371,10 +363,6 @@ impl<K: Copy + Eq> HeldKey<K> {
         self.tap.left > 0 || self.tap.pauses
     }
 
-    fn step(&mut self) {
-        self.tap.step();
-    }
-
     /// Handles a press where releases are reported.
     fn press_until_release(&mut self, steps: u32, now: Duration) -> Press {
         let was_held = self.hold() == Hold::Held;
@@ -486,12 +474,13 @@ impl<K: Copy + Eq> HeldKey<K> {
 
     /// The time at which the key expires if no byte of it comes until then; `None` if it does not
     /// expire by itself.
-    fn expiry(&self, prior: RepeatTiming) -> Option<Duration> {
+    fn expiry(&self, prior: RepeatTiming, lingers_until: Duration) -> Option<Duration> {
         let timing = self.timing.or(prior);
         match self.state {
             State::Pressed => Some(self.last_byte? + timing.first_timeout()),
             State::Repeats => Some(self.last_byte? + timing.timeout()),
-            State::Up | State::Down | State::Lingers | State::Suppressed => None,
+            State::Lingers => Some(lingers_until),
+            State::Up | State::Down | State::Suppressed => None,
         }
     }
 }

@@ -125,7 +125,9 @@ impl Minimap<'_> {
         }
         let window = self.window(area);
         let seen = (self.columns, self.explored);
-        let top_view = TopView::new(self.world, self.camera, seen, window.pixel());
+        // The width of a pixel in cells of the map.
+        let pixel = 1.0 / window.scale.x;
+        let top_view = TopView::new(self.world, self.camera, seen, pixel);
         let picture = Picture { top_view, window };
         match self.glyphs {
             GlyphSet::Half | GlyphSet::Quadrant | GlyphSet::Sextant | GlyphSet::Octant => {
@@ -134,30 +136,49 @@ impl Minimap<'_> {
             GlyphSet::Ascii | GlyphSet::Ramp => draw_characters(area, canvas, |x, y| {
                 let point = picture.point(x, y);
                 let colors = [point.color(), Rgb::BLACK];
-                (point.character(), colors.map(|color| color_at(self.depth, color)))
+                (point.look().character, colors.map(|color| color_at(self.depth, color)))
             }),
         }
+        // To the east, south, west and north, and for the player also between these.
+        let (mark_pointers, ghost_pointers, arrows) = if self.glyphs.has_blocks() {
+            let arrows = ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'];
+            (['▸', '▾', '◂', '▴'], ['▹', '▿', '◃', '▵'], arrows)
+        } else {
+            ([')', 'u', '(', 'n'], ['g'; 4], ['>', '\\', 'v', '/', '<', '\\', '^', '/'])
+        };
+        let mut draw = |mark: &MapMark, pointers: &[char], colors: [Color; 2]| {
+            let Some((x, y)) = window.cell(mark.position) else { return };
+            let turns = mark.heading.degrees() / 360.0 * pointers.len() as f64;
+            let pointer = pointers[turns.round() as usize % pointers.len()];
+            canvas.draw_character(area.x + x, area.y + y, pointer, colors);
+        };
         if let Some(ghost) = &self.ghost {
-            draw_pointer(ghost, self.ghost_look(), &picture, area, canvas);
+            // Hollow, or a letter, and pale: it is nobody who could see the player.
+            draw(ghost, &ghost_pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]));
         }
+        let colors = self.colors([MARK_TEXT, MARK], [15, 9]);
         for mark in self.marks.iter().filter(|mark| picture.top_view.is_visible(mark.position)) {
-            draw_pointer(mark, self.mark_look(), &picture, area, canvas);
+            draw(mark, &mark_pointers, colors);
         }
-        if let Some((x, y)) = window.cell(self.camera.position()) {
-            self.draw_player((area.x + x, area.y + y), canvas);
-        }
+        let player = MapMark { position: self.camera.position(), heading: self.camera.heading };
+        draw(&player, &arrows, self.colors([Rgb::BLACK, PLAYER], [0, 11]));
     }
 
     /// The part of `room` that the map fills; the rest would be blank.
     #[cfg(feature = "terminal")]
     pub(crate) fn size_within(&self, room: Size) -> Size {
-        size_within(room, self.glyphs, self.world, self.zoom)
+        let pixels = pixels_within(room, self.glyphs);
+        let needed = self.world.grid().extent() * scale(self.world, pixels, self.glyphs, self.zoom);
+        let needed = needed.ceil().min(pixels);
+        let [columns, rows] = self.glyphs.pixels_per_cell().map(f64::from);
+        Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
     }
 
     /// The number of the map's cells that an area of that size shows.
     #[cfg(feature = "terminal")]
     pub(crate) fn extent_within(&self, room: Size) -> DVec2 {
-        self.window(Rect::from(room)).extent()
+        let Window { size, scale, .. } = self.window(Rect::from(room));
+        size / scale
     }
 
     fn window(&self, area: Rect) -> Window {
@@ -167,7 +188,7 @@ impl Minimap<'_> {
 
     fn draw_mosaics(&self, picture: &Picture, area: Rect, canvas: &mut impl Canvas) {
         let color = |point: MapPoint| match self.depth {
-            ColorDepth::Indexed16 => palette::of_256(point.index_of_16()),
+            ColorDepth::Indexed16 => palette::of_256(point.look().index_of_16),
             _ => point.color(),
         };
         if self.depth == ColorDepth::Mono {
@@ -190,26 +211,10 @@ impl Minimap<'_> {
             };
             let thing = dots().find(|(point, _)| point.is_thing());
             let lit = || blocks::lit(self.glyphs, dots().map(|(point, (x, y))| point.is_lit(x, y)));
-            let character = thing.map_or_else(|| lit().character(), |(point, _)| point.character());
+            let character =
+                thing.map_or_else(|| lit().character(), |(point, _)| point.look().character);
             (character, [Color::Reset; 2])
         });
-    }
-
-    fn mark_look(&self) -> Look {
-        let pointers = match self.glyphs {
-            GlyphSet::Ascii | GlyphSet::Ramp => [')', 'u', '(', 'n'],
-            _ => ['▸', '▾', '◂', '▴'],
-        };
-        (pointers, self.colors([MARK_TEXT, MARK], [15, 9]))
-    }
-
-    /// A ghost is hollow, or a letter, and pale: it is nobody who could see the player.
-    fn ghost_look(&self) -> Look {
-        let pointers = match self.glyphs {
-            GlyphSet::Ascii | GlyphSet::Ramp => ['g'; 4],
-            _ => ['▹', '▿', '◃', '▵'],
-        };
-        (pointers, self.colors([GHOST_TEXT, GHOST], [15, 6]))
     }
 
     /// The text and the background of a mark.
@@ -222,33 +227,6 @@ impl Minimap<'_> {
             }
         }
     }
-
-    /// Draws the arrow in the cell at `x` and `y`.
-    fn draw_player(&self, (x, y): (u16, u16), canvas: &mut impl Canvas) {
-        let arrows = match self.glyphs {
-            GlyphSet::Ascii | GlyphSet::Ramp => ['>', '\\', 'v', '/', '<', '\\', '^', '/'],
-            _ => ['→', '↘', '↓', '↙', '←', '↖', '↑', '↗'],
-        };
-        let eighth = (self.camera.heading.degrees() / 45.0).round() as usize % arrows.len();
-        let colors = self.colors([Rgb::BLACK, PLAYER], [0, 11]);
-        canvas.draw_character(x, y, arrows[eighth], colors);
-    }
-}
-
-/// Draws a mark that points in one of four directions.
-fn draw_pointer(
-    mark: &MapMark,
-    (pointers, colors): Look,
-    picture: &Picture,
-    area: Rect,
-    canvas: &mut impl Canvas,
-) {
-    let Some((x, y)) = picture.window.cell(mark.position) else { return };
-    if x >= area.width || y >= area.height {
-        return;
-    }
-    let quarter = (mark.heading.degrees() / 90.0).round() as usize % pointers.len();
-    canvas.draw_character(area.x + x, area.y + y, pointers[quarter], colors);
 }
 
 /// Somebody on the map besides the player.
@@ -259,9 +237,6 @@ pub struct MapMark {
     /// The direction in which they look.
     pub heading: Heading,
 }
-
-/// The pointers to the east, south, west and north, and the colours of the text and the background.
-type Look = ([char; 4], [Color; 2]);
 
 /// The colour of a mark, which is darker than the arrow.
 const MARK_TEXT: Rgb = Rgb::new(0xb8, 0xb0, 0xb0);
@@ -316,16 +291,6 @@ impl Window {
         Self { size, scale, corner, cells_per_pixel, pixels_per_cell }
     }
 
-    /// The width of a pixel in cells of the map.
-    fn pixel(&self) -> f64 {
-        1.0 / self.scale.x
-    }
-
-    /// The numbers of the map's cells that a pixel shows from left to right and from top to bottom.
-    fn cells_per_pixel(&self) -> [u32; 2] {
-        self.cells_per_pixel
-    }
-
     /// The distance of the centres of a column of pixels from the map's western edge.
     fn x_of(&self, column: u32) -> f64 {
         (f64::from(column) + 0.5 + self.corner.x) / self.scale.x
@@ -343,22 +308,6 @@ impl Window {
         let [columns, rows] = self.pixels_per_cell;
         shows.then(|| ((pixel.x as u32 / columns) as u16, (pixel.y as u32 / rows) as u16))
     }
-
-    /// The numbers of the map's cells that are shown from left to right and from top to bottom.
-    #[cfg(feature = "terminal")]
-    fn extent(&self) -> DVec2 {
-        self.size / self.scale
-    }
-}
-
-/// The part of `room` that the map fills; the rest would be blank.
-#[cfg(feature = "terminal")]
-fn size_within(room: Size, glyphs: GlyphSet, world: &World, zoom: i32) -> Size {
-    let pixels = pixels_within(room, glyphs);
-    let needed = world.grid().extent() * scale(world, pixels, glyphs, zoom);
-    let needed = needed.ceil().min(pixels);
-    let [columns, rows] = glyphs.pixels_per_cell().map(f64::from);
-    Size::new((needed.x / columns).ceil() as u16, (needed.y / rows).ceil() as u16)
 }
 
 fn pixels_within(cells: Size, glyphs: GlyphSet) -> DVec2 {
@@ -425,7 +374,7 @@ impl PixelRow<'_, '_> {
     fn point(&self, x: u32) -> MapPoint {
         let window = &self.picture.window;
         let x = window.x_of(x);
-        match window.cells_per_pixel() {
+        match window.cells_per_pixel {
             [1, 1] => self.middle.point(x),
             cells => self.most_important(x, cells),
         }
@@ -444,6 +393,6 @@ impl PixelRow<'_, '_> {
             let row = top_view.row(y);
             along(x, columns).map(move |x| row.point(x))
         });
-        points.max_by_key(|point| point.importance()).unwrap_or(MapPoint::Void)
+        points.max_by_key(|point| point.look().importance).unwrap_or(MapPoint::Void)
     }
 }

@@ -1,6 +1,6 @@
 //! All methods on the same rays, in three ordinary scenes.
 //!
-//! `cargo bench --no-default-features --features lab --bench casters`. An element is a ray. The
+//! `cargo bench -p cellcaster-lab --bench casters`. An element is a ray. The
 //! methods take turns within a scene, so that only figures of the same run are comparable.
 
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 //! The same things in view, with few and with many things elsewhere.
 //!
-//! `cargo bench --no-default-features --features lab --bench things`, on the maps of `cellcaster
+//! `cargo bench -p cellcaster-lab --bench things`, on the maps of `cellcaster-lab
 //! bench`. All numbers of things take turns within a hall, so that only figures of the same run are
 //! comparable.
 

@@ -1,30 +1,203 @@
 //! Accuracy: what is compared with a truth, and what each figure of a report costs.
 //!
 //! [`cast`] computes in rational arithmetic, and shares only the rules in [`cellcaster::cast`] with the
-//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`] and
-//! [`adversarial_ray`] generate any number of other rays from a seed. [`report`] compares and times,
+//! casters. [`sets()`] returns named sets of stiff and extreme cases; [`random_ray`]
+//! generates any number of other rays from a seed. [`report`] compares and times,
 //! and returns [tables](Table).
 
 mod areas;
 mod features;
 mod fixed_point;
 mod motion;
-mod pictures;
-mod ray_tables;
 mod rays;
 mod reference;
-mod report;
 mod sets;
-mod table;
-mod trial;
 
-pub use areas::shimmer;
-pub use motion::Integrator;
-pub use pictures::{Gallery, Reference};
-pub use ray_tables::{RAYS, SEED, all_methods, is_measured};
-pub use rays::{adversarial_ray, random_ray};
-pub use reference::{Rational, Truth, cast};
-pub use report::{Part, Plan, RaySource, report, set_names};
-pub use sets::{Set, ordinary, plain, sets};
-pub use table::{Column, Diagram, Row, Table, Timing, Value};
-pub use trial::{Errors, Trial};
+pub use rays::{RAYS, SEED, all_methods, is_measured};
+pub use reference::{Truth, cast};
+pub use sets::{Set, ordinary, plain, random_ray, sets};
+
+use clap::{Args, ValueEnum};
+
+use crate::casters::Method;
+use crate::report::Table;
+use crate::speed::textured_scene;
+use cellcaster::cli::options::{seed, within};
+use cellcaster::cli::parse::Takes;
+use cellcaster::game::{FRICTION, STEPS_PER_SECOND};
+use cellcaster::map::builtin;
+use cellcaster::rng::SplitMix64;
+use cellcaster::world::World;
+use rays::Trial;
+
+/// The options of a report.
+#[derive(Args, Clone, Debug)]
+pub struct Plan {
+    /// Report on this part; may be repeated [default: all]
+    #[arg(long = "part", value_name = "PART")]
+    pub parts: Vec<Part>,
+    /// Cast the rays of one set, such as "through corners"
+    #[arg(long, value_name = "NAME")]
+    pub set: Option<String>,
+    /// Report on this method; may be repeated: exact, dda, dda32, accumulate, fixed:BITS, table:ANGLES or march:STEP
+    /// [default: all]
+    #[arg(long = "caster", value_name = "METHOD")]
+    pub methods: Vec<Method>,
+    /// How many rays each scene has, from 1 to 1000000
+    #[arg(long, value_name = "N", value_parser = rays, default_value_t = RAYS)]
+    pub rays: usize,
+    /// Where chance begins
+    #[arg(long, value_name = "N", value_parser = seed, default_value_t = SEED)]
+    pub seed: u64,
+    /// How often each candidate is timed; with 0 there are no times, and every run writes the same
+    #[arg(long, value_name = "N", value_parser = rounds, default_value_t = 15)]
+    pub rounds: usize,
+    /// The player's friction per second, for the motion
+    #[arg(long, value_name = "RATE", value_parser = friction, default_value_t = FRICTION)]
+    pub friction: f64,
+    /// The steps of the game in a second, for the motion
+    #[arg(long, value_name = "N", value_parser = steps_per_second, default_value_t = STEPS_PER_SECOND.into())]
+    pub steps_per_second: f64,
+}
+
+/// A part of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Rays, and the pixels that they change.
+    #[value(help = None)]
+    Rays,
+    /// Pictures, compared with the mean over the area of each pixel.
+    #[value(help = None)]
+    Pictures,
+    /// Damped motion.
+    #[value(help = None)]
+    Motion,
+    /// Everything else that has a truth.
+    #[value(help = None)]
+    Features,
+}
+
+fn rays(text: &str) -> Result<usize, Takes> {
+    within(text, |rays| (1..=1_000_000).contains(rays), "a whole number from 1 to 1000000")
+}
+
+fn rounds(text: &str) -> Result<usize, Takes> {
+    within(text, |&rounds| rounds <= 1000, "a whole number from 0 to 1000")
+}
+
+fn friction(text: &str) -> Result<f64, Takes> {
+    within(text, |rate| (1e-3..=1e9).contains(rate), "a number from 0.001 to 1000000000")
+}
+
+fn steps_per_second(text: &str) -> Result<f64, Takes> {
+    within(text, |steps| (0.1..=1e4).contains(steps), "a number from 0.1 to 10000")
+}
+
+/// The tables for `plan`; `None` if no set has the requested name. Rays and pictures are of `map`; without one, rays are of
+/// four ordinary scenes and of the stiff sets. `progress` is called with each part before it begins.
+pub fn report(
+    plan: &Plan,
+    map: Option<&World>,
+    mut progress: impl FnMut(Part),
+) -> Option<Vec<Table>> {
+    let museum;
+    let world = match map {
+        Some(map) => map,
+        None => {
+            // The built-in level with the most features.
+            museum = builtin::LEVELS.iter().find(|level| level.name == "museum")?.world().ok()?;
+            &museum
+        }
+    };
+    let parts = if plan.parts.is_empty() { Part::value_variants() } else { &plan.parts };
+    let mut tables = Vec::new();
+    for &part in parts {
+        progress(part);
+        match part {
+            Part::Rays => tables.extend(ray_tables(plan, map)?),
+            Part::Pictures => tables.push(areas::table(world, plan.seed, plan.rounds)),
+            Part::Motion => tables.extend([
+                motion::motions(plan.friction, plan.steps_per_second, plan.rounds),
+                motion::orders(),
+            ]),
+            Part::Features => tables.push(features::table(world, plan.seed, plan.rounds)),
+        }
+    }
+    Some(tables)
+}
+
+/// The names of all sets of rays.
+pub fn set_names() -> Vec<&'static str> {
+    let ordinary = ordinary(0, 0).into_iter().map(|set| set.name);
+    let stiff = sets(0).into_iter().map(|set| set.name);
+    ordinary.chain(["plain-4096"]).chain(stiff).collect()
+}
+
+fn ray_tables(plan: &Plan, map: Option<&World>) -> Option<Vec<Table>> {
+    let &Plan { rays: count, seed, rounds, .. } = plan;
+    let methods = if plan.methods.is_empty() { all_methods() } else { plan.methods.clone() };
+    let mut pictured = None;
+    let sets_of_rays = match (plan.set.as_deref(), map) {
+        (Some("plain-4096"), _) => vec![plain(seed, count)],
+        (Some(name), _) => {
+            let mut all = ordinary(seed, count).into_iter().chain(sets(seed));
+            vec![all.find(|set| set.name == name)?]
+        }
+        (None, Some(map)) => {
+            pictured = Some(map);
+            let grid = map.grid().clone();
+            let mut random = SplitMix64::new(seed);
+            let rays = (0..count).map(|_| random_ray(&grid, &mut random)).collect();
+            vec![Set { name: "map", grid, rays }]
+        }
+        (None, None) => ordinary(seed, count).into_iter().chain([plain(seed, count)]).collect(),
+    };
+    let trials: Vec<Trial> = sets_of_rays.into_iter().map(Trial::new).collect();
+    let pictured = pictured.cloned().unwrap_or_else(textured_scene);
+    let mut tables =
+        vec![rays::scenes(&trials, &methods, rounds), rays::pixels(&pictured, &methods, seed)];
+    if plan.set.is_none() && map.is_none() {
+        tables.push(rays::stiff(sets(seed).into_iter().map(Trial::new)));
+    }
+    Some(tables)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan() -> Plan {
+        Plan {
+            parts: vec![Part::Rays],
+            set: None,
+            methods: ["exact", "march:0.1"].map(|name| name.parse().unwrap()).into(),
+            rays: 50,
+            seed: SEED,
+            rounds: 0,
+            friction: FRICTION,
+            steps_per_second: STEPS_PER_SECOND.into(),
+        }
+    }
+
+    #[test]
+    fn a_part_has_a_row_for_each_method_and_a_value_for_each_column() {
+        let world = builtin::LEVELS[0].world().unwrap();
+        let mut parts = Vec::new();
+        let tables = report(&plan(), Some(&world), |part| parts.push(part)).unwrap();
+        let names: Vec<&str> = tables.iter().map(|table| table.name).collect();
+        assert_eq!(names, ["rays", "pixels"]);
+        assert_eq!(tables[0].rows.len(), 2);
+        let rows = tables.iter().flat_map(|table| table.rows.iter().map(move |row| (table, row)));
+        for (table, row) in rows {
+            assert_eq!(table.columns.len(), row.values.len(), "{}", table.name);
+        }
+        assert_eq!(parts, [Part::Rays]);
+    }
+
+    #[test]
+    fn there_is_no_set_without_a_name() {
+        let plan = Plan { set: Some("nobody's".to_owned()), ..plan() };
+        assert!(report(&plan, None, |_| ()).is_none());
+        assert!(set_names().len() > 3);
+    }
+}

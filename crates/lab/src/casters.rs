@@ -32,6 +32,7 @@ pub use march::March;
 pub use table::Table;
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use cellcaster::cast::{Caster, Exact};
@@ -108,9 +109,9 @@ impl fmt::Display for Method {
             Self::Dda => f.write_str("dda"),
             Self::Dda32 => f.write_str("dda32"),
             Self::Accumulate => f.write_str("accumulate"),
-            Self::Fixed(fixed) => write!(f, "fixed:{}", fixed.fraction_bits()),
+            Self::Fixed(fixed) => write!(f, "fixed:{}", fixed.fraction_bits),
             Self::Table(table) => write!(f, "table:{}", table.angles()),
-            Self::March(march) => write!(f, "march:{}", march.step()),
+            Self::March(march) => write!(f, "march:{}", march.step),
         }
     }
 }
@@ -136,18 +137,15 @@ impl FromStr for Method {
             "dda" => plain(Self::Dda),
             "dda32" => plain(Self::Dda32),
             "accumulate" => plain(Self::Accumulate),
-            "fixed" => Ok(Self::Fixed(parse(parameter, Fixed::new, || {
-                let range = Fixed::FRACTION_BITS;
-                format!("\"fixed\" takes {} to {} fraction bits", range.start(), range.end())
-            })?)),
-            "table" => Ok(Self::Table(parse(parameter, Table::new, || {
-                let range = Table::ANGLES;
-                format!("\"table\" takes {} to {} angles", range.start(), range.end())
-            })?)),
-            "march" => Ok(Self::March(parse(parameter, March::new, || {
-                let range = March::STEP;
-                format!("\"march\" takes steps of {} to {} cells", range.start(), range.end())
-            })?)),
+            // As in the source: 10 bits, and 1920 angles.
+            "fixed" => number(parameter, 10, 4..=26, "\"fixed\" takes 4 to 26 fraction bits")
+                .map(|fraction_bits| Self::Fixed(Fixed { fraction_bits })),
+            "table" => number(parameter, 1920, 8..=65_536, "\"table\" takes 8 to 65536 angles")
+                .map(|count| Self::Table(Table::new(count))),
+            "march" => {
+                let takes = "\"march\" takes steps of 0.0001 to 1 cells";
+                number(parameter, 0.01, 0.0001..=1.0, takes).map(|step| Self::March(March { step }))
+            }
             _ => {
                 let names = Self::NAMES.join(", ");
                 Err(ParseMethodError(format!("there is no caster \"{name}\"; there are {names}")))
@@ -156,16 +154,16 @@ impl FromStr for Method {
     }
 }
 
-/// The caster for a parameter, or the default caster without one. `demand` is the error message for
-/// an invalid parameter.
-fn parse<T: FromStr, C: Default>(
+/// A parameter within `range`, or the usual one. `takes` is the message for an invalid one.
+fn number<T: FromStr + PartialOrd>(
     parameter: Option<&str>,
-    new: impl Fn(T) -> Option<C>,
-    demand: impl Fn() -> String,
-) -> Result<C, ParseMethodError> {
-    let Some(text) = parameter else { return Ok(C::default()) };
-    let caster = text.parse().ok().and_then(new);
-    caster.ok_or_else(|| ParseMethodError(format!("the caster {}, not \"{text}\"", demand())))
+    usual: T,
+    range: RangeInclusive<T>,
+    takes: &str,
+) -> Result<T, ParseMethodError> {
+    let Some(text) = parameter else { return Ok(usual) };
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| ParseMethodError(format!("the caster {takes}, not \"{text}\"")))
 }
 
 /// The error of parsing a [`Method`].

@@ -2,8 +2,6 @@
 
 mod accuracy;
 mod bench;
-mod plot;
-mod table;
 mod wire;
 
 use std::ffi::OsString;

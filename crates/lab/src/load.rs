@@ -43,8 +43,8 @@ use tokio::time::sleep;
 
 use cellcaster::cli::Error;
 pub(crate) use plan::Load;
-use report::{Report, Tally};
-use server::{ServerProcess, Setup, Usage, between, pin, start_sshd};
+use report::Tally;
+use server::{ServerProcess, Usage, between, pin, start_sshd};
 
 /// The time between two connections.
 const PAUSE: Duration = Duration::from_millis(25);
@@ -82,13 +82,9 @@ fn start(plan: &Load) -> Result<Vec<ServerProcess>, Box<dyn std::error::Error>> 
         return Ok(vec![start_sshd(&plan.program())?]);
     }
     let (program, options) = (plan.program(), plan.server_options());
-    let setup = |number| Setup {
-        program: &program,
-        connections: plan.sessions + plan.silent,
-        number,
-        options: &options,
-    };
-    (0..plan.hosts).map(|number| ServerProcess::start(&setup(number))).collect()
+    let connections = plan.sessions + plan.silent;
+    let start = |number| ServerProcess::start(&program, &options, connections, number);
+    (0..plan.hosts).map(start).collect()
 }
 
 async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std::error::Error>> {
@@ -110,7 +106,7 @@ async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std:
     let walking = usage(servers);
     let mut silent = Vec::new();
     for _ in 0..plan.silent {
-        silent.push(client::never_read(servers[0].address, &servers[0].access).await?);
+        silent.push(client::connect(servers[0].address, &servers[0].access, 0).await?);
     }
     sleep(Duration::from_secs(2)).await;
     let (before, others_before) = (usage(servers), plan.others());
@@ -126,7 +122,7 @@ async fn play(plan: &Load, servers: &[ServerProcess]) -> Result<(), Box<dyn std:
         plan.sessions,
         megabytes(&after)
     );
-    Report::new(&tallies, plan.seconds, &between(&before, &after)).print();
+    report::print(&tallies, plan.seconds, &between(&before, &after));
     plan.print_others(&between(&others_before, &others_after));
     Ok(())
 }

@@ -1,42 +1,43 @@
 //! The speed of drawing: scenes, a walk through them, two loops for comparison, and the costs of
 //! large and crowded maps.
 //!
-//! A time means little on an unknown machine. Reports therefore have ratios: to the [`Classic`]
-//! loop, as in tutorials, and to the [`fill`] of the same number of pixels, which no renderer can
-//! beat. All three draw the same map with the same textures from the same cameras. [`pixel_aspect`]
+//! A time means little on an unknown machine. Reports therefore have ratios: to the classic
+//! loop, as in tutorials, and to a fill of the same number of pixels, which no renderer can
+//! beat. All three draw the same map with the same textures from the same cameras. `pixel_aspect`
 //! gives the renderer's picture the proportions of the classic one, so that both draw the same
 //! pixels.
 
 mod classic;
 mod drawing;
+mod footprint;
 mod growth;
+mod pipeline;
 
-pub use classic::{Classic, ClassicFloor};
-pub(crate) use drawing::median;
-pub use drawing::{DrawingRow, SIZES, Scene, measure_drawing};
-pub use growth::{
-    CROWDS, CrowdRow, Ground, Growth, MapRow, Measured, SIDES, USUAL_SIDE, Vista, crossing_rays,
-    measure_growth,
-};
+pub use drawing::measure_drawing;
+pub(crate) use footprint::measure_footprint;
+pub use growth::{CROWDS, Ground, SIDES, Vista, crossing_rays};
+pub(crate) use growth::{measure_crowds, measure_maps};
+pub(crate) use pipeline::measure_pipeline;
 
+use std::ffi::OsStr;
+
+use ratatui::layout::Size;
+
+use cellcaster::app::{Replay, Settings};
+use cellcaster::cli::replay::SHOWCASE;
+use cellcaster::cli::{Error, level};
 use cellcaster::game::{Game, Intent, Intents};
 use cellcaster::map;
 use cellcaster::render::{FrameSize, PixelAspect};
 use cellcaster::world::{Camera, FieldOfView, World};
 
 /// A level of rooms and pillars, with five wall textures and a textured floor and ceiling.
-///
-/// # Panics
-/// Never: the map is a constant, and a test parses it.
-pub fn textured_scene() -> World {
+pub(crate) fn textured_scene() -> World {
     scene("\"flagstone\"", "\"wood\"")
 }
 
 /// The same level with a floor and a ceiling of one colour each.
-///
-/// # Panics
-/// Never: the map is a constant, and a test parses it.
-pub fn plain_scene() -> World {
+fn plain_scene() -> World {
     scene("\"#403830\"", "\"#202028\"")
 }
 
@@ -45,48 +46,11 @@ fn scene(floor: &str, ceiling: &str) -> World {
     map::parse_str(&text).expect("the level is sound, and tests parse it")
 }
 
-const ROOMS: &str = r#"
-grid = '''
-bbbbbbbbbbbbbbbbssssssss
-b..............s.......s
-b..............s.......s
-b...p...p......s..p....s
-b..............s.......s
-b......................s
-b...p...p..............s
-b..............s..p....s
-b..............s.......s
-mmmmmm..mmmmmmmssss..sss
-m......................o
-m..@...................o
-m.........p...p...p....o
-m......................o
-m.........p...p...p....o
-m......................o
-m......................o
-mmmmmm..mmmmmmmooo..oooo
-m..............o.......o
-m...p..p..p....o..p....o
-m......................o
-m...p..p..p....o..p....o
-m..............o.......o
-mmmmmmmmmmmmmmmooooooooo
-'''
-
-[tiles]
-"b" = { wall = "brick" }
-"s" = { wall = "stone" }
-"m" = { wall = "moss" }
-"o" = { wall = "oak" }
-"p" = { wall = "marble" }
-
-[things]
-"@" = { start = 0 }
-"#;
+const ROOMS: &str = include_str!("speed/rooms.toml");
 
 /// `count` cameras along a walk through `world` that turns continually, and so looks in all
 /// directions.
-pub fn walk(world: &World, count: usize) -> Vec<Camera> {
+fn walk(world: &World, count: usize) -> Vec<Camera> {
     const STEPS_BETWEEN: usize = 6;
     let mut game = Game::new(world.clone());
     let turning: Intents = [Intent::Forward, Intent::TurnRight, Intent::Aim].into_iter().collect();
@@ -104,19 +68,21 @@ pub fn walk(world: &World, count: usize) -> Vec<Camera> {
 
 /// The pixel shape for which a wall is as high as in the classic picture, where a cube at distance
 /// 1 in front of the camera fills the picture from top to bottom.
-pub fn pixel_aspect(size: FrameSize) -> PixelAspect {
+fn pixel_aspect(size: FrameSize) -> PixelAspect {
     let (width, height) = (f64::from(size.width.get()), f64::from(size.height.get()));
     let across = width / 2.0 / FieldOfView::default().half_width();
     PixelAspect::new(across / height).unwrap_or(PixelAspect::SQUARE)
 }
 
-/// Sets every pixel, which is a lower bound for a renderer.
-pub fn fill(pixels: &mut [u32], color: u32) {
-    pixels.fill(color);
+/// A game of the showcase's level in a window of this size.
+fn showcase(size: Size) -> Result<Replay, Error> {
+    let levels = level::load_series(Some(OsStr::new(SHOWCASE.level)))?;
+    Ok(Replay::new(levels, Settings::default(), size))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::classic::{Classic, ClassicFloor};
     use super::*;
     use cellcaster::render::{Filter, Frame, Renderer};
 

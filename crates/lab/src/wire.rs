@@ -11,9 +11,6 @@
 //! The first frame paints everything with any encoder, and is reported separately.
 
 mod encoder;
-mod glyph_sets;
-mod palettes;
-mod pipeline;
 mod seen;
 mod tour;
 
@@ -22,16 +19,14 @@ use std::num::NonZeroU32;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Size;
 
+use crate::report::{Diagram, Table, headings};
 use cellcaster::app::Replay;
 use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::terminal::Fidelity;
-use encoder::{Encoder, EncoderRun, Extensions, Stock, Writer};
-
-pub use encoder::{Bytes, Compressed, EncoderReport, Part, Seen};
-pub use glyph_sets::{GlyphRow, report_glyphs};
-pub use palettes::{PalettePlan, PaletteRow, report_palettes};
-pub use pipeline::{PipelineRow, measure_pipeline};
+pub(crate) use encoder::Sink;
+use encoder::{COLUMNS, Encoder, EncoderRun};
+pub use tour::{report_glyphs, report_palettes};
 
 /// The options of a measurement.
 #[derive(Debug)]
@@ -45,31 +40,19 @@ pub struct Plan<'a> {
     /// The number of frames sent per second.
     pub frames_per_second: NonZeroU32,
     /// The fidelities at which Cellcaster's encoder is measured.
-    pub fidelities: Vec<Fidelity>,
+    pub fidelities: &'a [Fidelity],
 }
 
-/// The results.
-#[derive(Clone, Debug)]
-pub struct Report {
-    /// The number of frames after the first.
-    pub frames: usize,
-    /// Ratatui's encoder, then Cellcaster's at each fidelity, and then Cellcaster's at each
-    /// fidelity with repeated characters and a defined palette.
-    pub encoders: Vec<EncoderReport>,
-}
-
-/// Plays the script of `plan` and measures.
-pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
-    let ours = [Extensions::Off, Extensions::On].into_iter().flat_map(|extensions| {
+/// Plays the script of `plan`, and compares ratatui's encoder (`stock`), Cellcaster's at each fidelity, and Cellcaster's at
+/// each fidelity with repeated characters and a defined palette (`+`).
+pub fn report(plan: &Plan, replay: &mut Replay) -> Table {
+    let ours = [false, true].into_iter().flat_map(|extensions| {
         plan.fidelities.iter().map(move |&fidelity| {
-            let writer: Box<dyn Encoder> =
-                Box::new(Writer::new(plan.size, plan.depth, fidelity, extensions));
-            (extensions.name(fidelity), writer)
+            let encoder = Encoder::ours(plan.size, plan.depth, fidelity, extensions);
+            (format!("{fidelity}{}", if extensions { "+" } else { "" }), encoder)
         })
     });
-    let stock: Box<dyn Encoder> = Box::new(Stock::new());
-    let mut runs: Vec<EncoderRun> = [("stock".to_owned(), stock)]
-        .into_iter()
+    let mut runs: Vec<EncoderRun> = std::iter::once(("stock".to_owned(), Encoder::stock()))
         .chain(ours)
         .map(|(name, encoder)| EncoderRun::new(name, encoder, plan.script))
         .collect();
@@ -82,13 +65,22 @@ pub fn report(plan: &Plan, replay: &mut Replay) -> Report {
             run.take(section, &changes, picture);
         }
         before.clone_from(picture);
-        frames = frame as usize;
+        frames = frame;
         Ok::<(), std::convert::Infallible>(())
     });
-    let mut encoders: Vec<EncoderReport> = Vec::new();
-    for run in runs {
-        let report = run.finish(encoders.first());
-        encoders.push(report);
+    let rows = runs[0].parts().flat_map(|part| {
+        let stock = runs[0].mean_bytes(part);
+        runs.iter().map(move |run| run.row(part, stock))
+    });
+    Table {
+        name: "encoders",
+        title: format!(
+            "{frames} frames of {}×{} cells, {} a second, and the first one, which paints everything",
+            plan.size.width, plan.size.height, plan.frames_per_second
+        ),
+        keys: ["section", "encoder", ""],
+        columns: headings(COLUMNS),
+        rows: rows.collect(),
+        diagrams: vec![Diagram { columns: [1, 12], range: [0.01, 100.0] }],
     }
-    Report { frames, encoders }
 }

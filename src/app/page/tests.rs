@@ -16,6 +16,10 @@ fn menu() -> Menu<u8> {
     })
 }
 
+fn select(menu: &mut Menu<u8>, key: Key) {
+    menu.selected = menu.selected_by(key, &Bindings::default()).unwrap();
+}
+
 #[test]
 fn the_selected_entry_is_shown_in_any_window() {
     for (columns, rows) in [(40, 12), (30, 8), (20, 5), (12, 4), (20, 3), (3, 1), (1, 1)] {
@@ -26,7 +30,7 @@ fn the_selected_entry_is_shown_in_any_window() {
                 let wanted = format!("> fruit {}", menu.selected());
                 assert!(text.contains(&wanted[..9]), "{columns} by {rows}:\n{text}");
             }
-            menu.select(Selection::Next);
+            select(&mut menu, Key::Down);
         }
     }
 }
@@ -52,29 +56,18 @@ fn text_is_cut_before_entries() {
 #[test]
 fn the_selection_goes_around_and_digits_select() {
     let mut menu = menu();
-    menu.select(Selection::Previous);
+    select(&mut menu, Key::Up);
     assert_eq!(menu.choice(), Some(5));
-    menu.select(Selection::Next);
+    select(&mut menu, Key::Down);
     assert_eq!(menu.choice(), Some(0));
-    menu.select_number('3');
-    assert_eq!(menu.choice(), Some(2));
-    assert!(menu.has_number('6') && !menu.has_number('7') && !menu.has_number('0'));
-    menu.select_number('7');
-    assert_eq!(menu.choice(), Some(2));
+    let chosen = |digit| menu.chosen_by(Key::Char(digit));
+    assert_eq!(['3', '6', '7', '0'].map(chosen), [Some(2), Some(5), None, None]);
     let mut empty: Menu<u8> = Menu::new("nothing");
-    Selection::Next.then_all(&mut empty);
+    for key in [Key::Down, Key::Up, Key::PageUp, Key::PageDown, Key::Home, Key::End] {
+        select(&mut empty, key);
+    }
     assert_eq!(empty.choice(), None);
     shown(&mut empty, 20, 5);
-}
-
-impl Selection {
-    fn then_all(self, menu: &mut Menu<u8>) {
-        for selection in
-            [self, Self::Previous, Self::PageUp, Self::PageDown, Self::First, Self::Last]
-        {
-            menu.select(selection);
-        }
-    }
 }
 
 fn shown_help(columns: u16, rows: u16, help: &mut HelpScroll) -> String {

@@ -12,7 +12,7 @@ use std::{fmt, thread};
 
 use crate::app::store::private;
 use crate::app::store::progress::{Change, Progress};
-use crate::app::store::text::{self, Content};
+use crate::app::store::text;
 use crate::fault::printable_path;
 use crate::sort;
 
@@ -37,6 +37,7 @@ pub(crate) struct Written {
 }
 
 /// The readable content of the progress file, and what is wrong with it.
+#[derive(Default)]
 struct Found {
     progress: Progress,
     damage: Option<Damage>,
@@ -91,7 +92,7 @@ impl Home {
         String::from_utf8(content).ok()
     }
 
-    /// Applies `changes` to the file. What is damaged in it is completed from `known`, the state in
+    /// Applies `changes` to the file. A damaged file is completed from `known`, the state in
     /// memory.
     ///
     /// # Errors
@@ -118,26 +119,23 @@ impl Home {
         let file = self.folder.join(PROGRESS);
         let content = match self.disk.read(&file, LARGEST_PROGRESS) {
             Ok(content) => content,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Ok(Found { progress: Progress::default(), damage: None });
-            }
-            Err(error) if error.kind() == io::ErrorKind::FileTooLarge => {
-                let damage = Some(Damage::TooLarge);
-                return Ok(Found { progress: Progress::default(), damage });
-            }
             Err(error) => {
-                return Err(format!(
-                    "{} can't be read: {error}; nothing is kept",
-                    printable_path(&file)
-                ));
+                let damage = match error.kind() {
+                    io::ErrorKind::NotFound => None,
+                    io::ErrorKind::FileTooLarge => Some(Damage::TooLarge),
+                    _ => {
+                        let file = printable_path(&file);
+                        return Err(format!("{file} can't be read: {error}; nothing is kept"));
+                    }
+                };
+                return Ok(Found { damage, ..Found::default() });
             }
         };
         match text::read(&content) {
-            Content::Sound(progress) => Ok(Found { progress, damage: None }),
-            Content::Damaged(progress) => {
-                Ok(Found { progress, damage: Some(Damage::Parts(content)) })
+            Ok((progress, is_sound)) => {
+                Ok(Found { progress, damage: (!is_sound).then_some(Damage::Parts(content)) })
             }
-            Content::Newer(version) => Err(format!(
+            Err(version) => Err(format!(
                 "{} has version {version}, which a newer Cellcaster wrote: it is left as it is, and \
                  nothing is kept",
                 printable_path(&file)

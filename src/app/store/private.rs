@@ -1,7 +1,9 @@
 //! Files of the program's own: it reads regular ones only, and nobody else on the machine reads them.
 
-use std::fs::{self, DirBuilder, File, FileType, Metadata, OpenOptions};
+use std::fs::{self, DirBuilder, File, Metadata, OpenOptions};
 use std::io::{self, Read};
+#[cfg(unix)]
+use std::os::unix::fs::{DirBuilderExt, FileTypeExt, OpenOptionsExt, PermissionsExt};
 use std::path::Path;
 
 /// A path at which there is no regular file.
@@ -14,7 +16,8 @@ struct NoFile(&'static str);
 pub fn open(file: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
-    do_not_wait(&mut options);
+    #[cfg(unix)]
+    options.custom_flags(DO_NOT_WAIT);
     let opened = options.open(file)?;
     refuse_others(&opened.metadata()?)?;
     Ok(opened)
@@ -48,7 +51,8 @@ pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
 pub fn create_folder(folder: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     builder.recursive(true);
-    restrict_folder(&mut builder);
+    #[cfg(unix)]
+    builder.mode(0o700);
     builder.create(folder)
 }
 
@@ -58,13 +62,15 @@ pub(crate) fn open_to_write(file: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.create(true).truncate(false).write(true);
     restrict_file(&mut options);
-    do_not_wait(&mut options);
+    #[cfg(unix)]
+    options.custom_flags(DO_NOT_WAIT);
     let opened = options.open(file).or_else(|error| {
         // A named pipe that nobody reads can't be opened.
         fs::metadata(file).map_or(Ok(()), |metadata| refuse_others(&metadata)).and(Err(error))
     })?;
     refuse_others(&opened.metadata()?)?;
-    restrict_existing(&opened)?;
+    #[cfg(unix)]
+    opened.set_permissions(fs::Permissions::from_mode(0o600))?;
     Ok(opened)
 }
 
@@ -79,64 +85,26 @@ pub fn check_is_file(file: &Path) -> io::Result<()> {
 }
 
 /// Lets only the owner read the file that is created with `options`.
-#[cfg(unix)]
+#[cfg_attr(not(unix), expect(unused_variables, reason = "only Unix files have modes"))]
 pub fn restrict_file(options: &mut OpenOptions) {
-    use std::os::unix::fs::OpenOptionsExt;
+    #[cfg(unix)]
     options.mode(0o600);
 }
 
-#[cfg(not(unix))]
-pub(crate) fn restrict_file(_: &mut OpenOptions) {}
-
 fn refuse_others(metadata: &Metadata) -> io::Result<()> {
     let kind = metadata.file_type();
-    if kind.is_file() {
-        return Ok(());
-    }
-    Err(io::Error::new(io::ErrorKind::InvalidInput, NoFile(name_of(kind))))
-}
-
-#[cfg(unix)]
-fn name_of(kind: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-    match () {
+    let name = match () {
+        () if kind.is_file() => return Ok(()),
         () if kind.is_dir() => "a folder",
+        #[cfg(unix)]
         () if kind.is_fifo() => "a named pipe",
+        #[cfg(unix)]
         () if kind.is_socket() => "a socket",
         () => "a device",
-    }
+    };
+    Err(io::Error::new(io::ErrorKind::InvalidInput, NoFile(name)))
 }
 
-#[cfg(not(unix))]
-fn name_of(kind: FileType) -> &'static str {
-    if kind.is_dir() { "a folder" } else { "a device" }
-}
-
+/// The flag with which opening a file never waits.
 #[cfg(unix)]
-fn do_not_wait(options: &mut OpenOptions) {
-    use std::os::unix::fs::OpenOptionsExt;
-    options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
-}
-
-#[cfg(unix)]
-fn restrict_folder(builder: &mut DirBuilder) {
-    use std::os::unix::fs::DirBuilderExt;
-    builder.mode(0o700);
-}
-
-#[cfg(unix)]
-fn restrict_existing(file: &File) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(fs::Permissions::from_mode(0o600))
-}
-
-#[cfg(not(unix))]
-fn do_not_wait(_: &mut OpenOptions) {}
-
-#[cfg(not(unix))]
-fn restrict_folder(_: &mut DirBuilder) {}
-
-#[cfg(not(unix))]
-fn restrict_existing(_: &File) -> io::Result<()> {
-    Ok(())
-}
+const DO_NOT_WAIT: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();

@@ -36,18 +36,11 @@ const SAVES: &str = "saves";
 const SAVED: &str = "saved";
 const SAVED_DESCENT: &str = "saved-descent";
 
-/// The content of a text.
-#[derive(Debug, PartialEq)]
-pub(crate) enum Content {
-    Sound(Progress),
-    /// The readable part.
-    Damaged(Progress),
-    /// A format of this version, which this program does not know.
-    Newer(u64),
-}
-
-/// Reads the content of the file.
-pub(crate) fn read(content: &[u8]) -> Content {
+/// Reads the content of the file: its readable part, and whether that is all of it.
+///
+/// # Errors
+/// The version of the format, if this program does not know it yet.
+pub(crate) fn read(content: &[u8]) -> Result<(Progress, bool), u64> {
     let text = String::from_utf8_lossy(content);
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let is_cut = whole < text.len() || matches!(text, Cow::Owned(_));
@@ -68,9 +61,9 @@ pub(crate) fn read(content: &[u8]) -> Content {
         }
     }
     match version {
-        Some(newer) if newer > VERSION => Content::Newer(newer),
-        Some(OLDEST..=VERSION) if faults.is_empty() && !is_cut => Content::Sound(progress),
-        _ => Content::Damaged(progress),
+        Some(newer) if newer > VERSION => Err(newer),
+        Some(OLDEST..) => Ok((progress, faults.is_empty() && !is_cut)),
+        _ => Ok((progress, false)),
     }
 }
 

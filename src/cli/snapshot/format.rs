@@ -7,14 +7,12 @@ use font8x8::{BASIC_FONTS, BLOCK_FONTS, UnicodeFonts};
 use png::{BitDepth, ColorType, Encoder, EncodingError, StreamWriter};
 use ratatui::buffer::Cell;
 use ratatui::layout::Size;
-use ratatui::style::Color;
 use serde::Serialize;
 
 use crate::color::Rgb;
-use crate::color::palette;
 use crate::terminal::{Bytes, Style};
-use crate::tui::CellAspect;
 use crate::tui::canvas::Mosaic;
+use crate::tui::{CellAspect, rgb_of};
 
 /// The format of a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -137,8 +135,8 @@ impl<W: Write> Writer for Json<W> {
             .iter()
             .map(|cell| JsonCell {
                 ch: cell.symbol(),
-                fg: rgb(cell.fg).map(|color| color.to_string()),
-                bg: rgb(cell.bg).map(|color| color.to_string()),
+                fg: rgb_of(cell.fg).map(|color| color.to_string()),
+                bg: rgb_of(cell.bg).map(|color| color.to_string()),
             })
             .collect();
         Ok(serde_json::to_writer(&mut self.output, &cells)?)
@@ -189,8 +187,8 @@ impl<W: Write + 'static> Writer for Png<W> {
             self.line.clear();
             for cell in cells {
                 let glyph = Glyph::of(cell.symbol());
-                let foreground = rgb(cell.fg).unwrap_or(FOREGROUND).channels();
-                let background = rgb(cell.bg).unwrap_or(BACKGROUND).channels();
+                let foreground = rgb_of(cell.fg).unwrap_or(FOREGROUND).channels();
+                let background = rgb_of(cell.bg).unwrap_or(BACKGROUND).channels();
                 for x in 0..self.cell_width {
                     let is_set = glyph.covers([x, y], [self.cell_width, self.cell_height]);
                     self.line.extend(if is_set { foreground } else { background });
@@ -240,14 +238,5 @@ fn into_io(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,
         other => io::Error::other(other),
-    }
-}
-
-/// The colour that represents `color` outside a terminal; `None` for the terminal's default.
-fn rgb(color: Color) -> Option<Rgb> {
-    match color {
-        Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
-        Color::Indexed(index) => Some(palette::of_256(index)),
-        _ => None,
     }
 }

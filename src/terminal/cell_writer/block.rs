@@ -14,7 +14,7 @@ use crate::tui::canvas::Mosaic;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shape(u8);
 
-/// The number of shapes of octants; those of sextants follow.
+/// The number of octant shapes. The sextant shapes follow them.
 const OCTANTS: u8 = 128;
 
 /// The parts that the dots and the rest of a cell have in common with the dots and the rest of another.
@@ -41,7 +41,7 @@ impl Shape {
     /// No dot: a cell has another shape.
     pub(crate) const NONE: Self = Self(Self::HALF_MASK);
     pub(crate) const COUNT: u8 = OCTANTS + 32;
-    /// The numbers of octant shapes are counted from that of the upper half.
+    /// The mask of the upper half, whose shape has the number 0.
     const HALF_MASK: u8 = 0x0F;
 
     /// The shape of a mosaic, and whether its colours change places.
@@ -160,7 +160,7 @@ static PARTS: [u32; Shape::COUNT as usize] = {
 ///
 /// A cell of two pixels can be written as an upper half block, or as a lower one with the colours swapped; a cell of
 /// two equal pixels as a space or a full block. They look the same, so the pen uses the one with the fewest bytes
-/// after the terminal's present style. A space has no foreground, so that it keeps that of the cell before it.
+/// after the terminal's present style. A space has no foreground, so that it keeps the foreground of the cell before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BlockElement {
     /// The upper half in the text colour, the lower half in the background colour.

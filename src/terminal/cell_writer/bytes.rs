@@ -78,25 +78,7 @@ impl Bytes {
 }
 
 impl Piece<'_> {
-    /// The number of bytes in this piece.
-    #[inline]
-    pub(crate) fn end(&self) -> usize {
-        self.end
-    }
-
-    /// Sets the number of bytes in this piece.
-    #[inline]
-    fn end_at(&mut self, end: usize) {
-        self.end = end;
-    }
-
-    /// Writes a byte at a place in this piece.
-    #[inline]
-    pub(crate) fn put(&mut self, place: usize, byte: u8) {
-        self.room[place & LONGEST] = byte;
-    }
-
-    /// Writes all of `text`, of which the first `count` bytes are part of the piece.
+    /// Writes all of `text`. Only its first `count` bytes are part of the piece.
     #[inline]
     pub(crate) fn push<const LENGTH: usize>(&mut self, text: [u8; LENGTH], count: usize) {
         const { assert!(LENGTH <= EXCESS) };
@@ -134,7 +116,7 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     /// Begins a sequence at the end of `piece`.
     #[inline]
     pub(crate) fn begin(piece: &'a mut Piece<'b>) -> Self {
-        let start = piece.end();
+        let start = piece.end;
         piece.push([INTRODUCER[0]], 1);
         Self { piece, start }
     }
@@ -179,17 +161,16 @@ impl<'a, 'b> ControlSequence<'a, 'b> {
     /// predictable, this takes less time than a test first.
     #[inline]
     pub(crate) fn add_if(&mut self, needed: bool, write: impl FnOnce(&mut Self)) {
-        let before = self.piece.end();
+        let before = self.piece.end;
         write(self);
-        let end = self.piece.end();
-        self.piece.end_at(select_unpredictable(needed, end, before));
+        self.piece.end = select_unpredictable(needed, self.piece.end, before);
     }
 
     /// Ends the sequence with the final byte `last`.
     #[inline]
     pub(crate) fn end(self, last: u8) {
         // Replace the separator before the first parameter.
-        self.piece.put(self.start + 1, INTRODUCER[1]);
+        self.piece.room[(self.start + 1) & LONGEST] = INTRODUCER[1];
         self.piece.push([last], 1);
     }
 }

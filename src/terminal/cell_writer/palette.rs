@@ -1,6 +1,6 @@
 //! Frequent colours as entries of the terminal's palette.
 //!
-//! The parameters of a colour take up to sixteen bytes, those of a palette entry at most eight. So
+//! The parameters of a colour take up to sixteen bytes, the parameters of a palette entry at most eight. So
 //! frequent colours are defined as entries (OSC 4) before they are used. An entry is redefined only
 //! if no cell shows its colour and the terminal's style does not use it, so that a definition never
 //! changes the screen.
@@ -419,7 +419,7 @@ const SMALL: f32 = 0.004;
 /// The growth of the mean error after which entries are chosen again.
 const GROWTH: f32 = 1.4;
 /// The number of frames for which a choice lasts, unless the error exceeds [`SCENE`].
-const PATIENCE: u32 = 15;
+const FRAMES_PER_CHOICE: u32 = 15;
 /// A mean error that only a change of scene causes.
 const SCENE: f32 = 0.03;
 /// The recent colours are in a cache of this many ways and of 2^[`PLACE_BITS`] places each.
@@ -528,7 +528,7 @@ impl Quantizer {
     fn must_choose(&self, error: Option<f32>) -> bool {
         let Some(error) = error else { return false };
         let has_grown = error > SMALL.max(self.error_then * GROWTH);
-        let is_time = self.frame - self.chosen_at >= PATIENCE || error > SCENE;
+        let is_time = self.frame - self.chosen_at >= FRAMES_PER_CHOICE || error > SCENE;
         self.by_shade.is_empty() || has_grown && is_time
     }
 

@@ -30,7 +30,7 @@ use crate::tui::canvas::SHADES;
 
 /// Makes a row look like its target.
 pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
-    if *row.intricate {
+    if row.state.intricate {
         draw_intricate_row(pen, &mut row);
     } else {
         shift(pen, shifts, &mut row);
@@ -39,7 +39,7 @@ pub(crate) fn draw_row(pen: &mut Pen, shifts: &mut Shifts, mut row: Row) {
         pen.draw_pixels(row.y, wrong, |pen, column, target| draw_target(pen, &row, column, target));
         row.shown.copy_from_slice(row.targets);
     }
-    *row.exact = true;
+    row.state.exact = true;
 }
 
 /// Draws a row whose characters may cover more than their cells.
@@ -59,7 +59,7 @@ fn draw_intricate_row(pen: &mut Pen, row: &mut Row) {
             covered = row.wanted[column].cell_width().saturating_sub(1);
         }
     }
-    *row.intricate = row.shown.iter().chain(row.targets).any(|target| target.is_intricate());
+    row.state.intricate = row.shown.iter().chain(row.targets).any(|target| target.is_intricate());
 }
 
 /// Draws one cell of a row.
@@ -154,7 +154,7 @@ impl RowEncoder {
 
     /// Makes a row look like its target within `fidelity`.
     fn draw_row(&mut self, pen: &mut Pen, shifts: &mut Shifts, mut row: Row, fidelity: Fidelity) {
-        if *row.intricate {
+        if row.state.intricate {
             // The extent of an intricate character is unknown.
             return draw_row(pen, shifts, row);
         }
@@ -175,7 +175,7 @@ impl RowEncoder {
                 Action::Draw(element, style) => draw_near(pen, &mut row, column, element, style),
             }
         }
-        *row.exact = row.shown == row.targets;
+        row.state.exact = row.shown == row.targets;
     }
 
     /// Moves the stretches of a row that have moved sideways, at least approximately.
@@ -427,7 +427,7 @@ const FRAMES: usize = 10;
 
 /// The number of frames without a change after which a row is refined while others change. Cells
 /// that soon move on would be drawn in vain.
-const PATIENCE: usize = 10;
+const RESTING_FRAMES: usize = 10;
 
 thread_local! {
     static INEXACT: Cell<Option<Box<Inexact>>> = const { Cell::new(None) };
@@ -464,7 +464,7 @@ impl Refinement {
             while let Some(cell) = chosen.next_if(|cell| cell.y == row.y) {
                 draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.targets;
+            row.state.exact = row.shown == row.targets;
         }
         INEXACT.set(Some(inexact));
     }
@@ -476,7 +476,9 @@ impl Refinement {
         }
         let mut inexact = INEXACT.take().unwrap_or_default();
         for mut row in screen.inexact_rows() {
-            let Some(drawn) = usize::from(row.rested).checked_sub(PATIENCE) else { continue };
+            let Some(drawn) = usize::from(row.state.rested).checked_sub(RESTING_FRAMES) else {
+                continue;
+            };
             if !row.is_near() {
                 draw_row(pen, shifts, row);
                 continue;
@@ -487,7 +489,7 @@ impl Refinement {
             for cell in &inexact.cells {
                 draw_cell(pen, &mut row, usize::from(cell.column));
             }
-            *row.exact = row.shown == row.targets;
+            row.state.exact = row.shown == row.targets;
         }
         INEXACT.set(Some(inexact));
     }

@@ -31,14 +31,20 @@ pub struct Screen {
     marks: Vec<Mark>,
     /// The intricate targets, which packed cells do not describe in full; empty before the first.
     wanted: Vec<Cell>,
-    /// Whether a row has changed targets.
-    changed: Vec<bool>,
-    /// Whether a row has intricate cells, shown or as targets.
-    intricate: Vec<bool>,
-    /// Whether a row shows exactly its targets.
-    exact: Vec<bool>,
-    /// The number of frames for which a row has not changed.
-    rested: Vec<u8>,
+    rows: Vec<RowState>,
+}
+
+/// The state of a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RowState {
+    /// Whether it has changed targets.
+    changed: bool,
+    /// Whether it has intricate cells, shown or as targets.
+    pub(crate) intricate: bool,
+    /// Whether it shows exactly its targets.
+    pub(crate) exact: bool,
+    /// The number of frames for which it has not changed.
+    pub(crate) rested: u8,
 }
 
 /// A row of the screen.
@@ -50,10 +56,7 @@ pub(crate) struct Row<'a> {
     /// The landmarks of its targets in the last frame.
     pub(crate) marks: &'a mut [Mark],
     pub(crate) wanted: &'a [Cell],
-    pub(crate) intricate: &'a mut bool,
-    pub(crate) exact: &'a mut bool,
-    /// The number of frames for which it has not changed.
-    pub(crate) rested: u8,
+    pub(crate) state: &'a mut RowState,
 }
 
 // A call leaves nothing in this memory that a later call needs. So each thread has it once, and not each of the some
@@ -71,7 +74,7 @@ impl Screen {
         let mut screen = Self::default();
         screen.resize(size);
         screen.clear(ClearType::All, Position::ORIGIN);
-        screen.exact.fill(true);
+        screen.rows.iter_mut().for_each(|row| row.exact = true);
         screen
     }
 
@@ -86,13 +89,8 @@ impl Screen {
         self.marks.clear();
         self.marks.resize(width * height, Mark::NONE);
         self.wanted = Vec::new();
-        self.changed.clear();
-        self.changed.resize(height, false);
-        self.intricate.clear();
-        self.intricate.resize(height, false);
-        self.exact.resize(height, false);
-        self.rested.clear();
-        self.rested.resize(height, 0);
+        self.rows.clear();
+        self.rows.resize(height, RowState::default());
         self.forget();
     }
 
@@ -105,13 +103,13 @@ impl Screen {
     /// Forgets the shown cells and has all rows drawn again.
     pub(crate) fn redraw(&mut self) {
         self.forget();
-        self.changed.fill(true);
+        self.rows.iter_mut().for_each(|row| row.changed = true);
     }
 
     /// Forgets the shown cells.
     pub(crate) fn forget(&mut self) {
         self.shown.fill(PackedCell::UNKNOWN);
-        self.exact.fill(false);
+        self.rows.iter_mut().for_each(|row| row.exact = false);
     }
 
     /// Records that the terminal has erased `region`, row by row, with the cursor at `cursor`. Its
@@ -139,9 +137,9 @@ impl Screen {
     fn forget_cut(&mut self, place: usize) {
         let width = self.width.max(1);
         let y = place / width;
-        if !place.is_multiple_of(width) && self.intricate[y] {
+        if !place.is_multiple_of(width) && self.rows[y].intricate {
             self.shown[y * width..(y + 1) * width].fill(PackedCell::UNKNOWN);
-            self.exact[y] = false;
+            self.rows[y].exact = false;
         }
     }
 
@@ -149,9 +147,9 @@ impl Screen {
     #[inline]
     pub(crate) fn want(&mut self, x: u16, y: u16, cell: &Cell) {
         let (x, y) = (usize::from(x), usize::from(y));
-        if x < self.width && y < self.changed.len() {
+        if x < self.width && y < self.rows.len() {
             self.set(y * self.width + x, cell);
-            self.changed[y] = true;
+            self.rows[y].changed = true;
         }
     }
 
@@ -178,7 +176,7 @@ impl Screen {
         }
     }
 
-    /// Sets an intricate target, and blanks those that it covers: ratatui does not send a covered
+    /// Sets an intricate target, and blanks the targets that it covers: ratatui does not send a covered
     /// cell, and need not send it when it is uncovered.
     #[cold]
     fn want_intricate(&mut self, place: usize, cell: &Cell) {
@@ -189,11 +187,11 @@ impl Screen {
             return;
         }
         self.targets[place + 1..end].fill(PackedCell::BLANK);
-        self.intricate[y] = true;
+        self.rows[y].intricate = true;
         self.wanted.resize(self.targets.len(), Cell::EMPTY);
         if self.wanted[place] != *cell {
             self.wanted[place].clone_from(cell);
-            self.changed[y] = true;
+            self.rows[y].changed = true;
         }
     }
 
@@ -214,20 +212,20 @@ impl Screen {
     pub(crate) fn end_frame(&mut self, before: Vec<PackedCell>) {
         let width = self.width.max(1);
         let rows = self.targets.chunks(width).zip(before.chunks(width));
-        for (changed, (targets, before)) in self.changed.iter_mut().zip(rows) {
-            *changed |= targets != before;
+        for (row, (targets, before)) in self.rows.iter_mut().zip(rows) {
+            row.changed |= targets != before;
         }
         BEFORE.set(before);
     }
 
     /// Whether any target has changed since the rows were drawn.
     pub(crate) fn is_changed(&self) -> bool {
-        self.changed.contains(&true)
+        self.rows.iter().any(|row| row.changed)
     }
 
     /// Whether every row shows exactly its targets, as rows without columns do.
     pub(crate) fn is_exact(&self) -> bool {
-        self.width == 0 || !self.exact.contains(&false)
+        self.width == 0 || self.rows.iter().all(|row| row.exact)
     }
 
     /// The two colours of a shown cell; `None` if they are unknown, and off the screen.
@@ -265,51 +263,45 @@ impl Screen {
     /// compared with their targets.
     pub(crate) fn recolor_shown(&mut self, color: impl FnMut(Shade) -> Shade) {
         recolor(&mut self.shown, color);
-        self.changed.fill(true);
+        self.rows.iter_mut().for_each(|row| row.changed = true);
     }
 
     /// The styles of the intricate targets.
     pub(crate) fn intricate_styles(&self) -> impl Iterator<Item = Style> {
-        let rows = self.wanted.chunks(self.width.max(1)).zip(&self.intricate);
-        rows.filter(|(_, intricate)| **intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
+        let rows = self.wanted.chunks(self.width.max(1)).zip(&self.rows);
+        rows.filter(|(_, row)| row.intricate).flat_map(|(cells, _)| cells.iter().map(Style::of))
     }
 
     /// Returns the changed rows, from the top, and marks them as unchanged.
     pub(crate) fn changed_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
-        self.rows_where(|_, changed| std::mem::take(changed))
+        self.rows_where(|row| std::mem::take(&mut row.changed))
     }
 
     /// Counts a frame for the rows that have not changed.
     pub(crate) fn count_rest(&mut self) {
-        for (rested, &changed) in self.rested.iter_mut().zip(&self.changed) {
-            *rested = if changed { 0 } else { rested.saturating_add(1) };
+        for row in &mut self.rows {
+            row.rested = if row.changed { 0 } else { row.rested.saturating_add(1) };
         }
     }
 
     /// The rows that do not show exactly their targets.
     pub(crate) fn inexact_rows(&mut self) -> impl Iterator<Item = Row<'_>> {
-        self.rows_where(|is_exact, _| !is_exact)
+        self.rows_where(|row| !row.exact)
     }
 
     fn rows_where(
         &mut self,
-        mut is_asked: impl FnMut(bool, &mut bool) -> bool,
+        mut is_asked: impl FnMut(&mut RowState) -> bool,
     ) -> impl Iterator<Item = Row<'_>> {
         let width = self.width.max(1);
-        let glyph_table = &self.glyph_table;
-        let wanted = &self.wanted;
+        let (glyph_table, wanted) = (&self.glyph_table, &self.wanted);
         let known = self.shown.chunks_mut(width).zip(self.marks.chunks_mut(width));
-        let states = self.changed.iter_mut().zip(&mut self.intricate).zip(&mut self.exact);
-        let states = states.zip(&self.rested);
         let cells = known.zip(self.targets.chunks(width));
-        (0..).zip(cells.zip(states)).filter_map(move |(y, (cells, state))| {
-            let ((shown, marks), targets) = cells;
+        let rows = (0..).zip(cells.zip(&mut self.rows));
+        rows.filter_map(move |(y, (((shown, marks), targets), state))| {
             let place = usize::from(y) * width;
             let wanted = wanted.get(place..place + targets.len()).unwrap_or_default();
-            let (((changed, intricate), exact), &rested) = state;
-            let row =
-                Row { y, glyph_table, shown, targets, marks, wanted, intricate, exact, rested };
-            is_asked(*row.exact, changed).then_some(row)
+            is_asked(state).then_some(Row { y, glyph_table, shown, targets, marks, wanted, state })
         })
     }
 }
@@ -349,7 +341,7 @@ impl Row<'_> {
 
 impl Canvas for Screen {
     fn bounds(&self) -> Rect {
-        Rect::new(0, 0, self.width as u16, self.changed.len() as u16)
+        Rect::new(0, 0, self.width as u16, self.rows.len() as u16)
     }
 
     #[inline]

@@ -8,7 +8,7 @@
 //! votes for the moves that may have brought it there.
 //!
 //! Rejected: comparing the appearance of cells, which took longer than the rest of the encoder. A table of marks, which
-//! missed those that occur several times. Scrolling whole regions sideways: few terminals have left and right margins.
+//! missed marks that occur several times. Scrolling whole regions sideways: few terminals have left and right margins.
 
 use std::ops::Range;
 

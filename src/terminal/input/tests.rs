@@ -130,7 +130,7 @@ fn decode<'a>(pieces: impl IntoIterator<Item = &'a [u8]>) -> Vec<Input> {
     for piece in pieces {
         decoder.feed(piece, |input| inputs.push(input));
     }
-    assert_eq!(decoder.patience(), None, "the stream ends with a whole unit");
+    assert_eq!(decoder.timeout(), None, "the stream ends with a whole unit");
     inputs
 }
 
@@ -168,9 +168,9 @@ fn an_entry_of_the_palette_is_reported_in_one_to_four_digits() {
 fn an_escape_by_itself_is_the_escape_key() {
     let mut decoder = Decoder::default();
     decoder.feed(b"\x1b", |input| panic!("{input:?} came too early"));
-    assert!(decoder.patience().is_some());
+    assert!(decoder.timeout().is_some());
     assert_eq!(settle(&mut decoder), [press(Key::Escape, PLAIN)]);
-    assert_eq!(decoder.patience(), None);
+    assert_eq!(decoder.timeout(), None);
 }
 
 #[test]
@@ -230,7 +230,7 @@ proptest! {
         let mut decoder = Decoder::default();
         decoder.feed(&bytes, |_| ());
         settle(&mut decoder);
-        prop_assert_eq!(decoder.patience(), None);
+        prop_assert_eq!(decoder.timeout(), None);
         let mut inputs = Vec::new();
         decoder.feed(b"w", |input| inputs.push(input));
         prop_assert_eq!(inputs, [press(Key::Char('w'), PLAIN)]);

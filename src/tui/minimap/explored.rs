@@ -288,16 +288,17 @@ impl Observer<'_> {
             {
                 return;
             }
-            match self.enter(tile, visible, t) {
-                Entered { gap: None, .. } => return see(cell, self.is_open(tile)),
-                Entered { gap: Some(next), shows_face } => {
-                    if shows_face {
-                        see(cell, self.is_open(tile));
-                    }
-                    gap = next;
-                    visible = visible.intersection(self.slopes(next, t));
-                }
+            // The ray continues in the lowest visible gap, or ends at the cell's edge.
+            let gaps = self.world.tiles()[usize::from(tile.0)].gaps();
+            let mut gaps = gaps.map(|gap| (gap, self.slopes(gap, t)));
+            let next = gaps.find(|(_, slopes)| !slopes.intersection(visible).is_empty());
+            let Some((next, slopes)) = next else { return see(cell, self.is_open(tile)) };
+            // Whether it also shows the face below or above the gap.
+            if slopes.low > visible.low || slopes.high < visible.high {
+                see(cell, self.is_open(tile));
             }
+            gap = next;
+            visible = visible.intersection(slopes);
             (*position, *from) = (crossed.into, t);
             crossed = self.cross(&mut line, &mut visible, &mut see);
         }
@@ -322,18 +323,6 @@ impl Observer<'_> {
     /// Whether cells with `tile` are not walls.
     fn is_open(&self, TileId(tile): TileId) -> bool {
         !is_wall(self.world.tiles()[usize::from(tile)].kind)
-    }
-
-    /// The lowest visible gap of `tile`, in which a ray that enters it at `t` continues.
-    fn enter(&self, tile: TileId, visible: SlopeRange, t: f64) -> Entered {
-        let gaps = self.world.tiles()[usize::from(tile.0)].gaps();
-        let gap =
-            gaps.into_iter().find(|&gap| !self.slopes(gap, t).intersection(visible).is_empty());
-        let shows_face = gap.is_some_and(|gap| {
-            let SlopeRange { low, high } = self.slopes(gap, t);
-            low > visible.low || high < visible.high
-        });
-        Entered { gap, shows_face }
     }
 
     /// The range of slopes of a gap that begins or ends at `t`.
@@ -394,13 +383,6 @@ struct Line {
     position: Option<(Cell, TileId)>,
     /// The distance at which it has entered that cell.
     from: f64,
-}
-
-/// The result of entering a cell.
-struct Entered {
-    /// `None` if the ray ends at the cell's edge.
-    gap: Option<Gap>,
-    shows_face: bool,
 }
 
 /// How a tile continues a ray that has only been in cells with the observer's own gap.

@@ -330,14 +330,9 @@ fn is_watery(color: Rgb) -> bool {
 
 /// The mean of two colours, where the second has the weight `share`.
 fn mix(one: Rgb, other: Rgb, share: f64) -> Rgb {
-    let channel = |one: u8, other: u8| {
-        (f64::from(one) + (f64::from(other) - f64::from(one)) * share).round() as u8
-    };
-    Rgb::new(
-        channel(one.red(), other.red()),
-        channel(one.green(), other.green()),
-        channel(one.blue(), other.blue()),
-    )
+    let [one, other] = [one, other].map(|color| color.channels().map(f64::from));
+    let channel = |index: usize| (one[index] + (other[index] - one[index]) * share).round() as u8;
+    Rgb::new(channel(0), channel(1), channel(2))
 }
 
 /// The colour of a wall with the mean colour `color`: the same, but neither as dark as floor nor as
@@ -369,26 +364,6 @@ impl MapPoint {
         }
     }
 
-    /// The index of the point's colour among the 16.
-    pub(crate) fn index_of_16(self) -> u8 {
-        match self {
-            Self::Void => 0,
-            Self::Wall(_) => 7,
-            Self::Door(_) => 5,
-            Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
-                FloorKind::Base if matches!(self, Self::InView(_)) => 3,
-                FloorKind::Base => 8,
-                FloorKind::Ledge => 6,
-                FloorKind::Pit => 1,
-                FloorKind::Water => 4,
-            },
-            Self::Exit => 10,
-            Self::Key => 13,
-            Self::Item => 14,
-            Self::Ornament => 2,
-        }
-    }
-
     /// Whether the point's pixel at that position of the screen is lit if there are no colours.
     pub(crate) fn is_lit(self, x: u32, y: u32) -> bool {
         match self {
@@ -410,38 +385,34 @@ impl MapPoint {
         matches!(self, Self::Exit | Self::Key | Self::Item | Self::Ornament)
     }
 
-    pub(crate) fn character(self) -> char {
-        match self {
-            Self::Void => ' ',
-            Self::Wall(_) => '#',
-            Self::Door(_) => '+',
-            Self::Floor(Floor { kind, .. }) | Self::InView(Floor { kind, .. }) => match kind {
-                FloorKind::Base if matches!(self, Self::InView(_)) => ':',
-                FloorKind::Base => '.',
-                FloorKind::Ledge => '=',
-                FloorKind::Pit => '_',
-                FloorKind::Water => '~',
-            },
-            Self::Exit => 'X',
-            Self::Key => 'k',
-            Self::Item => '$',
-            Self::Ornament => 'o',
-        }
+    /// The appearance where colours are few or missing, and the importance.
+    pub(crate) fn look(self) -> PointLook {
+        let floor = |floor: Floor, base: (char, u8)| match floor.kind {
+            FloorKind::Base => base,
+            FloorKind::Ledge => ('=', 6),
+            FloorKind::Pit => ('_', 1),
+            FloorKind::Water => ('~', 4),
+        };
+        let ((character, index_of_16), importance) = match self {
+            Self::Void => ((' ', 0), 0),
+            Self::Floor(it) => (floor(it, ('.', 8)), 1),
+            Self::InView(it) => (floor(it, (':', 3)), 2),
+            Self::Ornament => (('o', 2), 3),
+            Self::Wall(_) => (('#', 7), 4),
+            Self::Door(_) => (('+', 5), 5),
+            Self::Item => (('$', 14), 6),
+            Self::Key => (('k', 13), 7),
+            Self::Exit => (('X', 10), 8),
+        };
+        PointLook { character, index_of_16, importance }
     }
+}
 
-    /// The importance of the point: a pixel that covers several points shows the most important
-    /// one.
-    pub(crate) fn importance(self) -> u8 {
-        match self {
-            Self::Void => 0,
-            Self::Floor(_) => 1,
-            Self::InView(_) => 2,
-            Self::Ornament => 3,
-            Self::Wall(_) => 4,
-            Self::Door(_) => 5,
-            Self::Item => 6,
-            Self::Key => 7,
-            Self::Exit => 8,
-        }
-    }
+/// The appearance of a point where colours are few or missing.
+pub(crate) struct PointLook {
+    pub(crate) character: char,
+    /// The index of its colour among the 16.
+    pub(crate) index_of_16: u8,
+    /// A pixel that covers several points shows the most important one.
+    pub(crate) importance: u8,
 }

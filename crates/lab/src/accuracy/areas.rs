@@ -14,22 +14,20 @@
 //! mean of |change shown − true change| while the camera turns and walks slowly.
 
 use std::num::NonZeroU32;
-use std::time::Instant;
 
 use font8x8::{BASIC_FONTS, BLOCK_FONTS, UnicodeFonts};
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Rect, Size};
-use ratatui::style::Color;
 use ratatui::widgets::StatefulWidget;
 
-use super::pictures::cameras;
-use super::table::{Column, Diagram, Row, Table, Value, time_in_rounds};
+use super::rays::cameras;
+use crate::report::{Diagram, Row, Table, Value, headings, seconds, time_in_rounds};
 use cellcaster::cast::Side;
 use cellcaster::color::Rgb;
-use cellcaster::color::palette::{ColorDepth, of_256};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::color::srgb::{encoded, linear};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer, Surface};
-use cellcaster::tui::{FirstPerson, GlyphSet, View};
+use cellcaster::tui::{FirstPerson, GlyphSet, View, rgb_of};
 use cellcaster::world::{Camera, World};
 
 /// What a window shows a picture by.
@@ -87,46 +85,38 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
         }
         let starts: Vec<Camera> = ways.iter().map(|way| way[0]).collect();
         let times = time_in_rounds(shown.len(), rounds, |index| {
-            let (display, filter) = shown[index];
-            let mut picture = Window::new(window, display.glyphs, display.depth, filter);
+            let mut picture = Window::new(window, shown[index]);
             picture.show(world, &starts[0]);
-            let start = Instant::now();
-            for camera in &starts {
-                picture.show(world, camera);
-            }
-            start.elapsed().as_secs_f64() * 1e6 / starts.len() as f64
+            let time = seconds(|| starts.iter().for_each(|camera| picture.show(world, camera)));
+            time * 1e6 / starts.len() as f64
         });
         for (((display, filter), differences), time) in shown.iter().zip(&all).zip(times) {
-            let keys = [
-                display.name.to_owned(),
-                filter.name().to_owned(),
-                format!("{}x{}", window.width, window.height),
-            ];
-            let mut values = differences.values();
-            let order = order(&rows, &keys, &values);
-            values.extend([order, time]);
-            rows.push(Row { keys, values });
+            let size = format!("{}x{}", window.width, window.height);
+            let mut row = Row::new([display.name, filter.name(), &size], differences.values());
+            row.values.extend([order(&rows, &row), time]);
+            rows.push(row);
         }
     }
     rows.sort_by_key(|row| DISPLAYS.iter().position(|display| display.name == row.keys[0]));
     Table {
         name: "areas",
-        title: "What a window shows, compared with the mean light over each half of a cell (64 samples)",
+        title: "What a window shows, compared with the mean light over each half of a cell (64 samples)"
+            .to_owned(),
         keys: ["display", "filter", "window"],
-        columns: vec![
-            Column::new("pixels", ""),
-            Column::new("mean error", "of 255"),
-            Column::new("off by more than 24", ""),
-            Column::new("worst error", "of 255"),
-            Column::new("at an edge", ""),
-            Column::new("mean error at edges", "of 255"),
-            Column::new("mean error of textures", "of 255"),
-            Column::new("crawl", "of 255"),
-            Column::new("crawl at edges", "of 255"),
-            Column::new("crawl of textures", "of 255"),
-            Column::new("order", ""),
-            Column::new("time", "µs a frame"),
-        ],
+        columns: headings([
+            "pixels",
+            "mean error, of 255",
+            "off by more than 24",
+            "worst error, of 255",
+            "at an edge",
+            "mean error at edges, of 255",
+            "mean error of textures, of 255",
+            "crawl, of 255",
+            "crawl at edges, of 255",
+            "crawl of textures, of 255",
+            "order",
+            "time, µs a frame",
+        ]),
         rows,
         diagrams: vec![
             Diagram { columns: [11, 1], range: RANGE },
@@ -137,20 +127,19 @@ pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
 
 /// The order of convergence from the next smaller window with the same display and filter: the power of the
 /// width of a pixel with which the mean error falls.
-fn order(smaller: &[Row], keys: &[String; 3], values: &[Value]) -> Value {
-    let width = |keys: &[String; 3]| keys[2].split('x').next()?.parse::<f64>().ok();
+fn order(smaller: &[Row], row: &Row) -> Value {
+    /// The column of the mean error.
+    const MEAN_ERROR: usize = 1;
+    let width = |row: &Row| row.keys[2].split('x').next()?.parse::<f64>().ok();
     let order = || {
-        let before = smaller.iter().rfind(|row| row.keys[..2] == keys[..2])?;
-        let error = |values: &[Value]| values[MEAN_ERROR].number();
-        let fall = error(&before.values)? / error(values)?;
-        let growth = width(keys)? / width(&before.keys)?;
+        let before = smaller.iter().rfind(|other| other.keys[..2] == row.keys[..2])?;
+        let error = |row: &Row| row.values[MEAN_ERROR].number();
+        let fall = error(before)? / error(row)?;
+        let growth = width(row)? / width(before)?;
         Some(fall.ln() / growth.ln())
     };
-    order().filter(|order| order.is_finite()).map_or(Value::None, Value::Number)
+    Value::maybe(order().filter(|order| order.is_finite()))
 }
-
-/// The column of the mean error.
-const MEAN_ERROR: usize = 1;
 
 /// The cameras of a way that begins at `first`.
 fn way(first: Camera) -> Vec<Camera> {
@@ -173,68 +162,26 @@ fn compare(
     shown: &[(Display, Filter)],
     all: &mut [Differences],
 ) {
-    let mut windows: Vec<Window> = shown
-        .iter()
-        .map(|(display, filter)| Window::new(size, display.glyphs, display.depth, *filter))
-        .collect();
-    let mut before: Option<(Truth, Vec<Vec<[f64; 3]>>)> = None;
-    for camera in way {
-        let truth = Truth::new(world, camera, size);
-        let pictures: Vec<Vec<[f64; 3]>> = windows
-            .iter_mut()
-            .map(|window| {
-                window.show(world, camera);
-                window.halves()
-            })
-            .collect();
-        match &before {
-            None => {
-                for (differences, picture) in all.iter_mut().zip(&pictures) {
-                    differences.add_still(&truth, picture);
-                }
-            }
-            Some((truth_before, pictures_before)) => {
-                for ((differences, picture), picture_before) in
-                    all.iter_mut().zip(&pictures).zip(pictures_before)
-                {
-                    differences.add_motion([truth_before, &truth], [picture_before, picture]);
-                }
-            }
+    let truths: Vec<Vec<Half>> = way.iter().map(|camera| truth(world, camera, size)).collect();
+    for (&shown, differences) in shown.iter().zip(all) {
+        let mut window = Window::new(size, shown);
+        let pictures = way.iter().map(|camera| {
+            window.show(world, camera);
+            window.halves()
+        });
+        let pictures: Vec<Vec<[f64; 3]>> = pictures.collect();
+        differences.add_still(&truths[0], &pictures[0]);
+        for (truths, pictures) in truths.windows(2).zip(pictures.windows(2)) {
+            differences.add_motion(truths, pictures);
         }
-        before = Some((truth, pictures));
     }
-}
-
-/// The mean change of a channel from frame to frame, in steps of 8 bits, over sixty frames in which
-/// `camera` turns by a ninth of a degree each. Edges that move change pixels with every filter.
-pub fn shimmer(world: &World, camera: &Camera, size: FrameSize, filter: Filter) -> f64 {
-    const TURNS: u32 = 60;
-    let mut camera = *camera;
-    let mut renderer = Renderer::new();
-    renderer.set_filter(filter);
-    let mut before = Frame::new(size, PixelAspect::SQUARE);
-    let mut after = before.clone();
-    renderer.render(world, &camera, &mut before);
-    let (mut sum, mut count) = (0_u64, 0_u64);
-    for _ in 0..TURNS {
-        camera.heading = camera.heading.turned(TURN);
-        renderer.render(world, &camera, &mut after);
-        for (one, other) in before.rows().flatten().zip(after.rows().flatten()) {
-            let channels = one.channels().into_iter().zip(other.channels());
-            sum += channels.map(|(one, other)| u64::from(one.abs_diff(other))).sum::<u64>();
-            count += 3;
-        }
-        std::mem::swap(&mut before, &mut after);
-    }
-    sum as f64 / count.max(1) as f64
 }
 
 // What the cells of a window look like.
 
 /// A window that shows pictures.
 struct Window {
-    glyphs: GlyphSet,
-    depth: ColorDepth,
+    display: Display,
     filter: Filter,
     view: View,
     buffer: Buffer,
@@ -242,17 +189,16 @@ struct Window {
 
 impl Window {
     /// A window of `size` cells.
-    fn new(size: Size, glyphs: GlyphSet, depth: ColorDepth, filter: Filter) -> Self {
+    fn new(size: Size, (display, filter): (Display, Filter)) -> Self {
         let buffer = Buffer::empty(Rect::from(size));
-        Self { glyphs, depth, filter, view: View::default(), buffer }
+        Self { display, filter, view: View::default(), buffer }
     }
 
     /// Draws and paints the view of `camera`.
     fn show(&mut self, world: &World, camera: &Camera) {
-        let Self { glyphs, depth, filter, view, buffer } = self;
-        let widget =
-            FirstPerson::new(world, camera).glyphs(*glyphs).color_depth(*depth).filter(*filter);
-        widget.render(buffer.area, buffer, view);
+        let Self { display: Display { glyphs, depth, .. }, filter, view, buffer } = self;
+        let widget = FirstPerson::new(world, camera).glyphs(*glyphs).color_depth(*depth);
+        widget.filter(*filter).render(buffer.area, buffer, view);
     }
 
     /// The mean light of each half of a cell in sRGB, from 0 to 255, row by row of halves.
@@ -273,7 +219,7 @@ fn light(cell: &Cell, half: usize) -> [f64; 3] {
     let rows = glyph.unwrap_or_default();
     let dots: u32 = rows[4 * half..4 * (half + 1)].iter().map(|row| row.count_ones()).sum();
     let share = f64::from(dots) / DOTS;
-    let [text, ground] = [rgb(cell.fg), rgb(cell.bg)];
+    let [text, ground] = [cell.fg, cell.bg].map(|it| rgb_of(it).unwrap_or(Rgb::BLACK));
     if share == 0.0 || share == 1.0 {
         let color = if share == 0.0 { ground } else { text };
         return color.channels().map(f64::from);
@@ -284,23 +230,10 @@ fn light(cell: &Cell, half: usize) -> [f64; 3] {
     })
 }
 
-fn rgb(color: Color) -> Rgb {
-    match color {
-        Color::Rgb(red, green, blue) => Rgb::new(red, green, blue),
-        Color::Indexed(index) => of_256(index),
-        _ => Rgb::BLACK,
-    }
-}
-
 // The mean light over each half of a cell.
 
 /// The factor by which the larger picture is wider and higher.
 const SCALE: u32 = 8;
-
-/// The halves of a window's cells, row by row.
-struct Truth {
-    halves: Vec<Half>,
-}
 
 /// The upper or the lower half of a cell.
 #[derive(Clone, Copy)]
@@ -314,20 +247,18 @@ struct Half {
 /// What a sample shows: a surface, and for walls the line of the grid that they stand on.
 type Shown = (Option<Surface>, Option<(Side, u32)>);
 
-impl Truth {
-    /// The view of `camera` in a window of `size` cells.
-    fn new(world: &World, camera: &Camera, size: Size) -> Self {
-        let (width, height) = (u32::from(size.width), 2 * u32::from(size.height));
-        let scaled = |side: u32| NonZeroU32::new(side * SCALE).unwrap_or(NonZeroU32::MIN);
-        let scaled = FrameSize { width: scaled(width), height: scaled(height) };
-        let mut renderer = Renderer::new();
-        renderer.set_filter(Filter::Nearest);
-        renderer.keep_surfaces(true);
-        let mut frame = Frame::new(scaled, PixelAspect::SQUARE);
-        renderer.render(world, camera, &mut frame);
-        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        Self { halves: places.map(|(x, y)| half(&renderer, &frame, x, y)).collect() }
-    }
+/// The halves of the cells of a window of `size`, row by row, in the view of `camera`.
+fn truth(world: &World, camera: &Camera, size: Size) -> Vec<Half> {
+    let (width, height) = (u32::from(size.width), 2 * u32::from(size.height));
+    let scaled = |side: u32| NonZeroU32::new(side * SCALE).unwrap_or(NonZeroU32::MIN);
+    let scaled = FrameSize { width: scaled(width), height: scaled(height) };
+    let mut renderer = Renderer::new();
+    renderer.set_filter(Filter::Nearest);
+    renderer.keep_surfaces(true);
+    let mut frame = Frame::new(scaled, PixelAspect::SQUARE);
+    renderer.render(world, camera, &mut frame);
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    places.map(|(x, y)| half(&renderer, &frame, x, y)).collect()
 }
 
 fn half(renderer: &Renderer, frame: &Frame, x: u32, y: u32) -> Half {
@@ -377,8 +308,8 @@ struct Differences {
 
 impl Differences {
     /// Adds a picture of a camera that stands still.
-    fn add_still(&mut self, truth: &Truth, picture: &[[f64; 3]]) {
-        for (half, shown) in truth.halves.iter().zip(picture) {
+    fn add_still(&mut self, truth: &[Half], picture: &[[f64; 3]]) {
+        for (half, shown) in truth.iter().zip(picture) {
             let differences: [f64; 3] =
                 std::array::from_fn(|channel| (shown[channel] - half.color[channel]).abs());
             let largest = differences.into_iter().fold(0.0, f64::max);
@@ -390,10 +321,10 @@ impl Differences {
         }
     }
 
-    /// Adds the change from one picture to the next.
-    fn add_motion(&mut self, truths: [&Truth; 2], pictures: [&[[f64; 3]]; 2]) {
-        let halves = truths[0].halves.iter().zip(&truths[1].halves);
-        for ((one, other), (before, after)) in halves.zip(pictures[0].iter().zip(pictures[1])) {
+    /// Adds the change from the first of two pictures to the second.
+    fn add_motion(&mut self, truths: &[Vec<Half>], pictures: &[Vec<[f64; 3]>]) {
+        let halves = truths[0].iter().zip(&truths[1]);
+        for ((one, other), (before, after)) in halves.zip(pictures[0].iter().zip(&pictures[1])) {
             let place = usize::from(one.is_at_edge || other.is_at_edge);
             let change: f64 = (0..3)
                 .map(|channel| {
@@ -432,6 +363,8 @@ impl Differences {
 
 #[cfg(test)]
 mod tests {
+    use ratatui::style::Color;
+
     use super::*;
     use cellcaster::map;
     use cellcaster::map::builtin;

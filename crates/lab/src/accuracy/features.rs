@@ -4,25 +4,23 @@
 //! ray meets a shape, by another caster where a picture has heights, by a copy of the room where it
 //! has mirrors, from the definition where a colour has light.
 
-mod light;
+mod pictures;
 mod rays;
-mod scenes;
 mod solids;
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
 use ratatui::style::Color;
 
-use super::table::{Column, Row, Table, Value, time_in_rounds};
+use crate::report::{Row, Table, Value, headings, seconds, time_in_rounds};
 use cellcaster::color::Rgb;
 use cellcaster::color::lab::Lab;
 use cellcaster::color::oklab::Oklab;
 use cellcaster::color::palette::{nearest_of_16, nearest_of_256, of_256};
 use cellcaster::terminal::{CellWriter, Fidelity};
-use cellcaster::tui::{FirstPerson, View};
+use cellcaster::tui::{FirstPerson, View, rgb_of};
 use cellcaster::world::{Camera, FieldOfView, World};
 
 /// The errors of a feature.
@@ -32,68 +30,51 @@ struct Feature {
     figure: &'static str,
     /// The unit of the errors.
     unit: &'static str,
-    /// The number of comparisons.
-    cases: usize,
-    /// The number of cases that are another thing than they should be.
-    wrong: usize,
-    /// The errors of the other cases.
-    errors: Vec<f64>,
-    /// Does the work of all cases once; `None` if it was timed with another feature.
-    work: Option<Box<dyn FnMut()>>,
+    outcomes: Vec<Outcome>,
+    /// Does the work of all cases once.
+    work: Box<dyn FnMut()>,
 }
+
+/// Whether a case is another thing than it should be, and its error if it has one.
+type Outcome = (bool, Option<f64>);
 
 /// The errors of all features. Each is timed in `rounds` rounds.
 pub(crate) fn table(world: &World, seed: u64, rounds: usize) -> Table {
     let mut features = rays::features(seed);
     features.extend(solids::features(seed));
-    features.extend(scenes::features(seed));
-    features.extend(light::features());
-    features.extend(color_features());
-    features.extend(fidelity_features(world));
+    features.extend(pictures::features(seed));
+    features.extend([
+        palette("palette of 256", 16..=255, nearest_of_256),
+        palette("palette of 16", 0..=15, nearest_of_16),
+        fidelity("fidelity: exact", Fidelity::EXACT, world),
+        fidelity("fidelity: high", Fidelity::HIGH, world),
+        fidelity("fidelity: low", Fidelity::LOW, world),
+    ]);
     let times = time_in_rounds(features.len(), rounds, |index| {
-        let Feature { work, cases, .. } = &mut features[index];
-        let start = Instant::now();
-        if let Some(work) = work {
-            work();
-        }
-        start.elapsed().as_secs_f64() * 1e9 / (*cases).max(1) as f64
+        let Feature { work, outcomes, .. } = &mut features[index];
+        seconds(work) * 1e9 / outcomes.len().max(1) as f64
     });
     let rows = features.iter().zip(times).map(|(feature, time)| {
-        let time = if feature.work.is_some() { time } else { Value::None };
-        Row {
-            keys: [feature.name, feature.figure, feature.unit].map(str::to_owned),
-            values: feature.values(time),
-        }
+        let Feature { name, figure, unit, outcomes, .. } = feature;
+        let wrong = outcomes.iter().filter(|(is_wrong, _)| *is_wrong).count();
+        let errors: Vec<f64> = outcomes.iter().filter_map(|(_, error)| *error).collect();
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        let values = vec![
+            Value::Count(outcomes.len() as u64),
+            Value::share(wrong, outcomes.len()),
+            Value::maybe((!errors.is_empty()).then_some(mean)),
+            Value::maybe(errors.iter().copied().reduce(f64::max)),
+            time,
+        ];
+        Row::new([name, figure, unit], values)
     });
     Table {
         name: "features",
-        title: "Everything else that has a truth: a case is a ray, a pixel or a colour",
+        title: "Everything else that has a truth: a case is a ray, a pixel or a colour".to_owned(),
         keys: ["feature", "figure", "unit"],
-        columns: vec![
-            Column::new("cases", ""),
-            Column::new("wrong", ""),
-            Column::new("mean error", ""),
-            Column::new("worst error", ""),
-            Column::new("time", "ns a case"),
-        ],
+        columns: headings(["cases", "wrong", "mean error", "worst error", "time, ns a case"]),
         rows: rows.collect(),
         diagrams: Vec::new(),
-    }
-}
-
-impl Feature {
-    fn values(&self, time: Value) -> Vec<Value> {
-        let Self { cases, wrong, errors, .. } = self;
-        let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
-        let worst = errors.iter().copied().fold(0.0, f64::max);
-        let number = |value| if errors.is_empty() { Value::None } else { Value::Number(value) };
-        vec![
-            Value::Count(*cases as u64),
-            Value::Share(*wrong as f64 / (*cases).max(1) as f64),
-            number(mean),
-            number(worst),
-            time,
-        ]
     }
 }
 
@@ -101,13 +82,6 @@ impl Feature {
 
 /// Every fifteenth value of each channel.
 const STEP: usize = 15;
-
-fn color_features() -> Vec<Feature> {
-    vec![
-        palette("palette of 256", 16..=255, nearest_of_256),
-        palette("palette of 16", 0..=15, nearest_of_16),
-    ]
-}
 
 /// A colour is wrong if another index is nearer in Oklab, in which the palette is searched. The
 /// errors are those of the colours that are shown, in ΔE of CIE76, of which 2.3 is just seen.
@@ -122,22 +96,19 @@ fn palette(
             values().flat_map(move |green| values().map(move |blue| Rgb::new(red, green, blue)))
         })
         .collect();
-    let mut errors = Vec::new();
-    let mut wrong = 0;
-    for &color in &colors {
+    let outcome = |&color: &Rgb| {
         let distance = |index: u8| Oklab::from(of_256(index)).distance_squared(&Oklab::from(color));
         let chosen = nearest(color);
-        wrong += usize::from(indices.clone().any(|index| distance(index) < distance(chosen)));
-        errors.push(Lab::from(of_256(chosen)).distance(Lab::from(color)));
-    }
-    let cases = colors.len();
+        let is_wrong = indices.clone().any(|index| distance(index) < distance(chosen));
+        (is_wrong, Some(Lab::from(of_256(chosen)).distance(Lab::from(color))))
+    };
+    let outcomes = colors.iter().map(outcome).collect();
     let work = move || {
         for &color in &colors {
             black_box(nearest(black_box(color)));
         }
     };
-    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
-    Feature { name, figure: "colour", unit: "ΔE", cases, wrong, errors, work }
+    Feature { name, figure: "colour", unit: "ΔE", outcomes, work: Box::new(work) }
 }
 
 // Fidelity: the colours that a terminal shows while the camera moves, compared with those that were
@@ -150,25 +121,13 @@ const TURN: f64 = 0.05;
 /// The difference that is just seen, in ΔE.
 const SEEN: f64 = 2.3;
 
-fn fidelity_features(world: &World) -> Vec<Feature> {
-    [
-        ("fidelity: exact", Fidelity::EXACT),
-        ("fidelity: high", Fidelity::HIGH),
-        ("fidelity: low", Fidelity::LOW),
-    ]
-    .into_iter()
-    .map(|(name, fidelity)| fidelity_feature(name, fidelity, world))
-    .collect()
-}
-
 /// A colour is wrong if its difference is seen. The errors are of all colours.
-fn fidelity_feature(name: &'static str, fidelity: Fidelity, world: &World) -> Feature {
+fn fidelity(name: &'static str, fidelity: Fidelity, world: &World) -> Feature {
     let mut camera = world.start_camera(FieldOfView::default());
     let mut view = View::default();
     let mut writer = writer(fidelity);
     let mut drawn = Buffer::empty(Rect::from(WINDOW));
-    let mut errors = Vec::new();
-    let mut cameras = Vec::new();
+    let (mut outcomes, mut cameras) = (Vec::new(), Vec::new());
     for _ in 0..FRAMES {
         show(world, &camera, &mut view, &mut writer);
         FirstPerson::new(world, &camera).paint(&view, 0, drawn.area, &mut drawn);
@@ -176,15 +135,15 @@ fn fidelity_feature(name: &'static str, fidelity: Fidelity, world: &World) -> Fe
             for (x, cell) in (0..).zip(row) {
                 let wanted = halves(cell.symbol(), cell.fg, cell.bg);
                 let shown = writer.shown_colors(x, y).unwrap_or(wanted);
-                errors
-                    .extend(wanted.into_iter().zip(shown).map(|(one, other)| distance(one, other)));
+                outcomes.extend(wanted.into_iter().zip(shown).map(|(one, other)| {
+                    let error = distance(one, other);
+                    (error > SEEN, Some(error))
+                }));
             }
         }
         cameras.push(camera);
         camera.heading = camera.heading.turned(TURN);
     }
-    let wrong = errors.iter().filter(|&&error| error > SEEN).count();
-    let cases = errors.len();
     let world = world.clone();
     let work = move || {
         let mut writer = self::writer(fidelity);
@@ -192,8 +151,7 @@ fn fidelity_feature(name: &'static str, fidelity: Fidelity, world: &World) -> Fe
             show(&world, camera, &mut view, &mut writer);
         }
     };
-    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
-    Feature { name, figure: "colour of half a cell", unit: "ΔE", cases, wrong, errors, work }
+    Feature { name, figure: "colour of half a cell", unit: "ΔE", outcomes, work: Box::new(work) }
 }
 
 fn writer(fidelity: Fidelity) -> CellWriter<Vec<u8>> {
@@ -221,10 +179,7 @@ fn halves(symbol: &str, text: Color, ground: Color) -> [Color; 2] {
 }
 
 fn distance(one: Color, other: Color) -> f64 {
-    let lab = |color| match color {
-        Color::Rgb(red, green, blue) => Lab::from(Rgb::new(red, green, blue)),
-        _ => Lab::from(Rgb::BLACK),
-    };
+    let lab = |color| Lab::from(rgb_of(color).unwrap_or(Rgb::BLACK));
     lab(one).distance(lab(other))
 }
 

@@ -1,10 +1,9 @@
-//! Named sets of rays: ordinary scenes, and stiff or extreme cases.
+//! Named sets of rays: ordinary scenes, and stiff or extreme cases. Random rays are typical camera rays.
 
 use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::random_ray;
 use cellcaster::cast::Ray;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Camera, FieldOfView, Grid, Heading, TileId};
@@ -415,4 +414,16 @@ fn views(cameras: impl IntoIterator<Item = (DVec2, f64)>, degrees: f64) -> Vec<R
         })
     };
     cameras.into_iter().filter_map(camera).flat_map(rays).collect()
+}
+
+/// A typical camera ray: from any point of the map, with any heading, and about 1 long.
+pub fn random_ray(grid: &Grid, random: &mut SplitMix64) -> Ray {
+    let [width, height] = [grid.width(), grid.height()].map(f64::from);
+    let mut ray = || {
+        let origin = DVec2::new(random.between(0.0, width), random.between(0.0, height));
+        let (sine, cosine) = libm::sincos(random.between(0.0, TAU));
+        let direction = DVec2::new(cosine, sine);
+        Ray::new(origin, direction + direction.perp() * random.between(-0.65, 0.65)).ok()
+    };
+    std::iter::repeat_with(&mut ray).flatten().next().expect("almost every ray is valid")
 }

@@ -11,8 +11,6 @@
 //! border. As in the source, a component that rounds to zero becomes one unit; a component of zero
 //! stays zero.
 
-use std::ops::RangeInclusive;
-
 use super::clipped_ray::ClippedRay;
 use cellcaster::cast::first_line;
 use cellcaster::cast::{Caster, Hit, Order, Ray, Side, Walk};
@@ -21,33 +19,14 @@ use cellcaster::world::Grid;
 /// Casts by a DDA in integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fixed {
-    fraction_bits: u32,
+    /// The number of fractional bits, from 4 to 26.
+    pub(crate) fraction_bits: u32,
 }
 
 impl Fixed {
-    /// The allowed numbers of fractional bits.
-    pub const FRACTION_BITS: RangeInclusive<u32> = 4..=26;
-
-    /// A caster with this number of fractional bits; `None` if it is out of range.
-    pub fn new(fraction_bits: u32) -> Option<Self> {
-        Self::FRACTION_BITS.contains(&fraction_bits).then_some(Self { fraction_bits })
-    }
-
-    /// The number of fractional bits.
-    pub fn fraction_bits(self) -> u32 {
-        self.fraction_bits
-    }
-
     /// The value of 1, in units.
     fn unit(self) -> i64 {
         1 << self.fraction_bits
-    }
-}
-
-impl Default for Fixed {
-    /// 10 bits, as in the source.
-    fn default() -> Self {
-        Self { fraction_bits: 10 }
     }
 }
 

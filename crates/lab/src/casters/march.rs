@@ -7,8 +7,6 @@
 //! Source: the method that Lode Vandevenne, "Raycasting", warns of before it presents its own, and
 //! that most first raycasters use.
 
-use std::ops::RangeInclusive;
-
 use glam::DVec2;
 
 use super::clipped_ray::ClippedRay;
@@ -19,29 +17,8 @@ use cellcaster::world::{Cell, Grid};
 /// Casts by steps of constant length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct March {
-    step: f64,
-}
-
-impl March {
-    /// The allowed lengths of a step, in cells.
-    pub const STEP: RangeInclusive<f64> = 0.0001..=1.0;
-
-    /// A caster with this step length, in cells; `None` if it is out of range.
-    pub fn new(step: f64) -> Option<Self> {
-        Self::STEP.contains(&step).then_some(Self { step })
-    }
-
-    /// The length of a step, in cells.
-    pub fn step(self) -> f64 {
-        self.step
-    }
-}
-
-impl Default for March {
-    /// A hundredth of a cell.
-    fn default() -> Self {
-        Self { step: 0.01 }
-    }
+    /// The length of a step in cells, from 0.0001 to 1.
+    pub(crate) step: f64,
 }
 
 impl Caster for March {

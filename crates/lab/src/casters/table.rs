@@ -10,7 +10,6 @@
 //! Source: F. Permadi, "Ray-Casting Tutorial", with 1920 angles: 320 columns for 60°.
 
 use std::f64::consts::TAU;
-use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
@@ -34,18 +33,14 @@ struct Angle {
 }
 
 impl Table {
-    /// The allowed numbers of angles in the circle.
-    pub const ANGLES: RangeInclusive<u32> = 8..=65_536;
-
-    /// A caster with `count` angles in the circle; `None` if it is out of range.
-    pub fn new(count: u32) -> Option<Self> {
-        let angle = |index| Angle::new(index, count);
-        Self::ANGLES.contains(&count).then(|| Self { angles: (0..count).map(angle).collect() })
+    /// A caster with `count` angles in the circle, from 8 to 65536.
+    pub(crate) fn new(count: u32) -> Self {
+        Self { angles: (0..count).map(|index| Angle::new(index, count)).collect() }
     }
 
     /// The number of angles in the circle.
-    pub fn angles(&self) -> u32 {
-        self.angles.len() as u32
+    pub(crate) fn angles(&self) -> usize {
+        self.angles.len()
     }
 
     /// The entry nearest to a direction.
@@ -54,14 +49,6 @@ impl Table {
         let turns = libm::atan2(direction.y, direction.x) / TAU;
         let index = (turns * count as f64).round() as i64;
         self.angles[index.rem_euclid(count as i64) as usize]
-    }
-}
-
-impl Default for Table {
-    /// 1920 angles, as in the source.
-    fn default() -> Self {
-        let count = 1920;
-        Self { angles: (0..count).map(|index| Angle::new(index, count)).collect() }
     }
 }
 

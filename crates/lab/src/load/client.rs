@@ -73,15 +73,8 @@ pub(crate) async fn play(
     Ok(client.tally)
 }
 
-/// A session that never reads.
-pub(crate) async fn never_read(
-    address: SocketAddr,
-    access: &Access,
-) -> Result<(Handle<Anyone>, Channel<Msg>), Error> {
-    connect(address, access, 0).await
-}
-
-async fn connect(
+/// Connects as the guest of this number, or with a key.
+pub(crate) async fn connect(
     address: SocketAddr,
     access: &Access,
     number: u64,

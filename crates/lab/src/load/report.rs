@@ -14,60 +14,38 @@ pub(crate) struct Tally {
     pub(crate) unanswered: usize,
 }
 
-pub(crate) struct Report {
-    walking: usize,
-    /// Of each session.
-    frames: Vec<f64>,
-    bytes: f64,
-    delays: Vec<Duration>,
-    unanswered: usize,
-    /// The share of a processor that each server takes.
-    busy: Vec<f64>,
-}
-
-impl Report {
-    pub(crate) fn new(tallies: &[Tally], seconds: u64, processor: &[Duration]) -> Self {
-        let seconds = seconds as f64;
-        let mut frames: Vec<f64> = tallies.iter().map(|it| it.frames as f64 / seconds).collect();
-        frames.sort_by(f64::total_cmp);
-        let mut delays: Vec<Duration> =
-            tallies.iter().flat_map(|tally| tally.delays.iter().copied()).collect();
-        delays.sort();
-        Self {
-            walking: tallies.iter().filter(|tally| tally.is_walking).count(),
-            frames,
-            bytes: tallies.iter().map(|it| it.bytes as f64).sum::<f64>() / seconds,
-            delays,
-            unanswered: tallies.iter().map(|tally| tally.unanswered).sum(),
-            busy: processor.iter().map(|it| it.as_secs_f64() / seconds).collect(),
-        }
-    }
-
-    pub(crate) fn print(&self) {
-        let count = self.frames.len().max(1) as f64;
-        let mean = self.frames.iter().sum::<f64>() / count;
-        println!("sessions      {}, of which {} walk", self.frames.len(), self.walking);
-        println!(
-            "frames        {mean:.1} a second and session (least {:.1}, most {:.1})",
-            self.frames.first().unwrap_or(&0.0),
-            self.frames.last().unwrap_or(&0.0)
-        );
-        println!("bytes         {:.1} KB a second and session", self.bytes / count / 1000.0);
-        println!(
-            "key to frame  p50 {:.1} ms, p99 {:.1} ms, {} keys, {} without an answer",
-            percentile(&self.delays, 50),
-            percentile(&self.delays, 99),
-            self.delays.len(),
-            self.unanswered
-        );
-        let busy: f64 = self.busy.iter().sum();
-        let each: Vec<String> = self.busy.iter().map(|it| format!("{:.1} %", it * 100.0)).collect();
-        println!(
-            "processor     {} of one; {:.0} µs a frame",
-            each.join(" and "),
-            busy * 1e6 / (mean * count).max(1.0)
-        );
-    }
+/// Prints what clients have counted in this time, while each server has used so much of a processor.
+pub(crate) fn print(tallies: &[Tally], seconds: u64, processor: &[Duration]) {
+    let seconds = seconds as f64;
+    let count = tallies.len().max(1) as f64;
+    let mut frames: Vec<f64> = tallies.iter().map(|it| it.frames as f64 / seconds).collect();
+    frames.sort_by(f64::total_cmp);
+    let mean = frames.iter().sum::<f64>() / count;
+    let bytes = tallies.iter().map(|it| it.bytes as f64).sum::<f64>() / seconds;
+    let mut delays: Vec<Duration> = tallies.iter().flat_map(|it| it.delays.clone()).collect();
+    delays.sort();
+    let walking = tallies.iter().filter(|it| it.is_walking).count();
+    println!("sessions      {}, of which {walking} walk", tallies.len());
+    println!(
+        "frames        {mean:.1} a second and session (least {:.1}, most {:.1})",
+        frames.first().unwrap_or(&0.0),
+        frames.last().unwrap_or(&0.0)
+    );
+    println!("bytes         {:.1} KB a second and session", bytes / count / 1000.0);
+    println!(
+        "key to frame  p50 {:.1} ms, p99 {:.1} ms, {} keys, {} without an answer",
+        percentile(&delays, 50),
+        percentile(&delays, 99),
+        delays.len(),
+        tallies.iter().map(|it| it.unanswered).sum::<usize>()
+    );
+    let busy: Vec<f64> = processor.iter().map(|it| it.as_secs_f64() / seconds).collect();
+    let each: Vec<String> = busy.iter().map(|it| format!("{:.1} %", it * 100.0)).collect();
+    println!(
+        "processor     {} of one; {:.0} µs a frame",
+        each.join(" and "),
+        busy.iter().sum::<f64>() * 1e6 / (mean * count).max(1.0)
+    );
 }
 
 /// A percentile of times that are in order, in milliseconds; 0 if there is none.

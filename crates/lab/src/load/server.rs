@@ -21,17 +21,6 @@ pub(crate) struct ServerProcess {
     pub(crate) access: Access,
 }
 
-/// How a server is started.
-pub(crate) struct Setup<'a> {
-    pub(crate) program: &'a str,
-    /// The connections that it is for.
-    pub(crate) connections: usize,
-    /// Its number among the servers of this run, which is also that of its processor.
-    pub(crate) number: usize,
-    /// Further options of `cellcaster-server`.
-    pub(crate) options: &'a [String],
-}
-
 /// How a client is let in.
 #[derive(Clone, Debug)]
 pub(crate) enum Access {
@@ -42,10 +31,17 @@ pub(crate) enum Access {
 }
 
 impl ServerProcess {
-    pub(crate) fn start(setup: &Setup) -> Result<Self, Box<dyn Error>> {
-        let folder = folder(setup.number)?;
+    /// Starts `program` with these further options, for so many connections. Its `number` among the servers of this run is
+    /// also the number of its processor.
+    pub(crate) fn start(
+        program: &str,
+        options: &[String],
+        connections: usize,
+        number: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let folder = folder(number)?;
         let config = folder.join("serve.toml");
-        let most = setup.connections + 100;
+        let most = connections + 100;
         // A port that is free now.
         let metrics = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
         fs::write(
@@ -57,12 +53,12 @@ impl ServerProcess {
             ),
         )?;
         let mut child = Command::new("taskset")
-            .args(["-c", &processor(setup.number).to_string(), setup.program])
+            .args(["-c", &processor(number).to_string(), program])
             .args(["serve", "--listen", "127.0.0.1:0", "--data"])
             .args([&folder])
             .arg("--config")
             .arg(&config)
-            .args(setup.options)
+            .args(options)
             .stdout(Stdio::piped())
             .spawn()?;
         let mut line = String::new();

@@ -13,7 +13,7 @@ use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::plan::Load;
-use super::server::{ServerProcess, Setup};
+use super::server::ServerProcess;
 use super::wanderer::{self, Leaving};
 
 /// How the visits have ended so far; `None` for those with a fault.
@@ -28,9 +28,7 @@ const AFTERWARDS: Duration = Duration::from_secs(90);
 
 /// Lets clients come and go.
 pub(crate) fn run(plan: &Load) -> Result<(), Box<dyn Error>> {
-    let (program, connections) = (plan.program(), 2 * plan.sessions);
-    let setup = Setup { program: &program, connections, number: 0, options: &[] };
-    let server = ServerProcess::start(&setup)?;
+    let server = ServerProcess::start(&plan.program(), &[], 2 * plan.sessions, 0)?;
     Builder::new_current_thread().enable_all().build()?.block_on(soak(plan, &server))
 }
 

@@ -14,7 +14,7 @@ use cellcaster::world::{Camera, Ceiling, Covering, Paint, TileId, TileKind, Worl
 
 /// The classic loop's method for floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClassicFloor {
+pub(crate) enum ClassicFloor {
     /// One colour each.
     None,
     /// Below and above each wall, after the wall of the column.
@@ -25,7 +25,7 @@ pub enum ClassicFloor {
 
 /// The classic loop with its own copy of a map.
 #[derive(Clone, Debug)]
-pub struct Classic {
+pub(crate) struct Classic {
     /// 0 for floor, otherwise the wall's texture plus 1.
     map: [[u8; MAP]; MAP],
     textures: Vec<Picture>,
@@ -55,7 +55,7 @@ impl Classic {
     ///
     /// # Panics
     /// Panics if the map has more than 32 columns or rows.
-    pub fn new(world: &World) -> Self {
+    pub(crate) fn new(world: &World) -> Self {
         let mut textures = Vec::new();
         let mut wall = |paint: Paint| {
             textures.push(Picture::of(world, paint));
@@ -88,14 +88,18 @@ impl Classic {
     ///
     /// # Panics
     /// Panics if there are fewer pixels.
-    pub fn draw(
+    pub(crate) fn draw(
         &self,
         camera: &Camera,
         floor: ClassicFloor,
         (width, height): (usize, usize),
         pixels: &mut [u32],
     ) {
-        let view = &View::of(camera);
+        let view = &View {
+            position: camera.position(),
+            direction: camera.direction(),
+            plane: camera.plane(),
+        };
         match floor {
             ClassicFloor::None => {
                 let (above, below) = pixels.split_at_mut(width * (height / 2));
@@ -221,13 +225,6 @@ impl Classic {
                 place += step;
             }
         }
-    }
-}
-
-impl View {
-    fn of(camera: &Camera) -> Self {
-        let (direction, plane) = (camera.direction(), camera.plane());
-        Self { position: camera.position(), direction, plane }
     }
 }
 

@@ -4,50 +4,23 @@ use std::hint::black_box;
 use std::num::{NonZero, NonZeroU32};
 use std::time::{Duration, Instant};
 
-use super::{Classic, ClassicFloor, fill, pixel_aspect, plain_scene, textured_scene, walk};
+use super::classic::{Classic, ClassicFloor};
+use super::{pixel_aspect, plain_scene, textured_scene, walk};
+use crate::report::{Diagram, Row, Table, Value, headings, median, seconds};
 use cellcaster::render::{Frame, FrameSize, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
-/// The times of one scene at one size, in nanoseconds for each pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrawingRow {
-    /// The scene.
-    pub scene: Scene,
-    /// The size of the picture.
-    pub size: FrameSize,
-    /// The renderer's time with one thread.
-    pub ours: f64,
-    /// The number of threads that the renderer chooses for this size.
-    pub threads: usize,
-    /// The renderer's time with these threads.
-    pub by_threads: f64,
-    /// The classic loop's time: the faster of its two floors, if the floor has a texture.
-    pub classic: f64,
-    /// The time to set every pixel.
-    pub fill: f64,
-}
-
 /// A scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scene {
+#[derive(Clone, Copy)]
+enum Scene {
     /// Walls, with a textured floor and ceiling.
     Planes,
     /// Walls, with one colour above and below them.
     Walls,
 }
 
-impl Scene {
-    /// The name in reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Planes => "planes",
-            Self::Walls => "walls",
-        }
-    }
-}
-
 /// The sizes of the pictures: those of terminals, from 80×24 to 320×100 cells, then larger ones.
-pub const SIZES: [FrameSize; 8] = [
+const SIZES: [FrameSize; 8] = [
     size(80, 48),
     size(120, 80),
     size(160, 90),
@@ -78,15 +51,24 @@ const TURNS: usize = 3;
 ///
 /// For each camera, all renderers take turns, so that a busy machine slows all of them. A result is
 /// the mean, over the visited cameras, of the medians for each camera.
-pub fn measure_drawing(time: Duration) -> Vec<DrawingRow> {
+pub fn measure_drawing(time: Duration) -> Table {
     let scenes = [(Scene::Planes, textured_scene()), (Scene::Walls, plain_scene())];
-    let rows = || SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (size, scene)));
-    let all: f64 = rows().map(|(size, (scene, _))| share(*scene, size)).sum();
-    let measured = rows().map(|(size, (scene, world))| {
+    let pictures = || SIZES.iter().flat_map(|&size| scenes.iter().map(move |scene| (size, scene)));
+    let all: f64 = pictures().map(|(size, (scene, _))| share(*scene, size)).sum();
+    let rows = pictures().flat_map(|(size, (scene, world))| {
         let time = time.mul_f64(share(*scene, size) / all);
         Comparison::new(*scene, world, size).measure(time)
     });
-    measured.collect()
+    Table {
+        name: "drawing",
+        title: "Nanoseconds a pixel of the renderer on one thread (ours), beside the loop that tutorials\n\
+                teach (classic) and a fill, and on the threads that the renderer uses by default"
+            .to_owned(),
+        keys: ["scene", "renderer", "picture"],
+        columns: headings(["pixels", "threads", "time, ns a pixel", "over ours", "over fill"]),
+        rows: rows.collect(),
+        diagrams: vec![Diagram { columns: [0, 2], range: Diagram::ALL }],
+    }
 }
 
 /// The weight of these pictures in the distribution of time. Large pictures take longer, but need
@@ -97,6 +79,13 @@ fn share(scene: Scene, size: FrameSize) -> f64 {
 }
 
 impl Scene {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Planes => "planes",
+            Self::Walls => "walls",
+        }
+    }
+
     /// The classic loop's floors for this scene.
     fn floors(self) -> &'static [ClassicFloor] {
         match self {
@@ -151,7 +140,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    fn measure(mut self, time: Duration) -> DrawingRow {
+    fn measure(mut self, time: Duration) -> Vec<Row> {
         let cameras = walk(self.world, CAMERAS);
         // The first draw loads caches, and is not counted.
         self.take_turns(&cameras[0], 1, &mut Times::default());
@@ -163,7 +152,7 @@ impl<'a> Comparison<'a> {
                 break;
             }
         }
-        self.row(&times)
+        self.rows(&times)
     }
 
     /// Draws `turns` times with each renderer from `camera`, in turns.
@@ -182,7 +171,7 @@ impl<'a> Comparison<'a> {
         let size = (size.width.get() as usize, size.height.get() as usize);
         for turn in 0..turns {
             times.ours.push(seconds(|| single_threaded.render(world, camera, black_box(frame))));
-            times.fill.push(seconds(|| fill(black_box(pixels), turn as u32)));
+            times.fill.push(seconds(|| black_box(&mut *pixels).fill(turn as u32)));
             if *threads > 1 {
                 let draw = || multi_threaded.render(world, camera, black_box(frame));
                 times.by_threads.push(seconds(draw));
@@ -193,42 +182,37 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// The result of the times for all cameras.
-    fn row(&self, times: &[Times]) -> DrawingRow {
+    /// A row for each renderer.
+    fn rows(&self, times: &[Times]) -> Vec<Row> {
         let Self { scene, size, threads, .. } = *self;
-        let visited = || times.iter().filter(|times| !times.ours.is_empty());
-        let a_pixel = 1e9 / self.pixels.len() as f64;
-        let ours = a_pixel * mean_of_medians(visited().map(|times| &times.ours));
-        let by_threads = a_pixel * mean_of_medians(visited().map(|times| &times.by_threads));
-        let with_floor =
-            |floor| mean_of_medians(visited().map(|times: &Times| &times.classic[floor]));
-        let classic = (0..scene.floors().len()).map(with_floor).fold(f64::INFINITY, f64::min);
-        DrawingRow {
-            scene,
-            size,
-            ours,
-            threads,
-            by_threads: if threads > 1 { by_threads } else { ours },
-            classic: a_pixel * classic,
-            fill: a_pixel * mean_of_medians(visited().map(|times| &times.fill)),
+        let mean = |of: &dyn Fn(&Times) -> &Vec<f64>| {
+            let visited = times.iter().filter(|times| !times.ours.is_empty());
+            mean_of_medians(visited.map(of))
+        };
+        let floors = 0..scene.floors().len();
+        let classic = floors.map(|floor| mean(&|times| &times.classic[floor]));
+        let (ours, fill) = (mean(&|times| &times.ours), mean(&|times| &times.fill));
+        let mut renderers = vec![
+            ("ours", 1, ours),
+            ("classic", 1, classic.fold(f64::INFINITY, f64::min)),
+            ("fill", 1, fill),
+        ];
+        if threads > 1 {
+            renderers.push(("by threads", threads, mean(&|times| &times.by_threads)));
         }
+        let picture = format!("{}x{}", size.width, size.height);
+        let pixels = self.pixels.len() as f64;
+        let row = |(name, threads, time): (&str, usize, f64)| {
+            let figures = [time * 1e9 / pixels, time / ours, time / fill].map(Value::Number);
+            let counts = [Value::Count(pixels as u64), Value::Count(threads as u64)];
+            let values = counts.into_iter().chain(figures).collect();
+            Row::new([scene.name(), name, &picture], values)
+        };
+        renderers.into_iter().map(row).collect()
     }
 }
 
 fn mean_of_medians<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     let medians: Vec<_> = lists.map(|times| median(times.clone())).collect();
     medians.iter().sum::<f64>() / medians.len() as f64
-}
-
-/// The duration of `work`, in seconds.
-pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    work();
-    start.elapsed().as_secs_f64()
-}
-
-/// The median of `values`; 0 if there are none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }

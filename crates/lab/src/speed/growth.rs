@@ -11,62 +11,16 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec2, Vec2Swizzles};
 
-use super::drawing::{median, seconds, size};
+use super::drawing::size;
+use crate::report::{Diagram, Row, Table, Value, headings, median, seconds};
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
 use cellcaster::render::{Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Camera, FieldOfView, World};
 
-/// The results.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Growth {
-    /// Open maps, by ground, from small to large.
-    pub maps: Vec<MapRow>,
-    /// Crowded maps, by vista, from few things to many.
-    pub crowds: Vec<CrowdRow>,
-}
-
-/// The costs of an open map: of a ray across it, of a frame, and of the map itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapRow {
-    /// The contents of the map.
-    pub ground: Ground,
-    /// The side of the map, in cells.
-    pub side: u32,
-    /// The time of a ray.
-    pub ray: Measured,
-    /// The time of a frame of 160×90 pixels.
-    pub frame: Measured,
-    /// The time to read the map.
-    pub loading: Duration,
-    /// The size of its [grid](cellcaster::world::Grid::bytes), in bytes for each cell.
-    pub bytes_a_cell: f64,
-}
-
-/// The time of a frame in a crowded map, with always the same number of things in view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CrowdRow {
-    /// The visible part.
-    pub vista: Vista,
-    /// The number of things.
-    pub count: usize,
-    /// The time of a frame of 160×90 pixels.
-    pub frame: Measured,
-}
-
-/// A time and its ratio to a base.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// The median, in seconds.
-    pub seconds: f64,
-    /// The ratio to the time with [`USUAL_SIDE`], or with the fewest things.
-    pub ratio: f64,
-}
-
 /// The sides of the open maps.
 pub const SIDES: [u32; 5] = [16, 64, 256, 1024, 4096];
-/// The side with which others are compared.
-pub const USUAL_SIDE: u32 = SIDES[USUAL];
+/// The index of the side with which others are compared.
 const USUAL: usize = 1;
 /// The numbers of things in a crowded map.
 pub const CROWDS: [usize; 3] = [100, 10_000, 100_000];
@@ -76,36 +30,71 @@ const PICTURE: FrameSize = size(160, 90);
 const A_TURN: usize = 8;
 const FEWEST: usize = 3 * A_TURN;
 
-/// Measures everything within about `time`, in addition to the time to make the maps.
-pub fn measure_growth(time: Duration) -> Growth {
-    let share = time / 3;
-    Growth { maps: measure_maps(share * 2), crowds: measure_crowds(share) }
-}
-
-fn measure_maps(time: Duration) -> Vec<MapRow> {
+/// The costs of open maps, measured within about `time`, in addition to the time to make the maps.
+pub(crate) fn measure_maps(time: Duration) -> Table {
     let loaded = |ground| SIDES.map(|side| LoadedMap::new(ground, side));
     let mut loaded: Vec<LoadedMap> = Ground::ALL.into_iter().flat_map(loaded).collect();
     let rays = in_turns(&mut loaded, time / 2, LoadedMap::cast);
     let rays = rays.into_iter().map(|seconds| seconds / f64::from(RAYS)).collect();
     let frames = in_turns(&mut loaded, time / 2, |map| map.drawing.draw());
-    let times = compared(rays, SIDES.len(), USUAL).zip(compared(frames, SIDES.len(), USUAL));
-    let rows = loaded.iter().zip(times).map(|(map, (ray, frame))| MapRow {
-        ground: map.ground,
-        side: map.side,
-        ray,
-        frame,
-        loading: map.loading,
-        bytes_a_cell: map.bytes_a_cell(),
+    let (rays, frames) = (compared(rays, SIDES.len(), USUAL), compared(frames, SIDES.len(), USUAL));
+    let rows = loaded.iter().zip(rays.zip(frames)).map(|(map, ((ray, rays), (frame, frames)))| {
+        let cells = f64::from(map.side) * f64::from(map.side);
+        let bytes = map.drawing.world.grid().bytes() as f64;
+        let reading = map.loading.as_secs_f64() * 1e3;
+        let figures = [ray * 1e9, rays, frame * 1e6, frames, reading, bytes / cells];
+        let count = Value::Count(map.side.into());
+        let values = std::iter::once(count).chain(figures.map(Value::Number)).collect();
+        Row::new(["", map.ground.name(), &map.side.to_string()], values)
     });
-    rows.collect()
+    Table {
+        name: "maps",
+        title: format!(
+            "An empty hall, and a plain with a pillar in one cell of 4096, by the cells along a side:\n\
+             rays across the map, and frames of 160x90 with a view across it. Ratios are to {} cells",
+            SIDES[USUAL]
+        ),
+        keys: ["", "ground", "side"],
+        columns: headings([
+            "cells",
+            "time, ns/ray",
+            "ray ratio",
+            "time, µs/frame",
+            "frame ratio",
+            "time, ms read",
+            "bytes/cell",
+        ]),
+        rows: rows.collect(),
+        diagrams: vec![
+            Diagram { columns: [0, 1], range: Diagram::ALL },
+            Diagram { columns: [0, 3], range: Diagram::ALL },
+        ],
+    }
 }
 
-fn measure_crowds(time: Duration) -> Vec<CrowdRow> {
+/// The time of a frame in crowded maps, with always the same number of things in view, measured within about `time`.
+pub(crate) fn measure_crowds(time: Duration) -> Table {
     let crowd = |vista: Vista| CROWDS.map(|count| (vista, count, Drawing::new(vista.world(count))));
     let mut crowds: Vec<_> = Vista::ALL.into_iter().flat_map(crowd).collect();
     let frames = in_turns(&mut crowds, time, |(_, _, drawing)| drawing.draw());
     let rows = crowds.iter().zip(compared(frames, CROWDS.len(), 0));
-    rows.map(|(&(vista, count, _), frame)| CrowdRow { vista, count, frame }).collect()
+    let rows = rows.map(|((vista, count, _), (frame, ratio))| {
+        let figures = [frame * 1e6, ratio].map(Value::Number);
+        let values = std::iter::once(Value::Count(*count as u64)).chain(figures).collect();
+        Row::new(["", vista.name(), &count.to_string()], values)
+    });
+    Table {
+        name: "things",
+        title: format!(
+            "Frames of 160x90, by the number of things on the map, some sixty of them in view, in a\n\
+             straight hall and in a diagonal one. Ratios are to {} things",
+            CROWDS[0]
+        ),
+        keys: ["", "hall", "things"],
+        columns: headings(["number", "time, µs/frame", "ratio"]),
+        rows: rows.collect(),
+        diagrams: vec![Diagram { columns: [0, 1], range: Diagram::ALL }],
+    }
 }
 
 /// A map with its rays and its view.
@@ -131,10 +120,6 @@ impl LoadedMap {
         for ray in &self.rays {
             black_box(Exact.cast(self.drawing.world.grid(), black_box(ray)));
         }
-    }
-
-    fn bytes_a_cell(&self) -> f64 {
-        self.drawing.world.grid().bytes() as f64 / (f64::from(self.side) * f64::from(self.side))
     }
 }
 
@@ -172,11 +157,9 @@ fn in_turns<T>(subjects: &mut [T], time: Duration, work: impl Fn(&mut T)) -> Vec
 }
 
 /// Each of `times`, in groups of `size`, with its ratio to the one at `base` in its group.
-fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = Measured> {
+fn compared(times: Vec<f64>, size: usize, base: usize) -> impl Iterator<Item = (f64, f64)> {
     let bases: Vec<f64> = times.chunks(size).map(|group| group[base]).collect();
-    let measured =
-        move |(index, seconds)| Measured { seconds, ratio: seconds / bases[index / size] };
-    times.into_iter().enumerate().map(measured)
+    times.into_iter().enumerate().map(move |(index, time)| (time, time / bases[index / size]))
 }
 
 // Open maps of any size, and rays across them.
@@ -191,7 +174,7 @@ pub enum Ground {
 }
 
 /// The number of rays cast in a map.
-pub(crate) const RAYS: u32 = 256;
+const RAYS: u32 = 256;
 
 impl Ground {
     /// All grounds.
@@ -359,7 +342,7 @@ mod tests {
     #[test]
     fn times_are_compared_within_their_group() {
         let ratios: Vec<f64> =
-            compared(vec![1.0, 2.0, 6.0, 8.0], 2, 1).map(|measured| measured.ratio).collect();
+            compared(vec![1.0, 2.0, 6.0, 8.0], 2, 1).map(|(_, ratio)| ratio).collect();
         assert_eq!(ratios, [0.5, 1.0, 0.75, 1.0]);
     }
 }

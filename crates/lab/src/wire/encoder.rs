@@ -1,8 +1,7 @@
 //! Encoders of frames behind one trait.
 
 use std::cell::RefCell;
-use std::io;
-use std::io::Write;
+use std::io::{self, Write};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -12,26 +11,17 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Size;
 use ratatui::style::{Color, Modifier};
 
+use crate::report::{Row, Value};
 use cellcaster::color::Rgb;
 use cellcaster::color::lab::Lab;
-use cellcaster::color::palette::{ColorDepth, of_256};
+use cellcaster::color::palette::ColorDepth;
 use cellcaster::game::Script;
 use cellcaster::terminal::{CellWriter, Fidelity};
 use cellcaster::tui::canvas::Mosaic;
+use cellcaster::tui::rgb_of;
 
 /// The changed cells of a frame, in the form of ratatui's backends.
 pub(crate) type Changes<'a> = [(u16, u16, &'a Cell)];
-
-/// An encoder from cells to bytes.
-pub(crate) trait Encoder {
-    /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
-    /// its backend.
-    fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>);
-
-    /// The colours shown by the dots of a cell's mosaic and by the rest, or by its text and its background;
-    /// `None` if they are the requested ones.
-    fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])>;
-}
 
 /// A writer shared with a backend.
 #[derive(Clone, Debug, Default)]
@@ -62,185 +52,107 @@ fn send<B: Backend>(backend: &mut B, changes: &Changes) {
     _ = Backend::flush(backend);
 }
 
-/// Ratatui's own backend for crossterm.
-pub(crate) struct Stock {
+/// An encoder from cells to bytes.
+pub(crate) struct Encoder {
     sink: Sink,
-    backend: CrosstermBackend<Sink>,
+    kind: Kind,
 }
 
-impl Stock {
-    pub(crate) fn new() -> Self {
+enum Kind {
+    /// Ratatui's own backend for crossterm.
+    Stock(CrosstermBackend<Sink>),
+    /// Cellcaster's.
+    Ours(CellWriter<Sink>),
+}
+
+impl Encoder {
+    pub(crate) fn stock() -> Self {
         let sink = Sink::default();
-        let backend = CrosstermBackend::new(sink.clone());
-        Self { sink, backend }
-    }
-}
-
-impl Encoder for Stock {
-    fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>) {
-        send(&mut self.backend, changes);
-        bytes.append(&mut self.sink.0.borrow_mut());
+        Self { kind: Kind::Stock(CrosstermBackend::new(sink.clone())), sink }
     }
 
-    fn shown(&self, _: u16, _: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
-        None
-    }
-}
-
-/// Whether the terminal repeats characters and, in true colour, has its palette defined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Extensions {
-    Off,
-    On,
-}
-
-impl Extensions {
-    /// The name of Cellcaster's encoder at `fidelity`.
-    pub(crate) fn name(self, fidelity: Fidelity) -> String {
-        match self {
-            Self::Off => fidelity.to_string(),
-            Self::On => format!("{fidelity}+"),
-        }
-    }
-}
-
-/// Cellcaster's encoder.
-pub(crate) struct Writer {
-    sink: Sink,
-    backend: CellWriter<Sink>,
-}
-
-impl Writer {
-    pub(crate) fn new(
+    /// With `extensions`, the terminal repeats characters and, in true colour, has its palette defined.
+    pub(crate) fn ours(
         size: Size,
         depth: ColorDepth,
         fidelity: Fidelity,
-        extensions: Extensions,
+        extensions: bool,
     ) -> Self {
         let sink = Sink::default();
-        let mut backend = CellWriter::new(sink.clone(), size);
-        backend.set_fidelity(fidelity);
-        backend.set_repeats(extensions == Extensions::On);
-        backend.set_palette(extensions == Extensions::On && depth == ColorDepth::True);
-        Self { sink, backend }
+        let mut writer = CellWriter::new(sink.clone(), size);
+        writer.set_fidelity(fidelity);
+        writer.set_repeats(extensions);
+        writer.set_palette(extensions && depth == ColorDepth::True);
+        Self { sink, kind: Kind::Ours(writer) }
     }
-}
 
-impl Encoder for Writer {
-    fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>) {
-        send(&mut self.backend, changes);
+    /// Appends the bytes of a frame to `bytes`, with the calls that ratatui's `Terminal` makes to
+    /// its backend.
+    pub(crate) fn encode(&mut self, changes: &Changes, bytes: &mut Vec<u8>) {
+        match &mut self.kind {
+            Kind::Stock(backend) => send(backend, changes),
+            Kind::Ours(writer) => send(writer, changes),
+        }
         bytes.append(&mut self.sink.0.borrow_mut());
     }
 
-    fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
-        let colors = self.backend.shown_colors(column, row)?;
-        Some((self.backend.shown_mosaic(column, row), colors))
+    /// The colours shown by the dots of a cell's mosaic and by the rest, or by its text and its background;
+    /// `None` if they are the requested ones.
+    pub(crate) fn shown(&self, column: u16, row: u16) -> Option<(Option<Mosaic>, [Color; 2])> {
+        let Kind::Ours(writer) = &self.kind else { return None };
+        Some((writer.shown_mosaic(column, row), writer.shown_colors(column, row)?))
     }
 }
 
 // The frames of a script through one encoder.
 
-/// The results of one encoder.
-#[derive(Clone, Debug)]
-pub struct EncoderReport {
-    /// The name: `stock`, a fidelity, or a fidelity and `+`, which means with repeated characters
-    /// and a defined palette.
-    pub name: String,
-    /// The size of the first frame, in bytes.
-    pub first_frame: usize,
-    /// The named sections of the script, in order. Sections with the same name are one.
-    pub sections: Vec<Part>,
-    /// All frames but the first.
-    pub all: Part,
-}
+/// The headings of [`EncoderRun::row`].
+pub(crate) const COLUMNS: [&str; 15] = [
+    "frames",
+    "mean bytes",
+    "ratio",
+    "median bytes",
+    "95th % bytes",
+    "largest bytes",
+    "time, µs",
+    "zlib 1, bytes",
+    "time of zlib 1, µs",
+    "zlib 6, bytes",
+    "time of zlib 6, µs",
+    "PSNR",
+    "mean ΔE",
+    "largest ΔE",
+    "first frame, bytes",
+];
 
-/// The results of a part of a script.
-#[derive(Clone, Debug)]
-pub struct Part {
-    /// The section's name; `all` for all of them.
-    pub name: String,
-    /// The number of frames.
-    pub frames: usize,
-    /// The number of bytes per frame.
-    pub bytes: Bytes,
-    /// The ratio of the mean number of bytes to that of ratatui's own encoder; NaN if both are 0.
-    pub ratio: f64,
-    /// The compressed frames, by zlib at level 1, and at level 6 as with `ssh -C`.
-    pub compressed: [Compressed; 2],
-    /// The mean time to encode a frame.
-    pub time: Duration,
-    /// The colour errors that the viewer sees.
-    pub seen: Seen,
-}
-
-/// The mean of a compressed frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compressed {
-    /// The number of bytes.
-    pub bytes: f64,
-    /// The time to compress.
-    pub time: Duration,
-}
-
-/// The number of bytes per frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bytes {
-    /// The mean.
-    pub mean: f64,
-    /// The median.
-    pub median: usize,
-    /// The 95th percentile.
-    pub percentile_95: usize,
-    /// The maximum.
-    pub largest: usize,
-}
-
-/// The difference between the colours on the terminal and those that were drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// The peak signal-to-noise ratio, in decibels; infinite if there is no difference.
-    pub signal_to_noise: f64,
-    /// The mean distance of a pixel's colour, in ΔE of CIE76.
-    pub mean_distance: f64,
-    /// The largest distance.
-    pub largest_distance: f64,
-}
-
-/// An encoder and its sums so far.
+/// An encoder and its sums.
 pub(crate) struct EncoderRun {
     name: String,
-    encoder: Box<dyn Encoder>,
+    encoder: Encoder,
     streams: [Stream; 2],
-    /// For each section of the script, the index in `sections`.
+    /// For each section of the script, the index in `parts`.
     places: Vec<usize>,
-    sections: Vec<Sums>,
-    all: Sums,
+    /// The sections by their names, and then all of them.
+    parts: Vec<Sums>,
     first_frame: usize,
     /// The bytes of the last frame.
     bytes: Vec<u8>,
 }
 
 impl EncoderRun {
-    pub(crate) fn new(name: String, encoder: Box<dyn Encoder>, script: &Script) -> Self {
-        let mut sections: Vec<Sums> = Vec::new();
+    pub(crate) fn new(name: String, encoder: Encoder, script: &Script) -> Self {
+        let mut parts: Vec<Sums> = Vec::new();
         let places = script.sections().iter().map(|section| {
-            let known = sections.iter().position(|sums| sums.name == section.name);
+            let known = parts.iter().position(|sums| sums.name == section.name);
             known.unwrap_or_else(|| {
-                sections.push(Sums::new(&section.name));
-                sections.len() - 1
+                parts.push(Sums::new(&section.name));
+                parts.len() - 1
             })
         });
         let places = places.collect();
-        Self {
-            name,
-            encoder,
-            streams: LEVELS.map(Stream::new),
-            places,
-            sections,
-            all: Sums::new("all"),
-            first_frame: 0,
-            bytes: Vec::new(),
-        }
+        parts.push(Sums::new("all"));
+        let streams = LEVELS.map(Stream::new);
+        Self { name, encoder, streams, places, parts, first_frame: 0, bytes: Vec::new() }
     }
 
     /// Encodes the frame `drawn`, which belongs to this section of the script; the first frame has
@@ -258,8 +170,9 @@ impl EncoderRun {
             self.first_frame = self.bytes.len();
             return;
         };
-        let difference = Difference::of(&*self.encoder, drawn);
-        for sums in [&mut self.sections[self.places[section]], &mut self.all] {
+        let difference = Difference::of(&self.encoder, drawn);
+        for part in [self.places[section], self.parts.len() - 1] {
+            let sums = &mut self.parts[part];
             sums.bytes.push(self.bytes.len());
             for (sum, (bytes, time)) in sums.compressed.iter_mut().zip(compressed) {
                 sum.0 += bytes;
@@ -270,18 +183,43 @@ impl EncoderRun {
         }
     }
 
-    /// The results, relative to those of the first encoder; `None` for the first encoder itself.
-    pub(crate) fn finish(self, first: Option<&EncoderReport>) -> EncoderReport {
-        let sections = self.sections.into_iter().filter(|sums| !sums.name.is_empty());
-        let sections = sections.enumerate();
-        EncoderReport {
-            name: self.name,
-            first_frame: self.first_frame,
-            sections: sections
-                .map(|(index, sums)| sums.finish(first.map(|first| &first.sections[index])))
-                .collect(),
-            all: self.all.finish(first.map(|first| &first.all)),
+    /// The indices of the parts that have a name; the others are not reported.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = usize> {
+        (0..self.parts.len()).filter(|&part| !self.parts[part].name.is_empty())
+    }
+
+    /// The mean bytes a frame of a part.
+    pub(crate) fn mean_bytes(&self, part: usize) -> f64 {
+        let bytes = &self.parts[part].bytes;
+        bytes.iter().sum::<usize>() as f64 / bytes.len().max(1) as f64
+    }
+
+    /// The figures of a part, in which ratatui's own encoder writes `stock` bytes a frame.
+    pub(crate) fn row(&self, part: usize, stock: f64) -> Row {
+        let Sums { name, bytes, compressed, time, difference } = &self.parts[part];
+        let mut bytes = bytes.clone();
+        bytes.sort_unstable();
+        let count = bytes.len().max(1) as f64;
+        let micros = |time: Duration| Value::Number(time.as_secs_f64() * 1e6 / count);
+        let mean = self.mean_bytes(part);
+        let mut values = vec![
+            Value::Count(bytes.len() as u64),
+            Value::Number(mean),
+            Value::maybe(Some(mean / stock).filter(|ratio| ratio.is_finite())),
+        ];
+        values.extend([50, 95, 100].map(|percent| Value::Count(share(&bytes, percent) as u64)));
+        values.push(micros(*time));
+        for (bytes, time) in compressed {
+            values.extend([Value::Number(*bytes as f64 / count), micros(*time)]);
         }
+        let seen = [
+            difference.signal_to_noise(),
+            difference.distances / difference.parts.max(1) as f64,
+            difference.largest,
+        ];
+        values.extend(seen.map(Value::Number));
+        values.push(Value::Count(self.first_frame as u64));
+        Row::new([name, &self.name, ""], values)
     }
 }
 
@@ -304,34 +242,6 @@ impl Sums {
             difference: Difference::default(),
         }
     }
-
-    fn finish(mut self, first: Option<&Part>) -> Part {
-        self.bytes.sort_unstable();
-        let frames = self.bytes.len();
-        let count = frames.max(1) as f64;
-        let mean = self.bytes.iter().sum::<usize>() as f64 / count;
-        Part {
-            name: self.name,
-            frames,
-            bytes: Bytes {
-                mean,
-                median: share(&self.bytes, 50),
-                percentile_95: share(&self.bytes, 95),
-                largest: share(&self.bytes, 100),
-            },
-            ratio: mean / first.map_or(mean, |first| first.bytes.mean),
-            compressed: self.compressed.map(|(bytes, time)| Compressed {
-                bytes: bytes as f64 / count,
-                time: time.div_f64(count),
-            }),
-            time: self.time.div_f64(count),
-            seen: Seen {
-                signal_to_noise: self.difference.signal_to_noise(),
-                mean_distance: self.difference.mean_distance(),
-                largest_distance: self.difference.largest_distance(),
-            },
-        }
-    }
 }
 
 /// The value that this percentage of the `sorted` numbers does not exceed; 0 if there are none.
@@ -344,24 +254,24 @@ fn share(sorted: &[usize], percent: usize) -> usize {
 // level 6; another server could choose level 1.
 
 /// The reported levels: the fastest one, and that of OpenSSH.
-pub(crate) const LEVELS: [u32; 2] = [1, 6];
+const LEVELS: [u32; 2] = [1, 6];
 /// More bytes than zlib adds to incompressible data.
 const OVERHEAD: usize = 256;
 
 /// A compressed stream.
 #[derive(Debug)]
-pub(crate) struct Stream {
+struct Stream {
     compress: Compress,
     output: Vec<u8>,
 }
 
 impl Stream {
-    pub(crate) fn new(level: u32) -> Self {
+    fn new(level: u32) -> Self {
         Self { compress: Compress::new(Compression::new(level), true), output: Vec::new() }
     }
 
     /// The number of bytes sent for `frame`; 0 for an empty one.
-    pub(crate) fn size_of(&mut self, frame: &[u8]) -> usize {
+    fn size_of(&mut self, frame: &[u8]) -> usize {
         if frame.is_empty() {
             return 0;
         }
@@ -383,7 +293,7 @@ impl Stream {
 
 /// The sum of the differences of the parts of cells, two by twelve; a character is half text and half background.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Difference {
+struct Difference {
     parts: u64,
     /// The sum of squared differences of the channels.
     squares: u64,
@@ -393,7 +303,7 @@ pub(crate) struct Difference {
 
 impl Difference {
     /// The difference of the frame `drawn` to what `encoder` shows.
-    pub(crate) fn of(encoder: &dyn Encoder, drawn: &Buffer) -> Self {
+    fn of(encoder: &Encoder, drawn: &Buffer) -> Self {
         let mut difference = Self::default();
         let columns = usize::from(drawn.area.width).max(1);
         for (row, cells) in (0..).zip(drawn.content.chunks(columns)) {
@@ -421,7 +331,7 @@ impl Difference {
         for (shown, parts) in colors[0].into_iter().zip(parts) {
             for (wanted, parts) in colors[1].into_iter().zip(parts) {
                 // The terminal's own colours are shown as they were drawn.
-                if let Some((shown, wanted)) = rgb(shown).zip(rgb(wanted)) {
+                if let Some((shown, wanted)) = rgb_of(shown).zip(rgb_of(wanted)) {
                     self.add_parts(parts, shown, wanted);
                 }
             }
@@ -440,7 +350,7 @@ impl Difference {
         self.largest = self.largest.max(distance);
     }
 
-    pub(crate) fn add(&mut self, other: Self) {
+    fn add(&mut self, other: Self) {
         self.parts += other.parts;
         self.squares += other.squares;
         self.distances += other.distances;
@@ -448,25 +358,9 @@ impl Difference {
     }
 
     /// The peak signal-to-noise ratio in decibels; infinite if there is no difference.
-    pub(crate) fn signal_to_noise(&self) -> f64 {
+    fn signal_to_noise(&self) -> f64 {
         let mean_square = self.squares as f64 / (3 * self.parts.max(1)) as f64;
         10.0 * libm::log10(255.0 * 255.0 / mean_square)
-    }
-
-    pub(crate) fn mean_distance(&self) -> f64 {
-        self.distances / self.parts.max(1) as f64
-    }
-
-    pub(crate) fn largest_distance(&self) -> f64 {
-        self.largest
-    }
-}
-
-fn rgb(color: Color) -> Option<Rgb> {
-    match color {
-        Color::Rgb(red, green, blue) => Some(Rgb::new(red, green, blue)),
-        Color::Indexed(index) => Some(of_256(index)),
-        _ => None,
     }
 }
 

@@ -11,7 +11,7 @@ fn mistakes_are_one_sentence_each() {
         &["accuracy", "--set", "nonsense"],
         &["accuracy", "--caster", "marsh"],
         &["accuracy", "--format", "xml"],
-        &["wire", "--format", "svg"],
+        &["wire", "--format", "gif"],
         &["wire", "--palette", "256", "cellar"],
         &["wire", "--glyphs", "all", "--palette", "16"],
         &["wire", "--scirpt", "x"],

@@ -9,7 +9,8 @@ use cellcaster::map;
 use cellcaster::terminal::Fidelity;
 use cellcaster::tui::GlyphSet;
 use cellcaster::world::World;
-use cellcaster_lab::wire::{self, EncoderReport, PalettePlan, PaletteRow, Part, Plan, Report};
+use cellcaster_lab::report::Table;
+use cellcaster_lab::wire::{self, Plan};
 use ratatui::layout::Size;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -24,26 +25,25 @@ fn script() -> Script {
     Script::parse(include_str!("../../../../maps/showcase.script"), "showcase").unwrap()
 }
 
-fn report(level: &str) -> Report {
+fn report(level: &str) -> Table {
     report_of(&script(), level, Settings::default())
 }
 
-fn report_of(script: &Script, level: &str, settings: Settings) -> Report {
+fn report_of(script: &Script, level: &str, settings: Settings) -> Table {
     let levels = Levels::new(world(level).into(), std::iter::empty());
     let size = Size::new(120, 40);
     let frames_per_second = NonZeroU32::new(30).unwrap();
-    let fidelities = vec![Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
+    let fidelities = &[Fidelity::EXACT, Fidelity::HIGH, Fidelity::LOW];
     let depth = settings.depth.unwrap_or_default();
     let plan = Plan { script, size, depth, frames_per_second, fidelities };
     wire::report(&plan, &mut Replay::new(levels, settings, size))
 }
 
-fn encoder<'a>(report: &'a Report, name: &str) -> &'a EncoderReport {
-    report.encoders.iter().find(|encoder| encoder.name == name).unwrap()
-}
-
-fn section<'a>(encoder: &'a EncoderReport, name: &str) -> &'a Part {
-    encoder.sections.iter().find(|part| part.name == name).unwrap()
+/// The figure in this column of the row with these first two keys.
+fn figure(table: &Table, keys: [&str; 2], column: &str) -> f64 {
+    let row = table.rows.iter().find(|row| row.keys[..2] == keys).unwrap();
+    let column = table.columns.iter().position(|name| name == column).unwrap();
+    row.values[column].number().unwrap_or(f64::NAN)
 }
 
 /// The bytes and the errors of each of Cellcaster's encoders, as means over three levels. The
@@ -59,9 +59,10 @@ fn three_levels_take_no_more_bytes_than_is_promised() {
         ("low", 0.0645, 2.17),
         ("low+", 0.0467, 2.21),
     ] {
-        let parts = reports.each_ref().map(|report| &encoder(report, name).all);
-        let mean = |of: fn(&Part) -> f64| parts.iter().map(|part| of(part)).sum::<f64>() / 3.0;
-        let (ratio, distance) = (mean(|part| part.ratio), mean(|part| part.seen.mean_distance));
+        let mean = |column| {
+            reports.iter().map(|report| figure(report, ["all", name], column)).sum::<f64>() / 3.0
+        };
+        let (ratio, distance) = (mean("ratio"), mean("mean ΔE"));
         assert!(ratio <= most && distance <= farthest, "{name}: {ratio:.4} at {distance:.3}");
     }
 }
@@ -72,29 +73,34 @@ const SLACK: f64 = 1.05;
 #[test]
 fn a_frame_takes_no_more_bytes_than_is_promised() {
     let report = report("citadel");
-    let exact = encoder(&report, "exact");
-    assert!(exact.all.ratio <= 0.53 * SLACK, "{:?}", exact.all);
-    assert!(section(exact, "turning").ratio <= 0.54 * SLACK, "{exact:?}");
-    assert_eq!(section(exact, "standing").bytes.largest, 0);
-    assert_eq!(exact.all.seen.mean_distance, 0.0);
-    assert_eq!(exact.all.seen.signal_to_noise, f64::INFINITY);
-    assert_eq!(section(encoder(&report, "stock"), "standing").bytes.largest, 25);
+    let all = |encoder, column| figure(&report, ["all", encoder], column);
+    assert!(all("exact", "ratio") <= 0.53 * SLACK, "{report:?}");
+    assert!(figure(&report, ["turning", "exact"], "ratio") <= 0.54 * SLACK, "{report:?}");
+    assert_eq!(figure(&report, ["standing", "exact"], "largest bytes"), 0.0);
+    assert_eq!(all("exact", "mean ΔE"), 0.0);
+    assert_eq!(all("exact", "PSNR"), f64::INFINITY);
+    assert_eq!(figure(&report, ["standing", "stock"], "largest bytes"), 25.0);
 
-    let stock = encoder(&report, "stock");
-    let (high, low) = (encoder(&report, "high"), encoder(&report, "low"));
-    assert!(high.all.seen.mean_distance <= 1.0 && low.all.seen.mean_distance <= 2.0);
-    assert!(high.all.ratio <= 0.14 * SLACK, "{:?}", high.all);
-    assert!(low.all.ratio <= 0.06 * SLACK, "{:?}", low.all);
-    for pair in [stock, exact, high, low].windows(2) {
-        assert!(pair[1].all.bytes.mean < 0.9 * pair[0].all.bytes.mean, "{}", pair[1].name);
+    assert!(all("high", "mean ΔE") <= 1.0 && all("low", "mean ΔE") <= 2.0);
+    assert!(all("high", "ratio") <= 0.14 * SLACK, "{report:?}");
+    assert!(all("low", "ratio") <= 0.06 * SLACK, "{report:?}");
+    for pair in ["stock", "exact", "high", "low"].windows(2) {
+        let [more, fewer] = [pair[0], pair[1]].map(|encoder| all(encoder, "mean bytes"));
+        assert!(fewer < 0.9 * more, "{}", pair[1]);
     }
 
-    let frames: usize = exact.sections.iter().map(|part| part.frames).sum();
-    assert_eq!((exact.all.frames, report.frames), (frames, frames));
-    for part in exact.sections.iter().chain([&exact.all]) {
-        let bytes = part.bytes;
-        assert!(bytes.median <= bytes.percentile_95 && bytes.percentile_95 <= bytes.largest);
-        assert!(bytes.mean <= bytes.largest as f64);
+    let exact = report.rows.iter().filter(|row| row.keys[1] == "exact");
+    let sections: Vec<&str> = exact.map(|row| row.keys[0].as_str()).collect();
+    let of_section = |name, column| figure(&report, [name, "exact"], column);
+    let named = sections.iter().filter(|name| **name != "all");
+    let frames: f64 = named.map(|name| of_section(name, "frames")).sum();
+    assert_eq!(all("exact", "frames"), frames);
+    assert!(report.title.starts_with(&format!("{frames} frames ")), "{}", report.title);
+    for name in sections {
+        let largest = of_section(name, "largest bytes");
+        let high = of_section(name, "95th % bytes");
+        assert!(of_section(name, "median bytes") <= high && high <= largest);
+        assert!(of_section(name, "mean bytes") <= largest);
     }
 }
 
@@ -113,40 +119,42 @@ fn every_colour_depth_and_glyph_mode_takes_fewer_bytes_at_lower_fidelity() {
         let settings = Settings { depth: Some(depth), glyphs, ..Settings::default() };
         let walk = Script::parse("1 s forward\n2 s turn-left", "walk").unwrap();
         let report = report_of(&walk, "citadel", settings);
-        let mean = |name| encoder(&report, name).all.bytes.mean;
+        let mean = |name| figure(&report, ["all", name], "mean bytes");
         let ratios = ["high", "low"].map(|name| mean(name) / mean("exact"));
         let is_less = ratios.iter().zip(most).all(|(ratio, most)| *ratio <= most);
         assert!(is_less, "{glyphs:?} {depth:?}: {ratios:?}");
     }
 }
 
-fn palettes(levels: &[&'static str], depth: ColorDepth, frames_per_second: u32) -> Vec<PaletteRow> {
+fn palettes(levels: &[&'static str], depth: ColorDepth, frames_per_second: u32) -> Table {
     let frames_per_second = NonZeroU32::new(frames_per_second).unwrap();
-    let plan = PalettePlan { depth, size: Size::new(80, 24), frames_per_second };
-    wire::report_palettes(&plan, levels.iter().map(|&name| (name, world(name))))
+    let levels = levels.iter().map(|&name| (name, world(name)));
+    wire::report_palettes(depth, Size::new(80, 24), frames_per_second, levels)
 }
 
 #[test]
 fn shades_of_256_colours_look_like_true_colour() {
-    let rows = palettes(&LEVELS, ColorDepth::Indexed256, 10);
-    for [nearest, dots, flat, unknown] in rows.as_chunks().0 {
-        for row in [dots, flat] {
-            assert!(row.start_error < 0.02 && row.start_chroma_error < 0.016, "{row:?}");
+    let table = palettes(&LEVELS, ColorDepth::Indexed256, 10);
+    for level in LEVELS.into_iter().chain(["all"]) {
+        let of = |method, column| figure(&table, [level, method], column);
+        for method in ["dots", "flat"] {
+            assert!(of(method, "first error") < 20.0, "{level} {method}");
+            assert!(of(method, "first chroma error") < 16.0, "{level} {method}");
+            assert!(of(method, "first lightness").abs() < 10.0, "{level} {method}");
         }
-        for row in [dots, flat, unknown] {
-            assert!(row.error < 0.85 * nearest.error, "{row:?} {nearest:?}");
+        for method in ["dots", "flat", "unknown"] {
+            assert!(of(method, "error") < 0.85 * of("nearest", "error"), "{level} {method}");
         }
-        assert!(dots.start_lightness.abs() < 0.01 && flat.start_lightness.abs() < 0.01, "{dots:?}");
     }
-    let all = &rows[rows.len() - 3];
-    assert_eq!((&*all.level, all.method), ("all", "dots"));
-    assert!(all.start_error < 0.0135 && all.start_chroma_error < 0.011, "{all:?}");
+    let all = |column| figure(&table, ["all", "dots"], column);
+    assert!(all("first error") < 13.5 && all("first chroma error") < 11.0, "{table:?}");
 }
 
 #[test]
 fn sixteen_colours_keep_the_brightness_of_a_dark_level() {
-    let rows = palettes(&["kennels"], ColorDepth::Indexed16, 2);
-    let [nearest, dots, flat, _] = rows.first_chunk().unwrap();
-    assert!(dots.start_lightness.abs() < 0.08 && flat.start_lightness.abs() < 0.03, "{rows:?}");
-    assert!(flat.error < 0.6 * nearest.error, "{rows:?}");
+    let table = palettes(&["kennels"], ColorDepth::Indexed16, 2);
+    let of = |method, column| figure(&table, ["kennels", method], column);
+    assert!(of("dots", "first lightness").abs() < 80.0, "{table:?}");
+    assert!(of("flat", "first lightness").abs() < 30.0, "{table:?}");
+    assert!(of("flat", "error") < 0.6 * of("nearest", "error"), "{table:?}");
 }

@@ -4,9 +4,11 @@
 use cellcaster::cast::{Caster, Hit, Ray};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
-use cellcaster_lab::accuracy::{self, Set, adversarial_ray};
+use cellcaster_lab::accuracy::{self, Set};
 use cellcaster_lab::casters::{Method, Visitor};
 use proptest::prelude::*;
+
+use crate::adversarial::adversarial_ray;
 
 /// The hits of all rays by one caster.
 struct Cast<'a>(&'a Grid, &'a [Ray]);

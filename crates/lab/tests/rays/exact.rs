@@ -4,8 +4,10 @@
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::Grid;
-use cellcaster_lab::accuracy::{self, adversarial_ray, random_ray};
+use cellcaster_lab::accuracy::{self, random_ray};
 use proptest::prelude::*;
+
+use crate::adversarial::adversarial_ray;
 
 /// The difference between the exact caster and rational arithmetic for `ray`, if there is one.
 fn fault(grid: &Grid, ray: &Ray) -> Option<String> {

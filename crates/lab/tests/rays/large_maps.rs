@@ -10,7 +10,9 @@ use cellcaster::cast::{Caster, Exact, Hit, Ray, Side};
 use cellcaster::map;
 use cellcaster::rng::SplitMix64;
 use cellcaster::world::{Grid, World};
-use cellcaster_lab::accuracy::{self, adversarial_ray};
+use cellcaster_lab::accuracy;
+
+use crate::adversarial::adversarial_ray;
 use glam::DVec2;
 
 const SIDE: i32 = 4096;

@@ -2,6 +2,7 @@
 //! them.
 
 mod accuracy;
+mod adversarial;
 mod cast;
 mod casters;
 mod doors;

@@ -293,7 +293,7 @@ impl Configuration {
 fn refused(error: MapsError) -> Error {
     match error {
         MapsError::Sentence(sentence) => Error::mistake(sentence),
-        MapsError::Report(text) => Error::report_of(text),
+        MapsError::Report(text) => Error::report_of(&text),
     }
 }
 

@@ -85,7 +85,7 @@ fn play(store: &mut Store, mut observe: impl FnMut(&Store)) {
         |store| store.remove_saved(saved("").save.id()),
         |store| {
             let reached = Reached { floors: 10, treasure: 1, steps: 9000 };
-            _ = store.record_descent(reached, String::new());
+            store.record_descent(reached, String::new());
         },
     ];
     for change in changes {

@@ -91,26 +91,19 @@ impl Truth {
 
 /// The feature of these rays in `world` with these truths.
 fn compared(name: &'static str, world: World, rays: Vec<Ray>, truths: &[Truth]) -> Feature {
-    let mut errors = Vec::new();
-    let mut wrong = 0;
-    for (ray, truth) in rays.iter().zip(truths) {
-        let Some(hit) = cast(&world, ray) else {
-            wrong += usize::from(!truth.may_escape);
-            continue;
-        };
-        match truth.places.iter().find(|met| met.cell == hit.cell) {
-            Some(met) => errors.push(met.t.relative_error(hit.t)),
-            None => wrong += 1,
-        }
-    }
-    let cases = rays.len();
+    let outcome = |(ray, truth): (&Ray, &Truth)| {
+        let Some(hit) = cast(&world, ray) else { return (!truth.may_escape, None) };
+        let met = truth.places.iter().find(|met| met.cell == hit.cell);
+        (met.is_none(), met.map(|met| met.t.relative_error(hit.t)))
+    };
+    let outcomes = rays.iter().zip(truths).map(outcome).collect();
     let work = move || {
         for ray in &rays {
             black_box(cast(&world, black_box(ray)));
         }
     };
-    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
-    Feature { name, figure: "distance of a ray", unit: "relative", cases, wrong, errors, work }
+    let (figure, unit) = ("distance of a ray", "relative");
+    Feature { name, figure, unit, outcomes, work: Box::new(work) }
 }
 
 fn cast(world: &World, ray: &Ray) -> Option<Hit> {

@@ -44,27 +44,25 @@ fn scene(shapes: impl Iterator<Item = Shape>) -> Scene {
 }
 
 fn feature(name: &'static str, scene: Scene, rays: Vec<Ray>) -> Feature {
-    let mut errors = Vec::new();
-    let mut wrong = 0;
-    for ray in &rays {
+    let outcome = |ray: &Ray| {
         let meetings = scene.bodies.iter().enumerate();
         let meetings = meetings.filter_map(|(index, body)| Some((meet(&body.shape, ray)?, index)));
         match (meetings.min(), scene.cast(ray)) {
-            (None, None) => {}
+            (None, None) => (false, None),
             (Some((t, body)), Some(hit)) if body == hit.body => {
-                errors.push(t.relative_error(hit.t));
+                (false, Some(t.relative_error(hit.t)))
             }
-            _ => wrong += 1,
+            _ => (true, None),
         }
-    }
-    let cases = rays.len();
+    };
+    let outcomes = rays.iter().map(outcome).collect();
     let work = move || {
         for ray in &rays {
             black_box(scene.cast(black_box(ray)));
         }
     };
-    let work: Option<Box<dyn FnMut()>> = Some(Box::new(work));
-    Feature { name, figure: "distance of a ray", unit: "relative", cases, wrong, errors, work }
+    let (figure, unit) = ("distance of a ray", "relative");
+    Feature { name, figure, unit, outcomes, work: Box::new(work) }
 }
 
 fn fixed(vector: DVec3) -> [Fixed; 3] {

@@ -5,47 +5,55 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use ratatui::backend::Backend;
 use ratatui::layout::Size;
 
-use super::begin;
-use crate::speed::median;
+use super::showcase;
+use crate::report::{Row, Table, Value, headings, median};
 use cellcaster::cli::Error;
 use cellcaster::cli::replay::SHOWCASE;
 use cellcaster::game::{Intents, STEPS_PER_SECOND};
 use cellcaster::terminal::CellWriter;
 
-/// The costs; `None` if this system does not report them.
-pub(crate) struct Footprint {
-    /// The time from the start of the process to the first byte of a picture.
-    pub(crate) start_up: Option<Duration>,
-    /// The size of the program, in bytes.
-    pub(crate) program: Option<u64>,
-    /// The peak memory of a game, in bytes.
-    pub(crate) memory: Option<u64>,
-}
-
 /// The window of the first picture.
-pub(crate) const FIRST_WINDOW: Size = Size::new(80, 24);
+const FIRST_WINDOW: Size = Size::new(80, 24);
 /// The window in which memory is measured.
-pub(crate) const GAME_WINDOW: Size = Size::new(120, 40);
+const GAME_WINDOW: Size = Size::new(120, 40);
 /// The number of times the program is started.
-pub(crate) const STARTS: usize = 9;
+const STARTS: usize = 9;
 
-impl Footprint {
-    /// Measures. The process must not have done anything else yet.
-    pub(crate) fn measure() -> Result<Self, Error> {
-        play()?;
-        let memory = peak_memory();
-        let path = env::current_exe().ok();
-        let program = path.as_deref().and_then(|path| Some(fs::metadata(path).ok()?.len()));
-        let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
-        let start_up = starts.filter(|starts: &Vec<f64>| !starts.is_empty()).map(median);
-        let start_up = start_up.map(Duration::from_secs_f64);
-        Ok(Self { start_up, program, memory })
-    }
+/// Measures. The process must not have done anything else yet. What this system does not report has no figure.
+pub(crate) fn measure_footprint() -> Result<Table, Error> {
+    const MEBIBYTE: f64 = (1 << 20) as f64;
+    play()?;
+    let memory = peak_memory().map(|bytes| bytes as f64 / MEBIBYTE);
+    let path = env::current_exe().ok();
+    let program = path.as_deref().and_then(|path| Some(fs::metadata(path).ok()?.len()));
+    let program = program.map(|bytes| bytes as f64 / MEBIBYTE);
+    let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
+    let starts = starts.filter(|starts: &Vec<f64>| !starts.is_empty());
+    let start = starts.map(|starts| median(starts) * 1e3);
+    let row = |name: &str, figure| Row::new([name, "", ""], vec![Value::maybe(figure)]);
+    let window = |size: Size| format!("{}x{}", size.width, size.height);
+    Ok(Table {
+        name: "footprint",
+        title: format!(
+            "The time until `cellcaster snapshot` of {} cells writes its first byte, the median of\n\
+             {STARTS}; the size of the program; and the peak memory of a game of {}",
+            window(FIRST_WINDOW),
+            window(GAME_WINDOW)
+        ),
+        keys: ["what", "", ""],
+        columns: headings(["is"]),
+        rows: vec![
+            row("start, ms to the first frame", start),
+            row("size of the program, MiB", program),
+            row("peak memory, MiB", memory),
+        ],
+        diagrams: Vec::new(),
+    })
 }
 
 /// Plays the showcase as a player's process does.
@@ -53,7 +61,7 @@ fn play() -> Result<(), Error> {
     const STEPS_A_FRAME: usize = STEPS_PER_SECOND as usize / 30;
     let script = SHOWCASE.script()?;
     let steps: Vec<Intents> = script.iter().map(|(_, intents)| intents).collect();
-    let mut replay = begin(GAME_WINDOW)?;
+    let mut replay = showcase(GAME_WINDOW)?;
     let mut writer = CellWriter::new(io::sink(), GAME_WINDOW);
     for steps in steps.chunks(STEPS_A_FRAME) {
         for &intents in steps {

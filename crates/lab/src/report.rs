@@ -1,44 +1,43 @@
-//! Tables of figures, and the diagrams of their columns.
+//! Reports: tables of figures, which every format writes alike.
 //!
-//! Every part of the report is a [`Table`] with the same shape, so that each format writes all
-//! tables by the same code and leaves none out. A row has three keys: the problem, the method, and
-//! the method's parameter. A [`Diagram`] names two columns: it has a panel for each problem, and a
-//! line for each method, joined through the parameter, as the work-precision diagrams of `SciML` have
-//! (<https://docs.sciml.ai/SciMLBenchmarksOutput>). A structure for each part was refused: each of
-//! five formats needed code for each of them, and CSV and the plots had left most of them out.
+//! Every measurement is a [`Table`] of the same shape, so one writer for each format serves all tables and leaves none
+//! out. A row has three keys: the problem, the method, and the method's parameter. A [`Diagram`] names two columns: it has
+//! a panel for each problem, and a line for each method, joined through the parameter, as the work-precision diagrams of
+//! `SciML` have (<https://docs.sciml.ai/SciMLBenchmarksOutput>). Rejected: a structure for each table. Five formats needed
+//! code for each of them, and CSV and the plots left most of them out.
+
+mod formats;
+mod plot;
+
+use std::time::Instant;
+
+pub use formats::{Format, markdown};
+pub(crate) use formats::{Origin, Report};
 
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// A short name without spaces.
     pub name: &'static str,
-    /// What is measured, in one or two sentences.
-    pub title: &'static str,
+    /// The subject, in one or two sentences without the last full stop.
+    pub title: String,
     /// The headings of the keys. A key without a heading is empty in every row.
     pub keys: [&'static str; 3],
-    /// The columns after the keys.
-    pub columns: Vec<Column>,
+    /// The headings of the values: a name, followed by a comma and the unit if there is one. A heading begins with `time`
+    /// exactly if the values differ from run to run.
+    pub columns: Vec<String>,
     /// The rows.
     pub rows: Vec<Row>,
     /// The diagrams of this table.
     pub diagrams: Vec<Diagram>,
 }
 
-/// A column of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// The heading. It begins with `time` exactly if the values differ from run to run.
-    pub name: String,
-    /// The unit; empty for counts and fractions.
-    pub unit: &'static str,
-}
-
-/// A row of a table: the keys, and a value for each column.
+/// A row of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// The problem, the method and its parameter.
     pub keys: [String; 3],
-    /// The values.
+    /// A value for each column.
     pub values: Vec<Value>,
 }
 
@@ -51,9 +50,9 @@ pub enum Value {
     Count(u64),
     /// A fraction, from 0 to 1.
     Share(f64),
-    /// Any other number that does not differ from run to run.
+    /// Any other number.
     Number(f64),
-    /// A time that was measured, and differs from run to run.
+    /// A time with its quartiles.
     Time(Timing),
 }
 
@@ -66,28 +65,27 @@ pub struct Diagram {
     pub range: [f64; 2],
 }
 
+/// The headings of columns.
+pub(crate) fn headings<const COUNT: usize>(names: [&str; COUNT]) -> Vec<String> {
+    names.map(str::to_owned).into()
+}
+
 impl Table {
-    /// The problems, in order.
-    pub fn problems(&self) -> Vec<&str> {
-        let mut problems: Vec<&str> = Vec::new();
+    /// The problems (`key` 0) or the methods (`key` 1), in order.
+    fn distinct(&self, key: usize) -> Vec<&str> {
+        let mut distinct: Vec<&str> = Vec::new();
         for row in &self.rows {
-            if !problems.contains(&row.keys[0].as_str()) {
-                problems.push(&row.keys[0]);
+            if !distinct.contains(&row.keys[key].as_str()) {
+                distinct.push(&row.keys[key]);
             }
         }
-        problems
+        distinct
     }
 }
 
-impl Column {
-    /// A column of figures with this name and unit.
-    pub(crate) fn new(name: impl Into<String>, unit: &'static str) -> Self {
-        Self { name: name.into(), unit }
-    }
-
-    /// Whether the values differ from run to run.
-    pub fn is_time(&self) -> bool {
-        self.name.starts_with("time")
+impl Row {
+    pub(crate) fn new(keys: [&str; 3], values: Vec<Value>) -> Self {
+        Self { keys: keys.map(str::to_owned), values }
     }
 }
 
@@ -101,11 +99,24 @@ impl Value {
             Self::Time(timing) => Some(timing.median),
         }
     }
+
+    /// `number`, if there is one.
+    pub(crate) fn maybe(number: Option<f64>) -> Self {
+        number.map_or(Self::None, Self::Number)
+    }
+
+    /// The fraction of `all` that `part` is.
+    pub(crate) fn share(part: usize, all: usize) -> Self {
+        Self::Share(part as f64 / all.max(1) as f64)
+    }
 }
 
 impl Diagram {
+    /// The range of diagrams that show every error.
+    pub(crate) const ALL: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
+
     /// The cost and the error of `row`, the error within the range; `None` if there is no such point.
-    pub fn point(&self, row: &Row) -> Option<(f64, f64)> {
+    fn point(&self, row: &Row) -> Option<(f64, f64)> {
         let [cost, error] = self.columns.map(|index| row.values.get(index)?.number());
         let (cost, error) = (cost?, error?);
         (cost > 0.0 && !error.is_nan()).then(|| (cost, error.clamp(self.range[0], self.range[1])))
@@ -153,6 +164,19 @@ pub(crate) fn time_in_rounds(
     times.into_iter().map(value).collect()
 }
 
+/// The duration of `work`, in seconds.
+pub(crate) fn seconds(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64()
+}
+
+/// The median of `values`; 0 if there are none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,10 +184,7 @@ mod tests {
     #[test]
     fn a_point_is_within_the_range() {
         let diagram = Diagram { columns: [0, 1], range: [0.5, 8.0] };
-        let point = |cost, error| {
-            let keys = [const { String::new() }; 3];
-            diagram.point(&Row { keys, values: vec![cost, error] })
-        };
+        let point = |cost, error| diagram.point(&Row::new([""; 3], vec![cost, error]));
         let count = Value::Count(3);
         assert_eq!(point(count, Value::Number(0.0)), Some((3.0, 0.5)));
         assert_eq!(point(count, Value::Number(f64::INFINITY)), Some((3.0, 8.0)));

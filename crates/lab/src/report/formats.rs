@@ -1,0 +1,363 @@
+//! Reports as text, Markdown, CSV and JSON, with the machine, the program and the command that they come from.
+
+use std::env;
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::thread::available_parallelism;
+
+use clap::ValueEnum;
+use serde_json::{Map, Value as Json, json};
+
+use super::plot::svg;
+use super::{Row, Table, Timing, Value};
+use cellcaster::cli::Error;
+use cellcaster::cli::machine::today;
+
+/// The format of a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    #[default]
+    Table,
+    Markdown,
+    Json,
+    Csv,
+    Svg,
+}
+
+/// Tables of one run.
+pub(crate) struct Report<'a> {
+    pub(crate) origin: &'a Origin,
+    pub(crate) tables: &'a [Table],
+}
+
+impl Report<'_> {
+    /// Writes the report of this process to standard output.
+    pub(crate) fn print(tables: &[Table], format: Format) -> Result<(), Error> {
+        let report = Report { origin: &Origin::this(), tables };
+        let mut output = BufWriter::new(io::stdout().lock());
+        let written = report.write(format, &mut output).and_then(|()| output.flush());
+        written.map_err(|error| Error::of_output(&error))
+    }
+
+    pub(crate) fn write(&self, format: Format, output: &mut impl Write) -> io::Result<()> {
+        match format {
+            Format::Table => self.write_text(output),
+            Format::Markdown => self.write_markdown(output),
+            Format::Json => self.write_json(output),
+            Format::Csv => output.write_all(self.csv().as_bytes()),
+            Format::Svg => output.write_all(svg(self).as_bytes()),
+        }
+    }
+
+    fn write_text(&self, output: &mut impl Write) -> io::Result<()> {
+        for table in self.tables {
+            write_aligned(table, output)?;
+        }
+        writeln!(output, "{}", self.origin.sentence())
+    }
+
+    fn write_markdown(&self, output: &mut impl Write) -> io::Result<()> {
+        for table in self.tables {
+            writeln!(output, "## {}\n\n{}.\n\n{}", table.name, table.title, markdown(table))?;
+        }
+        writeln!(output, "{}", self.origin.sentence())
+    }
+
+    /// One object: the run, and the tables by their names.
+    fn write_json(&self, output: &mut impl Write) -> io::Result<()> {
+        let run = self.origin.parts().map(|(name, value)| (name.to_owned(), value.into()));
+        let run: Map<String, Json> = run.into_iter().collect();
+        let tables: Map<String, Json> =
+            self.tables.iter().map(|table| (table.name.to_owned(), object(table))).collect();
+        serde_json::to_writer_pretty(&mut *output, &json!({ "run": run, "tables": tables }))?;
+        writeln!(output)
+    }
+
+    /// A line for each figure. The first lines say where the report comes from.
+    pub(crate) fn csv(&self) -> String {
+        let mut text =
+            "table,problem,method,parameter,figure,value,lower_quartile,upper_quartile\n"
+                .to_owned();
+        for (name, value) in self.origin.parts() {
+            text += &csv_line(["run", "", "", "", name, value, "", ""]);
+        }
+        for table in self.tables {
+            for row in &table.rows {
+                let keys =
+                    || std::iter::once(table.name).chain(row.keys.iter().map(String::as_str));
+                for (column, value) in table.columns.iter().zip(&row.values) {
+                    let [value, lower, upper] = csv_fields(*value);
+                    text += &csv_line(keys().chain([column.as_str(), &value, &lower, &upper]));
+                }
+            }
+        }
+        text
+    }
+}
+
+/// The headings and the rows in Markdown.
+pub fn markdown(table: &Table) -> String {
+    let (labels, mut lines) = cells(table);
+    let rule = (0..lines[0].len()).map(|column| if column < labels { "---" } else { "---:" });
+    let rule = format!("|{}|\n", rule.collect::<Vec<_>>().join("|"));
+    let rows = lines.split_off(1);
+    let line = |cells: &Vec<String>| format!("| {} |\n", cells.join(" | "));
+    line(&lines[0]) + &rule + &rows.iter().map(line).collect::<String>()
+}
+
+/// Writes a table for a terminal, with an empty line after it and between problems of several rows.
+fn write_aligned(table: &Table, output: &mut impl Write) -> io::Result<()> {
+    let (labels, lines) = cells(table);
+    let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
+    let widths: Vec<usize> = (0..lines[0].len()).map(|it| width(it).unwrap_or_default()).collect();
+    let problems = || table.rows.chunk_by(|one, other| one.keys[0] == other.keys[0]);
+    let is_grouped = problems().any(|rows| rows.len() > 1);
+    let ends = problems().scan(0, |end, rows| {
+        *end += rows.len();
+        Some(*end)
+    });
+    let ends: Vec<usize> = ends.filter(|&end| is_grouped && end < table.rows.len()).collect();
+    writeln!(output, "{}: {}.\n", table.name, table.title)?;
+    for (index, cells) in lines.iter().enumerate() {
+        let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
+            if column < labels { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        writeln!(output, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())?;
+        if ends.contains(&index) {
+            writeln!(output)?;
+        }
+    }
+    writeln!(output)
+}
+
+/// The number of columns with keys, and the headings and all rows in words and digits.
+fn cells(table: &Table) -> (usize, Vec<Vec<String>>) {
+    let keys: Vec<usize> = (0..3).filter(|&key| !table.keys[key].is_empty()).collect();
+    let headings = keys.iter().map(|&key| table.keys[key].to_owned());
+    let row = |row: &Row| {
+        let keys = keys.iter().map(|&key| row.keys[key].clone());
+        keys.chain(row.values.iter().map(|&value| figure(value))).collect()
+    };
+    let first = headings.chain(table.columns.iter().cloned()).collect();
+    (keys.len(), std::iter::once(first).chain(table.rows.iter().map(row)).collect())
+}
+
+fn object(table: &Table) -> Json {
+    let row = |row: &Row| -> Json {
+        let keys = table.keys.iter().zip(&row.keys).filter(|(heading, _)| !heading.is_empty());
+        let keys = keys.map(|(heading, key)| ((*heading).to_owned(), Json::from(key.as_str())));
+        let figures = table.columns.iter().zip(&row.values);
+        let figures = figures.map(|(column, value)| (column.clone(), json_figure(*value)));
+        keys.chain(figures).collect::<Map<String, Json>>().into()
+    };
+    json!({ "title": table.title, "rows": table.rows.iter().map(row).collect::<Vec<_>>() })
+}
+
+fn json_figure(value: Value) -> Json {
+    match value {
+        Value::None => Json::Null,
+        Value::Count(count) => count.into(),
+        // There is no infinity in JSON.
+        Value::Share(number) | Value::Number(number) if !number.is_finite() => "inf".into(),
+        Value::Share(number) | Value::Number(number) => number.into(),
+        Value::Time(Timing { median, lower_quartile, upper_quartile }) => json!({
+            "median": median,
+            "lower_quartile": lower_quartile,
+            "upper_quartile": upper_quartile,
+        }),
+    }
+}
+
+/// A line of CSV. Fields with commas are in quotation marks.
+fn csv_line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted = fields.into_iter().map(|field| {
+        if field.contains([',', '"']) {
+            format!("\"{}\"", field.replace('"', "\"\""))
+        } else {
+            field.to_owned()
+        }
+    });
+    quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// A value and its quartiles for CSV; empty where there are none.
+fn csv_fields(value: Value) -> [String; 3] {
+    let one = |text: String| [text, String::new(), String::new()];
+    match value {
+        Value::None => one(String::new()),
+        Value::Count(count) => one(count.to_string()),
+        Value::Share(number) | Value::Number(number) => one(number.to_string()),
+        Value::Time(Timing { median, lower_quartile, upper_quartile }) => {
+            [median, lower_quartile, upper_quartile].map(|time| format!("{time:.2}"))
+        }
+    }
+}
+
+/// A figure; a dash if there is none.
+fn figure(value: Value) -> String {
+    match value {
+        Value::None => "–".to_owned(),
+        Value::Count(count) => count.to_string(),
+        Value::Share(number) => share(number),
+        Value::Number(value) => number(value),
+        Value::Time(Timing { median, lower_quartile, upper_quartile }) => {
+            format!("{median:.1} ({lower_quartile:.1}–{upper_quartile:.1})")
+        }
+    }
+}
+
+/// A fraction as a percentage; zero is distinguished from a small number.
+fn share(share: f64) -> String {
+    if share == 0.0 {
+        "0".to_owned()
+    } else if share < 1e-4 {
+        "<0.01 %".to_owned()
+    } else {
+        format!("{:.2} %", 100.0 * share)
+    }
+}
+
+/// A number with at least two digits; zero only if it is zero.
+fn number(number: f64) -> String {
+    if number == 0.0 {
+        "0".to_owned()
+    } else if number >= f64::MAX {
+        "inf".to_owned()
+    } else if (1000.0..100_000.0).contains(&number.abs()) {
+        format!("{number:.0}")
+    } else if (0.01..1000.0).contains(&number.abs()) {
+        let text = format!("{number:.3}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{number:.1e}")
+    }
+}
+
+// Where a report comes from.
+
+/// The origin of a report.
+pub(crate) struct Origin {
+    machine: String,
+    /// The version, and the commit if the build was told it.
+    program: String,
+    command: String,
+    /// As in 2026-11-22, in UTC.
+    date: String,
+}
+
+impl Origin {
+    /// The origin of a report of this process.
+    pub(crate) fn this() -> Self {
+        let version = env!("CARGO_PKG_VERSION");
+        let commit = option_env!("CELLCASTER_COMMIT").unwrap_or("unknown");
+        let (date, _) = today();
+        let (year, month, day) = (date / 10_000, date / 100 % 100, date % 100);
+        Self {
+            machine: machine(),
+            program: format!("{version}, commit {commit}"),
+            command: command(env::args().skip(1)),
+            date: format!("{year}-{month:02}-{day:02}"),
+        }
+    }
+
+    /// The names and the values of all parts.
+    pub(crate) fn parts(&self) -> [(&'static str, &str); 4] {
+        let Self { machine, program, command, date } = self;
+        [("machine", machine), ("program", program), ("command", command), ("date", date)]
+    }
+
+    /// All parts in a sentence.
+    pub(crate) fn sentence(&self) -> String {
+        let Self { machine, program, command, date } = self;
+        format!("Measured on {date} by `{command}`, Cellcaster {program}, on {machine}.")
+    }
+}
+
+/// The processor, if the system says so, the number of its cores, and the platform.
+fn machine() -> String {
+    let cores = available_parallelism().map_or(1, Into::into);
+    let information = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model =
+        information.lines().find_map(|line| line.strip_prefix("model name")?.split(": ").nth(1));
+    let processor = model.unwrap_or("unknown processor").trim();
+    let cores = if cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
+    format!("{processor}, {cores}, {} {}", env::consts::OS, env::consts::ARCH)
+}
+
+/// The command line with these arguments.
+fn command(arguments: impl Iterator<Item = String>) -> String {
+    let quoted = |argument: String| {
+        if argument.contains(' ') { format!("\"{argument}\"") } else { argument }
+    };
+    let words = std::iter::once("cellcaster-lab".to_owned()).chain(arguments.map(quoted));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::headings;
+    use super::*;
+
+    fn fruit() -> Table {
+        Table {
+            name: "fruit",
+            title: "Fruit in kilograms".to_owned(),
+            keys: ["kind", "", ""],
+            columns: headings(["kg"]),
+            rows: vec![
+                Row::new(["apples", "", ""], vec![Value::Count(7)]),
+                Row::new(["figs", "", ""], vec![Value::Number(12.5)]),
+            ],
+            diagrams: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn words_begin_and_figures_end_together() {
+        let mut bytes = Vec::new();
+        write_aligned(&fruit(), &mut bytes).unwrap();
+        let text = "fruit: Fruit in kilograms.\n\nkind      kg\napples     7\nfigs    12.5\n\n";
+        assert_eq!(String::from_utf8(bytes).unwrap(), text);
+    }
+
+    #[test]
+    fn pages_align_by_themselves() {
+        let text = "| kind | kg |\n|---|---:|\n| apples | 7 |\n| figs | 12.5 |\n";
+        assert_eq!(markdown(&fruit()), text);
+    }
+
+    #[test]
+    fn only_zero_is_zero() {
+        let figures = [
+            Value::Count(0),
+            Value::Share(0.0),
+            Value::Share(1e-9),
+            Value::Share(0.1719),
+            Value::Number(0.0),
+            Value::Number(4.7e-17),
+            Value::Number(-0.25),
+            Value::Number(12.0),
+            Value::Number(59_951.2),
+            Value::Number(1e5),
+            Value::Number(f64::INFINITY),
+            Value::None,
+        ];
+        let texts = figures.map(figure).join(" | ");
+        assert_eq!(
+            texts,
+            "0 | 0 | <0.01 % | 17.19 % | 0 | 4.7e-17 | -0.25 | 12 | 59951 | 1.0e5 | inf | –"
+        );
+    }
+
+    #[test]
+    fn a_command_can_be_repeated() {
+        let arguments = ["accuracy", "--set", "through corners"].map(str::to_owned);
+        let repeated = "cellcaster-lab accuracy --set \"through corners\"";
+        assert_eq!(command(arguments.into_iter()), repeated);
+    }
+
+    #[test]
+    fn a_machine_has_cores() {
+        assert!(machine().contains(" core"));
+    }
+}
