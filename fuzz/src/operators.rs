@@ -22,7 +22,7 @@ pub fn run(data: &[u8]) {
         1 => names(&text),
         _ => {
             if text.len() <= MOST_SCRIPT && !text.contains("000") {
-                _ = verify(&text);
+                _ = verify(&text, |_| None);
             }
         }
     }

@@ -19,9 +19,7 @@ use crate::rooms::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::session::{
-    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
-};
+use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
 pub use crate::ssh::fuzzing::serve;
 use crate::visitors::{Presence, Visitors};
 use cellcaster::app::Configuration;
@@ -105,7 +103,6 @@ impl Hall {
             compresses: false,
             ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
-            idle: IdleLimits::default(),
             frame_time: Duration::from_millis(33),
         };
         let session = Session::new(identity, options, size, host, self.now);
@@ -312,7 +309,7 @@ impl Default for Desk {
             visitor
         });
         let visitors = visitors.collect();
-        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()));
+        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()), None);
         Self { operator, _visitors: visitors }
     }
 }

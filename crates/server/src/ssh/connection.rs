@@ -276,7 +276,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
         // There is nothing to guess.
         auth_rejection_time: Duration::ZERO,
         auth_rejection_time_initial: None,
-        keys: vec![key.private_key()],
+        keys: vec![key.key.clone()],
         preferred: Preferred {
             kex: Cow::Borrowed(KEX),
             key: Cow::Borrowed(KEYS),
