@@ -31,12 +31,12 @@ mod results;
 mod sqlite;
 mod statements;
 mod store;
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, feature = "fuzzing"))]
 mod testing;
 mod waiting;
 pub(crate) mod worker;
 
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub use rusqlite::types::Value as ColumnValue;
 
@@ -45,11 +45,10 @@ pub use ban::{AddressPrefix, Ban, BanTarget, Identity};
 pub use failure::{Refusal, StoreFailure};
 pub use lease::Lease;
 pub use name::{Name, NameFault, printable};
-pub use presence::{HostNotice, HostRow, Visit, VisitBegin, VisitId, Visitor};
+pub use presence::{HostNotice, HostRow, Visit, VisitId};
 pub use rate::{AccountRate, Origin};
 pub use results::{
     LevelBoard, LevelScore, MOST_SCRIPT_BYTES, MOST_SCRIPT_STEPS, Unverified, VerifiedRun, verify,
-    verify_with,
 };
 pub use store::HostStore;
 pub use waiting::{Late, WaitingResult, WaitingResults};

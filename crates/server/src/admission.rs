@@ -227,16 +227,6 @@ impl Admission {
         self.penalties.set_limits(limits.failures, limits.forget);
     }
 
-    /// The number of connections.
-    pub fn connections(&self) -> usize {
-        self.visits.len()
-    }
-
-    /// The number of connections that are not authenticated.
-    pub fn unauthenticated(&self) -> usize {
-        self.waiting.len()
-    }
-
     fn authenticated(&self) -> usize {
         self.visits.len() - self.waiting.len()
     }

@@ -1,5 +1,5 @@
 //! Parts of the server without connections and tasks, for fuzz targets outside of the crate. It is compiled with
-//! `--cfg fuzzing` only.
+//! the feature `fuzzing` only.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::pin::pin;
@@ -19,9 +19,7 @@ use crate::rooms::room::{
     CHAT_COLUMNS, Catalog, Command, Entry, Header, MemberId, Mode, NAME_COLUMNS, Room,
 };
 use crate::rooms::summary::{RoomId, RoomSummary};
-use crate::sessions::session::{
-    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
-};
+use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
 pub use crate::ssh::fuzzing::serve;
 use crate::visitors::{Presence, Visitors};
 use cellcaster::app::Configuration;
@@ -105,7 +103,6 @@ impl Hall {
             compresses: false,
             ascii_locale: None,
             catalog: Arc::clone(&self.catalog),
-            idle: IdleLimits::default(),
             frame_time: Duration::from_millis(33),
         };
         let session = Session::new(identity, options, size, host, self.now);
@@ -312,7 +309,7 @@ impl Default for Desk {
             visitor
         });
         let visitors = visitors.collect();
-        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()));
+        let operator = Operator::new(all, Vec::<RoomRow>::new, Arc::new(Notify::new()), None);
         Self { operator, _visitors: visitors }
     }
 }

@@ -50,18 +50,6 @@ impl Load {
         Self::with(metrics, processors, || cpu_time().unwrap_or_default())
     }
 
-    /// That of a host in simulated time, of which only the steps of rooms are measured.
-    #[cfg(test)]
-    pub(crate) fn simulated(metrics: Arc<Metrics>, worker: Worker) -> Self {
-        Self { worker, ..Self::with(metrics, 1.0, || Duration::ZERO) }
-    }
-
-    /// Lets the time of `work` that is done pass, in simulated time.
-    #[cfg(test)]
-    pub(crate) fn spend(&self, work: Work) {
-        self.worker.spend(work);
-    }
-
     fn with(metrics: Arc<Metrics>, processors: f64, clock: fn() -> Duration) -> Self {
         let used = Mutex::new(clock());
         let [lateness, steps] = [const { AtomicU64::new(0) }; 2];

@@ -23,7 +23,7 @@ pub struct Operator {
     /// Notified when the server has to end.
     drain: Arc<Notify>,
     /// The other hosts of a cluster.
-    pub(crate) cluster: Option<SharedRooms>,
+    cluster: Option<SharedRooms>,
 }
 
 /// The longest line that an operator says, in columns.
@@ -35,17 +35,13 @@ const NO_CLUSTER: &str = "this host is in no cluster";
 
 impl Operator {
     /// One who sees these visitors and rooms, and notifies `drain` to end the server.
-    pub fn new(
+    pub(crate) fn new(
         visitors: Visitors,
         rooms: impl Fn() -> Vec<RoomRow> + Send + Sync + 'static,
         drain: Arc<Notify>,
+        cluster: Option<SharedRooms>,
     ) -> Self {
-        Self { visitors, rooms: Arc::new(rooms), drain, cluster: None }
-    }
-
-    /// Has the operator see the other hosts of a cluster, too.
-    pub(crate) fn in_cluster(self, cluster: Option<SharedRooms>) -> Self {
-        Self { cluster, ..self }
+        Self { visitors, rooms: Arc::new(rooms), drain, cluster }
     }
 
     /// Does what is asked, on all hosts of a cluster.

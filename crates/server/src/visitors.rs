@@ -169,6 +169,11 @@ impl Visitors {
         self.each(|it| it.session == session, |inbox| inbox.remove(sentence)) > 0
     }
 
+    /// Whether a guest has a name that looks like this one.
+    pub(crate) fn has_guest(&self, name: &Name) -> bool {
+        locked(&self.0, |table| table.has_guest(name, None))
+    }
+
     /// Acts on the inboxes of some, and returns of how many.
     fn each(&self, is_meant: impl Fn(&Present) -> bool, act: impl Fn(&Inbox)) -> usize {
         locked(&self.0, |table| {
@@ -178,7 +183,29 @@ impl Visitors {
     }
 }
 
+impl Table {
+    fn has_guest(&self, name: &Name, except: Option<u64>) -> bool {
+        self.entries.iter().any(|(number, (present, _))| {
+            let is_alike = |other: &Name| other.looks_like(name);
+            present.key.is_none()
+                && Some(*number) != except
+                && present.name.as_ref().is_some_and(is_alike)
+        })
+    }
+}
+
 impl Presence {
+    /// Sets the name of a guest, unless another guest has a name that looks like it. Returns whether it did.
+    pub(crate) fn take_guest_name(&self, name: &Name) -> bool {
+        locked(&self.visitors.0, |table| {
+            let is_free = !table.has_guest(name, Some(self.number));
+            if let Some((present, _)) = table.entries.get_mut(&self.number).filter(|_| is_free) {
+                present.name = Some(name.clone());
+            }
+            is_free
+        })
+    }
+
     /// Records the visitor's name: of an account, or chosen by a guest.
     pub fn set_name(&self, name: &str) {
         self.change(|it| it.name = Some(Name::kept(name)));

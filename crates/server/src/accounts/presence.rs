@@ -14,23 +14,13 @@
 //! was a time for each visit that the host renews: a host with a thousand visitors would write a thousand rows
 //! each time.
 
-use std::fmt;
 use std::time::Duration;
 
 use rusqlite::params;
 
 use super::lease::milliseconds;
 use super::statements::Row;
-use super::{AccountKey, AddressPrefix, HostStore, StoreFailure};
-
-/// By what the visits of somebody are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Visitor {
-    /// The account of a key.
-    Key(AccountKey),
-    /// The addresses of a network.
-    Addresses(AddressPrefix),
-}
+use super::{HostStore, StoreFailure};
 
 /// The number of a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -43,19 +33,8 @@ pub struct Visit {
     pub id: VisitId,
     /// The host.
     pub host: String,
-    /// Who is there.
-    pub visitor: Visitor,
-    /// How long already.
-    pub since: Duration,
-}
-
-/// Whether a visit has begun.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VisitBegin {
-    /// It counts now.
-    Begun(VisitId),
-    /// There are as many as allowed, counting only hosts that have announced themselves in this time.
-    TooMany(Duration),
+    /// By what it counts: a key, or a range of addresses.
+    pub visitor: String,
 }
 
 /// What a host says of itself.
@@ -82,7 +61,8 @@ pub struct HostRow {
 
 /// The visits and hosts of a cluster. In each method, a host is there if it has announced itself in the last `time`.
 impl HostStore {
-    /// Begins a visit, if fewer than `most` of the visitor count.
+    /// Begins a visit, if fewer than `most` of the visitor count. Otherwise, returns the time in which all hosts that count
+    /// against the visitor have announced themselves.
     ///
     /// # Errors
     /// If the store can't be asked; so for each method. If the failure says that a change may be kept or not, the visit
@@ -90,31 +70,29 @@ impl HostStore {
     pub fn begin_visit(
         &mut self,
         host: &str,
-        visitor: &Visitor,
+        visitor: &str,
         most: u32,
         time: Duration,
-    ) -> Result<VisitBegin, StoreFailure> {
+    ) -> Result<Result<VisitId, Duration>, StoreFailure> {
         let Some(others) = most.checked_sub(1) else {
-            return Ok(VisitBegin::TooMany(Duration::ZERO));
+            return Ok(Err(Duration::ZERO));
         };
         let in_the_way = "SELECT (SELECT ms FROM clock) - seen_at \
                           FROM visits JOIN hosts ON hosts.name = visits.host \
                           WHERE visitor = ?1 AND seen_at > (SELECT ms FROM clock) - ?2 \
                           ORDER BY seen_at DESC LIMIT 1 OFFSET ?3";
-        let insert = "INSERT INTO visits (host, visitor, began_at) \
-                      VALUES (?1, ?2, (SELECT ms FROM clock)) RETURNING id";
-        let visitor = visitor.to_string();
+        let insert = "INSERT INTO visits (host, visitor) VALUES (?1, ?2) RETURNING id";
         self.database.change_rows(|it| {
             // Transactions that count the same visits wait for each other. A serializable transaction would also
             // conflict with those that count others, as long as the table is short.
             it.lock(&format!("visits of {visitor}"))?;
             let row = it.row(in_the_way, params![visitor, milliseconds(time), others])?;
             if let Some(row) = row {
-                return Ok(VisitBegin::TooMany(Duration::from_millis(row.count(0)?)));
+                return Ok(Err(Duration::from_millis(row.count(0)?)));
             }
             let row = it.row(insert, params![host, visitor])?;
             let row = row.ok_or_else(|| StoreFailure::new("the host's store began no visit"))?;
-            Ok(VisitBegin::Begun(VisitId(row.get(0)?)))
+            Ok(Ok(VisitId(row.get(0)?)))
         })
     }
 
@@ -132,10 +110,13 @@ impl HostStore {
     /// # Errors
     /// See [`begin_visit`](Self::begin_visit).
     pub fn visits(&mut self, time: Duration) -> Result<Vec<Visit>, StoreFailure> {
-        let sql = "SELECT id, host, visitor, (SELECT ms FROM clock) - began_at \
-                   FROM visits JOIN hosts ON hosts.name = visits.host \
+        let sql = "SELECT id, host, visitor FROM visits JOIN hosts ON hosts.name = visits.host \
                    WHERE seen_at > (SELECT ms FROM clock) - ?1 ORDER BY id";
         let rows = self.database.once(|it| it.rows(sql, params![milliseconds(time)]))?;
+        let visit = |row: &Row| {
+            let (id, host, visitor) = (VisitId(row.get(0)?), row.get(1)?, row.get(2)?);
+            Ok(Visit { id, host, visitor })
+        };
         rows.iter().map(visit).collect()
     }
 
@@ -184,33 +165,8 @@ impl HostStore {
     }
 }
 
-fn visit(row: &Row) -> Result<Visit, StoreFailure> {
-    let id = row.get(0)?;
-    let visitor = Visitor::parse(&row.get::<String>(2)?)
-        .ok_or_else(|| StoreFailure::new(format!("the visit {id} has no visitor")))?;
-    let since = Duration::from_millis(row.count(3)?);
-    Ok(Visit { id: VisitId(id), host: row.get(1)?, visitor, since })
-}
-
 fn host(row: &Row) -> Result<HostRow, StoreFailure> {
     let (name, version, address) = (row.get(0)?, row.get(1)?, row.get(2)?);
     let notice = HostNotice { name, version, address, load: row.get(3)? };
     Ok(HostRow { notice, ago: Duration::from_millis(row.count(4)?) })
-}
-
-impl Visitor {
-    /// The visitor of a text that it was written as.
-    pub fn parse(text: &str) -> Option<Self> {
-        let of_key = AccountKey::parse(text).map(Self::Key);
-        of_key.or_else(|| AddressPrefix::parse(text).map(Self::Addresses))
-    }
-}
-
-impl fmt::Display for Visitor {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Key(key) => key.fmt(f),
-            Self::Addresses(prefix) => prefix.fmt(f),
-        }
-    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cellcaster::app::store::{Best, Improved, name_in_map_key, replayed};
 use cellcaster::fault::Faults;
-use cellcaster::game::{Game, Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
+use cellcaster::game::{Outcome, Rank, STEPS_PER_SECOND, Script, Tally};
 use cellcaster::map::builtin;
 use cellcaster::world::{Difficulty, World};
 use thiserror::Error;
@@ -71,28 +71,20 @@ pub enum Unverified {
     NotWon,
 }
 
-/// Plays a script again in the level that its header names.
-///
-/// Only built-in levels are played, so that no file is read. The work is that of
+/// Plays a script again in the level that its header names: a built-in one, or one of the host's maps, whose worlds `map`
+/// returns by their [keys](cellcaster::app::store::map_key). So no file is read. The work is that of
 /// [`MOST_SCRIPT_STEPS`] steps at most.
 ///
 /// ```
 /// use cellcaster_server::accounts::{Unverified, verify};
 ///
-/// assert!(matches!(verify("level cellar\n2 s forward\n"), Err(Unverified::NotWon)));
+/// let verified = verify("level cellar\n2 s forward\n", |_| None);
+/// assert!(matches!(verified, Err(Unverified::NotWon)));
 /// ```
 ///
 /// # Errors
 /// Why the run does not count.
-pub fn verify(script: &str) -> Result<VerifiedRun, Unverified> {
-    verify_with(script, |_| None)
-}
-
-/// As [`verify`], where `map` has the worlds of the host's maps by their [keys](cellcaster::app::store::map_key).
-///
-/// # Errors
-/// Why the run does not count.
-pub fn verify_with(
+pub fn verify(
     script: &str,
     map: impl FnOnce(&str) -> Option<World>,
 ) -> Result<VerifiedRun, Unverified> {
@@ -115,7 +107,8 @@ pub fn verify_with(
     };
     let game = replayed(world.ok_or(Unverified::OtherLevel)?, rules, &script);
     if !game.is_finished() {
-        return Err(not_won(&game));
+        let is_dead = matches!(game.outcome(), Outcome::Dead { .. });
+        return Err(if is_dead { Unverified::Dead } else { Unverified::NotWon });
     }
     let tally = game.tally();
     let rank = tally.rank(game.world().par());
@@ -180,7 +173,7 @@ impl VerifiedRun {
     }
 }
 
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, feature = "fuzzing"))]
 impl VerifiedRun {
     /// A run that nobody has verified.
     #[doc(hidden)]
@@ -197,13 +190,6 @@ pub(crate) fn with_run(known: Option<Best>, run: &VerifiedRun) -> (Best, Improve
     (known.and(of_run), Improved { time, rank: of_run.rank > known.rank })
 }
 
-fn not_won(game: &Game) -> Unverified {
-    match game.outcome() {
-        Outcome::Dead { .. } => Unverified::Dead,
-        Outcome::Playing | Outcome::Won => Unverified::NotWon,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,16 +201,19 @@ mod tests {
 
     #[test]
     fn a_script_that_wins_is_a_run() {
-        let run = verify(WON).unwrap();
+        let run = verify(WON, |_| None).unwrap();
         assert_eq!((run.board().level(), run.board().difficulty()), ("cellar", Difficulty::Normal));
         assert!(run.tally().steps > 0 && run.tally().steps <= MOST_SCRIPT_STEPS);
         // What is kept is a run, too, and the same one.
-        assert_eq!(verify(run.script()).unwrap(), run);
+        assert_eq!(verify(run.script(), |_| None).unwrap(), run);
     }
 
     #[test]
     fn what_comes_after_the_exit_does_not_count() {
-        let (run, longer) = (verify(WON).unwrap(), verify(&format!("{WON}9 s back\n")).unwrap());
+        let (run, longer) = (
+            verify(WON, |_| None).unwrap(),
+            verify(&format!("{WON}9 s back\n"), |_| None).unwrap(),
+        );
         assert_eq!((run.tally(), run.rank()), (longer.tally(), longer.rank()));
     }
 
@@ -246,7 +235,7 @@ mod tests {
             ("level cellar\n2 s fly\n", "nobody can want"),
             ("", "no stretch of time"),
         ] {
-            let sentence = verify(script).unwrap_err().to_string();
+            let sentence = verify(script, |_| None).unwrap_err().to_string();
             assert!(sentence.contains(expected), "{sentence}");
         }
     }

@@ -62,8 +62,7 @@ CREATE TABLE leases (
 CREATE TABLE visits (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
     host TEXT NOT NULL,
-    visitor TEXT NOT NULL,
-    began_at INTEGER NOT NULL
+    visitor TEXT NOT NULL
 ) STRICT;
 CREATE INDEX visits_of_visitor ON visits (visitor);
 CREATE INDEX visits_of_host ON visits (host);

@@ -18,10 +18,9 @@
 //! Rejected: a cache of prepared statements (rusqlite's feature `cache`). A host prepares some ten
 //! statements a second.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use std::{fmt, fs, io};
 
 use cellcaster::app::store::private;
 use cellcaster::fault::printable_path;
@@ -41,26 +40,24 @@ const LOGS: [&str; 2] = ["-wal", "-shm"];
 /// The time to wait for another process.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// The file in `folder` to read and write. A damaged one is refused, and left as it is.
-pub(crate) fn open(folder: &Path) -> Result<Connection, StoreFailure> {
-    open_sound(folder).map_err(|fault| match fault {
-        Fault::Failure(failure) => failure,
-        Fault::Damaged => StoreFailure::new(format!(
+/// The file in `folder` to read and write. A damaged one is an error, and stays as it is. Only if the loss is accepted, it is
+/// put aside, and the rows that can be read are copied into a new one; then a sentence says so.
+pub(crate) fn open(
+    folder: &Path,
+    accepts_loss: bool,
+) -> Result<(Connection, Option<String>), StoreFailure> {
+    match open_sound(folder) {
+        Ok(connection) => Ok((connection, None)),
+        Err(Fault::Failure(failure)) => Err(failure),
+        Err(Fault::Damaged) if accepts_loss => {
+            replace(folder).map(|(connection, sentence)| (connection, Some(sentence)))
+        }
+        Err(Fault::Damaged) => Err(StoreFailure::new(format!(
             "{} is damaged: put a backup in its place, or start once with --accept-empty, which keeps it as \
              {} and goes on with the rows that can be read",
             printable_path(&folder.join(FILE)),
             free_name(folder)
-        )),
-    })
-}
-
-/// The same, but a damaged file is put aside, and the rows that can be read are copied into a new one. Then a
-/// sentence says so.
-pub(crate) fn open_or_salvage(folder: &Path) -> Result<(Connection, Option<String>), StoreFailure> {
-    match open_sound(folder) {
-        Ok(connection) => Ok((connection, None)),
-        Err(Fault::Failure(failure)) => Err(failure),
-        Err(Fault::Damaged) => replace(folder).map(|(it, sentence)| (it, Some(sentence))),
+        ))),
     }
 }
 
@@ -105,17 +102,16 @@ pub(crate) fn open_to_read(folder: &Path) -> Result<Option<Connection>, StoreFai
         return Ok(None);
     }
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    // Not by opening it: to close it again would give up the locks of this process.
-    private::check_is_file(&file).map_err(|error| {
+    let unreadable = |error: &dyn fmt::Display| {
         StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)))
-    })?;
+    };
+    // Not by opening it: to close it again would give up the locks of this process.
+    private::check_is_file(&file).map_err(|error| unreadable(&error))?;
     let connection = Connection::open_with_flags(&file, flags).and_then(|connection| {
         connection.busy_timeout(PATIENCE)?;
         Ok((version(&connection)?, connection))
     });
-    let unreadable =
-        |error| StoreFailure::new(format!("{} can't be read: {error}", printable_path(&file)));
-    let (version, connection) = connection.map_err(unreadable)?;
+    let (version, connection) = connection.map_err(|error| unreadable(&error))?;
     if version == 0 {
         return Ok(None);
     }

@@ -91,7 +91,7 @@ impl HostStore {
     /// # Errors
     /// If the folder can't be used, or the file is damaged, of another version or of another program.
     pub fn open(folder: &Path) -> Result<Self, StoreFailure> {
-        Ok(Self { database: Database::File(sqlite::open(folder)?) })
+        Ok(Self { database: Database::File(sqlite::open(folder, false)?.0) })
     }
 
     /// The store in `folder`. If its file was damaged, it is a new one with the rows that can be read, and the
@@ -100,7 +100,7 @@ impl HostStore {
     /// # Errors
     /// If the folder can't be used, or the file is of another version or of another program.
     pub fn open_or_salvage(folder: &Path) -> Result<(Self, Option<String>), StoreFailure> {
-        let (connection, sentence) = sqlite::open_or_salvage(folder)?;
+        let (connection, sentence) = sqlite::open(folder, true)?;
         Ok((Self { database: Database::File(connection) }, sentence))
     }
 

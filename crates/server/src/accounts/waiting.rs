@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify_with,
+    Account, AccountKey, HostStore, StoreFailure, UnixTime, Unverified, VerifiedRun, verify,
 };
 use cellcaster::app::store::home::{Disk, Real};
 use cellcaster::app::store::private;
@@ -204,7 +204,7 @@ impl WaitingResult {
             Ok(None) => return self.refused(StoreFailure::new("there is no such account"), now),
             Err(failure) => return self.refused(failure, now),
         };
-        let run = match verify_with(&self.script, world) {
+        let run = match verify(&self.script, world) {
             Ok(run) => run,
             Err(reason) => return Late::Refuted(self.clone(), reason),
         };

@@ -62,7 +62,7 @@ fn logged_in_during(flood: u32, address_of: impl Fn(u32) -> IpAddr) -> f64 {
         }
         let newcomer = Ipv4Addr::from_bits(0x5000_0001 + (tenth << 16));
         newcomers.push_back(admission.arrive(newcomer.into(), now, &mut chance));
-        assert!(admission.unauthenticated() <= 200);
+        assert!(admission.waiting.len() <= 200);
     }
     f64::from(logged_in) / f64::from(NEWCOMERS)
 }
@@ -126,7 +126,7 @@ fn who_was_displaced_does_not_log_in() {
     assert_eq!((first.displaced, second.displaced), (None, Some(first.id)));
     assert_eq!(admission.log_in(first.id, None, START), Err(Refusal::Startups));
     assert_eq!(admission.log_in(second.id, None, START), Ok(()));
-    assert_eq!((admission.connections(), admission.unauthenticated()), (1, 0));
+    assert_eq!((admission.visits.len(), admission.waiting.len()), (1, 0));
 }
 
 /// Those who have logged in count apart from those who have not, who may be nobody.
@@ -308,21 +308,21 @@ proptest! {
                 Act::Leave(id, outcome) => admission.leave(VisitId(id as u64), outcome, now),
                 Act::Wait(time) => now += Duration::from_millis(u64::from(time)),
             }
-            prop_assert!(admission.unauthenticated() <= 20);
+            prop_assert!(admission.waiting.len() <= 20);
             let waiting = admission.waiting.keys().all(|id| admission.visits.contains_key(id));
             prop_assert!(waiting);
             prop_assert!(admission.per_address.values().all(|&count| (1..=8).contains(&count)));
             prop_assert!(admission.per_key.values().all(|&count| (1..=3).contains(&count)));
             prop_assert!(admission.per_network.values().all(|&count| (1..=20).contains(&count)));
             let total: u32 = admission.per_network.values().sum();
-            prop_assert_eq!(total as usize, WIDTHS.len() * admission.unauthenticated());
+            prop_assert_eq!(total as usize, WIDTHS.len() * admission.waiting.len());
             let total: u32 = admission.per_address.values().sum();
-            prop_assert_eq!(total as usize, admission.connections());
+            prop_assert_eq!(total as usize, admission.visits.len());
         }
         for id in admission.visits.keys().copied().collect::<Vec<_>>() {
             admission.leave(id, Outcome::Served, now);
         }
-        prop_assert_eq!(admission.unauthenticated(), 0);
+        prop_assert_eq!(admission.waiting.len(), 0);
         prop_assert!(admission.per_address.is_empty());
         prop_assert!(admission.per_key.is_empty());
         prop_assert!(admission.per_network.is_empty());

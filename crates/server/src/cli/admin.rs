@@ -3,10 +3,10 @@
 //! Bans are written to the store, whether a server runs or not. A server that runs then ends the
 //! sessions to which they apply.
 
-use std::env;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
+use std::{env, iter};
 
 use unicode_width::UnicodeWidthStr;
 
@@ -82,22 +82,20 @@ impl RunningHost<'_> {
     fn lists(&mut self, request: &AdminRequest) -> Result<String, Error> {
         Ok(match self.answers(request)? {
             AdminReply::Visitors(rows) if rows.is_empty() => "nobody is on\n".to_owned(),
-            AdminReply::Visitors(rows) if rows.iter().any(|row| row.host.is_some()) => {
-                let titles = ["session", "name", "room", "address", "time", "host", "key"];
-                table(titles, rows.iter().map(of_visitor_on_host))
-            }
             AdminReply::Visitors(rows) => {
-                let titles = ["session", "name", "room", "address", "time", "key"];
-                table(titles, rows.iter().map(of_visitor))
+                let is_cluster = rows.iter().any(|row| row.host.is_some());
+                let hosts: &[&str] = if is_cluster { &["host"] } else { &[] };
+                let titles = [&["session", "name", "room", "address", "time"], hosts, &["key"]];
+                table(&titles.concat(), rows.iter().map(|row| of_visitor(row, is_cluster)))
             }
             AdminReply::Rooms(rows) if rows.is_empty() => "no room is open\n".to_owned(),
             AdminReply::Rooms(rows) => {
-                table(["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
+                table(&["room", "mode", "level", "difficulty", "members"], rows.iter().map(of_room))
             }
             AdminReply::Hosts(rows) => {
                 let titles =
                     ["host", "address", "version", "visitors", "seen", "maps", "writes rooms"];
-                table(titles, rows.iter().map(of_host))
+                table(&titles, rows.iter().map(of_host))
             }
             AdminReply::Count(count) => format!("{}\n", visitors(count)),
             AdminReply::Fault(sentence) => return Err(Error::mistake(sentence)),
@@ -128,14 +126,16 @@ fn other_version() -> Error {
     Error::machine("the server is of another version: it answers something else")
 }
 
-fn of_visitor(row: &VisitorRow) -> [String; 6] {
+fn of_visitor(row: &VisitorRow, has_host: bool) -> Vec<String> {
     let or = |text: &Option<String>, other: &str| text.clone().unwrap_or(other.to_owned());
     let (name, room) = (or(&row.name, "-"), or(&row.room, "lobby"));
-    let address = row.address.clone();
-    [row.session.clone(), name, room, address, time_text(row.seconds), or(&row.key, "guest")]
+    let (address, time) = (row.address.clone(), time_text(row.seconds));
+    let host = has_host.then(|| or(&row.host, "-"));
+    let cells = [row.session.clone(), name, room, address, time].into_iter();
+    cells.chain(host).chain([or(&row.key, "guest")]).collect()
 }
 
-fn of_room(row: &RoomRow) -> [String; 5] {
+fn of_room(row: &RoomRow) -> Vec<String> {
     let mut members = format!("{}/{}", row.members.len(), row.most);
     if !row.members.is_empty() {
         members = format!("{members} {}", row.members.join(", "));
@@ -144,15 +144,10 @@ fn of_room(row: &RoomRow) -> [String; 5] {
         members = format!("{members} (watched by {})", row.watchers);
     }
     let room = row.room.to_string();
-    [room, row.mode.clone(), row.level.clone(), row.difficulty.clone(), members]
+    vec![room, row.mode.clone(), row.level.clone(), row.difficulty.clone(), members]
 }
 
-fn of_visitor_on_host(row: &VisitorRow) -> [String; 7] {
-    let [session, name, room, address, time, key] = of_visitor(row);
-    [session, name, room, address, time, row.host.clone().unwrap_or_else(|| "-".to_owned()), key]
-}
-
-fn of_host(row: &HostInfo) -> [String; 7] {
+fn of_host(row: &HostInfo) -> Vec<String> {
     let rooms = match &row.rooms {
         None => "-".to_owned(),
         Some(rooms) if rooms.is_empty() => "none".to_owned(),
@@ -161,7 +156,7 @@ fn of_host(row: &HostInfo) -> [String; 7] {
     let seen = format!("{} ago", time_text(row.seconds));
     let (visitors, version) = (row.visitors.to_string(), row.version.clone());
     let maps = row.maps.as_deref().map_or_else(|| "-".to_owned(), summary_of_maps);
-    [row.host.clone(), row.address.clone(), version, visitors, seen, maps, rooms]
+    vec![row.host.clone(), row.address.clone(), version, visitors, seen, maps, rooms]
 }
 
 /// The number of maps, and a hash by which an operator sees that two hosts have the same ones.
@@ -236,10 +231,10 @@ fn bans(database: &Database) -> Result<String, Error> {
     };
     let ago = |ban: &Ban| time_text(now.seconds().saturating_sub(ban.made_at.seconds()));
     Ok(table(
-        ["banned", "for", "made", "by", "reason"],
+        &["banned", "for", "made", "by", "reason"],
         bans.iter().map(|ban| {
             let made = format!("{} ago", ago(ban));
-            [ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
+            vec![ban.target.to_string(), left(ban), made, ban.by.clone(), ban.reason.clone()]
         }),
     ))
 }
@@ -293,28 +288,21 @@ fn operator() -> String {
 
 /// Rows below a line of titles, in columns as wide as they need. Characters that a terminal would obey
 /// are replaced.
-fn table<const N: usize>(titles: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
-    let rows: Vec<[String; N]> = [titles.map(str::to_owned)]
-        .into_iter()
-        .chain(rows.map(|row| row.map(|cell| cell.replace(char::is_control, "?"))))
+fn table(titles: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let titles = titles.iter().map(|&title| title.to_owned()).collect();
+    let mut rows: Vec<Vec<String>> = iter::once(titles).chain(rows).collect();
+    rows.iter_mut().flatten().for_each(|cell| *cell = cell.replace(char::is_control, "?"));
+    let widths: Vec<usize> = (0..rows[0].len())
+        .map(|column| rows.iter().map(|row| row[column].width()).max().unwrap_or_default())
         .collect();
-    let mut widths = [0; N];
-    for row in &rows {
-        for (width, cell) in widths.iter_mut().zip(row) {
-            *width = cell.width().max(*width);
-        }
-    }
-    let mut text = String::new();
-    for row in &rows {
-        let mut line = String::new();
-        for (width, cell) in widths.into_iter().zip(row) {
-            line += cell;
-            line.extend(std::iter::repeat_n(' ', width - cell.width() + 2));
-        }
-        text += line.trim_end();
-        text.push('\n');
-    }
-    text
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths);
+        let line: String = cells
+            .map(|(cell, width)| cell.clone() + &" ".repeat(width - cell.width() + 2))
+            .collect();
+        line.trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
 }
 
 /// A time in its two largest units, such as `6d 23h`.
@@ -363,8 +351,8 @@ mod tests {
 
     #[test]
     fn columns_are_as_wide_as_they_need() {
-        let rows = [["漢字", "1"], ["A\u{1b}", "22"]].map(|row| row.map(str::to_owned));
-        assert_eq!(table(["name", "n"], rows.into_iter()), "name  n\n漢字  1\nA?    22\n");
+        let rows = [["漢字", "1"], ["A\u{1b}", "22"]].map(|row| row.map(str::to_owned).to_vec());
+        assert_eq!(table(&["name", "n"], rows.into_iter()), "name  n\n漢字  1\nA?    22\n");
     }
 
     #[test]

@@ -30,8 +30,6 @@ use crate::accounts::AccountKey;
 use crate::line::Line;
 use crate::lock::locked;
 use crate::rooms::directory::{Place, RoomLimits, RoomRefusal, Rooms};
-#[cfg(test)]
-use crate::rooms::room::RoomView;
 use crate::rooms::room::{Header, MemberId, Mode};
 use crate::rooms::sequencer::RoomInterface;
 use crate::rooms::summary::{RoomId, RoomWish};
@@ -222,14 +220,6 @@ impl SharedRooms {
         _ = timeout(ENDING, all_ended).await;
     }
 
-    /// The snapshot of a room on this host.
-    #[cfg(test)]
-    pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
-        let replicas = self.0.replicas.try_lock().ok()?;
-        let handle = replicas.get(&id).filter(|handle| !handle.requests.is_closed())?;
-        handle.interface.view()
-    }
-
     /// Becomes a member of a room.
     async fn be_member(&self, id: RoomId, wish: MemberWish) -> Result<Place, RoomRefusal> {
         for _ in 0..TRIES {
@@ -412,4 +402,19 @@ impl SharedRooms {
 
 fn not_now(_: BusFault) -> RoomRefusal {
     RoomRefusal::NotNow
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rooms::room::RoomView;
+
+    impl SharedRooms {
+        /// The snapshot of a room on this host.
+        pub(crate) fn view(&self, id: RoomId) -> Option<Arc<RoomView>> {
+            let replicas = self.0.replicas.try_lock().ok()?;
+            let handle = replicas.get(&id).filter(|handle| !handle.requests.is_closed())?;
+            handle.interface.view()
+        }
+    }
 }

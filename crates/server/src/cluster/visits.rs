@@ -23,9 +23,7 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
 use crate::accounts::worker::{Answer, StoreWorker};
-use crate::accounts::{
-    AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitBegin, VisitId, Visitor,
-};
+use crate::accounts::{AccountKey, HostNotice, HostRow, HostStore, StoreFailure, VisitId};
 use crate::admission::{Refusal, counted_address};
 use crate::lock::locked;
 use crate::logging;
@@ -167,9 +165,9 @@ impl Visits {
 
 impl NewVisit {
     /// The key and the address that the visit counts against, each with its limit and the reason of a refusal.
-    fn limits(&self) -> impl Iterator<Item = (Visitor, u32, Refusal)> {
-        let by_key = self.key.map(|key| (Visitor::Key(key), self.per_key, Refusal::Key));
-        let address = Visitor::Addresses(counted_address(self.address));
+    fn limits(&self) -> impl Iterator<Item = (String, u32, Refusal)> {
+        let by_key = self.key.map(|key| (key.to_string(), self.per_key, Refusal::Key));
+        let address = counted_address(self.address).to_string();
         by_key.into_iter().chain([(address, self.per_address, Refusal::Address)])
     }
 }
@@ -191,11 +189,11 @@ impl Registry {
         let mut ids = Vec::new();
         for (visitor, most, reason) in new_visit.limits() {
             match presence.begin_visit(&self.notice.name, &visitor, most, THERE) {
-                Ok(VisitBegin::Begun(id)) => {
+                Ok(Ok(id)) => {
                     self.counting.insert(id);
                     ids.push(id);
                 }
-                Ok(VisitBegin::TooMany(ago)) => {
+                Ok(Err(ago)) => {
                     self.end_all(presence, ids);
                     return Ok(Err(TooMany { reason, ago }));
                 }

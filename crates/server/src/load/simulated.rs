@@ -7,10 +7,14 @@
 //! that is too long does not.
 
 use std::pin::pin;
+use std::sync::Arc;
 use std::task::{Context, Waker};
 use std::time::Duration;
 
 use tokio::time::advance;
+
+use super::Load;
+use crate::metrics::Metrics;
 
 /// What each piece of work costs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +34,18 @@ pub(crate) enum Work {
     Frame,
     /// A room has taken a step.
     Step,
+}
+
+impl Load {
+    /// That of a host in simulated time, of which only the steps of rooms are measured.
+    pub(crate) fn simulated(metrics: Arc<Metrics>, worker: Worker) -> Self {
+        Self { worker, ..Self::with(metrics, 1.0, || Duration::ZERO) }
+    }
+
+    /// Lets the time of `work` that is done pass, in simulated time.
+    pub(crate) fn spend(&self, work: Work) {
+        self.worker.spend(work);
+    }
 }
 
 impl Worker {

@@ -13,7 +13,7 @@ fn operator(visitors: &Visitors) -> Operator {
 }
 
 fn operator_with(visitors: &Visitors, drain: Arc<Notify>) -> Operator {
-    Operator::new(visitors.clone(), Vec::new, drain)
+    Operator::new(visitors.clone(), Vec::new, drain, None)
 }
 
 fn remove(target: Target, reason: &str, banned: bool) -> AdminRequest {

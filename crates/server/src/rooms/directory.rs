@@ -70,11 +70,7 @@ struct OpenRooms {
 }
 
 /// A room that does not run yet.
-struct NewRoom {
-    id: RoomId,
-    room: Room,
-    interface: Arc<RoomInterface>,
-}
+type NewRoom = (RoomId, Room, Arc<RoomInterface>);
 
 #[derive(Debug)]
 struct OpenRoom {
@@ -120,11 +116,11 @@ impl Rooms {
 
     /// Opens a room, and joins it.
     pub(crate) fn open(&self, wish: &RoomWish, name: &Line) -> Result<Place, RoomRefusal> {
-        let room = self.add(wish, false)?;
+        let (id, room, interface) = self.add(wish, false)?;
         // Before the room runs: a room for a single member is closed as soon as nobody is in it.
-        let member = room.interface.inbox.join(name)?;
-        let place = Place::member(room.id, member, Arc::clone(&room.interface));
-        self.spawn(room);
+        let member = interface.inbox.join(name)?;
+        let place = Place::member(id, member, Arc::clone(&interface));
+        self.spawn((id, room, interface));
         Ok(place)
     }
 
@@ -243,13 +239,12 @@ impl Rooms {
             if is_allowed {
                 open.rooms.insert(id, open_room);
             }
-            is_allowed.then_some(NewRoom { id, room, interface }).ok_or(RoomRefusal::TooMany)
+            is_allowed.then_some((id, room, interface)).ok_or(RoomRefusal::TooMany)
         })
     }
 
     /// Runs a room until it is closed.
-    fn spawn(&self, new: NewRoom) {
-        let NewRoom { id, room, interface } = new;
+    fn spawn(&self, (id, room, interface): NewRoom) {
         let header = room.header();
         logging::room_opened(id.0, &header.level, header.mode.name());
         self.publish();

@@ -35,7 +35,7 @@ pub const MOST_BYTES: u64 = 4 << 20;
 
 /// The host's own maps, in the order of their names.
 #[derive(Clone, Debug, Default)]
-pub struct HostMaps(Vec<HostMap>);
+pub struct HostMaps(pub(crate) Vec<HostMap>);
 
 #[derive(Clone, Debug)]
 pub(crate) struct HostMap {
@@ -94,10 +94,6 @@ impl HostMaps {
     /// The names of all levels: the built-in ones, then the maps.
     pub fn level_names(&self) -> Vec<&str> {
         builtin::LEVELS.iter().map(|level| level.name).chain(self.names()).collect()
-    }
-
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &HostMap> {
-        self.0.iter()
     }
 }
 

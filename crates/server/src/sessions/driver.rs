@@ -28,7 +28,6 @@ use std::time::Duration;
 use tokio::sync::{Notify, Semaphore, watch};
 use tokio::time::{Instant, interval, timeout};
 
-use self::login::NamesInUse;
 use self::results::Recorder;
 #[cfg(test)]
 pub(crate) use self::simulated::{Setup, Simulated, Visiting};
@@ -67,7 +66,6 @@ struct Shared {
     recorder: Recorder,
     /// The runs of boards that walk along. Only the thread of the store uses them.
     runs: Arc<Mutex<KeptRuns>>,
-    names: NamesInUse,
     load: Arc<Load>,
     /// The large frames that may be drawn at a time.
     large_frames: Arc<Semaphore>,
@@ -161,7 +159,6 @@ impl GameHost {
             store: parts.store,
             recorder,
             runs: Arc::default(),
-            names: NamesInUse::default(),
             load,
             large_frames: Arc::new(Semaphore::new((processors / 2).max(1))),
             next_guest: AtomicU32::new(1),
@@ -195,8 +192,8 @@ impl GameHost {
 
     /// An operator of this host, who notifies `drain` to end it.
     pub fn operator(&self, drain: Arc<Notify>) -> Operator {
-        let operator = Operator::new(self.shared.visitors.clone(), self.room_rows(), drain);
-        operator.in_cluster(self.shared.cluster.clone())
+        let Shared { visitors, cluster, .. } = &*self.shared;
+        Operator::new(visitors.clone(), self.room_rows(), drain, cluster.clone())
     }
 
     /// Lists the rooms, for an operator.

@@ -33,8 +33,7 @@ mod ui;
 
 use std::time::Duration;
 
-pub(crate) use self::endings::IdleLimits;
-use self::frames::{KeyEffect, Pace, Unanswered};
+use self::frames::{Pace, Unanswered};
 pub(crate) use self::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent, Way};
 use self::ui::Ui;
 use crate::bucket::Bucket;
@@ -295,8 +294,7 @@ impl Session {
         let was_stale = std::mem::take(&mut self.ui.is_stale);
         let wanted = self.wanted();
         self.ui.event(key, now);
-        let effect = KeyEffect { is_shown: self.ui.is_stale, is_wanted: self.wanted() != wanted };
-        self.unanswered.press(effect, now);
+        self.unanswered.press(self.ui.is_stale, self.wanted() != wanted, now);
         self.ui.is_stale |= was_stale;
     }
 

@@ -10,7 +10,7 @@ use std::mem;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use russh::keys::{Algorithm, Certificate, HashAlg};
+use russh::keys::{Algorithm, HashAlg};
 use russh::server::{
     Auth, ChannelOpenHandle, Handle, Handler, Msg, PublicKeyOffer, Response, Session,
     VerifiedPublicKey,
@@ -169,10 +169,6 @@ impl Handler for Client {
         let fingerprint = key.public_key.fingerprint(HashAlg::Sha256).sha256();
         let key = fingerprint.map(AccountKey::new);
         Ok(if key.is_some() { self.accept(user, key) } else { Auth::reject() })
-    }
-
-    async fn auth_openssh_certificate(&mut self, _: &str, _: &Certificate) -> Result<Auth, Error> {
-        Ok(Auth::reject())
     }
 
     async fn auth_succeeded(&mut self, _: &mut Session) -> Result<(), Error> {

@@ -10,8 +10,11 @@ use super::gate::Gate;
 use super::host_key::HostKey;
 use super::{Arrival, Departure, Host, Link, Visitor};
 use crate::config::{Config, LiveConfig};
+use russh::keys::PrivateKey;
+use russh::keys::ssh_key::private::Ed25519Keypair;
 
-static KEY: LazyLock<HostKey> = LazyLock::new(|| HostKey::of_seed([7; 32]));
+static KEY: LazyLock<HostKey> =
+    LazyLock::new(|| HostKey { key: PrivateKey::from(Ed25519Keypair::from_seed(&[7; 32])) });
 
 struct Echo;
 

@@ -15,7 +15,7 @@ use cellcaster::fault::printable_path;
 /// An ed25519 key of a server.
 #[derive(Clone)]
 pub struct HostKey {
-    key: PrivateKey,
+    pub(crate) key: PrivateKey,
 }
 
 /// The name of its file in the data folder.
@@ -41,16 +41,6 @@ impl HostKey {
     /// The fingerprint as `ssh` shows it to somebody who connects for the first time.
     pub fn fingerprint(&self) -> String {
         self.key.fingerprint(HashAlg::Sha256).to_string()
-    }
-
-    /// The key of a seed that everybody knows.
-    #[cfg(fuzzing)]
-    pub(crate) fn of_seed(seed: [u8; 32]) -> Self {
-        Self { key: PrivateKey::from(Ed25519Keypair::from_seed(&seed)) }
-    }
-
-    pub(crate) fn private_key(&self) -> PrivateKey {
-        self.key.clone()
     }
 }
 

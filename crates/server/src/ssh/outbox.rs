@@ -18,21 +18,17 @@ use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use tokio::sync::Notify;
-#[cfg(test)]
-use tokio::sync::mpsc::UnboundedSender;
 use tokio::task::{unconstrained, yield_now};
 
 use crate::lock::locked;
 use crate::metrics::Metrics;
 
 /// The place for one frame. The next one has room when the last has drained.
-#[derive(Debug)]
 pub struct Outbox {
     passage: Arc<Passage>,
 }
 
 /// The state of the frame, which the outbox, the frame and the stream share.
-#[derive(Debug)]
 pub(crate) struct Passage {
     state: AtomicU8,
     /// Nothing can be sent any more.
@@ -43,15 +39,7 @@ pub(crate) struct Passage {
     rest: Mutex<Option<Frame>>,
     changed: Notify,
     metrics: Arc<Metrics>,
-    way: OnceLock<Way>,
-}
-
-/// The way of parts to the client.
-#[derive(Debug)]
-enum Way {
-    Channel(Handle, ChannelId),
-    #[cfg(test)]
-    Pipe(UnboundedSender<Bytes>),
+    sink: OnceLock<Box<dyn Fn(Bytes) + Send + Sync>>,
 }
 
 /// The most bytes that russh is given at once, and keeps for each connection from then on. With 16 KB, a
@@ -65,19 +53,19 @@ const QUEUED: u8 = 1;
 const ENCRYPTED: u8 = 2;
 
 impl Outbox {
+    /// Frames leave by a channel.
     pub(crate) fn new(handle: Handle, channel: ChannelId, passage: Arc<Passage>) -> Self {
-        Self::on(Way::Channel(handle, channel), passage)
+        // The queue has room: one part, a few questions and the three messages of the end are in it.
+        Self::into(move |part| _ = at_once(handle.data(channel, part)), passage)
     }
 
-    /// The parts of frames come out of a pipe.
-    #[cfg(test)]
-    pub(crate) fn into_pipe(pipe: UnboundedSender<Bytes>, passage: Arc<Passage>) -> Self {
-        Self::on(Way::Pipe(pipe), passage)
-    }
-
-    fn on(way: Way, passage: Arc<Passage>) -> Self {
+    /// Frames leave by `sink`, part by part.
+    pub(crate) fn into(
+        sink: impl Fn(Bytes) + Send + Sync + 'static,
+        passage: Arc<Passage>,
+    ) -> Self {
         // There is one session channel.
-        _ = passage.way.set(way);
+        _ = passage.sink.set(Box::new(sink));
         Self { passage }
     }
 
@@ -129,7 +117,7 @@ impl Passage {
             rest: Mutex::default(),
             changed: Notify::new(),
             metrics,
-            way: OnceLock::new(),
+            sink: OnceLock::new(),
         }
     }
 
@@ -169,23 +157,16 @@ impl Passage {
 
     /// Sends the first part of a frame, and keeps the others.
     fn send_part(self: &Arc<Self>, mut frame: Frame) {
-        let Some(way) = self.way.get() else { return };
+        let Some(sink) = self.sink.get() else { return };
         let rest = frame.split_off(PART);
         locked(&self.rest, |kept| *kept = rest);
         self.state.store(QUEUED, Ordering::Release);
         self.parts.fetch_add(1, Ordering::AcqRel);
-        let part = Bytes::from_owner(Part { frame, passage: self.clone() });
-        match way {
-            // The queue has room: one part, a few questions and the three messages of the end are in it.
-            Way::Channel(handle, channel) => _ = at_once(handle.data(*channel, part)),
-            #[cfg(test)]
-            Way::Pipe(pipe) => _ = pipe.send(part),
-        }
+        sink(Bytes::from_owner(Part { frame, passage: self.clone() }));
     }
 }
 
 /// The bytes of a frame or of a part of it, which are counted as long as they are kept.
-#[derive(Debug)]
 struct Frame {
     bytes: Vec<u8>,
     metrics: Arc<Metrics>,

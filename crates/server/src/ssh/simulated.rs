@@ -17,14 +17,13 @@ use crate::metrics::Metrics;
 use cellcaster::terminal::WindowSize;
 
 /// The client's end of a pipe. Clones are the same end.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(crate) struct FarEnd {
     inlet: Inlet,
     passage: Weak<Passage>,
 }
 
 /// What a session sends.
-#[derive(Debug)]
 pub(crate) struct Parts {
     parts: UnboundedReceiver<Bytes>,
     passage: Weak<Passage>,
@@ -37,7 +36,7 @@ pub(crate) fn pipe(metrics: Arc<Metrics>) -> (Link, FarEnd, Parts) {
     let limits = ByteLimits { before_login: 0, per_second: Config::default().bytes_per_second };
     let (inlet, inbound) = inbound(limits);
     let [for_end, for_parts] = [(); 2].map(|()| Arc::downgrade(&passage));
-    let link = Link { inbound, outbox: Outbox::into_pipe(sender, passage) };
+    let link = Link { inbound, outbox: Outbox::into(move |part| _ = sender.send(part), passage) };
     (link, FarEnd { inlet, passage: for_end }, Parts { parts, passage: for_parts })
 }
 

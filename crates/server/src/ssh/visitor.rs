@@ -40,7 +40,6 @@ pub trait Host: Send + Sync + 'static {
 }
 
 /// Both directions of a visitor's channel.
-#[derive(Debug)]
 pub struct Link {
     /// What the visitor sends.
     pub inbound: Inbound,

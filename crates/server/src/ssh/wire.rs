@@ -52,7 +52,6 @@ pub(crate) struct Wire<S> {
 }
 
 /// The state of a connection, for the tasks that it concerns.
-#[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) passage: Arc<Passage>,
     pub(crate) limits: ByteLimits,

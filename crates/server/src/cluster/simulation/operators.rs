@@ -26,8 +26,8 @@ impl Hosts {
         let run = Run::new(7);
         let (mut operators, mut visitors) = (Vec::new(), Vec::new());
         for (index, host) in run.hosts.iter().enumerate() {
-            let operator = Operator::new(host.visitors.clone(), Vec::new, Arc::<Notify>::default());
-            let operator = operator.in_cluster(Some(host.shared.clone()));
+            let (own, cluster) = (host.visitors.clone(), Some(host.shared.clone()));
+            let operator = Operator::new(own, Vec::new, Arc::<Notify>::default(), cluster);
             tokio::spawn(operator.clone().answer_others());
             operators.push(operator);
             let visitor = host.visitors.arrive(IpAddr::from([192, 0, 2, index as u8]), None);

@@ -145,7 +145,7 @@ fn the_end_of_a_round_is_an_event() {
         let rooms = rooms(&[]);
         let header = Header::new("museum", Mode::Hide, Difficulty::default(), 7);
         let mut room = Room::new(rooms.catalog(), header).unwrap();
-        let NewRoom { id, .. } = rooms.add(&wish(Mode::Hide), false).unwrap();
+        let (id, ..) = rooms.add(&wish(Mode::Hide), false).unwrap();
         for (member, member_name) in [(1, "Ada"), (2, "Ben")] {
             let command = Command::Join { color: PlayerColor::ALL[0], name: name(member_name) };
             room.apply(&Entry { step: room.step(), member: MemberId(member), command });

@@ -39,7 +39,7 @@ fn each_toml_file_of_a_folder_is_a_map() {
     let folder = Scratch::with("all", &files);
     let maps = HostMaps::read(&folder.0).unwrap();
     assert_eq!(maps.names().collect::<Vec<_>>(), ["hall-2", "moss"]);
-    let keys: Vec<&str> = maps.iter().map(|map| map.key.as_str()).collect();
+    let keys: Vec<&str> = maps.0.iter().map(|map| map.key.as_str()).collect();
     assert_eq!(keys, [map_key("hall-2", HALL), map_key("moss", &titled)]);
     let one = HostMaps::read(&folder.0.join("moss.toml")).unwrap();
     assert_eq!(one.names().collect::<Vec<_>>(), ["moss"]);
@@ -78,7 +78,7 @@ fn the_number_and_the_size_of_maps_have_limits() {
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), full)).collect();
     let most = (MOST_BYTES / MOST_MAP_BYTES) as usize;
     let folder = Scratch::with("bytes", &files[..most]);
-    assert_eq!(HostMaps::read(&folder.0).unwrap().iter().count(), most);
+    assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), most);
     let folder = Scratch::with("more-bytes", &files[..=most]);
     assert_eq!(folder.fault(), "the maps in maps have more than 4 MiB together");
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), HALL)).collect();
@@ -89,7 +89,7 @@ fn the_number_and_the_size_of_maps_have_limits() {
 #[test]
 fn what_is_no_file_is_refused() {
     let folder = Scratch::with("absent", &[]);
-    assert_eq!(HostMaps::read(&folder.0).unwrap().iter().count(), 0);
+    assert_eq!(HostMaps::read(&folder.0).unwrap().0.len(), 0);
     fs::create_dir(folder.0.join("deep.toml")).unwrap();
     assert_eq!(folder.fault(), "maps/deep.toml is no file");
     let absent = HostMaps::read(&folder.0.join("absent")).unwrap_err().to_string();

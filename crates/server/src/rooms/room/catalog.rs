@@ -39,7 +39,7 @@ impl Catalog {
     /// The built-in levels, then the host's maps.
     pub(crate) fn with(maps: &HostMaps) -> Self {
         let mut catalog = Self::builtin();
-        for map in maps.iter() {
+        for map in &maps.0 {
             catalog.list(&map.key, &map.name, Arc::clone(&map.world));
         }
         catalog

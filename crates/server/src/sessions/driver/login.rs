@@ -1,7 +1,6 @@
 //! The beginning of a visit: the account, bans, names, limits over all hosts, and the terminal.
 
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex};
 
 use super::Shared;
 use crate::accounts::{
@@ -10,7 +9,6 @@ use crate::accounts::{
 };
 use crate::cluster::{CountedVisit, NewVisit, VisitRefusal};
 use crate::line::Line;
-use crate::lock::locked;
 use crate::logging;
 use crate::rooms::room::NAME_COLUMNS;
 use crate::ssh::{Departure, Visitor};
@@ -26,17 +24,6 @@ pub(crate) struct Known {
     pub(crate) settings: AccountSettings,
     /// The name that is offered.
     pub(crate) offer: Name,
-}
-
-/// Names of visitors who have no account, while they are here.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct NamesInUse(Arc<Mutex<Vec<Name>>>);
-
-/// A name that is in use until this is dropped.
-#[derive(Debug)]
-pub(crate) struct NameInUse {
-    name: Name,
-    names: NamesInUse,
 }
 
 /// Shown to a visitor while the store cannot be asked.
@@ -85,7 +72,7 @@ impl Shared {
 
     /// A name for a new visitor: their user name, if it is valid and free.
     fn offer(&self, user: &str) -> Name {
-        let own = Name::new(user).ok().filter(|name| !self.names.has(name));
+        let own = Name::new(user).ok().filter(|name| !self.visitors.has_guest(name));
         own.unwrap_or_else(|| Name::of_guest(self.next_guest.fetch_add(1, Ordering::Relaxed)))
     }
 }
@@ -136,34 +123,6 @@ fn banned(ban: &Ban) -> String {
 pub(crate) fn line(name: &Name) -> Line {
     // A name is printable, and fits.
     Line::of(name.as_str(), NAME_COLUMNS).unwrap_or_else(|| Line::of("guest", 5).expect("a line"))
-}
-
-impl NamesInUse {
-    /// Reserves a name; `None` if a similar-looking name is in use.
-    pub(crate) fn reserve(&self, name: &Name) -> Option<NameInUse> {
-        let is_free = locked(&self.0, |names| {
-            let is_free = !names.iter().any(|other| other.looks_like(name));
-            if is_free {
-                names.push(name.clone());
-            }
-            is_free
-        });
-        is_free.then(|| NameInUse { name: name.clone(), names: self.clone() })
-    }
-
-    fn has(&self, name: &Name) -> bool {
-        locked(&self.0, |names| names.iter().any(|other| other.looks_like(name)))
-    }
-}
-
-impl Drop for NameInUse {
-    fn drop(&mut self) {
-        locked(&self.names.0, |names| {
-            if let Some(index) = names.iter().position(|name| *name == self.name) {
-                names.swap_remove(index);
-            }
-        });
-    }
 }
 
 impl Shared {

@@ -14,7 +14,7 @@ use tokio::time::sleep;
 use super::Shared;
 use crate::accounts::{
     Account, AccountId, HostStore, Late, LevelBoard, LevelScore, StoreFailure, UnixTime,
-    VerifiedRun, WaitingResult, WaitingResults, verify_with,
+    VerifiedRun, WaitingResult, WaitingResults, verify,
 };
 use crate::line::Line;
 use crate::lock::locked;
@@ -49,7 +49,7 @@ impl Recorder {
         account: &Account,
         run: &FinishedRun,
     ) -> String {
-        let run = match verify_with(&run.script, |name| self.world(name)) {
+        let run = match verify(&run.script, |name| self.world(name)) {
             Ok(run) => run,
             Err(reason) => {
                 self.metrics.results(false).inc();

@@ -15,7 +15,7 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 use tokio::task::block_in_place;
 use tokio::time::sleep_until;
 
-use super::login::{self, Known, NameInUse};
+use super::login::{self, Known};
 use super::{Shared, results};
 use crate::accounts::{Account, AccountKey, AccountSettings, HostStore, Name, Origin};
 use crate::cluster::Entrant;
@@ -28,9 +28,7 @@ use crate::rooms::directory::{Place, RoomRefusal};
 use crate::rooms::room::Command;
 use crate::rooms::sequencer::{CommandRefusal, FinishedRun};
 use crate::rooms::summary::RoomSummary;
-use crate::sessions::session::{
-    HostFacts, Identity, IdleLimits, Request, Session, SessionEvent, Way,
-};
+use crate::sessions::session::{HostFacts, Identity, Request, Session, SessionEvent, Way};
 use crate::ssh::{Arrival, Inbound, Link, Outbox, Visitor};
 use crate::visitors::{Notice, Presence};
 use cellcaster::app::Configuration;
@@ -51,7 +49,6 @@ pub(crate) struct Driver {
     /// The name, once it is chosen.
     name: Option<Name>,
     presence: Presence,
-    guest_name: Option<NameInUse>,
     pub(crate) place: Option<Place>,
     rooms: watch::Receiver<Arc<[RoomSummary]>>,
     /// Whether the session is told of the rooms.
@@ -142,7 +139,6 @@ impl Driver {
             compresses: visitor.compresses,
             ascii_locale: ascii_locale.and_then(|setting| Line::of(&setting, MESSAGE_COLUMNS)),
             catalog: Arc::clone(shared.rooms.catalog()),
-            idle: IdleLimits::default(),
             frame_time: shared.load.frame_time(),
         };
         let now = shared.now();
@@ -156,7 +152,6 @@ impl Driver {
             account,
             offer,
             presence,
-            guest_name: None,
             place: None,
             rooms: shared.rooms.summaries(),
             in_lobby: false,
@@ -413,14 +408,9 @@ impl Driver {
     }
 
     fn take_name(&mut self, name: Name, account: Option<Account>) -> SessionEvent {
-        if account.is_none() {
-            self.guest_name = None;
-            self.guest_name = self.shared.names.reserve(&name);
-            if self.guest_name.is_none() {
-                return SessionEvent::Named(Err(
-                    "Somebody here has this name; take another.".to_owned()
-                ));
-            }
+        if account.is_none() && !self.presence.take_guest_name(&name) {
+            let sentence = "Somebody here has this name; take another.";
+            return SessionEvent::Named(Err(sentence.to_owned()));
         }
         let line = login::line(&name);
         self.presence.set_name(name.as_str());

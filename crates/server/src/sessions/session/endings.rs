@@ -2,24 +2,12 @@
 
 use std::time::Duration;
 
-/// How long a visitor may press no key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct IdleLimits {
-    /// As a member of a room; then they are in the lobby.
-    pub(crate) in_room: Duration,
-    /// Elsewhere; then the session ends.
-    pub(crate) elsewhere: Duration,
-    /// How long before that they are warned.
-    pub(crate) warning: Duration,
-}
-
-impl Default for IdleLimits {
-    /// Five minutes in a room, and a quarter of an hour elsewhere, with a warning a minute before.
-    fn default() -> Self {
-        let [in_room, elsewhere, warning] = [5, 15, 1].map(Duration::from_mins);
-        Self { in_room, elsewhere, warning }
-    }
-}
+/// How long a member of a room may press no key. Then they are in the lobby.
+pub(crate) const IN_ROOM: Duration = Duration::from_mins(5);
+/// How long others may press no key. Then the session ends.
+pub(crate) const ELSEWHERE: Duration = Duration::from_mins(15);
+/// How long before that they are warned.
+const WARNING: Duration = Duration::from_mins(1);
 
 /// The time since the last key.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,13 +39,8 @@ impl Idle {
     }
 
     /// The consequence at `now`, if the visitor may press no key for `limit`.
-    pub(crate) fn step(
-        &mut self,
-        limits: &IdleLimits,
-        limit: Duration,
-        now: Duration,
-    ) -> Option<IdleAction> {
-        if self.next_at(limits, limit) > now {
+    pub(crate) fn step(&mut self, limit: Duration, now: Duration) -> Option<IdleAction> {
+        if self.next_at(limit) > now {
             return None;
         }
         if now >= self.since + limit {
@@ -68,8 +51,8 @@ impl Idle {
     }
 
     /// The time of the next thing that happens if no key is pressed.
-    pub(crate) fn next_at(&self, limits: &IdleLimits, limit: Duration) -> Duration {
-        let wait = if self.is_warned { limit } else { limit.saturating_sub(limits.warning) };
+    pub(crate) fn next_at(&self, limit: Duration) -> Duration {
+        let wait = if self.is_warned { limit } else { limit.saturating_sub(WARNING) };
         self.since + wait
     }
 }
@@ -111,10 +94,9 @@ mod tests {
 
     #[test]
     fn a_warning_comes_before_the_end() {
-        let limits = IdleLimits::default();
         let at = Duration::from_secs;
         let mut idle = Idle::default();
-        let step = |idle: &mut Idle, seconds| idle.step(&limits, limits.in_room, at(seconds));
+        let step = |idle: &mut Idle, seconds| idle.step(IN_ROOM, at(seconds));
         assert_eq!(step(&mut idle, 239), None);
         assert_eq!(step(&mut idle, 240), Some(IdleAction::Warn));
         assert_eq!(step(&mut idle, 299), None);

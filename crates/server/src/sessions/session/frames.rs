@@ -62,20 +62,13 @@ pub(crate) struct Unanswered {
     wanted: Option<Duration>,
 }
 
-/// The changes by a key.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct KeyEffect {
-    pub(crate) is_shown: bool,
-    pub(crate) is_wanted: bool,
-}
-
 impl Unanswered {
     /// Records the effect of a key that came at `now`.
-    pub(crate) fn press(&mut self, effect: KeyEffect, now: Duration) {
-        if effect.is_shown {
+    pub(crate) fn press(&mut self, is_shown: bool, is_wanted: bool, now: Duration) {
+        if is_shown {
             self.shown.get_or_insert(now);
         }
-        if effect.is_wanted {
+        if is_wanted {
             self.wanted.get_or_insert(now);
         }
     }

@@ -28,12 +28,6 @@ impl LineEntry {
         Self { text: offer.to_string(), columns, is_offer: true }
     }
 
-    /// The text.
-    #[cfg(test)]
-    fn text(&self) -> &str {
-        &self.text
-    }
-
     /// The text as a line; `None` if it is blank.
     pub(crate) fn line(&self) -> Option<Line> {
         Line::of(&self.text, self.columns)
@@ -110,12 +104,12 @@ mod tests {
         assert_eq!(entry.line(), Some(offer.clone()));
         entry.press(event(Key::Char('m'), true));
         type_all(&mut entry, "ara v ");
-        assert_eq!(entry.text(), "Mara v ");
+        assert_eq!(entry.text, "Mara v ");
         assert_eq!(entry.line().unwrap().as_str(), "Mara v");
         let mut entry = LineEntry::offering(&offer, 16);
         entry.press(event(Key::Backspace, false));
         type_all(&mut entry, "!");
-        assert_eq!(entry.text(), "guest-fo!");
+        assert_eq!(entry.text, "guest-fo!");
     }
 
     #[test]
@@ -123,7 +117,7 @@ mod tests {
         let mut entry = LineEntry::new(6);
         type_all(&mut entry, " a\u{1b}\u{7f}\u{202e}\u{301}日b日本");
         // The accent combines with what was typed before.
-        assert_eq!(entry.text(), "á日b日");
+        assert_eq!(entry.text, "á日b日");
         assert_eq!(entry.shown(4), "b日_");
         assert_eq!(entry.shown(0), "_");
         assert_eq!(LineEntry::new(4).line(), None);
@@ -150,9 +144,9 @@ mod tests {
         }
         let mut entry = LineEntry::new(12);
         type_all(&mut entry, "cafe\u{301} ");
-        assert_eq!(entry.text(), "café ");
+        assert_eq!(entry.text, "café ");
         assert!(!entry.press(event(Key::Char(' '), false)));
         assert!(!entry.press(event(Key::Char('\u{202e}'), false)));
-        assert_eq!(entry.text(), "café ");
+        assert_eq!(entry.text, "café ");
     }
 }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::endings::IdleLimits;
 use crate::accounts::AccountSettings;
 use crate::line::Line;
 use crate::rooms::ghost::Ghost;
@@ -42,16 +41,8 @@ pub(crate) struct HostFacts {
     /// The setting of the visitor's locale that restricts them to ASCII, such as `LANG=C`.
     pub(crate) ascii_locale: Option<Line>,
     pub(crate) catalog: Arc<Catalog>,
-    pub(crate) idle: IdleLimits,
     /// The least time between two frames, at first.
     pub(crate) frame_time: Duration,
-}
-
-impl HostFacts {
-    /// Whether rooms in that level can be played here. In a cluster, other hosts may have other maps.
-    pub(crate) fn has_level(&self, name: &str) -> bool {
-        self.catalog.world(name).is_some()
-    }
 }
 
 /// A way into a room.

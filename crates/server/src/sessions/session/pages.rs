@@ -265,8 +265,9 @@ impl Ui {
 
     /// The rooms for several in levels that this host has, the one with the most members first, the full ones last.
     fn rooms_by_life(&self) -> Vec<&RoomSummary> {
-        let is_offered =
-            |room: &&RoomSummary| room.mode != Mode::Alone && self.host.has_level(&room.level);
+        let is_offered = |room: &&RoomSummary| {
+            room.mode != Mode::Alone && self.host.catalog.world(&room.level).is_some()
+        };
         let mut rooms: Vec<&RoomSummary> = self.rooms.iter().filter(is_offered).collect();
         let life = |room: &RoomSummary| std::cmp::Reverse(room.members.len());
         rooms.sort_by_key(|room| (room.is_full(), life(room), room.mode, room.id));
@@ -380,7 +381,7 @@ impl Ui {
             Target::New { mode, .. } => (mode, None, false),
             Target::Existing(id) => match self.room(id) {
                 None => return back(Menu::new("").line("The room is closed.")),
-                Some(room) if !self.host.has_level(&room.level) => {
+                Some(room) if self.host.catalog.world(&room.level).is_none() => {
                     return back(Menu::new("").line(RoomRefusal::NoLevel.to_string()));
                 }
                 Some(room) => (room.mode, Some(who_is_here(room)), room.is_full()),

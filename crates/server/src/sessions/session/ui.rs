@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::endings::{Draining, Idle, IdleAction};
+use super::endings::{Draining, ELSEWHERE, IN_ROOM, Idle, IdleAction};
 use super::line_entry::LineEntry;
 use super::messages::{BoardRow, HostFacts, Identity, Request, SessionEvent};
 use super::pages::{Choice, Page};
@@ -150,7 +150,7 @@ impl Ui {
         if let Some(stay) = &mut self.stay {
             self.is_stale |= stay.talk.forget_old(now);
         }
-        match self.idle.step(&self.host.idle, self.idle_limit(), now) {
+        match self.idle.step(self.idle_limit(), now) {
             None => {}
             Some(IdleAction::Warn) => self.is_stale = true,
             Some(IdleAction::End) => self.put_out(),
@@ -164,7 +164,7 @@ impl Ui {
         let turns = self.is_playing() && self.pointer.is_busy();
         let stay = self.stay.as_ref();
         let times = [
-            Some(self.idle.next_at(&self.host.idle, self.idle_limit())),
+            Some(self.idle.next_at(self.idle_limit())),
             self.pages.pending_until(),
             held.next_expiry(),
             (tap || turns).then(|| self.clock.step_after(0)),
@@ -238,8 +238,8 @@ impl Ui {
 
     fn idle_limit(&self) -> Duration {
         match &self.stay {
-            Some(stay) if stay.member.is_some() => self.host.idle.in_room,
-            _ => self.host.idle.elsewhere,
+            Some(stay) if stay.member.is_some() => IN_ROOM,
+            _ => ELSEWHERE,
         }
     }
 

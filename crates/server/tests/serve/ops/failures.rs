@@ -70,7 +70,7 @@ fn for_each(failures: Vec<Failure>, test: impl Fn(&Failure) + Sync) {
 /// A host that has run, with an account that has a result.
 fn host_that_has_run() -> PathBuf {
     let data = folder();
-    let run = verify(WON).unwrap();
+    let run = verify(WON, |_| None).unwrap();
     let mut store = HostStore::open(&data).unwrap();
     let now = UnixTime::new(1_795_300_000);
     let account = store.create_account(None, &KEY, &Name::new("Mara").unwrap(), now).unwrap();

@@ -12,7 +12,7 @@ fn record_run_of_mara(store: &mut HostStore) {
     let now = UnixTime::new(1_000);
     let key = AccountKey::new([7; 32]);
     let mara = store.create_account(None, &key, &Name::new("Mara").unwrap(), now).unwrap();
-    let run = verify(RUN).expect("a run");
+    let run = verify(RUN, |_| None).expect("a run");
     store.record(mara.id, &run, now).unwrap();
 }
 
