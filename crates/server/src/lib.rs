@@ -44,7 +44,7 @@ mod bucket;
 pub mod cli;
 pub mod cluster;
 pub mod config;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub mod fuzzing;
 mod line;
