@@ -14,7 +14,6 @@ mod cell_writer;
 mod error;
 mod event;
 mod fidelity;
-#[cfg_attr(not(unix), expect(dead_code, reason = "without a terminal, nothing is sent"))]
 mod flow;
 #[cfg_attr(not(unix), expect(dead_code, reason = "signals, of which there are none, use it"))]
 mod guard;

@@ -23,7 +23,7 @@ mod light;
 mod mission;
 pub(crate) mod scene;
 pub mod sprite;
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, debug_assertions))]
 mod tests;
 pub mod texture;
 mod things;
@@ -370,7 +370,7 @@ impl World {
             ajar: Ajar::default(),
         };
         world.light_up();
-        #[cfg(any(test, fuzzing))]
+        #[cfg(any(test, debug_assertions))]
         assert!(world.fits_together());
         world
     }

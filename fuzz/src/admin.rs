@@ -4,8 +4,8 @@
 //! bounded by the bytes.
 
 use allocation_counter::measure;
-use cellcaster_server::fuzzing::Desk;
 use cellcaster_server::admin::{AdminReply, AdminRequest};
+use cellcaster_server::fuzzing::Desk;
 
 thread_local! {
     static DESK: Desk = Desk::default();

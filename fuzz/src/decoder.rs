@@ -11,9 +11,9 @@
 use std::time::Duration;
 
 use allocation_counter::measure;
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::rng::SplitMix64;
 use cellcaster::terminal::{Event, Key, KeyEvent, Modifiers, Options, Phase, Protocol, WindowSize};
+use cellcaster::tui::canvas::Canvas;
 use ratatui::style::Color;
 
 use crate::alacritty::Alacritty;

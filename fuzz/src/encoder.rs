@@ -7,8 +7,8 @@
 mod model;
 mod screens;
 
-use cellcaster::tui::canvas::Canvas;
 use cellcaster::terminal::{CellWriter, Fidelity};
+use cellcaster::tui::canvas::Canvas;
 use ratatui::backend::{Backend, ClearType};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect, Size};

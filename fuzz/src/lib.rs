@@ -3,31 +3,20 @@
 //! Each target is a function `run` of bytes that returns for every input, or panics where something is
 //! wrong. libFuzzer calls it from `libfuzzer.rs`, and the test `corpus` with the inputs of `corpus`.
 
-#[cfg(fuzzing)]
 mod admin;
-#[cfg(fuzzing)]
 mod channel;
-#[cfg(fuzzing)]
 mod checkpoint;
-#[cfg(fuzzing)]
 mod cluster;
 mod decoder;
 mod encoder;
-#[cfg(fuzzing)]
 mod login;
 pub mod maps;
-#[cfg(fuzzing)]
 mod operators;
 mod png;
-#[cfg(fuzzing)]
 mod recording;
-#[cfg(fuzzing)]
 mod room;
-#[cfg(fuzzing)]
 mod rows;
-#[cfg(fuzzing)]
 mod texts;
-#[cfg(fuzzing)]
 mod typing;
 mod waiting;
 
@@ -39,7 +28,6 @@ mod files;
 mod folder;
 #[path = "../../tests/support/open.rs"]
 mod open;
-#[cfg(fuzzing)]
 mod ssh;
 
 /// A target, of which the corpus is in the folder of its name.
@@ -51,33 +39,22 @@ pub struct Target {
     pub run: fn(&[u8]),
 }
 
-/// All targets. Some need what the crate opens with `--cfg fuzzing`.
+/// All targets.
 pub const TARGETS: &[Target] = &[
-    #[cfg(fuzzing)]
     Target { name: "admin", run: admin::run },
-    #[cfg(fuzzing)]
     Target { name: "channel", run: channel::run },
-    #[cfg(fuzzing)]
     Target { name: "checkpoint", run: checkpoint::run },
-    #[cfg(fuzzing)]
     Target { name: "cluster", run: cluster::run },
     Target { name: "decoder", run: decoder::run },
     Target { name: "encoder", run: encoder::run },
-    #[cfg(fuzzing)]
     Target { name: "login", run: login::run },
     Target { name: "maps", run: maps::run },
-    #[cfg(fuzzing)]
     Target { name: "operators", run: operators::run },
     Target { name: "png", run: png::run },
-    #[cfg(fuzzing)]
     Target { name: "recording", run: recording::run },
-    #[cfg(fuzzing)]
     Target { name: "room", run: room::run },
-    #[cfg(fuzzing)]
     Target { name: "rows", run: rows::run },
-    #[cfg(fuzzing)]
     Target { name: "texts", run: texts::run },
-    #[cfg(fuzzing)]
     Target { name: "typing", run: typing::run },
     Target { name: "waiting", run: waiting::run },
 ];

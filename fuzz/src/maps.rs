@@ -5,7 +5,7 @@
 //!
 //! - the player is never inside anything, whatever they want;
 //! - no step of the game takes more work than a millisecond allows;
-//! - as many quiet steps as the game reports equal one wait;
+//! - steps of a game at rest equal one wait;
 //! - a renderer that drew another picture draws the same one as a new renderer, one thread the same one
 //!   as several, and `explain` the same one as `render`.
 

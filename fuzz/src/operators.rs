@@ -1,8 +1,8 @@
 //! What operators and visitors write: a configuration, a name, a range of addresses, a script. The first
 //! byte says which one, the others are the text.
 
-use cellcaster_server::config::Config;
 use cellcaster_server::accounts::{AccountKey, AddressPrefix, Name, printable, verify};
+use cellcaster_server::config::Config;
 
 use crate::faults::check_faults;
 

@@ -1,8 +1,8 @@
 //! A room and its visitors: their terminals send anything, and the log of the round gives the room, bit for bit. A
 //! session ends only after it has given its terminal back.
 
-use cellcaster_server::fuzzing::Hall;
 use cellcaster::terminal::{Options, WindowSize};
+use cellcaster_server::fuzzing::Hall;
 
 use crate::alacritty::Alacritty;
 use crate::bytes::Bytes;

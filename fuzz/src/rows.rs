@@ -6,11 +6,11 @@
 use std::cell::RefCell;
 
 use cellcaster::game::{Rank, Share, Tally};
+use cellcaster::world::Difficulty;
 use cellcaster_server::accounts::{
     AccountKey, AccountSettings, BanTarget, ColumnValue, HostStore, LevelBoard, Name, UnixTime,
     VerifiedRun,
 };
-use cellcaster::world::Difficulty;
 
 use crate::bytes::Bytes;
 

@@ -7,9 +7,9 @@
 use std::fs;
 
 use cellcaster::app::Configuration;
+use cellcaster::app::store::{Preferences, Store};
 use cellcaster::game::{Game, Script};
 use cellcaster::map::builtin;
-use cellcaster::app::store::{Preferences, Store};
 use cellcaster::terminal::{Fidelity, Key};
 use cellcaster::world::Difficulty;
 

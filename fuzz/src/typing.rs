@@ -5,8 +5,8 @@
 //! by its length, so that nobody makes a host work by typing.
 
 use allocation_counter::measure;
-use cellcaster_server::fuzzing::Hall;
 use cellcaster::terminal::{Options, WindowSize};
+use cellcaster_server::fuzzing::Hall;
 
 use crate::bytes::Bytes;
 

@@ -264,16 +264,13 @@ fn lines(glyphs: GlyphSet, scale: usize) -> Vec<String> {
         row.and_then(|rows| rows.get(y)).is_some_and(|row| row & bit != 0)
     };
     let columns = 0..COLUMNS * scale;
-    match glyphs {
-        _ if glyphs.has_blocks() => {
-            let rows = (0..(ROWS * scale).div_ceil(2)).map(|row| 2 * row);
-            let half = |x, y| is_set(x, y / scale);
-            rows.map(|y| columns.clone().map(|x| block(half(x, y), half(x, y + 1))).collect())
-                .collect()
-        }
-        _ => (0..ROWS)
-            .map(|y| columns.clone().map(|x| if is_set(x, y) { '#' } else { ' ' }).collect())
-            .collect(),
+    if glyphs.has_blocks() {
+        let rows = (0..(ROWS * scale).div_ceil(2)).map(|row| 2 * row);
+        let half = |x, y| is_set(x, y / scale);
+        rows.map(|y| columns.clone().map(|x| block(half(x, y), half(x, y + 1))).collect()).collect()
+    } else {
+        let point = |x, y| if is_set(x, y) { '#' } else { ' ' };
+        (0..ROWS).map(|y| columns.clone().map(|x| point(x, y)).collect()).collect()
     }
 }
 

@@ -217,8 +217,7 @@ impl Guard {
         }
         self.discard_answers(&mut state.changes);
         _ = self.write_within_timeout(&sequence::of(LeaveAlternateScreen));
-        _ = self.device.discard_input();
-        _ = self.device.restore_attributes();
+        self.device.give_back();
     }
 
     /// Writes `text`, and returns the length of the part that the terminal accepts in time.

@@ -64,11 +64,6 @@ impl Device {
         Ok(tcsetattr(&self.input, OptionalActions::Now, &raw)?)
     }
 
-    /// Restores the attributes from when the terminal was opened.
-    pub(crate) fn restore_attributes(&self) -> io::Result<()> {
-        Ok(tcsetattr(&self.input, OptionalActions::Now, &self.attributes)?)
-    }
-
     pub(crate) fn size(&self) -> WindowSize {
         tcgetwinsize(&self.output).map_or(WindowSize::UNKNOWN, |size| {
             WindowSize::new((size.ws_col, size.ws_row), (size.ws_xpixel, size.ws_ypixel))
@@ -108,9 +103,11 @@ impl Device {
         Ok(tcflush(&self.output, QueueSelector::OFlush)?)
     }
 
-    /// Discards received bytes that were not read.
-    pub(crate) fn discard_input(&self) -> io::Result<()> {
-        Ok(tcflush(&self.input, QueueSelector::IFlush)?)
+    /// Discards received bytes that were not read, and restores the attributes from when the terminal was opened.
+    /// After an error in one step, the other is still tried: nothing better can be done about it.
+    pub(crate) fn give_back(&self) {
+        _ = tcflush(&self.input, QueueSelector::IFlush);
+        _ = tcsetattr(&self.input, OptionalActions::Now, &self.attributes);
     }
 
     /// Reads the available bytes into `buffer` and returns their number: zero at the end of input,

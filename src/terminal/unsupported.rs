@@ -38,7 +38,7 @@ pub(crate) enum Signal {
 
 /// Fails: there is no terminal to read keys from.
 #[cfg(feature = "cli")]
-pub fn take_keys_from_terminal() -> io::Result<()> {
+pub(crate) fn take_keys_from_terminal() -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
@@ -48,10 +48,6 @@ impl Device {
     }
 
     pub(crate) fn make_raw(&self) -> io::Result<()> {
-        match *self {}
-    }
-
-    pub(crate) fn restore_attributes(&self) -> io::Result<()> {
         match *self {}
     }
 
@@ -67,7 +63,7 @@ impl Device {
         match *self {}
     }
 
-    pub(crate) fn discard_input(&self) -> io::Result<()> {
+    pub(crate) fn give_back(&self) {
         match *self {}
     }
 

@@ -1,4 +1,4 @@
-//! The validity of worlds: an oracle, which tests and fuzzing apply to every world that is made.
+//! The validity of worlds: an oracle, which builds with debug assertions apply to every world that is made.
 //!
 //! The map reader verifies the same and reports what is wrong. Here, errors of the reader and of the
 //! generator are found where they are made.

@@ -31,12 +31,12 @@ mod results;
 mod sqlite;
 mod statements;
 mod store;
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, feature = "fuzzing"))]
 mod testing;
 mod waiting;
 pub(crate) mod worker;
 
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub use rusqlite::types::Value as ColumnValue;
 

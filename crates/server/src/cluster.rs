@@ -22,7 +22,7 @@
 
 mod bus;
 mod directory;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 pub(crate) mod fuzzing;
 mod host;
 mod leases;

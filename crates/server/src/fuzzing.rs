@@ -1,5 +1,5 @@
 //! Parts of the server without connections and tasks, for fuzz targets outside of the crate. It is compiled with
-//! `--cfg fuzzing` only.
+//! the feature `fuzzing` only.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::pin::pin;

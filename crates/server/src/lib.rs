@@ -6,13 +6,20 @@
 //!
 //! | module | is |
 //! |---|---|
-//! | [`ssh`] | the listener, connections, admission, and the one frame on its way to each visitor |
-//! | [`sessions`] | what each visitor sees and does: a session without a connection or a clock, and its driver, which has both |
-//! | [`rooms`] | rooms as deterministic state machines, the sequencer that orders their entries, and their directory |
 //! | [`accounts`] | accounts, names, bans and results, in a SQLite file or a PostgreSQL database |
+//! | [`admission`] | the limits of connections |
+//! | [`visitors`] | the visitors of this host, to list, to talk to and to send away |
+//! | [`logging`], [`metrics`], `load` | the log, figures for Prometheus, and the frame rate that follows from the load |
+//! | [`rooms`] | rooms as deterministic state machines, the sequencer that orders their entries, and their directory |
+//! | [`config`] | the configuration, as one table of settings |
+//! | [`admin`] | the requests of operators |
 //! | [`cluster`] | several hosts whose players are in the same rooms |
-//! | [`ops`] | configuration, the operator's socket, metrics, the log |
+//! | [`operator`] | requests of operators, on this host and on others; the socket |
+//! | [`ssh`] | the listener, connections, the gate that admits them, and the one frame on its way to each visitor |
+//! | [`sessions`] | a session draws what a visitor sees and returns requests; its driver has the connection and the clock |
 //! | [`cli`] | the command line |
+//!
+//! A module depends on modules above it in this table only.
 //!
 //! # Rules
 //!
@@ -37,7 +44,7 @@ mod bucket;
 pub mod cli;
 pub mod cluster;
 pub mod config;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 #[doc(hidden)]
 pub mod fuzzing;
 mod line;

@@ -2,7 +2,7 @@
 
 mod client;
 mod connection;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 pub(crate) mod fuzzing;
 mod gate;
 pub mod host_key;

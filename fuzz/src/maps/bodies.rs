@@ -39,11 +39,11 @@ pub(crate) fn check(scene: Scene, choices: &mut Bytes) {
 /// Takes one step, and checks that the player is in no body.
 fn fly(flight: &mut Flight, intents: cellcaster::game::Intents) {
     let mut waiting = flight.clone();
-    let quiet = flight.quiet_steps(intents) > 0;
+    let rests = flight.is_at_rest(intents);
     flight.step(intents);
-    if quiet {
+    if rests {
         waiting.wait(1);
-        assert!(*flight == waiting, "a quiet step is not a wait");
+        assert!(*flight == waiting, "a step at rest is not a wait");
     }
     let place = flight.camera(Default::default()).position();
     let least = least_clearance(place.abs().max_element());

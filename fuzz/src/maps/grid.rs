@@ -10,8 +10,8 @@ use crate::open::is_in_the_open;
 
 /// The most steps of a game.
 const MOST_STEPS: u64 = 600;
-/// The most steps that a wait is compared with.
-const MOST_QUIET_STEPS: u64 = 40;
+/// The steps that a wait is compared with.
+const STEPS_AT_REST: u64 = 40;
 /// The most pictures, of a map of up to that many cells.
 const MOST_PICTURES: usize = 4;
 
@@ -64,16 +64,15 @@ fn check_place(game: &Game) {
     assert!(feet < eye || feet.abs() > 1e8, "an eye at {eye}, feet at {feet}");
 }
 
-/// Checks that a wait equals as many steps.
+/// Checks that a wait equals as many steps of a game at rest.
 fn check_wait(game: &Game, intents: Intents) {
-    let quiet = game.quiet_steps(intents).min(MOST_QUIET_STEPS);
-    if quiet == 0 {
+    if !game.is_at_rest(intents) {
         return;
     }
     let (mut stepping, mut waiting) = (game.clone(), game.clone());
-    for _ in 0..quiet {
+    for _ in 0..STEPS_AT_REST {
         stepping.step(intents);
     }
-    waiting.wait(quiet);
-    assert!(stepping == waiting, "{quiet} quiet steps are not one wait");
+    waiting.wait(STEPS_AT_REST);
+    assert!(stepping == waiting, "steps at rest are not one wait");
 }

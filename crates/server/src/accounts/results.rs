@@ -173,7 +173,7 @@ impl VerifiedRun {
     }
 }
 
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, feature = "fuzzing"))]
 impl VerifiedRun {
     /// A run that nobody has verified.
     #[doc(hidden)]

@@ -3,16 +3,16 @@
 use std::time::Duration;
 
 use rusqlite::Connection;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 use rusqlite::params_from_iter;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 use rusqlite::types::Value;
 
 use super::HostStore;
 #[cfg(test)]
 use super::StoreFailure;
 use super::sqlite::make_tables;
-#[cfg(fuzzing)]
+#[cfg(feature = "fuzzing")]
 use super::sqlite::tables;
 use super::store::Database;
 
@@ -57,7 +57,7 @@ impl HostStore {
     ///
     /// # Panics
     /// Without memory for it.
-    #[cfg(fuzzing)]
+    #[cfg(feature = "fuzzing")]
     #[doc(hidden)]
     pub fn clear(&mut self) {
         let connection = self.connection();
@@ -71,7 +71,7 @@ impl HostStore {
     ///
     /// # Panics
     /// If the database does not stop to look at references.
-    #[cfg(fuzzing)]
+    #[cfg(feature = "fuzzing")]
     #[doc(hidden)]
     pub fn put(&mut self, table: usize, values: &[Value]) -> bool {
         let connection = self.connection();

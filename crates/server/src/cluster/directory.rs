@@ -261,16 +261,13 @@ impl SharedRooms {
 
     /// Keeps the records of all rooms up to date.
     async fn follow(self) {
-        let mut pause = MAINTENANCE_PERIOD;
         loop {
-            let Ok(mut changes) = self.0.context.bus.watch().await else {
-                sleep(std::mem::replace(&mut pause, MAINTENANCE_PERIOD)).await;
-                continue;
-            };
-            while let Some((id, bytes)) = changes.recv().await {
-                self.note(id, bytes.as_deref());
+            if let Ok(mut changes) = self.0.context.bus.watch().await {
+                while let Some((id, bytes)) = changes.recv().await {
+                    self.note(id, bytes.as_deref());
+                }
             }
-            sleep(pause).await;
+            sleep(MAINTENANCE_PERIOD).await;
         }
     }
 

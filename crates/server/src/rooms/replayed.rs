@@ -25,7 +25,7 @@ pub(crate) struct RoundReport {
 }
 
 /// The most steps of a recorded round: two hours, or 20 seconds in a fuzz target.
-const MOST_STEPS: u64 = if cfg!(fuzzing) { 20 * 60 } else { 2 * 60 * 60 * 60 };
+const MOST_STEPS: u64 = if cfg!(feature = "fuzzing") { 20 * 60 } else { 2 * 60 * 60 * 60 };
 
 /// Plays the rounds of a recording again. A round lasts until the next one begins, and the last one
 /// until its last entry.

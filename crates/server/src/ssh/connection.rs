@@ -240,7 +240,7 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
         kex::CURVE25519_PRE_RFC_8731,
         kex::EXTENSION_SUPPORT_AS_SERVER,
         kex::EXTENSION_OPENSSH_STRICT_KEX_AS_SERVER,
-        #[cfg(fuzzing)]
+        #[cfg(feature = "fuzzing")]
         kex::NONE,
     ];
     const KEYS: &[Algorithm] = &[
@@ -258,14 +258,14 @@ pub(crate) fn ssh_config(key: &HostKey) -> server::Config {
         cipher::AES_256_GCM,
         cipher::AES_256_CTR,
         cipher::AES_128_CTR,
-        #[cfg(fuzzing)]
+        #[cfg(feature = "fuzzing")]
         cipher::NONE,
     ];
     const MACS: &[mac::Name] = &[
         mac::HMAC_SHA256_ETM,
         mac::HMAC_SHA512_ETM,
         mac::HMAC_SHA256,
-        #[cfg(fuzzing)]
+        #[cfg(feature = "fuzzing")]
         mac::NONE,
     ];
     const COMPRESSION: &[compression::Name] = &[compression::NONE, compression::ZLIB_LEGACY];
