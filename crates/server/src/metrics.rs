@@ -153,7 +153,9 @@ impl Metrics {
 
     fn register(&self, page: &mut Registry) {
         // Figures that are still zero are samples, too.
-        Refusal::ALL.into_iter().for_each(|reason| drop(self.refused(reason)));
+        for reason in Refusal::ALL {
+            drop(self.refused(reason));
+        }
         for is_good in [false, true] {
             drop((self.results(is_good), self.checks(is_good)));
         }

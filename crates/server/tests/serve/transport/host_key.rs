@@ -24,7 +24,7 @@ fn a_key_that_others_can_read_is_refused() {
     let path = folder.join("host_key");
     for mode in [0o640, 0o604, 0o622, 0o777] {
         fs::set_permissions(&path, Permissions::from_mode(mode)).unwrap();
-        let error = HostKey::open(&folder).unwrap_err().to_string();
+        let error = HostKey::open(&folder).unwrap_err();
         assert!(error.contains("can be read or written by others"), "{error}");
         assert!(error.contains("chmod 600"), "{error}");
     }
@@ -37,7 +37,7 @@ fn what_is_no_key_is_refused() {
         let path = folder.join("host_key");
         fs::write(&path, content).unwrap();
         fs::set_permissions(&path, Permissions::from_mode(0o600)).unwrap();
-        let error = HostKey::open(&folder).unwrap_err().to_string();
+        let error = HostKey::open(&folder).unwrap_err();
         assert!(error.contains("is no ed25519 key"), "{error}");
         assert_eq!(fs::read_to_string(&path).unwrap(), content);
     }
