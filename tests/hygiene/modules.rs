@@ -1,16 +1,23 @@
-//! Modules of the game depend on modules above them in the table of ARCHITECTURE.md, and on no others.
+//! Modules of the game and of the server depend on modules above them in the tables of ARCHITECTURE.md, and on no others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules in the table's order.
-fn table() -> Vec<String> {
+/// The parts of a package that are for tests alone.
+const FOR_TESTS: [&str; 5] = ["tests", "simulation", "simulated", "testing", "fuzzing"];
+
+/// The modules in the order of the table under `heading`.
+fn table(heading: &str) -> Vec<String> {
     let text = fs::read_to_string("ARCHITECTURE.md").unwrap();
-    let section = text.split("## Modules of the game").nth(1).unwrap();
+    let section = text.split(heading).nth(1).unwrap();
     let section = section.split("\n## ").next().unwrap();
     let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
     let names = rows.flat_map(|row| row.split(" | ").next().unwrap().split(", "));
     names.map(|name| name.trim_matches('`').to_owned()).collect()
+}
+
+fn is_for_tests(path: &Path) -> bool {
+    FOR_TESTS.iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name))
 }
 
 /// The files of a module, without those of its tests.
@@ -21,7 +28,7 @@ fn files(path: &Path) -> Vec<PathBuf> {
     }
     for entry in fs::read_dir(path).into_iter().flatten() {
         let path = entry.unwrap().path();
-        if path.ends_with("tests") || path.ends_with("tests.rs") {
+        if is_for_tests(&path) {
             continue;
         }
         if path.is_dir() {
@@ -47,22 +54,26 @@ fn named(text: &str) -> Vec<&str> {
 
 #[test]
 fn modules_depend_on_those_above_them() {
-    let table = table();
-    for module in ["world", "map", "game", "terminal", "app"] {
-        assert!(table.iter().any(|name| name == module), "{module} is not in {table:?}");
-    }
-    let mut entries: Vec<String> = fs::read_dir("src")
+    check("## Modules of the game", Path::new("src"));
+    check("## Modules of the server", Path::new("crates/server/src"));
+}
+
+fn check(heading: &str, folder: &Path) {
+    let table = table(heading);
+    let mut entries: Vec<String> = fs::read_dir(folder)
         .unwrap()
-        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| !is_for_tests(path))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
         .filter(|name| !["lib", "main"].contains(&name.as_str()))
         .collect();
     entries.sort();
     entries.dedup();
     let mut listed = table.clone();
     listed.sort();
-    assert_eq!(listed, entries, "the table has each module once");
+    assert_eq!(listed, entries, "the table of {} has each module once", folder.display());
     for (place, module) in table.iter().enumerate() {
-        for file in files(&Path::new("src").join(module)) {
+        for file in files(&folder.join(module)) {
             let text = fs::read_to_string(&file).unwrap();
             assert!(!text.contains("use crate::{"), "{}: one path for each module", file.display());
             for name in named(&text) {

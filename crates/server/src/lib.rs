@@ -4,22 +4,7 @@
 //! socket ─ ssh ─▶ Link + Visitor ─ sessions ─▶ requests ─ rooms ─▶ snapshots ─ sessions ─▶ frames ─ ssh ─▶ socket
 //! ```
 //!
-//! | module | is |
-//! |---|---|
-//! | [`accounts`] | accounts, names, bans and results, in a SQLite file or a PostgreSQL database |
-//! | [`admission`] | the limits of connections |
-//! | [`visitors`] | the visitors of this host, to list, to talk to and to send away |
-//! | [`logging`], [`metrics`], `load` | the log, figures for Prometheus, and the frame rate that follows from the load |
-//! | [`rooms`] | rooms as deterministic state machines, the sequencer that orders their entries, and their directory |
-//! | [`config`] | the configuration, as one table of settings |
-//! | [`admin`] | the requests of operators |
-//! | [`cluster`] | several hosts whose players are in the same rooms |
-//! | [`operator`] | requests of operators, on this host and on others; the socket |
-//! | [`ssh`] | the listener, connections, the gate that admits them, and the one frame on its way to each visitor |
-//! | [`sessions`] | a session draws what a visitor sees and returns requests; its driver has the connection and the clock |
-//! | [`cli`] | the command line |
-//!
-//! A module depends on modules above it in this table only.
+//! ARCHITECTURE.md has the table of the modules.
 //!
 //! # Rules
 //!
@@ -30,7 +15,7 @@
 //!   while the session is busy, and at most one frame waits for a client that does not read.
 //! - A client costs the others nothing: connections, bytes and time before authentication are
 //!   limited, and so are the bytes a second after it.
-//! - Policies take time and chance as arguments; only [`ssh`] has sockets and a clock.
+//! - Policies take time and chance as arguments; only [`ssh`], [`operator`] and [`metrics`] have sockets.
 //!
 //! Rejected: `russh`'s own accept loop. It has no limit of connections, no deadline before
 //! authentication, and its queue to a channel tells nothing about the socket.
