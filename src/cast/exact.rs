@@ -4,7 +4,7 @@
 //! [`MajorAxisTraversal`] finds the walls, without stopping in every cell. A ray that starts off
 //! the map, or on a very large map, uses the [`Walk`] instead. Where rounding leaves a doubt, both
 //! evaluate the same exact predicate at the same corners, so that their results are equal. In
-//! rooms, among pillars and in corridors (`benches/casters.rs`), a ray takes 0.6 to 0.9 times the
+//! rooms, among pillars and in corridors (`crates/lab/benches/casters.rs`), a ray takes 0.6 to 0.9 times the
 //! time of `dda`, which is why this caster is the default.
 
 use std::iter;

@@ -5,6 +5,8 @@ use cellcaster::render::{Frame, FrameSize, Options, PixelAspect, Renderable, Ren
 use cellcaster::space;
 use cellcaster::world::{Camera, FieldOfView, World};
 
+const GALLERY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/gallery");
+
 /// The map with which all others are compared.
 pub(crate) const FLAT: &str = "flat";
 
@@ -27,7 +29,7 @@ pub(crate) struct Scene {
 
 /// All maps of the gallery by name, the flat one first.
 pub(crate) fn scenes() -> Vec<Scene> {
-    let files = std::fs::read_dir("maps/gallery").expect("the benches run in the package's folder");
+    let files = std::fs::read_dir(GALLERY).expect("the folder of the gallery");
     let paths = files.map(|file| file.expect("the gallery can be read").path());
     let mut scenes: Vec<Scene> = paths
         .map(|path| {

@@ -1,6 +1,6 @@
 //! The 3-D caster: the time for a pixel, in the gallery's scene.
 //!
-//! `cargo bench --no-default-features --bench space`. An element is a pixel.
+//! `cargo bench -p cellcaster-lab --bench space`. An element is a pixel.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use cellcaster::space::Renderer;
 use cellcaster::world::FieldOfView;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-const MAP: &str = include_str!("../maps/gallery/spheres.toml");
+const MAP: &str = include_str!("../../../maps/gallery/spheres.toml");
 const SIZES: [(u32, u32); 3] = [(80, 48), (320, 200), (1920, 1080)];
 
 fn space(criterion: &mut Criterion) {

@@ -1,6 +1,6 @@
 //! Cellcaster's encoder and ratatui's own for crossterm: the time from changed cells to bytes.
 //!
-//! `cargo bench --bench encode`. One iteration is a walk through the citadel at 120×40, and an
+//! `cargo bench -p cellcaster-lab --bench encode`. One iteration is a walk through the citadel at 120×40, and an
 //! element is a frame. The encoders take turns, so that only figures of the same run are
 //! comparable.
 
@@ -82,7 +82,7 @@ fn frames() -> Vec<Changes> {
 
 /// The committed script, with each stretch shortened.
 fn script() -> Script {
-    let whole = include_str!("../maps/showcase.script");
+    let whole = include_str!("../../../maps/showcase.script");
     let whole = Script::parse(whole, "showcase").expect("the committed script has no faults");
     let mut text = String::new();
     for section in whole.sections() {

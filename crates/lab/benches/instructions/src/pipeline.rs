@@ -89,7 +89,7 @@ fn replay(glyphs: GlyphSet, size: Size) -> Replay {
 
 /// The intents of each step.
 fn intents() -> Vec<Intents> {
-    let script = include_str!("../../../maps/showcase.script");
+    let script = include_str!("../../../../../maps/showcase.script");
     let script = Script::parse(script, "showcase").expect("the committed script has no faults");
     let stretches = script.sections().iter().flat_map(|section| &section.stretches);
     stretches

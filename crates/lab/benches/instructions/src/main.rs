@@ -130,7 +130,7 @@ fn level(map: &str) -> Level {
     if map == "rooms" {
         return Level::Grid(Box::new(map::parse_str(ROOMS).expect("the map is sound")));
     }
-    let gallery = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/gallery"));
+    let gallery = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../maps/gallery"));
     map::load_level(&gallery.join(map).with_extension("toml"))
         .expect("a map of the gallery is sound")
 }

@@ -1,6 +1,6 @@
 //! The cost of a step with guards, and of a copy of the game.
 //!
-//! `cargo bench --no-default-features --bench guards`, on maps of 160 × 90 cells. A quarter of the
+//! `cargo bench -p cellcaster-lab --bench guards`, on maps of 160 × 90 cells. A quarter of the
 //! cells are walls. The player runs in circles, so that those who follow always have a new goal. An
 //! iteration is one step of the whole game; the one without guards is the price of the rest.
 

@@ -1,6 +1,6 @@
 //! A frame of every map of the gallery, and of the flat one by the baseline renderer.
 //!
-//! `cargo bench --no-default-features --bench frame`. An element is a pixel. For ratios between
+//! `cargo bench -p cellcaster-lab --bench frame`. An element is a pixel. For ratios between
 //! maps use `--bench prices`, where they take turns.
 
 use std::hint::black_box;

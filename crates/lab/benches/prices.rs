@@ -1,6 +1,6 @@
 //! The price list: the time of a frame of each map of the gallery, as a multiple of the flat one's.
 //!
-//! `cargo bench --no-default-features --bench prices` writes the table of `docs/prices.md`. All
+//! `cargo bench -p cellcaster-lab --bench prices` writes the table of `docs/prices.md`. All
 //! maps take turns and are compared within a turn, and the result of a turn is its median frame. A
 //! busy machine slows all of them, or interrupts few of the frames. The table has the median turn,
 //! with the quartiles in brackets.
