@@ -3,8 +3,6 @@
 use std::fmt::{Display, Write};
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
-use std::thread;
-use std::time::Duration;
 
 use serde_json::Value;
 
@@ -117,12 +115,6 @@ impl Game {
     pub(crate) fn leave(&self) {
         self.press(Key::Char('q'));
         self.press(Key::Enter);
-    }
-
-    /// Confirms a result after it has been shown for half a second.
-    pub(crate) fn confirm(&self) {
-        thread::sleep(Duration::from_millis(700));
-        self.tap(Key::Enter);
     }
 
     /// The player's arrow on the minimap.

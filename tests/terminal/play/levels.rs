@@ -1,10 +1,14 @@
 //! The end of a level.
 
-use std::fs;
+use std::time::Duration;
+use std::{fs, thread};
 
 use super::clock::{CLOCK, Typist};
 use super::game::{ENVIRONMENT, Game, Key, PROGRAM};
 use super::titles::folder;
+
+/// A result is shown for half a second before Enter confirms it.
+const RESULT: Duration = Duration::from_millis(700);
 
 #[test]
 fn the_exit_shows_the_time_and_a_single_map_is_followed_by_the_end() {
@@ -13,11 +17,14 @@ fn the_exit_shows_the_time_and_a_single_map_is_followed_by_the_end() {
     game.wait_for("you found the way out");
     game.wait_for(" in 0:");
     game.release(Key::Char('w'));
-    game.confirm();
+    thread::sleep(RESULT);
+    game.tap(Key::Enter);
     game.wait_for("the end");
     game.wait_for("all levels");
     game.wait_for(" in 0:");
-    game.confirm();
+    thread::sleep(RESULT);
+    // It ends the game, long before the key is released.
+    game.press(Key::Enter);
     let ending = game.wait_for_end();
     ending.assert_given_back();
     assert!(ending.status.success());
