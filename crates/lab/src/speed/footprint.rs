@@ -24,12 +24,13 @@ const GAME_WINDOW: Size = Size::new(120, 40);
 /// The number of times the program is started.
 const STARTS: usize = 9;
 
-/// Measures. The process must not have done anything else yet. A figure that this system does not report is missing.
+/// Measures the game that lies beside this program, and a game in this process, which must not have done anything else
+/// yet. A figure is missing if there is no such program, or if the system does not report it.
 pub(crate) fn measure_footprint() -> Result<Table, Error> {
     const MEBIBYTE: f64 = (1 << 20) as f64;
     play()?;
     let memory = peak_memory().map(|bytes| bytes as f64 / MEBIBYTE);
-    let path = env::current_exe().ok();
+    let path = env::current_exe().ok().map(|path| path.with_file_name("cellcaster"));
     let program = path.as_deref().and_then(|path| Some(fs::metadata(path).ok()?.len()));
     let program = program.map(|bytes| bytes as f64 / MEBIBYTE);
     let starts = path.map(|path| (0..STARTS).map_while(|_| start_up(&path).ok()).collect());
@@ -41,7 +42,8 @@ pub(crate) fn measure_footprint() -> Result<Table, Error> {
         name: "footprint",
         title: format!(
             "The time until `cellcaster snapshot` of {} cells writes its first byte, the median of\n\
-             {STARTS}; the size of the program; and the peak memory of a game of {}",
+             {STARTS}; the size of the program; and the peak memory of a game of {} in the\n\
+             laboratory",
             window(FIRST_WINDOW),
             window(GAME_WINDOW)
         ),
