@@ -1,10 +1,9 @@
 //! Diagrams of a report as SVG: an error over a cost, both logarithmic.
 //!
-//! Each diagram of a table is a row of panels, one for each problem. In a panel, a method is a line
-//! of points, joined in the order of its parameter; bars are the quartiles of times. Dots of later
-//! methods are smaller, so that none hides another. The description of the file has the whole report
-//! as CSV, so that a plot holds what the tables hold. The background is white, so that it looks the same on a light and
-//! on a dark page.
+//! Each diagram of a table is a row of panels, one for each problem; diagrams of one panel share a row. In a panel, a
+//! method is a line of points, joined in the order of its parameter; bars are the quartiles of times. Dots of later
+//! methods are smaller, so that none hides another. The description of the file has the whole report as CSV, so that a
+//! plot holds what the tables hold. The background is white, so that it looks the same on a light and on a dark page.
 //!
 //! Rejected: a charting library. Labels that avoid each other and quartiles as bars take more code with one than without.
 
@@ -48,9 +47,13 @@ pub(crate) fn svg(report: &Report) -> String {
     let mut y = MARGIN;
     for table in report.tables.iter().filter(|table| !table.diagrams.is_empty()) {
         y = put_heading(table, y, &mut page);
-        for diagram in &table.diagrams {
-            y = put_diagram(table, diagram, y, &mut page);
+        let diagrams = table.diagrams.iter().map(|diagram| Panel::all_of(table, diagram));
+        let (single, several): (Vec<_>, Vec<_>) = diagrams.partition(|panels| panels.len() == 1);
+        for panels in several {
+            y = put_panels(&panels, y, &mut page);
         }
+        let single: Vec<_> = single.into_iter().flatten().collect();
+        y = put_panels(&single, y, &mut page);
     }
     for (name, value) in report.origin.parts() {
         y += LINE;
@@ -61,8 +64,10 @@ pub(crate) fn svg(report: &Report) -> String {
 
 /// The title of a table and the legend of its methods. Returns the position below.
 fn put_heading(table: &Table, mut y: f64, page: &mut Page) -> f64 {
-    page.text((MARGIN, y), "start", &format!("{}: {}.", table.name, table.title));
-    y += LINE;
+    for line in format!("{}: {}.", table.name, table.title).lines() {
+        page.text((MARGIN, y), "start", line);
+        y += LINE;
+    }
     let mut x = MARGIN;
     for (index, method) in table.distinct(1).into_iter().enumerate() {
         page.dot((x + 5.0, y - 4.0), radius(index), color(index));
@@ -73,12 +78,10 @@ fn put_heading(table: &Table, mut y: f64, page: &mut Page) -> f64 {
     y + LINE
 }
 
-/// The panels of a diagram that have points. Returns the position below.
-fn put_diagram(table: &Table, diagram: &Diagram, mut y: f64, page: &mut Page) -> f64 {
-    let problems = table.distinct(0).into_iter();
-    let panels: Vec<_> = problems.filter_map(|it| Panel::new(table, diagram, it)).collect();
+/// Puts panels side by side. Returns the position below.
+fn put_panels(panels: &[Panel<'_>], mut y: f64, page: &mut Page) -> f64 {
     // Two rows of two are easier to compare than one of three and one more.
-    let columns = if panels.len() == 4 { 2 } else { 3 };
+    let columns = if matches!(panels.len(), 1 | 2 | 4) { 2 } else { 3 };
     let width = WIDTH / columns as f64;
     for row in panels.chunks(columns) {
         for (column, panel) in row.iter().enumerate() {
@@ -107,6 +110,12 @@ struct Sample<'a> {
 }
 
 impl<'a> Panel<'a> {
+    /// The panels of a diagram that have points.
+    fn all_of(table: &'a Table, diagram: &Diagram) -> Vec<Self> {
+        let problems = table.distinct(0).into_iter();
+        problems.filter_map(|problem| Self::new(table, diagram, problem)).collect()
+    }
+
     /// The panel of `problem`; `None` if it has no points.
     fn new(table: &'a Table, diagram: &Diagram, problem: &'a str) -> Option<Self> {
         let methods = table.distinct(1);
