@@ -7,7 +7,7 @@ use crate::solids::Solids;
 use cellcaster::color::Rgb;
 use cellcaster::map::{self, TextureFileError, TextureFiles};
 use cellcaster::render::{Filter, Frame, FrameSize, PixelAspect, Renderer};
-use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch};
+use cellcaster::world::{Camera, FieldOfView, Figure, Heading, Pitch, SpriteId};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -45,10 +45,36 @@ impl TextureFiles for Noise {
 /// A tile of a random world.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    Wall { height: f64 },
-    Open { floor: f64 },
-    Covered { floor: f64, room: f64, rock: f64 },
-    Shape { floor: f64, height: f64, outline: &'static str },
+    Wall {
+        height: f64,
+    },
+    Open {
+        floor: f64,
+    },
+    Covered {
+        floor: f64,
+        room: f64,
+        rock: f64,
+    },
+    Shape {
+        floor: f64,
+        height: f64,
+        outline: &'static str,
+    },
+    /// Glass of this opacity.
+    Glass {
+        floor: f64,
+        room: f64,
+        opacity: f64,
+    },
+    Mask {
+        floor: f64,
+        room: f64,
+    },
+    Mirror {
+        height: f64,
+        opacity: f64,
+    },
 }
 
 /// The paints of a world.
@@ -109,6 +135,18 @@ fn kind<H: Strategy<Value = f64>>(height: impl Fn() -> H) -> impl Strategy<Value
     ]
 }
 
+/// A tile that shows what is behind it, or before it.
+fn see_through_kind() -> impl Strategy<Value = Kind> {
+    let opacity = || prop_oneof![1 => Just(0.0), 1 => Just(1.0), 3 => 0.0..=1.0];
+    let cube = || (ordinary_height(), 0.25..2.0);
+    prop_oneof![
+        2 => (cube(), opacity())
+            .prop_map(|((floor, room), opacity)| Kind::Glass { floor, room, opacity }),
+        1 => cube().prop_map(|(floor, room)| Kind::Mask { floor, room }),
+        3 => (0.01..2.0, opacity()).prop_map(|(height, opacity)| Kind::Mirror { height, opacity }),
+    ]
+}
+
 /// The map text of a shape after its kind and its paint.
 const OUTLINES: [&str; 6] = [
     "pillar = ; radius = 0.5",
@@ -130,6 +168,9 @@ fn map_of(scene: &Scene, look: Look) -> String {
         look.paint('z', 0),
         if is_covered { look.paint('z', 1) } else { "sky".to_owned() }
     );
+    if let Some(distance) = scene.fog {
+        _ = writeln!(text, "fog = {{ color = \"#403020\", distance = {distance:?} }}");
+    }
     _ = writeln!(text, "ceiling_height = {:?}\ngrid = '''", scene.ceiling_height);
     for row in cells.chunks(COLUMNS) {
         let character = |&kind: &usize| match kind {
@@ -166,6 +207,30 @@ fn map_of(scene: &Scene, look: Look) -> String {
                     top + rock
                 )
             }
+            Kind::Glass { floor: height, room, opacity } => {
+                // Under the sky, it is as high as the map's ceiling would be.
+                let above = if scene.is_covered {
+                    format!("ceiling = \"{ceiling}\", ceiling_height = {:?}", height + room)
+                } else {
+                    "ceiling = \"sky\"".to_owned()
+                };
+                writeln!(
+                    text,
+                    "{character} = {{ glass = \"#80c0ff\", opacity = {opacity:?}, floor = \"{floor}\", \
+                     floor_height = {height:?}, riser = \"{riser}\", {above}, lintel = \"{lintel}\" }}"
+                )
+            }
+            Kind::Mask { floor: height, room } => writeln!(
+                text,
+                "{character} = {{ mask = \"thing-{character}.png\", floor = \"{floor}\", \
+                 floor_height = {height:?}, riser = \"{riser}\", ceiling = \"{ceiling}\", \
+                 ceiling_height = {:?}, lintel = \"{lintel}\" }}",
+                height + room
+            ),
+            Kind::Mirror { height, opacity } => writeln!(
+                text,
+                "{character} = {{ mirror = \"#d0b070\", opacity = {opacity:?}, height = {height:?}{light} }}",
+            ),
             Kind::Shape { floor: floor_height, height, outline } => {
                 let outline = outline.replace(';', &format!("\"{lintel}\","));
                 writeln!(
@@ -217,6 +282,8 @@ struct Scene {
     cells: Vec<usize>,
     /// The brightness of each kind of tile; empty if everything is fully lit.
     lights: Vec<f64>,
+    /// The distance at which fog hides half.
+    fog: Option<f64>,
     is_covered: bool,
     ceiling_height: f64,
     /// The height and the anchor of the things.
@@ -245,6 +312,7 @@ prop_compose! {
             Just(Vec::new()),
             prop::collection::vec(0.0..=1.0, KINDS),
         ],
+        fog in prop_oneof![3 => Just(None), 1 => (0.5..20.0).prop_map(Some)],
         is_covered in any::<bool>(),
         thing in (
             prop_oneof![Just(0.8), 0.1..3.0],
@@ -262,9 +330,21 @@ prop_compose! {
         let position = DVec2::from(position);
         let ceiling_height = 1.25;
         Scene {
-            kinds, cells, lights, is_covered, ceiling_height, thing, figures, position,
+            kinds, cells, lights, fog, is_covered, ceiling_height, thing, figures, position,
             is_on_a_roof, up, degrees, pitch, size,
         }
+    }
+}
+
+/// The same kind with its floor at 0 and its top at 1.
+fn level(kind: Kind) -> Kind {
+    match kind {
+        Kind::Wall { .. } | Kind::Shape { .. } => Kind::Wall { height: 1.0 },
+        Kind::Open { .. } => Kind::Open { floor: 0.0 },
+        Kind::Covered { .. } => Kind::Covered { floor: 0.0, room: 1.0, rock: 0.0 },
+        Kind::Glass { opacity, .. } => Kind::Glass { floor: 0.0, room: 1.0, opacity },
+        Kind::Mask { .. } => Kind::Mask { floor: 0.0, room: 1.0 },
+        Kind::Mirror { opacity, .. } => Kind::Mirror { height: 1.0, opacity },
     }
 }
 
@@ -274,11 +354,6 @@ prop_compose! {
         scene in scene(of),
         up in prop_oneof![0.01..0.99, prop::sample::select(vec![1e-12, 0.001, 0.015, 0.99, 0.999])],
     ) -> Scene {
-        let level = |kind: Kind| match kind {
-            Kind::Wall { .. } | Kind::Shape { .. } => Kind::Wall { height: 1.0 },
-            Kind::Open { .. } => Kind::Open { floor: 0.0 },
-            Kind::Covered { .. } => Kind::Covered { floor: 0.0, room: 1.0, rock: 0.0 },
-        };
         let kinds: Vec<Kind> = scene.kinds.into_iter().map(level).collect();
         Scene { kinds, up, ceiling_height: 1.0, is_on_a_roof: false, ..scene }
     }
@@ -301,6 +376,20 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    /// A world in which some tiles show what is behind them, or before them.
+    fn see_through_scene()(
+        scenes in (scene(Look::Textures), level_scene(Look::Textures)),
+        is_level in any::<bool>(),
+        others in prop::collection::vec(see_through_kind(), 1..KINDS - 1),
+    ) -> Scene {
+        let scene = if is_level { scenes.1 } else { scenes.0 };
+        let kept = scene.kinds.iter().copied().take(KINDS - others.len());
+        let others = others.into_iter().map(|kind| if is_level { level(kind) } else { kind });
+        Scene { kinds: kept.chain(others).collect(), ..scene }
+    }
+}
+
 /// Compares every pixel of a picture that is not on an edge.
 fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let text = map_of(scene, look);
@@ -319,8 +408,17 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
             opacity,
         })
     });
-    world.set_figures(figures);
     let position = scene.position;
+    // Mirrors show the player, unless there is a figure of them.
+    let own = Figure {
+        sprite: SpriteId(0),
+        position,
+        base: 0.0,
+        heading: Heading::default(),
+        frame: 0,
+        opacity: 0,
+    };
+    world.set_figures(figures.chain([own]));
     let tile = world.grid().tile(position.x as i64, position.y as i64).unwrap();
     let mut gaps = world.tile(tile).gaps();
     let gap = if scene.is_on_a_roof { gaps.next_back() } else { gaps.next() }.unwrap();
@@ -376,6 +474,15 @@ proptest! {
 
     #[test]
     fn every_texel_of_a_level_scene_is_where_geometry_says(scene in level_scene(Look::Textures)) {
+        compare(&scene, Look::Textures)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn every_pixel_behind_glass_and_in_mirrors_is_where_geometry_says(scene in see_through_scene()) {
         compare(&scene, Look::Textures)?;
     }
 }

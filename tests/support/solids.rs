@@ -1,15 +1,15 @@
-//! A world as a set of solids: blocks, pillars, thin walls and pictures. A line hits the nearest of
+//! A world as a set of solids: blocks, pillars, thin walls, cubes of glass and pictures. A line hits the nearest of
 //! them.
 //!
 //! It uses no portals, rows or cells: it tests every solid and takes the nearest hit. The colour of
-//! a hit depends on its position only.
+//! a hit depends on its position only. A mirror reflects the line, and with it the viewer.
 
 use std::f64::consts::TAU;
 
 use cellcaster::color::Rgb;
 use cellcaster::world::{
-    Anchor, Camera, Ceiling, Cell, Figure, Gap, Light, Outline, Paint, Sprite, Texture, Tile,
-    TileKind, World,
+    Anchor, Camera, Ceiling, Cell, Figure, Gap, Glass, Light, Outline, Paint, Sprite, Texture,
+    Tile, TileId, TileKind, World,
 };
 use glam::{DVec2, DVec3};
 
@@ -17,6 +17,8 @@ use glam::{DVec2, DVec3};
 const FAR: f64 = 1e30;
 /// Things nearer than this are not drawn.
 const NEAREST: f64 = 0.2;
+/// The most mirrors that reflect a line.
+const MOST_BOUNCES: usize = 8;
 
 /// The solids of a world for one camera.
 pub(crate) struct Solids<'a> {
@@ -27,6 +29,13 @@ pub(crate) struct Solids<'a> {
 
 enum Solid<'a> {
     Block(Block),
+    /// A cube of glass or a mask: its front sides alone are seen, and none between cells of one tile.
+    Cube {
+        block: Block,
+        tile: TileId,
+        /// The opacity of glass; `None` for a mask, whose texels have their own.
+        opacity: Option<u8>,
+    },
     Pillar {
         center: DVec2,
         radius: f64,
@@ -60,6 +69,37 @@ struct Block {
     is_off_map: bool,
     /// The light of its top and its bottom.
     flat_light: Light,
+    /// The tint of its sides, if they are mirrors.
+    mirror: Option<Glass>,
+}
+
+/// A line of sight, and the viewer: the camera, or its image in mirrors.
+struct Sight {
+    origin: DVec3,
+    direction: DVec3,
+    /// The distance at which the line begins.
+    from: f64,
+    forward: DVec2,
+    right: DVec2,
+    is_mirrored: bool,
+}
+
+impl Sight {
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    /// The sight from `t` on, where a side of `block` reflects it.
+    fn reflected(&self, block: &Block, face: Face, t: f64) -> Self {
+        let axis = usize::from(face == Face::Y);
+        let line = if self.direction[axis] > 0.0 { block.low[axis] } else { block.high[axis] };
+        let mut image = Self { from: t, is_mirrored: !self.is_mirrored, ..*self };
+        image.origin[axis] = 2.0 * line - self.origin[axis];
+        image.direction[axis] = -self.direction[axis];
+        image.forward[axis] = -self.forward[axis];
+        image.right[axis] = -self.right[axis];
+        image
+    }
 }
 
 /// The hits of a line, up to the first one that hides what is behind it.
@@ -111,7 +151,8 @@ impl<'a> Solids<'a> {
             };
             Solid::Picture { sprite, shown }
         }));
-        all.extend(world.figures().iter().map(|&shown| {
+        let visible = world.figures().iter().filter(|figure| figure.opacity > 0);
+        all.extend(visible.map(|&shown| {
             let sprite = world.sprite(shown.sprite);
             Solid::Picture { sprite, shown }
         }));
@@ -120,36 +161,67 @@ impl<'a> Solids<'a> {
 
     /// What a line from the camera along `direction` meets before the `sky`.
     pub(crate) fn meet(&self, direction: DVec3, sky: Rgb) -> Met {
-        let origin = self.camera.position().extend(self.camera.eye());
+        let mut sight = Sight {
+            origin: self.camera.position().extend(self.camera.eye()),
+            direction,
+            from: 0.0,
+            forward: self.camera.direction(),
+            right: self.camera.direction().perp(),
+            is_mirrored: false,
+        };
+        let mut met = Met { faces: Vec::new(), color: sky, is_tied: false };
+        let mut layers = Vec::new();
+        for bounces in 0..=MOST_BOUNCES {
+            let image = self.meet_in(&sight, bounces < MOST_BOUNCES, &mut met, &mut layers);
+            let Some(image) = image else { break };
+            sight = image;
+        }
+        met.color =
+            layers.into_iter().rev().fold(sky, |behind, (color, alpha)| color.over(behind, alpha));
+        met
+    }
+
+    /// Adds what `sight` meets up to a mirror, and returns the sight from there on.
+    fn meet_in(
+        &self,
+        sight: &Sight,
+        reflects: bool,
+        met: &mut Met,
+        layers: &mut Vec<(Rgb, u8)>,
+    ) -> Option<Sight> {
         let entries = self.all.iter().enumerate().filter_map(|(index, solid)| {
-            let (t, face) = self.entry(solid, origin, direction)?;
+            let (t, face) = self.entry(solid, sight)?;
             Some((t, index, face))
         });
         let mut entries: Vec<_> = entries.collect();
         entries.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let hides = |index: usize| match &self.all[index] {
-            Solid::Picture { shown, .. } => shown.opacity == u8::MAX,
-            _ => true,
-        };
-        let seen = entries.iter().position(|&(_, index, _)| hides(index));
+        let (mut seen, mut image) = (0, None);
+        for &(t, index, face) in &entries {
+            seen += 1;
+            met.faces.push((index, face));
+            let (color, alpha) = self.color(&self.all[index], face, sight, t);
+            if let Solid::Block(block) = &self.all[index]
+                && let Some(tint) = block.mirror.filter(|tint| tint.opacity < u8::MAX)
+                && matches!(face, Face::X | Face::Y)
+                && reflects
+            {
+                layers.push((color, tint.opacity));
+                image = Some(sight.reflected(block, face, t));
+                break;
+            }
+            layers.push((color, alpha));
+            if alpha == u8::MAX {
+                break;
+            }
+        }
         // One more may be as near as the last one.
-        entries.truncate(seen.map_or(entries.len(), |last| last + 2));
+        entries.truncate(seen + 1);
         let is_picture = |index: usize| matches!(self.all[index], Solid::Picture { .. });
-        let is_tied = entries.windows(2).any(|pair| {
+        met.is_tied |= entries.windows(2).any(|pair| {
             let [(near, one, _), (far, other, _)] = [pair[0], pair[1]];
             is_picture(one) && is_picture(other) && far - near < 1e-9
         });
-        entries.truncate(seen.map_or(entries.len(), |last| last + 1));
-        let color = entries.iter().rev().fold(sky, |behind, &(t, index, face)| {
-            let solid = &self.all[index];
-            let color = self.color(solid, face, origin + direction * t, direction);
-            match solid {
-                Solid::Picture { shown, .. } => color.over(behind, shown.opacity),
-                _ => color,
-            }
-        });
-        let faces = entries.into_iter().map(|(_, index, face)| (index, face)).collect();
-        Met { faces, color, is_tied }
+        image
     }
 
     /// Whether a position is inside of a pillar, from where nothing is seen.
@@ -162,93 +234,116 @@ impl<'a> Solids<'a> {
         })
     }
 
-    fn entry(&self, solid: &Solid, origin: DVec3, direction: DVec3) -> Option<Entry> {
-        match *solid {
-            Solid::Block(ref block) => block.entry(origin, direction),
+    fn entry(&self, solid: &Solid, sight: &Sight) -> Option<Entry> {
+        let &Sight { origin, direction, from, .. } = sight;
+        let entry = match *solid {
+            Solid::Block(ref block) => block.entry(sight),
+            Solid::Cube { ref block, tile, opacity } => {
+                let (t, face) = block.entry(sight)?;
+                let place = sight.at(t);
+                let before = match face {
+                    Face::X => place - direction.signum() * DVec3::X / 2.0,
+                    Face::Y => place - direction.signum() * DVec3::Y / 2.0,
+                    _ => return None,
+                };
+                let id = self.world.grid().tile(before.x.floor() as i64, before.y.floor() as i64);
+                // A mirror beside the cube reflects the line into it, by no side.
+                let is_reflected_here = from > 0.0 && t - from < 1e-9;
+                (id != Some(tile) && opacity != Some(0) && !is_reflected_here).then_some((t, face))
+            }
             Solid::Pillar { center, radius, heights, .. } => {
-                pillar_entry(origin - center.extend(0.0), direction, radius, heights)
+                pillar_entry((origin - center.extend(0.0), direction, from), radius, heights)
             }
             Solid::Panel { start, way, heights, .. } => {
                 panel_entry(origin - start.extend(0.0), direction, way, heights)
             }
             Solid::Picture { sprite, ref shown } => {
-                // The component of the direction along the camera's direction is 1.
-                let t = (shown.position - origin.truncate()).dot(self.camera.direction());
-                let (x, y) = self.texel_of(sprite, shown, origin + direction * t)?;
-                let picture = self.picture(sprite, shown);
+                // The component of the direction along the viewer's direction is 1.
+                let t = (shown.position - origin.truncate()).dot(sight.forward);
+                let place = sight.at(t);
+                let (x, y) = texel_of(sprite, shown, place, sight)?;
                 // Nothing is drawn behind the edge of the map.
-                let DVec3 { x: column, y: row, .. } = origin + direction * t;
-                let is_on_map = self.tile_in((column.floor(), row.floor())).is_some();
+                let is_on_map = self.tile_in((place.x.floor(), place.y.floor())).is_some();
+                let picture = picture_of(sprite, shown, sight);
                 let is_seen = t >= NEAREST && is_on_map && picture.texel(x, y).1 > 0;
                 is_seen.then_some((t, Face::Slanted))
             }
-        }
+        };
+        entry.filter(|&(t, _)| t >= from)
     }
 
-    /// The texel at a position in a picture's plane.
-    fn texel_of(&self, sprite: &Sprite, shown: &Figure, place: DVec3) -> Option<(u32, u32)> {
-        let picture = self.picture(sprite, shown);
-        let beside = (place.truncate() - shown.position).dot(self.camera.direction().perp());
-        let up = place.z - shown.base;
-        let x = (beside / sprite.width() + 0.5) * f64::from(picture.width());
-        let y = (1.0 - up / sprite.height.cells()) * f64::from(picture.height());
-        let is_on_it = (0.0..f64::from(picture.width())).contains(&x)
-            && (0.0..f64::from(picture.height())).contains(&y);
-        is_on_it.then_some((x as u32, y as u32))
-    }
-
-    fn picture<'s>(&self, sprite: &'s Sprite, shown: &Figure) -> &'s Texture {
-        let to_viewer = self.camera.position() - shown.position;
-        sprite.picture_of(shown.frame, shown.heading, to_viewer)
-    }
-
-    fn color(&self, solid: &Solid, face: Face, place: DVec3, direction: DVec3) -> Rgb {
-        let flat = |paint| self.texel(paint, place.x, place.y);
+    /// The colour and the opacity of a solid where `sight` meets it at `t`.
+    fn color(&self, solid: &Solid, face: Face, sight: &Sight, t: f64) -> (Rgb, u8) {
+        let (place, direction) = (sight.at(t), sight.direction);
         let light_in = |center: DVec2| self.light_in((center.x.floor(), center.y.floor()));
         // Textures begin at whole heights.
         let upright = |paint, u: f64| self.texel(paint, u, -place.z);
-        match *solid {
-            Solid::Block(ref block) => match face {
-                Face::Top => dimmed(flat(block.top), block.flat_light, DVec2::X),
-                Face::Bottom => dimmed(flat(block.bottom), block.flat_light, DVec2::X),
+        let flat = |paint| self.texel(paint, place.x, place.y);
+        let ((texel, own_alpha), light, normal) = match *solid {
+            Solid::Block(ref block) | Solid::Cube { ref block, .. } => match face {
+                Face::Top => (flat(block.top), block.flat_light, DVec2::X),
+                Face::Bottom => (flat(block.bottom), block.flat_light, DVec2::X),
                 Face::X => {
                     let u = if direction.x > 0.0 { place.y } else { -place.y };
                     let before = place.x - direction.x.signum() / 2.0;
                     let light = self.side_light(block, place.y, |row| (before.floor(), row));
-                    dimmed(upright(block.side, u), light, DVec2::X)
+                    (upright(block.side, u), light, DVec2::X)
                 }
                 Face::Y | Face::Slanted => {
                     let u = if direction.y < 0.0 { place.x } else { -place.x };
                     let before = place.y - direction.y.signum() / 2.0;
                     let light = self.side_light(block, place.x, |column| (column, before.floor()));
-                    dimmed(upright(block.side, u), light, DVec2::Y)
+                    (upright(block.side, u), light, DVec2::Y)
                 }
             },
             Solid::Pillar { paint, center, .. } if face == Face::Top => {
-                dimmed(flat(paint), light_in(center), DVec2::X)
+                (flat(paint), light_in(center), DVec2::X)
             }
             Solid::Pillar { center, radius, paint, .. } => {
                 let outward = place.truncate() - center;
                 let times = (TAU * radius).round().max(1.0);
                 let turn = libm::atan2(-outward.y, outward.x) / TAU * times;
-                dimmed(upright(paint, turn), light_in(center), outward / radius)
+                (upright(paint, turn), light_in(center), outward / radius)
             }
             Solid::Panel { start, way, paint, .. } => {
                 let along = (place.truncate() - start).dot(way) / way.length_squared();
                 let is_from_the_left = direction.truncate().perp_dot(way) > 0.0;
                 let u = if is_from_the_left { along } else { -along };
                 let light = light_in(start + way / 2.0);
-                dimmed(upright(paint, u), light, way.perp().normalize())
+                (upright(paint, u), light, way.perp().normalize())
             }
             Solid::Picture { sprite, ref shown } => {
-                let (x, y) = self.texel_of(sprite, shown, place).unwrap_or_default();
+                let (x, y) = texel_of(sprite, shown, place, sight).unwrap_or_default();
                 let DVec2 { x: column, y: row } = shown.position.floor();
                 let ground = self.world.ground();
                 let light = self.tile_in((column, row)).unwrap_or(ground).light;
-                let color = self.picture(sprite, shown).texel(x, y).0;
-                dimmed(color, light.unwrap_or(Light::FULL), DVec2::X)
+                let (color, _) = picture_of(sprite, shown, sight).texel(x, y);
+                ((color, shown.opacity), light.unwrap_or(Light::FULL), DVec2::X)
             }
-        }
+        };
+        let alpha = match *solid {
+            Solid::Cube { opacity: Some(opacity), .. } => opacity,
+            Solid::Cube { opacity: None, .. } | Solid::Picture { .. } => own_alpha,
+            _ => u8::MAX,
+        };
+        (self.lit(texel, light, normal, t), alpha)
+    }
+
+    /// A colour in that light on a face with the normal `normal`, at distance `t`.
+    fn lit(&self, color: Rgb, light: Light, normal: DVec2, t: f64) -> Rgb {
+        let share = f64::midpoint(1.0, normal.x * normal.x);
+        let light = (f64::from(light.in_256ths()) * share) as u32;
+        let (clear, fog) = match self.world.fog() {
+            Some(fog) => ((fog.clearness(t) * 256.0).round() as u32, fog.color),
+            None => (256, Rgb::BLACK),
+        };
+        let own = light * clear / 256;
+        let [red, green, blue] = [0, 1, 2].map(|index| {
+            let [own_channel, of_fog] =
+                [color, fog].map(|color| u32::from(color.channels()[index]));
+            ((own_channel * own + of_fog * (256 - clear)) / 256) as u8
+        });
+        Rgb::new(red, green, blue)
     }
 
     /// The tile of the cell with that corner.
@@ -288,22 +383,42 @@ impl<'a> Solids<'a> {
         Light::new(mean.round() / 256.0).unwrap()
     }
 
-    /// The colour of `paint` at a distance in cells from its left and its top.
-    fn texel(&self, paint: Paint, x: f64, y: f64) -> Rgb {
-        let Paint::Texture(id) = paint else { return self.world.mean_color(paint) };
+    /// The colour and the opacity of `paint` at a distance in cells from its left and its top.
+    fn texel(&self, paint: Paint, x: f64, y: f64) -> (Rgb, u8) {
+        let Paint::Texture(id) = paint else { return (self.world.mean_color(paint), u8::MAX) };
         let texture = self.world.texture(id);
         let index = |place: f64, count: u32| {
             let fraction = place - place.floor();
             ((fraction * f64::from(count)) as u32).min(count - 1)
         };
-        texture.texel(index(x, texture.width()), index(y, texture.height())).0
+        texture.texel(index(x, texture.width()), index(y, texture.height()))
     }
 }
 
-/// Whether light passes between two tiles: both are open, and some of the other tile's open range
+/// The texel at a position in a picture's plane.
+fn texel_of(sprite: &Sprite, shown: &Figure, place: DVec3, sight: &Sight) -> Option<(u32, u32)> {
+    let picture = picture_of(sprite, shown, sight);
+    let beside = (place.truncate() - shown.position).dot(sight.right) / sprite.width();
+    let up = place.z - shown.base;
+    // A mirror shows the mirror image of a picture that faces the viewer's image.
+    let beside = if sight.is_mirrored { -beside } else { beside };
+    let x = (beside + 0.5) * f64::from(picture.width());
+    let y = (1.0 - up / sprite.height.cells()) * f64::from(picture.height());
+    let is_on_it = (0.0..f64::from(picture.width())).contains(&x)
+        && (0.0..f64::from(picture.height())).contains(&y);
+    is_on_it.then_some((x as u32, y as u32))
+}
+
+fn picture_of<'s>(sprite: &'s Sprite, shown: &Figure, sight: &Sight) -> &'s Texture {
+    let to_viewer = sight.origin.truncate() - shown.position;
+    sprite.picture_of(shown.frame, shown.heading, to_viewer)
+}
+
+/// Whether light passes between two tiles: both are open or see-through, and some of the other tile's open range
 /// is beside that above the lower ground of the two.
 fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
-    let is_open = |tile: &Tile| matches!(tile.kind, TileKind::Open);
+    let is_open =
+        |tile: &Tile| matches!(tile.kind, TileKind::Open | TileKind::Mask(_) | TileKind::Glass(_));
     let meets = |one: &Tile, other: &Tile| {
         let lowest = one.gaps().next().unwrap();
         other.gaps().any(|gap| !(gap.top <= lowest.bottom || lowest.top <= gap.bottom))
@@ -311,23 +426,15 @@ fn are_open_to_each_other(one: &Tile, other: &Tile) -> bool {
     is_open(one) && is_open(other) && (meets(one, other) || meets(other, one))
 }
 
-/// A colour in that light on a face with the normal `normal`.
-fn dimmed(color: Rgb, light: Light, normal: DVec2) -> Rgb {
-    let share = f64::midpoint(1.0, normal.x * normal.x);
-    let share = (f64::from(light.in_256ths()) * share) as u32;
-    let [red, green, blue] =
-        color.channels().map(|channel| (u32::from(channel) * share / 256) as u8);
-    Rgb::new(red, green, blue)
-}
-
 /// The solids in a cell.
 fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
-    let tile = world.tile(world.grid().tile(cell.column.into(), cell.row.into()).unwrap());
+    let id = world.grid().tile(cell.column.into(), cell.row.into()).unwrap();
+    let tile = world.tile(id);
     let gaps: Vec<Gap> = tile.gaps().collect();
     let low = DVec3::new(f64::from(cell.column), f64::from(cell.row), -FAR);
     let high = DVec3::new(low.x + 1.0, low.y + 1.0, gaps[0].bottom);
     let top = match tile.kind {
-        TileKind::Wall(_) => tile.riser,
+        TileKind::Wall(_) | TileKind::Mirror(_) => tile.riser,
         _ => tile.floor.pattern.first_paint(),
     };
     let side_light = tile.light.filter(|_| !matches!(tile.kind, TileKind::Open));
@@ -341,6 +448,10 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
         side_light,
         is_off_map: false,
         flat_light,
+        mirror: match tile.kind {
+            TileKind::Mirror(tint) => Some(tint),
+            _ => None,
+        },
     };
     let above = gaps.get(1).map(|gap| Block {
         low: low.with_z(gaps[0].top),
@@ -354,6 +465,27 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
         side_light,
         is_off_map: false,
         flat_light,
+        mirror: None,
+    });
+    let cube = match tile.kind {
+        TileKind::Glass(glass) => Some((Paint::Color(glass.color), Some(glass.opacity))),
+        TileKind::Mask(texture) => Some((Paint::Texture(texture), None)),
+        _ => None,
+    };
+    let cube = cube.map(|(side, opacity)| Solid::Cube {
+        block: Block {
+            low: low.with_z(tile.heights.floor()),
+            high: high.with_z(tile.heights.ceiling()),
+            side,
+            top: side,
+            bottom: side,
+            side_light,
+            is_off_map: false,
+            flat_light,
+            mirror: None,
+        },
+        tile: id,
+        opacity,
     });
     let shape = match tile.kind {
         TileKind::Shape(shape) => Some(shape),
@@ -371,7 +503,7 @@ fn solids_in<'a>(world: &World, cell: Cell) -> Vec<Solid<'a>> {
             }
         }
     });
-    [below].into_iter().chain(above).map(Solid::Block).chain(shape).collect()
+    [below].into_iter().chain(above).map(Solid::Block).chain(shape).chain(cube).collect()
 }
 
 /// The ground beyond the edges of the map.
@@ -393,12 +525,14 @@ fn ground_around(world: &World) -> impl Iterator<Item = Block> {
         side_light: None,
         is_off_map: true,
         flat_light: world.ground().light.unwrap_or(Light::FULL),
+        mirror: None,
     })
 }
 
 impl Block {
-    /// The point at which a line from `origin` along `direction` enters.
-    fn entry(&self, origin: DVec3, direction: DVec3) -> Option<Entry> {
+    /// The point at which a line enters.
+    fn entry(&self, sight: &Sight) -> Option<Entry> {
+        let &Sight { origin, direction, from, .. } = sight;
         let mut enters = (f64::NEG_INFINITY, Face::X);
         let mut leaves = f64::INFINITY;
         for axis in 0..3 {
@@ -421,24 +555,28 @@ impl Block {
             }
             leaves = leaves.min(far);
         }
-        (enters.0 >= 0.0 && enters.0 <= leaves).then_some(enters)
+        (enters.0 >= from && enters.0 <= leaves).then_some(enters)
     }
 }
 
 /// The point at which a line enters a pillar. Positions are relative to the pillar's axis.
-fn pillar_entry(origin: DVec3, direction: DVec3, radius: f64, heights: Gap) -> Option<Entry> {
-    let (from, along) = (origin.truncate(), direction.truncate());
-    let (a, b) = (along.length_squared(), from.dot(along));
-    let discriminant = b * b - a * (from.length_squared() - radius * radius);
+fn pillar_entry(
+    (origin, direction, from): (DVec3, DVec3, f64),
+    radius: f64,
+    heights: Gap,
+) -> Option<Entry> {
+    let (start, along) = (origin.truncate(), direction.truncate());
+    let (a, b) = (along.length_squared(), start.dot(along));
+    let discriminant = b * b - a * (start.length_squared() - radius * radius);
     if discriminant < 0.0 {
         return None;
     }
     let enters = (-b - discriminant.sqrt()) / a;
     let to_top = (heights.top - origin.z) / direction.z;
-    let is_on_top = (from + along * to_top).length() <= radius;
-    if enters >= 0.0 && heights.holds(origin.z + direction.z * enters) {
+    let is_on_top = (start + along * to_top).length() <= radius;
+    if enters >= from && heights.holds(origin.z + direction.z * enters) {
         Some((enters, Face::Slanted))
-    } else if direction.z < 0.0 && to_top >= 0.0 && is_on_top {
+    } else if direction.z < 0.0 && to_top >= from && is_on_top {
         Some((to_top, Face::Top))
     } else {
         None
