@@ -38,10 +38,8 @@ mod ray;
 mod through;
 mod walk;
 
-pub(crate) use dyn_caster::AnyCaster;
 pub use dyn_caster::DynCaster;
 pub use exact::Exact;
-pub(crate) use exact::ExactOnLevel;
 pub(crate) use major_axis::MajorAxisTraversal;
 pub(crate) use order::CommonOrder;
 pub use order::{ExactOrder, Order, RoundedOrder};
@@ -49,12 +47,14 @@ pub use order::{ExactOrder, Order, RoundedOrder};
 pub(crate) use ray::distance_on_entry;
 pub use ray::texture_coordinate;
 pub use ray::{Hit, Ray, RayError, Side};
-pub(crate) use ray::{HitFace, cell_before};
+pub(crate) use ray::{along_line, cell_before, from_left, is_from_left};
 pub(crate) use through::Passage;
+#[cfg(feature = "tui")]
+pub(crate) use walk::Crossed;
 #[cfg(feature = "tui")]
 pub(crate) use walk::WalkFromInside;
 pub use walk::first_line;
-pub(crate) use walk::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
+pub(crate) use walk::{Course, MirrorTransform, RayWalk};
 pub use walk::{Crossing, Walk};
 
 use crate::world::{Grid, World};

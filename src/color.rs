@@ -129,6 +129,32 @@ impl Rgb {
         Self(red_and_blue >> 8 & RED_AND_BLUE | green >> 8 & GREEN)
     }
 
+    /// Blends each of `pixels` with `other`, as [`Rgb::blended`] does: several channels by one instruction.
+    pub(crate) fn blend_all(pixels: &mut [Self], own: u32, other: Self, share: u32) {
+        /// The number of pixels in two registers.
+        const AT_ONCE: usize = 4;
+        const CHANNELS: usize = 4 * AT_ONCE;
+        // No sum exceeds 16 bits.
+        let added = other.0.to_le_bytes().map(|channel| u16::from(channel) * share as u16);
+        let added: [u16; CHANNELS] = std::array::from_fn(|channel| added[channel % 4]);
+        let (blocks, others) = pixels.as_chunks_mut::<AT_ONCE>();
+        for block in blocks {
+            let mut channels = [0; CHANNELS];
+            for (channels, pixel) in channels.as_chunks_mut().0.iter_mut().zip(&*block) {
+                *channels = pixel.0.to_le_bytes();
+            }
+            for (channel, added) in channels.iter_mut().zip(added) {
+                *channel = ((u16::from(*channel) * own as u16 + added) >> 8) as u8;
+            }
+            for (channels, pixel) in channels.as_chunks().0.iter().zip(block) {
+                *pixel = Self(u32::from_le_bytes(*channels));
+            }
+        }
+        for pixel in others {
+            *pixel = pixel.blended(own, other, share);
+        }
+    }
+
     /// The luma of the colour, from 0 to 255, by the weights of ITU-R BT.709 in 16-bit fixed point.
     pub const fn luma(self) -> u8 {
         const RED: u32 = 13_933;

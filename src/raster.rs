@@ -11,10 +11,13 @@
 //! of item that a scene lacks, without a branch.
 
 mod band;
+mod blended;
 mod column_batch;
 mod direct_columns;
+mod faces;
 mod layers;
 mod pieces;
+mod planes;
 mod sampling;
 mod shaded_texels;
 mod sky;
@@ -22,24 +25,23 @@ mod span;
 mod span_pair;
 mod target;
 mod texel_runs;
-mod wall_column;
-mod wall_part;
-mod wall_run;
 
 pub(crate) use band::Band;
 use column_batch::BatchMemory;
-pub(crate) use sky::{SkyColumn, SkyView};
+use planes::PlaneMemory;
+pub(crate) use sky::{SkyMemory, SkyView};
 pub(crate) use target::{SurfaceBuffer, Target};
 
-use crate::visibility::{DrawList, Filter, Scene, Span, SpanMemory};
+use crate::visibility::{DrawList, FaceColumn, Filter, Scene};
 use sampling::{Means, MipLevels, Sampling};
-use span_pair::SpanPairs;
 
 /// The memory of a drawing thread, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RasterMemory {
-    spans: SpanMemory,
+    planes: PlaneMemory,
     batch: BatchMemory,
+    /// The columns of a face, with the rows that it covers as a whole.
+    whole_columns: Vec<FaceColumn>,
 }
 
 /// Draws the rows of `list` that `target` covers.
@@ -67,14 +69,7 @@ fn draw_surfaces<M: Sampling>(
     memory: &mut RasterMemory,
     target: &mut Target<'_>,
 ) {
-    let RasterMemory { spans, batch } = memory;
-    let rows = target.rows();
-    let mut pairs = SpanPairs::<M>::new();
-    list.for_each_span(scene, &rows, spans, |span| match span {
-        Span::Fill { pass, rows, color } => target.whole_rows_mut(pass, rows).fill(color),
-        Span::Plane(span) => span::draw::<M>(scene, &span, target),
-        Span::Pair(pair) => pairs.draw(scene, &pair, target),
-        Span::Sky { row, columns, image } => sky.draw(row, columns, image, target),
-    });
-    M::draw_walls(scene, list, batch, target);
+    planes::draw::<M>(scene, list, sky, &mut memory.planes, target);
+    let RasterMemory { batch, whole_columns, .. } = memory;
+    faces::draw::<M>(scene, list, (batch, whole_columns), target);
 }

@@ -13,7 +13,7 @@
 
 mod frame;
 mod renderable;
-#[cfg(test)]
+#[cfg(all(test, feature = "terminal"))]
 mod tests;
 mod threads;
 
@@ -22,16 +22,14 @@ use std::num::NonZero;
 
 pub use crate::visibility::{
     CeilingLoop, Column, Filter, FramePlan, FrameSize, FrameStats, Pass, PassStats, PixelAspect,
-    PlaneLoop, PortalStats, Projection, RayLoop, SkyLoop, Surface, ThingLoop, Visibility, WallLoop,
-    WhyPortals,
+    PlaneLoop, Projection, SkyLoop, Surface, ThingLoop, WalkStats, WallLoop,
 };
 pub use frame::Frame;
 pub use renderable::{Options, Renderable};
 pub use threads::{Threads, WhyOne};
 
 pub use crate::cast::DynCaster;
-use crate::cast::{Caster, Exact};
-use crate::raster::{self, RasterMemory, SkyColumn, SkyView, SurfaceBuffer};
+use crate::raster::{self, RasterMemory, SkyMemory, SkyView, SurfaceBuffer};
 use crate::visibility::{self, DrawList, Scene, Stats, VisibilityMemory};
 #[cfg(feature = "terminal")]
 use crate::world::Figure;
@@ -80,8 +78,7 @@ pub struct Renderer {
 struct Memory {
     visibility: VisibilityMemory,
     list: DrawList,
-    first_row_of_ground: u32,
-    sky: Vec<SkyColumn>,
+    sky: SkyMemory,
     surfaces: SurfaceBuffer,
     next_change: Option<f64>,
     /// One for each thread.
@@ -89,7 +86,7 @@ struct Memory {
 }
 
 impl Renderer {
-    /// A renderer that has drawn no frame, and finds walls by [`Exact`].
+    /// A renderer that has drawn no frame, and finds walls by [`Exact`](crate::cast::Exact).
     pub fn new() -> Self {
         Self::default()
     }
@@ -130,34 +127,13 @@ impl Renderer {
 
     /// Draws the view of `camera` into all of `frame`.
     pub fn render(&mut self, world: &World, camera: &Camera, frame: &mut Frame) {
-        let Self { caster, filter, seconds, threads, memory } = self;
-        let (filter, seconds, threads, stats) =
-            (*filter, *seconds, *threads, &mut Stats::default());
-        Picture { world, camera, filter, seconds, threads, memory, frame, stats }.draw_by(caster);
+        self.draw(world, camera, frame, &mut Stats::default());
     }
 
-    /// Draws as [`Renderer::render`] does, with the walls that `caster` finds.
-    pub fn render_with<C: Caster>(
-        &mut self,
-        caster: &C,
-        world: &World,
-        camera: &Camera,
-        frame: &mut Frame,
-    ) {
-        let Self { filter, seconds, threads, memory, .. } = self;
-        let (filter, seconds, threads, stats) =
-            (*filter, *seconds, *threads, &mut Stats::default());
-        Picture { world, camera, filter, seconds, threads, memory, frame, stats }.draw(caster);
-    }
-
-    /// Draws as [`Renderer::render`] does, and returns the plan and the counts. Cells are counted
-    /// along exact rays, whatever the caster.
+    /// Draws as [`Renderer::render`] does, and returns the plan and the counts.
     pub fn explain(&mut self, world: &World, camera: &Camera, frame: &mut Frame) -> Explanation {
-        let Self { caster, filter, seconds, threads, memory } = self;
         let mut counted = Stats::kept();
-        let (filter, seconds, threads, stats) = (*filter, *seconds, *threads, &mut counted);
-        let picture = Picture { world, camera, filter, seconds, threads, memory, frame, stats };
-        let (plan, threads) = picture.draw_by(caster);
+        let (plan, threads) = self.draw(world, camera, frame, &mut counted);
         let mut stats = counted.counts();
         let size = u64::from(frame.width()) * u64::from(frame.height());
         stats.overwritten = stats.pixels() - size;
@@ -183,15 +159,34 @@ impl Renderer {
         &self.memory.list.columns
     }
 
-    /// The surface that the pixel `(x, y)` of the last frame shows; `None` if the frame had no
-    /// column `x`.
-    ///
-    /// If [surfaces were not kept](Renderer::keep_surfaces), it is the surface behind all things
-    /// and masked textures.
+    /// The surface that the pixel `(x, y)` of the last frame shows; `None` if there is no such pixel, or if
+    /// [surfaces were not kept](Renderer::keep_surfaces).
     pub fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        let Memory { list, first_row_of_ground, surfaces, .. } = &self.memory;
-        let behind = list.surface(x, y, *first_row_of_ground)?;
-        Some(surfaces.surface(x, y).unwrap_or(behind))
+        self.memory.surfaces.surface(x, y)
+    }
+
+    fn draw(
+        &mut self,
+        world: &World,
+        camera: &Camera,
+        frame: &mut Frame,
+        stats: &mut Stats,
+    ) -> (FramePlan, Threads) {
+        let Self { caster, filter, seconds, threads, memory } = self;
+        let plan = FramePlan::new(world, *filter);
+        let threads = Threads::new(frame.size(), *threads);
+        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
+        let scene =
+            Scene { world, camera, seconds: *seconds, projection: &projection, plan: &plan };
+        let caster = Some(&*caster).filter(|caster| !caster.is_default());
+        let list = &mut memory.list;
+        memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);
+        let sky = &SkyView::new(scene, list.shows_sky(), &mut memory.sky);
+        let bands = (frame, &mut memory.surfaces);
+        draw_bands(threads, bands, &mut memory.raster, stats, |memory, target| {
+            raster::draw(scene, list, sky, memory, target);
+        });
+        (plan, threads)
     }
 }
 
@@ -213,15 +208,13 @@ impl fmt::Display for Explanation {
         write!(f, "{plan}")?;
         writeln!(f, "threads  {threads}")?;
         writeln!(f)?;
-        let FrameStats { rays, cells, looks, spans, .. } = stats;
+        let WalkStats { rays, cells, looks, sectors, faces, bounces } = stats.walk;
+        let spans = stats.spans;
         writeln!(f, "rays     {rays:>10} cast, into {cells} cells, by {looks} looks")?;
-        if plan.visibility != Visibility::Flat {
-            let PortalStats { rays, faces, bounces, .. } = stats.portals;
-            writeln!(
-                f,
-                "portals  {rays:>10} rays, {faces} faces, {spans} spans, {bounces} bounces"
-            )?;
-        }
+        writeln!(
+            f,
+            "sectors  {sectors:>10} entered, {faces} faces, {spans} spans, {bounces} bounces"
+        )?;
         let passes = [
             ("ceiling", Pass::Ceiling),
             ("floor", Pass::Floor),
@@ -239,47 +232,5 @@ impl fmt::Display for Explanation {
         writeln!(f, "in view  {considered:>10} things considered, {drawn} of them drawn")?;
         let (pixels, overwritten) = (stats.pixels(), stats.overwritten);
         writeln!(f, "all      {pixels:>10} pixels written, {overwritten} of them overwritten")
-    }
-}
-
-/// The arguments of a drawing, for any caster.
-struct Picture<'a> {
-    world: &'a World,
-    camera: &'a Camera,
-    filter: Filter,
-    seconds: f64,
-    threads: Option<NonZero<usize>>,
-    memory: &'a mut Memory,
-    frame: &'a mut Frame,
-    stats: &'a mut Stats,
-}
-
-impl Picture<'_> {
-    fn draw_by(self, caster: &DynCaster) -> (FramePlan, Threads) {
-        if caster.is_default() { self.draw(&Exact) } else { self.draw(caster) }
-    }
-
-    fn draw<C: Caster>(self, caster: &C) -> (FramePlan, Threads) {
-        let mut plan = FramePlan::new(self.world, self.camera, self.filter);
-        if self.memory.surfaces.are_kept() {
-            plan.tell_sky_from_ceilings(self.world);
-        }
-        let threads = Threads::new(self.frame.size(), self.threads);
-        self.draw_planned(caster, plan, threads);
-        (plan, threads)
-    }
-
-    fn draw_planned<C: Caster>(self, caster: &C, plan: FramePlan, threads: Threads) {
-        let Self { world, camera, seconds, memory, frame, stats, .. } = self;
-        let projection = Projection::new(camera, frame.size(), frame.pixel_aspect());
-        let scene = Scene { world, camera, seconds, projection: &projection, plan: &plan };
-        let list = &mut memory.list;
-        memory.next_change = visibility::fill(scene, caster, &mut memory.visibility, list, stats);
-        memory.first_row_of_ground = projection.first_row_of_ground();
-        let sky = &SkyView::new(scene, &mut memory.sky);
-        let bands = (frame, &mut memory.surfaces);
-        draw_bands(threads, bands, &mut memory.raster, stats, |memory, target| {
-            raster::draw(scene, list, sky, memory, target);
-        });
     }
 }

@@ -1,14 +1,7 @@
 //! Visibility: a world and a camera to a draw list.
 //!
-//! A [`DrawList`] holds the contents of a frame: spans of floor, ceiling and sky along rows, wall
-//! columns, masked and translucent columns, and billboards. There are two ways to fill it:
-//!
-//! - `flat`: each ray ends at the first wall. Few rays are cast, and floor and ceiling are the rest
-//!   of each column. It serves level scenes.
-//! - `portal`: a ray continues above, below and behind a face, with the rows that are still
-//!   uncovered: its clip range. It serves heights and mirrors.
-//!
-//! [`raster`](crate::raster) draws the list and does not know which way filled it. Rules:
+//! A [`DrawList`] holds the contents of a frame: planes, which lie, faces, which stand, and the layers in front of
+//! both. The [walk](walk) fills it from sector to sector; [`raster`](crate::raster) draws it. Rules:
 //!
 //! - Rows and columns are sampled at the centres of pixels. A point exactly between two belongs to
 //!   the lower or the right one.
@@ -22,47 +15,41 @@
 mod billboard;
 mod column;
 mod draw_list;
-mod face_column;
-mod flat;
+mod edges;
+mod face;
+mod fan;
+mod layers;
 mod lighting;
 mod plan;
-mod portal;
 mod projection;
-mod runs;
+mod sectors;
 mod span_mapping;
 mod stats;
 mod texture_stepper;
 mod visible_cells;
-mod wall_part;
+mod walk;
 
 pub(crate) use billboard::Billboard;
 #[cfg(feature = "terminal")]
 pub(crate) use billboard::may_show;
 pub use column::{Column, Surface};
-pub(crate) use draw_list::{
-    BillboardColumn, DrawList, DrawnPlane, Layer, PlaneSpan, Span, SpanMemory, SpanPair,
-};
-pub(crate) use face_column::{
-    Extent, Facing, Material, SeeThroughColumn, WallColumn, WallRun, WallSink,
-};
+pub(crate) use draw_list::{Backdrop, BillboardPart, DrawList, Layer, Plane, PlaneKind};
+pub(crate) use edges::{FaceEdges, SlopedEdge};
+pub(crate) use face::{Face, FaceColumn, Facing, Material, Rows};
 pub(crate) use lighting::{Faded, FullyLit, Lighting, SideLit};
-pub use plan::{
-    CeilingLoop, Filter, FramePlan, PlaneLoop, RayLoop, SkyLoop, ThingLoop, Visibility, WallLoop,
-    WhyPortals,
-};
+pub use plan::{CeilingLoop, Filter, FramePlan, PlaneLoop, SkyLoop, ThingLoop, WallLoop};
 pub use projection::Projection;
 pub use projection::{FrameSize, PixelAspect};
+pub(crate) use sectors::{PlaneSide, SectorId, Surface as PlaneSurface, TileSectors};
 pub(crate) use span_mapping::{SpanMapping, TexelPlaces};
 pub(crate) use stats::Stats;
-pub use stats::{FrameStats, Pass, PassStats, PortalStats};
-pub(crate) use texture_stepper::{FaceTexels, TextureStepper, WallTexels};
-pub(crate) use wall_part::WallPart;
+pub use stats::{FrameStats, Pass, PassStats, WalkStats};
+pub(crate) use texture_stepper::{FaceTexels, TextureStepper};
 
-use crate::cast::{Caster, ExactOnLevel};
-use crate::world::texture::{MipLevel, Texture};
-use crate::world::{Camera, TextureId, World};
-use flat::{FlatMemory, PortalStarts};
-use portal::PortalMemory;
+use crate::cast::DynCaster;
+use crate::world::{Camera, World};
+use layers::LayerMemory;
+use walk::WalkMemory;
 
 /// A world, the camera that views it, and the projection and plan of the frame.
 #[derive(Clone, Copy)]
@@ -75,60 +62,39 @@ pub(crate) struct Scene<'a> {
     pub(crate) plan: &'a FramePlan,
 }
 
-impl<'a> Scene<'a> {
-    /// The level of detail of `texture` for a face at distance `t`, which the ray approaches by `slope`
-    /// cells per unit of `t`.
-    #[inline]
-    pub(crate) fn lod_on_face(self, texture: &Texture, t: f64, slope: f64) -> usize {
-        let area = self.projection.pixel_area_on_wall(t, slope);
-        self.plan.filter.lod(area * texture.area())
-    }
-
-    /// The mip level of the texture `id` for such a face.
-    #[inline]
-    pub(crate) fn level_on_face(self, id: TextureId, t: f64, slope: f64) -> &'a MipLevel {
-        let texture = self.world.texture(id);
-        texture.level(self.lod_on_face(texture, t, slope))
-    }
-}
-
-/// The memory of both ways, reused from frame to frame.
+/// The memory of visibility, reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibilityMemory {
-    flat: FlatMemory,
-    portal: PortalMemory,
+    walk: WalkMemory,
+    layers: LayerMemory,
 }
 
-/// Fills `list` with the contents of `scene`. If the flat way serves alone, `caster` finds the
-/// walls. Returns the time at which a thing in view next changes its appearance; `None` for never.
-pub(crate) fn fill<C: Caster>(
+/// Fills `list` with the contents of `scene`. Rays from the camera are cast by `caster`, unless by the exact one.
+/// Returns the time at which a thing in view next changes its appearance; `None` for never.
+pub(crate) fn fill(
     scene: Scene<'_>,
-    caster: &C,
+    caster: Option<&DynCaster>,
     memory: &mut VisibilityMemory,
     list: &mut DrawList,
     stats: &mut Stats,
 ) -> Option<f64> {
-    let VisibilityMemory { flat, portal } = memory;
-    let world = scene.world;
-    match scene.plan.visibility {
-        Visibility::Flat => {
-            flat::find_columns(scene, (caster, world.grid()), flat, list, stats);
-            flat::fill_layers(scene, flat, list, stats)
-        }
-        Visibility::Portals(_) => portal::fill(scene, portal, list, stats),
-        Visibility::Mixed(_) => {
-            let grid = world.level_grid().unwrap_or(world.grid());
-            portal.make_room(world, scene.projection.columns(), list);
-            flat::find_columns(scene, (&ExactOnLevel { grid }, grid), flat, list, stats);
-            // The flat layers are in front of those of the portal way, which are behind a line.
-            let in_portals = if list.flat_columns.is_empty() {
-                None
-            } else {
-                let mut starts = PortalStarts::new(world);
-                portal::fill_columns(scene, portal, list, stats, |column| starts.of(column))
-            };
-            let in_flat = flat::fill_layers(scene, flat, list, stats);
-            [in_flat, in_portals].into_iter().flatten().reduce(f64::min)
-        }
+    let VisibilityMemory { walk, layers } = memory;
+    let width = scene.projection.columns();
+    list.begin(width);
+    walk.make_room(width);
+    if scene.plan.has_layers {
+        layers.make_room(scene.world, width, list);
     }
+    list.sectors.begin(scene);
+    list.directions.begin(scene.projection);
+    let counts = walk::walk(scene, caster, walk, list);
+    let considered = layers::fill(scene, layers, list);
+    stats.change(|stats| {
+        let drawn = list.billboards.iter().filter(|it| it.is_drawn && it.is_of_thing());
+        stats.things_considered += considered;
+        stats.things_drawn += drawn.count() as u64;
+        let faces = (list.faces.len() + list.see_through.len()) as u64;
+        stats.walk = WalkStats { faces, ..counts };
+    });
+    Billboard::next_change(&list.billboards, scene)
 }

@@ -299,6 +299,7 @@ impl World {
     }
 
     /// Whether the sky is above any cell but walls.
+    #[cfg(feature = "terminal")]
     pub(crate) fn has_open_sky(&self) -> bool {
         let is_open =
             |tile: &Tile| tile.ceiling == Ceiling::Sky && !matches!(tile.kind, TileKind::Wall(_));
@@ -319,17 +320,6 @@ impl World {
             ceiling.max(heights.floor() + standing)
         };
         self.tiles.iter().filter(holds_things).map(top_in).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// The things that reach above `height`.
-    pub(crate) fn things_above(&self, height: f64) -> impl Iterator<Item = &Thing> {
-        self.things().iter().filter(move |thing| self.is_above(thing, height))
-    }
-
-    /// Whether `thing` reaches above `height`.
-    pub(crate) fn is_above(&self, thing: &Thing, height: f64) -> bool {
-        let sprite = self.sprite(thing.sprite);
-        sprite.base(self.room_in(thing.cell)) + sprite.height.cells() > height
     }
 
     /// A world of `parts` that fit together:

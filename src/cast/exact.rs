@@ -10,7 +10,7 @@
 use std::iter;
 
 use super::{Caster, Crossing, Hit, MajorAxisTraversal, Ray, Walk, through};
-use crate::world::{Cell, Grid, TileId, World};
+use crate::world::{Grid, World};
 
 /// The exact caster, and the default.
 ///
@@ -40,35 +40,6 @@ impl Caster for Exact {
         let mut walk = Walk::new(grid, ray);
         let (start, solid_cells) = (walk.cell(), iter::from_fn(|| walk.first_solid()));
         through::cast(start, solid_cells, world, ray, |_| false, passed)
-    }
-}
-
-/// Casts as [`Exact`] does, and also hits uneven cells, which are solid in `grid`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ExactOnLevel<'a> {
-    pub(crate) grid: &'a Grid,
-}
-
-impl Caster for ExactOnLevel<'_> {
-    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        Exact.cast(grid, ray)
-    }
-
-    #[inline]
-    fn is_exact(&self) -> bool {
-        true
-    }
-
-    fn cast_through(&self, world: &World, ray: &Ray, passed: impl FnMut(Hit)) -> Option<Hit> {
-        let tile_of = |cell: Cell| world.grid().tile_in(cell);
-        let mut walk = Walk::new(self.grid, ray);
-        let start = walk.cell();
-        let solid_cells = iter::from_fn(|| {
-            let crossing = walk.first_solid()?;
-            Some(Crossing { tile: tile_of(crossing.cell)?, ..crossing })
-        });
-        let ends = |tile: TileId| !world.tile(tile).is_level();
-        through::cast(start, solid_cells, world, ray, ends, passed)
     }
 }
 

@@ -95,17 +95,15 @@ impl CommonOrder {
         Self { origin, furthest }
     }
 
-    /// As [`Order::next`], for the ray in this `direction`. It is not scaled: where a product overflows,
-    /// the difference is in doubt, or infinite and correct.
+    /// The order for the ray in this `direction`. It is not scaled: where a product overflows, the difference is in
+    /// doubt, or infinite and correct.
     #[inline]
-    pub(crate) fn next(&self, direction: DVec2, x: f64, y: f64) -> Side {
+    pub(crate) fn along(&self, direction: DVec2) -> ExactOrder {
         let rounded = RoundedOrder::of_direction(self.origin, direction, direction);
-        let (to_x, to_y) = rounded.distances(x, y);
-        let side = if to_y <= to_x { Side::Y } else { Side::X };
-        if (to_x - to_y).abs() > uncertainty(self.furthest, rounded.weight) {
-            side
-        } else {
-            decide(self.origin, direction, x, y)
+        ExactOrder {
+            ray: Ray::of_camera(self.origin, direction),
+            uncertainty: uncertainty(self.furthest, rounded.weight),
+            rounded,
         }
     }
 }
@@ -198,13 +196,13 @@ mod tests {
             let ray = Ray::new(origin, direction);
             prop_assume!(ray.is_ok());
             let grid = Grid::sketch(&["....", "....", "...."]).unwrap();
-            let common = CommonOrder::new(&grid, origin, 0);
+            let mut common = CommonOrder::new(&grid, origin, 0).along(direction);
             let mut order = ExactOrder::new(&grid, &ray.unwrap());
             let is_ahead =
                 |line: f64, origin: f64, direction: f64| (line - origin) * direction > 0.0;
             for (x, y) in (0..5).flat_map(|x| (0..4).map(move |y| (f64::from(x), f64::from(y)))) {
                 if is_ahead(x, origin.x, direction.x) && is_ahead(y, origin.y, direction.y) {
-                    prop_assert_eq!(common.next(direction, x, y), order.next(x, y));
+                    prop_assert_eq!(common.next(x, y), order.next(x, y));
                 }
             }
         }

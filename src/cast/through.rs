@@ -80,7 +80,7 @@ fn tile_before(world: &World, ray: &Ray, crossing: Crossing) -> Option<TileId> {
 
 /// The hit of `ray`, which passes through `cell`, on the leaf of the door there. `None` if it
 /// misses the leaf.
-pub(crate) fn meet_leaf(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit> {
+fn meet_leaf(grid: &Grid, ray: &Ray, cell: Cell, opening: Opening) -> Option<Hit> {
     let leaf = Leaf::new(grid, cell, opening);
     if !leaf.is_ahead(ray) {
         return None;
@@ -164,10 +164,22 @@ pub(crate) struct Passage {
 impl Passage {
     pub(crate) const NONE: Self = Self { hit: None, end: None };
 
+    /// The intersection of `ray`, which passes through `cell`, with what stands there without filling the cell: the
+    /// leaf of a door, which has no interior, or a shape.
+    pub(crate) fn of_tile(ray: &Ray, world: &World, cell: Cell, kind: TileKind) -> Self {
+        match kind {
+            TileKind::Door(_) => {
+                Self { hit: meet_leaf(world.grid(), ray, cell, world.opening(cell)), end: None }
+            }
+            TileKind::Shape(it) => Self::new(ray, cell, it.outline),
+            _ => Self::NONE,
+        }
+    }
+
     /// The intersection of `ray`, which passes through `cell`, with the shape of this `outline`
     /// there.
     #[inline]
-    pub(crate) fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
+    fn new(ray: &Ray, cell: Cell, outline: Outline) -> Self {
         match outline {
             Outline::Pillar(radius) => {
                 let Some(chord) = Chord::new(ray, cell, radius) else { return Self::NONE };

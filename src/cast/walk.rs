@@ -15,7 +15,9 @@ use super::{ExactOrder, Order, Ray, Side};
 use crate::world::{Cell, Grid, TileId};
 #[cfg(feature = "tui")]
 pub(crate) use from_inside::WalkFromInside;
-pub(crate) use mirrored::{Course, Crossed, CrossedFace, MirrorTransform, RayWalk};
+#[cfg(feature = "tui")]
+pub(crate) use mirrored::Crossed;
+pub(crate) use mirrored::{Course, MirrorTransform, RayWalk};
 
 /// A cell that a ray enters, and the kind of line that it crosses to enter it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,7 +133,21 @@ impl Axis {
         Self { index, line, step, stride: step as f64, count }
     }
 
+    /// The axis of a ray in the column or row `index`, which may be off the map.
+    #[inline]
+    fn resumed((direction, count): (f64, u32), index: i64) -> Self {
+        let step = i64::from(direction > 0.0) - i64::from(direction < 0.0);
+        let line = match step {
+            1 => (index + 1) as f64,
+            -1 => index as f64,
+            _ => f64::INFINITY,
+        };
+        let count = if step == 0 { 0 } else { i64::from(count) };
+        Self { index, line, step, stride: step as f64, count }
+    }
+
     /// Advances to the column or row with this index, which must be ahead.
+    #[cfg(feature = "tui")]
     fn enter(&mut self, index: u32) {
         let index = i64::from(index);
         self.index = index;

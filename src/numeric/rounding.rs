@@ -24,6 +24,17 @@ pub(crate) fn rounded(number: f64) -> i64 {
     }
 }
 
+/// The nearest integer, the even one for ties, for numbers from 0 to 2⁶².
+#[inline]
+pub(crate) fn rounded_to_even(number: f64) -> i64 {
+    if number < INTEGERS / 2.0 {
+        (number + SIGNED).to_bits().wrapping_sub(SIGNED.to_bits()) as i64
+    } else {
+        // It is an integer, or the half of one.
+        number as i64
+    }
+}
+
 #[cold]
 #[inline(never)]
 fn rounded_tie_or_large(number: f64) -> i64 {

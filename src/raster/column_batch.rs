@@ -9,13 +9,11 @@ use std::{iter, ptr};
 
 use super::band::Band;
 use super::direct_columns;
-use super::direct_columns::DirectColumn;
+use super::direct_columns::DirectColumns;
 use super::shaded_texels::{ShadedRange, ShadedTexels, TexelAddress};
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, Pass, TextureStepper};
-use crate::world::Paint;
-use crate::world::texture::MipLevel;
+use crate::visibility::{Lighting, TextureStepper};
 
 /// The most columns that are drawn together.
 const MAX_COLUMNS: usize = 15 * LANES;
@@ -61,61 +59,35 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         self.target
     }
 
-    /// Counts a column of `pixels` pixels in `paint`.
-    #[inline]
-    pub(crate) fn count(&mut self, pass: Pass, pixels: usize, paint: Paint) {
-        self.target.count_painted(pass, pixels, paint);
-    }
-
     /// Queues `rows` of column `x` for a fill with one colour.
     pub(crate) fn queue_color(&mut self, x: u32, rows: Range<u32>, color: Rgb, lighting: L) {
         self.make_room_for(x, 1);
         let shaded = &mut self.memory.shaded;
-        let address = shaded.make(&[color], |color| lighting.apply(color)).start();
+        let address = shaded.make(&[color], lighting).start();
         self.memory.columns.push(QueuedColumn { x, rows, address, step: 0 });
     }
 
-    /// Draws `rows` of column `x` with the column of `level` at `u`.
-    #[expect(clippy::inline_always, reason = "a call would cost a fifth of it")]
-    #[inline(always)]
-    pub(crate) fn draw_wall(
-        &mut self,
-        (x, rows): (u32, Range<u32>),
-        (level, u): (&'a MipLevel, f64),
-        stepper: TextureStepper,
-        lighting: L,
-    ) {
-        // Other lightings are applied to each texel of a batch, and to each pixel of a direct column.
-        let is_lit = L::HAS_TEXELS || rows.len() <= level.height() as usize;
-        if is_lit && self.is_direct(level) {
-            let column = DirectColumn { x, rows, u, stepper };
-            direct_columns::draw(level, lighting, iter::once(column), self.target.band_mut());
-        } else {
-            self.queue_texels(x, rows, level.column(u), stepper, lighting);
+    /// Draws columns of a face that show one level in one lighting.
+    #[inline]
+    pub(crate) fn draw_columns(&mut self, shown: &DirectColumns<'a, L>) {
+        let height = shown.level.height() as usize;
+        let band = self.target.band_mut();
+        if self.are_direct && direct_columns::have(height) {
+            shown.draw(band);
+            return;
         }
-    }
-
-    /// Whether columns of `level` are drawn without a batch.
-    #[inline]
-    pub(crate) fn is_direct(&self, level: &MipLevel) -> bool {
-        self.are_direct && direct_columns::have(level.height() as usize)
-    }
-
-    /// Draws `rows` of column `x` with the column of `level` at `u`, which a face may repeat or show in part.
-    #[inline]
-    pub(crate) fn draw_face(
-        &mut self,
-        (x, rows): (u32, Range<u32>),
-        (level, u): (&'a MipLevel, f64),
-        stepper: TextureStepper,
-        lighting: L,
-    ) {
-        let is_lit = L::HAS_TEXELS || rows.len() <= level.height() as usize;
-        if is_lit && self.is_direct(level) && stepper.shows_all(&rows) {
-            let column = DirectColumn { x, rows, u, stepper };
-            direct_columns::draw(level, lighting, iter::once(column), self.target.band_mut());
-        } else {
-            self.queue_repeating(x, rows, level.column(u), stepper, lighting);
+        let rows = band.rows();
+        for (x, column) in (shown.x..).zip(shown.columns) {
+            let rows = column.rows.within(&rows);
+            if rows.is_empty() {
+                continue;
+            }
+            let (stepper, texels) = (shown.texels.at(column.t), shown.level.column(column.u));
+            if stepper.is_one_texture() {
+                self.queue_texels(x, rows, texels, stepper, shown.lighting);
+            } else {
+                self.queue_repeating(x, rows, texels, stepper, shown.lighting);
+            }
         }
     }
 
@@ -141,7 +113,7 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
             {
                 range
             }
-            _ => self.memory.shaded.make(texels, |texel| lighting.apply(texel)),
+            _ => self.memory.shaded.make(texels, lighting),
         };
         self.latest = Some((texels, lighting, range));
         self.push(x, rows, range, stepper);
@@ -165,10 +137,10 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
         };
         self.make_room_for(x, (places.end - places.start) as usize);
         let first = places.start;
-        let (shaded, lit) = (&mut self.memory.shaded, |texel: Rgb| lighting.apply(texel));
+        let shaded = &mut self.memory.shaded;
         let range = match stepper.slice(texels, &places) {
-            Some(piece) => shaded.make_of_pieces(first, iter::once(piece), lit),
-            None => shaded.make_of_pieces(first, stepper.pieces(texels, places), lit),
+            Some(piece) => shaded.make_of_pieces(first, iter::once(piece), lighting),
+            None => shaded.make_of_pieces(first, stepper.pieces(texels, places), lighting),
         };
         self.push(x, rows, range, stepper);
     }
@@ -209,6 +181,9 @@ impl<'m, 't, 'a, L: Lighting> ColumnBatch<'m, 't, 'a, L> {
 
     /// Draws the queued columns.
     pub(crate) fn draw(&mut self) {
+        if self.memory.columns.is_empty() {
+            return;
+        }
         self.memory.draw(self.target.band_mut());
         self.clear();
     }

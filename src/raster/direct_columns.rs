@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::band::Band;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, Scene, TextureStepper};
+use crate::visibility::{FaceColumn, FaceTexels, Lighting, Scene};
 use crate::world::texture::MipLevel;
 
 /// The most rows of a band, and the most pixels, for which direct columns take less time.
@@ -42,80 +42,87 @@ pub(crate) fn have(texels: usize) -> bool {
     texels.is_power_of_two() && texels <= 256
 }
 
-/// A column of pixels, which is not empty, of a face. All its rows but the first and the last are on the face.
-#[derive(Clone, Debug)]
-pub(crate) struct DirectColumn {
+/// Columns of pixels that show one level of a face in one lighting, the first of them in column `x`.
+pub(crate) struct DirectColumns<'a, L> {
+    pub(crate) level: &'a MipLevel,
+    pub(crate) texels: FaceTexels,
+    pub(crate) lighting: L,
     pub(crate) x: u32,
-    pub(crate) rows: Range<u32>,
-    pub(crate) u: f64,
-    pub(crate) stepper: TextureStepper,
+    pub(crate) columns: &'a [FaceColumn],
 }
 
-/// Draws `columns` of `level` in this `lighting`. There must be a loop for them.
-#[inline]
-pub(crate) fn draw<L: Lighting>(
-    level: &MipLevel,
-    lighting: L,
-    columns: impl Iterator<Item = DirectColumn>,
-    band: &mut Band<'_>,
-) {
-    let (texels, lighting) = lighting.lit_texels(level);
-    let lit = LitLevel { level, texels, lighting };
-    match level.height() {
-        256 => lit.draw::<256, 8>(columns, band),
-        128 => lit.draw::<128, 7>(columns, band),
-        64 => lit.draw::<64, 6>(columns, band),
-        32 => lit.draw::<32, 5>(columns, band),
-        16 => lit.draw::<16, 4>(columns, band),
-        8 => lit.draw::<8, 3>(columns, band),
-        4 => lit.draw::<4, 2>(columns, band),
-        2 => lit.draw::<2, 1>(columns, band),
-        _ => columns.for_each(|column| lit.draw_rows(column, band)),
-    }
-}
-
-/// A level, its texels, and the lighting that is left to be applied to them.
-struct LitLevel<'a, L> {
-    level: &'a MipLevel,
-    texels: &'a [Rgb],
-    lighting: L,
-}
-
-impl<L: Lighting> LitLevel<'_, L> {
-    /// Draws `columns` of `N` texels, two to the power of `BITS`.
-    #[inline(never)]
-    fn draw<const N: usize, const BITS: u32>(
-        &self,
-        columns: impl Iterator<Item = DirectColumn>,
-        band: &mut Band<'_>,
-    ) {
-        let (of_columns, _) = self.texels.as_chunks::<N>();
-        let width = band.width();
-        for DirectColumn { x, rows, u, stepper } in columns {
-            let Some(texels) = of_columns.get(self.level.column_index(u)) else { continue };
-            let position = stepper.in_uppermost::<BITS>(rows.start);
-            let pixels = band.pixels_from(x, rows.clone());
-            draw_pixels::<_, N, BITS>(texels, position, self.lighting, pixels, width);
-            // Rounding may put the first row and the last one a texel too far.
-            for row in [rows.start, rows.end - 1] {
-                if !stepper.is_on_face(row) {
-                    let column = DirectColumn { x, rows: row..row + 1, u, stepper };
-                    self.draw_rows(column, band);
+impl<L: Lighting> DirectColumns<'_, L> {
+    /// Draws the columns on `band`. There must be a loop for their number of texels.
+    pub(crate) fn draw(&self, band: &mut Band<'_>) {
+        let (lit, texels) = (self, self.lighting.texels(self.level));
+        match self.level.height() {
+            256 => lit.draw_texels::<256, 8>(texels, band),
+            128 => lit.draw_texels::<128, 7>(texels, band),
+            64 => lit.draw_texels::<64, 6>(texels, band),
+            32 => lit.draw_texels::<32, 5>(texels, band),
+            16 => lit.draw_texels::<16, 4>(texels, band),
+            8 => lit.draw_texels::<8, 3>(texels, band),
+            4 => lit.draw_texels::<4, 2>(texels, band),
+            2 => lit.draw_texels::<2, 1>(texels, band),
+            _ => {
+                let rows = band.rows();
+                for (x, column) in (self.x..).zip(self.columns) {
+                    lit.draw_rows(texels, (x, column), column.rows.within(&rows), band);
                 }
             }
         }
     }
 
-    /// Draws `column`. A reference would force each column into memory.
+    /// Draws columns of `N` texels, two to the power of `BITS`.
+    #[inline(never)]
+    fn draw_texels<const N: usize, const BITS: u32>(&self, texels: &[Rgb], band: &mut Band<'_>) {
+        let (of_columns, _) = texels.as_chunks::<N>();
+        let (width, all_rows) = (band.width(), band.rows());
+        let mut shaded = [Rgb::BLACK; N];
+        for (x, column) in (self.x..).zip(self.columns) {
+            let rows = column.rows.within(&all_rows);
+            let Some(of_column) = of_columns.get(self.level.column_index(column.u)) else {
+                continue;
+            };
+            if rows.is_empty() {
+                continue;
+            }
+            let stepper = self.texels.at(column.t);
+            let position = stepper.in_uppermost::<BITS>(rows.start);
+            let pixels = band.pixels_from(x, rows.clone());
+            if L::HAS_TEXELS {
+                draw_pixels::<N, BITS>(of_column, position, pixels, width);
+            } else {
+                let shown = stepper.texels_of(&rows);
+                shaded[shown.clone()].copy_from_slice(&of_column[shown.clone()]);
+                self.lighting.apply_to_all(&mut shaded[shown]);
+                draw_pixels::<N, BITS>(&shaded, position, pixels, width);
+            }
+            // Rounding may put the first row and the last one a texel too far.
+            if !stepper.has_ends_of(&rows) {
+                for row in [rows.start, rows.end - 1] {
+                    self.draw_rows(texels, (x, column), row..row + 1, band);
+                }
+            }
+        }
+    }
+
+    /// Draws these `rows` of a column.
     #[cold]
     #[inline(never)]
-    fn draw_rows(&self, column: DirectColumn, band: &mut Band<'_>) {
-        let DirectColumn { x, rows, u, stepper } = column;
+    fn draw_rows(
+        &self,
+        texels: &[Rgb],
+        (x, column): (u32, &FaceColumn),
+        rows: Range<u32>,
+        band: &mut Band<'_>,
+    ) {
         let height = self.level.height() as usize;
-        let texels = &self.texels[self.level.column_index(u) * height..][..height];
-        let first = rows.start;
+        let texels = &texels[self.level.column_index(column.u) * height..][..height];
+        let (stepper, first) = (self.texels.at(column.t), rows.start);
         for (pixel, row) in band.column_mut(x, rows).zip(first..) {
-            *pixel = self.lighting.apply(texels[stepper.at(row)]);
+            let texel = texels[stepper.at(row)];
+            *pixel = if L::HAS_TEXELS { texel } else { self.lighting.apply(texel) };
         }
     }
 }
@@ -124,15 +131,13 @@ impl<L: Lighting> LitLevel<'_, L> {
 /// `width`th one after it. The uppermost bits of a position are the index of its texel, so that a lookup needs
 /// no bounds check. The loop is in a function of its own, which has all registers.
 #[inline(never)]
-fn draw_pixels<L: Lighting, const N: usize, const BITS: u32>(
+fn draw_pixels<const N: usize, const BITS: u32>(
     texels: &[Rgb; N],
     (mut position, step): (u64, u64),
-    lighting: L,
     pixels: &mut [Rgb],
     width: usize,
 ) {
-    let at = |position: u64| lighting.apply(texels[(position >> (u64::BITS - BITS)) as usize % N]);
-    let mut rest = pixels;
+    let at = |position: u64| texels[(position >> (u64::BITS - BITS)) as usize % N];
     let [second, third, fourth, four_rows] = [1, 2, 3, 4].map(|rows| rows * width);
     // Tested once, none is tested in the loop.
     if second >= four_rows || third >= four_rows || fourth >= four_rows {
@@ -140,6 +145,7 @@ fn draw_pixels<L: Lighting, const N: usize, const BITS: u32>(
     }
     // Multiples do not wait for each other, as sums do.
     let steps = [1, 2, 3, 4].map(|rows| step.wrapping_mul(rows));
+    let mut rest = pixels;
     while rest.len() >= four_rows {
         let (pixels, below) = mem::take(&mut rest).split_at_mut(four_rows);
         pixels[0] = at(position);
@@ -158,7 +164,6 @@ fn draw_pixels<L: Lighting, const N: usize, const BITS: u32>(
 
 #[cfg(test)]
 mod tests {
-    use std::iter;
     use std::num::NonZeroU32;
 
     use proptest::prelude::*;
@@ -166,8 +171,8 @@ mod tests {
     use super::*;
     use crate::cast::Side;
     use crate::render::Frame;
-    use crate::visibility::{FrameSize, PixelAspect, Projection, SideLit};
-    use crate::world::{Camera, FieldOfView, Heading, Pitch, Texture};
+    use crate::visibility::{Faded, FrameSize, PixelAspect, Projection, Rows, SideLit};
+    use crate::world::{Camera, FieldOfView, Heading, Light, Pitch, Texture};
 
     const HEIGHT: u32 = 90;
 
@@ -188,7 +193,9 @@ mod tests {
             columns in prop::collection::vec(column(), 1..200),
             degrees in -30.0..30.0,
             side in prop::sample::select(&[Side::X, Side::Y][..]),
+            is_faded in any::<bool>(),
         ) {
+            let light = Light::new(0.7).unwrap();
             let textures: Vec<_> = (0..9).map(texture).collect();
             let size = FrameSize::new(columns.len() as u32, HEIGHT).unwrap();
             let east = Heading::from_degrees(0.0).unwrap();
@@ -200,16 +207,25 @@ mod tests {
             let mut band = frame.whole();
             for (x, column) in columns.iter().enumerate() {
                 let Some((t, u, bits)) = *column else { continue };
-                let (rows, level) = (projection.wall_rows(t), textures[bits].level(0));
-                let wall = projection.wall_texels(level.height() as usize);
-                let stepper = projection.texels_down_the_wall(t, wall);
-                let lighting = SideLit(side);
-                for row in rows.clone() {
-                    shown[row as usize][x] = lighting.apply(level.column(u)[stepper.at(row)]);
+                let [start, end] = [1.0, 0.0].map(|height| projection.row_of_height(height, t));
+                let (rows, level) = (Rows { start, end }, textures[bits].level(0));
+                let texels = projection.face_texels(level.height() as usize, (0.0, 1.0));
+                let stepper = texels.at(t);
+                for row in start..end {
+                    let texel = level.column(u)[stepper.at(row)];
+                    shown[row as usize][x] = if is_faded {
+                        Faded::of_wall(side, light, None, t).apply(texel)
+                    } else {
+                        SideLit(side).apply(texel)
+                    };
                 }
-                if !rows.is_empty() {
-                    let column = DirectColumn { x: x as u32, rows, u, stepper };
-                    draw(level, lighting, iter::once(column), &mut band);
+                let (x, columns) = (x as u32, &[FaceColumn { rows, t, u }]);
+                if is_faded {
+                    let lighting = Faded::of_wall(side, light, None, t);
+                    DirectColumns { level, texels, lighting, x, columns }.draw(&mut band);
+                } else {
+                    let lighting = SideLit(side);
+                    DirectColumns { level, texels, lighting, x, columns }.draw(&mut band);
                 }
             }
             prop_assert!(frame.rows().eq(shown));

@@ -6,10 +6,10 @@
 
 use std::mem;
 
-use super::span::{Sample, draw_level};
+use super::span::{PlaneSpan, Sample, draw_level};
 use super::target::Target;
 use crate::color::Rgb;
-use crate::visibility::{Lighting, PlaneSpan, TexelPlaces};
+use crate::visibility::TexelPlaces;
 use crate::world::texture::MipLevelByShifts;
 
 /// The least mean width of pieces, in pixels, that are drawn one by one.
@@ -18,13 +18,12 @@ const LEAST_WIDTH: u64 = 8;
 /// the piece, and the others are the position in it.
 const PIECE: u64 = 1 << 63;
 
-/// Draws `span` in two samples: as a checker, or else in stripes along the x axis.
-pub(crate) fn draw<const IS_CHECKER: bool, L: Lighting>(
+/// Draws `span` in two samples, unlit: as a checker, or else in stripes along the x axis. Returns its pixels.
+pub(crate) fn draw<'p, const IS_CHECKER: bool>(
     span: &PlaneSpan<'_>,
     samples: &[Sample<'_>; 2],
-    lighting: L,
-    target: &mut Target<'_>,
-) {
+    target: &'p mut Target<'_>,
+) -> &'p mut [Rgb] {
     let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
     let places = mapping.places(columns.start, 1.0 / covering.scale.cells() / 2.0);
     let mut texels = 0;
@@ -36,10 +35,11 @@ pub(crate) fn draw<const IS_CHECKER: bool, L: Lighting>(
     target.count_texels(pass, texels);
     let pixels = target.span_mut(pass, row, columns.clone());
     if are_wide::<IS_CHECKER>(&places) {
-        draw_pieces::<IS_CHECKER, _>(samples, lighting, places, pixels);
+        draw_pieces::<IS_CHECKER>(samples, places, pixels);
     } else {
-        draw_pixels::<IS_CHECKER, _>(samples, lighting, places, pixels);
+        draw_pixels::<IS_CHECKER>(samples, places, pixels);
     }
+    pixels
 }
 
 /// The index of the piece at a position.
@@ -56,9 +56,8 @@ fn are_wide<const IS_CHECKER: bool>(places: &TexelPlaces) -> bool {
 }
 
 /// Draws the pixels at `places`, piece by piece.
-fn draw_pieces<const IS_CHECKER: bool, L: Lighting>(
+fn draw_pieces<const IS_CHECKER: bool>(
     samples: &[Sample<'_>; 2],
-    lighting: L,
     mut places: TexelPlaces,
     mut pixels: &mut [Rgb],
 ) {
@@ -70,8 +69,8 @@ fn draw_pieces<const IS_CHECKER: bool, L: Lighting>(
         let count = end.min(pixels.len() as u64);
         let (of_piece, rest) = mem::take(&mut pixels).split_at_mut(count as usize);
         match &samples[index::<IS_CHECKER>((x, y))] {
-            Sample::Color(color) => of_piece.fill(lighting.apply(*color)),
-            Sample::Level(level) => draw_level(level, lighting, places.doubled(), of_piece),
+            Sample::Color(color) => of_piece.fill(*color),
+            Sample::Level(level) => draw_level(level, places.doubled(), of_piece),
         }
         places.skip_pixels(count);
         pixels = rest;
@@ -89,9 +88,8 @@ fn pixels_to_edge(place: u64, step: u64) -> u64 {
 }
 
 /// Draws the pixels at `places`, one by one.
-fn draw_pixels<const IS_CHECKER: bool, L: Lighting>(
+fn draw_pixels<const IS_CHECKER: bool>(
     samples: &[Sample<'_>; 2],
-    lighting: L,
     places: TexelPlaces,
     pixels: &mut [Rgb],
 ) {
@@ -99,15 +97,15 @@ fn draw_pixels<const IS_CHECKER: bool, L: Lighting>(
         let levels = [one, other];
         for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
             let level = &levels[index::<IS_CHECKER>((x, y))];
-            *pixel = lighting.apply(level.at_index(level.index(x << 1, y << 1)));
+            *pixel = level.at_index(level.index(x << 1, y << 1));
         }
         return;
     }
     for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-        *pixel = lighting.apply(match &samples[index::<IS_CHECKER>((x, y))] {
+        *pixel = match &samples[index::<IS_CHECKER>((x, y))] {
             Sample::Color(color) => *color,
             Sample::Level(level) => level.at_fraction(x << 1, y << 1),
-        });
+        };
     }
 }
 
@@ -127,7 +125,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::visibility::{FullyLit, SpanMapping};
+    use crate::visibility::SpanMapping;
     use crate::world::Texture;
 
     proptest! {
@@ -160,11 +158,11 @@ mod tests {
             let places = mapping.places(0, 0.5);
             let mut drawn = [(); 4].map(|()| vec![Rgb::WHITE; width as usize]);
             let [one, other, of_stripes, single] = &mut drawn;
-            draw_pieces::<true, _>(&samples, FullyLit, places.clone(), one);
-            draw_pixels::<true, _>(&samples, FullyLit, places.clone(), other);
+            draw_pieces::<true>(&samples, places.clone(), one);
+            draw_pixels::<true>(&samples, places.clone(), other);
             prop_assert_eq!(one, other);
-            draw_pieces::<false, _>(&samples, FullyLit, places.clone(), of_stripes);
-            draw_pixels::<false, _>(&samples, FullyLit, places, single);
+            draw_pieces::<false>(&samples, places.clone(), of_stripes);
+            draw_pixels::<false>(&samples, places, single);
             prop_assert_eq!(of_stripes, single);
         }
     }

@@ -5,10 +5,7 @@
 
 use std::fmt;
 
-use super::column_batch::BatchMemory;
-use super::target::Target;
-use super::{wall_column, wall_part};
-use crate::visibility::{DrawList, Scene, SpanMapping};
+use crate::visibility::{Scene, SpanMapping};
 use crate::world::Texture;
 use crate::world::texture::{AreaLod, MipLevel, Repeat};
 
@@ -16,14 +13,6 @@ use crate::world::texture::{AreaLod, MipLevel, Repeat};
 pub(crate) trait Sampling: Copy {
     /// What distinguishes the levels of a texture.
     type Lod: Copy + PartialEq + fmt::Debug;
-
-    /// Draws all walls of `list`.
-    fn draw_walls(
-        scene: Scene<'_>,
-        list: &DrawList,
-        memory: &mut BatchMemory,
-        target: &mut Target<'_>,
-    );
 
     /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
     /// `t`.
@@ -56,18 +45,9 @@ impl Sampling for MipLevels {
     type Lod = usize;
 
     #[inline]
-    fn draw_walls(
-        scene: Scene<'_>,
-        list: &DrawList,
-        memory: &mut BatchMemory,
-        target: &mut Target<'_>,
-    ) {
-        wall_column::draw::<Self>(scene, list, memory, target);
-    }
-
-    #[inline]
     fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> usize {
-        scene.lod_on_face(texture, t, slope)
+        let area = scene.projection.pixel_area_on_wall(t, slope);
+        scene.plan.filter.lod(area * texture.area())
     }
 
     #[inline]
@@ -94,16 +74,6 @@ impl Sampling for MipLevels {
 
 impl Sampling for Means {
     type Lod = AreaLod;
-
-    fn draw_walls(
-        scene: Scene<'_>,
-        list: &DrawList,
-        memory: &mut BatchMemory,
-        target: &mut Target<'_>,
-    ) {
-        wall_part::draw::<Self>(scene, list, memory, target);
-        wall_column::draw::<Self>(scene, list, memory, target);
-    }
 
     #[inline]
     fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> AreaLod {

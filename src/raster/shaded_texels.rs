@@ -5,7 +5,7 @@
 //! the same texels and the same lighting, such as those of a near wall, share a range.
 
 use crate::color::Rgb;
-use crate::visibility::TextureStepper;
+use crate::visibility::{Lighting, TextureStepper};
 
 /// The step from one texel to the next, in [`TexelAddress`]s.
 const TEXEL: u64 = 1 << (u64::BITS - BITS);
@@ -49,28 +49,28 @@ impl ShadedTexels {
 
     /// A range of these texels, shaded, if there is room for them.
     #[inline]
-    pub(crate) fn make(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) -> ShadedRange {
+    pub(crate) fn make<L: Lighting>(&mut self, texels: &[Rgb], lighting: L) -> ShadedRange {
         // Rounding may put the first and the last row one texel too far.
-        self.add(&texels[..texels.len().min(1)], &shaded);
+        self.add(&texels[..texels.len().min(1)], lighting);
         let range = ShadedRange(self.next());
-        self.add(texels, &shaded);
-        self.add(&texels[texels.len().saturating_sub(1)..], &shaded);
+        self.add(texels, lighting);
+        self.add(&texels[texels.len().saturating_sub(1)..], lighting);
         range
     }
 
     /// A range of all texels of `pieces`, shaded, if there is room for them. The first one is
     /// `first` texels down its texture.
     #[inline]
-    pub(crate) fn make_of_pieces<'t>(
+    pub(crate) fn make_of_pieces<'t, L: Lighting>(
         &mut self,
         first: i64,
         pieces: impl Iterator<Item = &'t [Rgb]>,
-        shaded: impl Fn(Rgb) -> Rgb,
+        lighting: L,
     ) -> ShadedRange {
         let range =
             ShadedRange(self.next().further((first.wrapping_neg() as u64).wrapping_mul(TEXEL)));
         for texels in pieces {
-            self.add(texels, &shaded);
+            self.add(texels, lighting);
         }
         range
     }
@@ -80,10 +80,11 @@ impl ShadedTexels {
     }
 
     #[inline]
-    fn add(&mut self, texels: &[Rgb], shaded: impl Fn(Rgb) -> Rgb) {
-        let free = self.texels.get_mut(self.used..).unwrap_or_default();
-        for (address, &texel) in free.iter_mut().zip(texels) {
-            *address = shaded(texel);
+    fn add<L: Lighting>(&mut self, texels: &[Rgb], lighting: L) {
+        let free = self.texels.get_mut(self.used..self.used + texels.len()).unwrap_or_default();
+        if free.len() == texels.len() {
+            free.copy_from_slice(texels);
+            lighting.apply_to_all(free);
         }
         self.used += texels.len();
     }

@@ -14,8 +14,8 @@ use crate::world::{Sky, SkyGradient, Texture};
 /// The sky as seen by a camera.
 pub(crate) enum SkyView<'a> {
     Gradient {
-        projection: &'a Projection,
-        zenith: Rgb,
+        /// The colour of each row above the horizon, and that at the horizon.
+        rows: &'a [Rgb],
         horizon: Rgb,
     },
     Panorama {
@@ -35,17 +35,28 @@ pub(crate) struct SkyColumn {
     up_for_slope: f64,
 }
 
+/// The memory of the sky, reused from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SkyMemory {
+    rows: Vec<Rgb>,
+    columns: Vec<SkyColumn>,
+}
+
 /// The number 1 in 2⁻⁶⁴ths, and in 2⁻³²ths.
 const WHOLE: f64 = 18_446_744_073_709_551_616.0;
 const WHOLE_IN_32_BITS: f64 = 4_294_967_296.0;
 
 impl<'a> SkyView<'a> {
-    /// The sky of `scene`. `columns` is working memory.
-    pub(crate) fn new(scene: Scene<'a>, columns: &'a mut Vec<SkyColumn>) -> Self {
+    /// The sky of `scene`, if it `is_shown`.
+    pub(crate) fn new(scene: Scene<'a>, is_shown: bool, memory: &'a mut SkyMemory) -> Self {
         let Scene { world, projection, plan, .. } = scene;
+        let SkyMemory { rows, columns } = memory;
         match world.sky() {
             Sky::Gradient(SkyGradient { zenith, horizon }) => {
-                Self::Gradient { projection, zenith, horizon }
+                rows.clear();
+                let shown = 0..if is_shown { projection.first_row_of_ground() } else { 0 };
+                rows.extend(shown.map(|row| gradient(zenith, horizon, projection.slope(row))));
+                Self::Gradient { rows, horizon }
             }
             Sky::Panorama(id) => {
                 let texture = world.texture(id);
@@ -55,8 +66,9 @@ impl<'a> SkyView<'a> {
                 let lod = plan.filter.lod(area.x * area.y);
                 let height = f64::from(texture.height()) / texels_per_radian;
                 columns.clear();
-                columns
-                    .extend(projection.rays().map(|ray| SkyColumn::new(ray.direction(), height)));
+                let directions =
+                    (0..projection.columns() as u32).map(|column| projection.direction_of(column));
+                columns.extend(directions.map(|direction| SkyColumn::new(direction, height)));
                 Self::Panorama { projection, texture, lod, columns }
             }
         }
@@ -72,8 +84,8 @@ impl<'a> SkyView<'a> {
     ) {
         let across = columns.clone();
         match *self {
-            Self::Gradient { projection, zenith, horizon } => {
-                let color = gradient(zenith, horizon, projection.slope(row));
+            Self::Gradient { rows, horizon } => {
+                let color = rows.get(row as usize).copied().unwrap_or(horizon);
                 target.span_mut(Pass::Sky, row, columns).fill(color);
             }
             Self::Panorama { projection, texture, lod, columns: places } => {

@@ -1,4 +1,6 @@
-//! Spans of floor and ceiling: inner loops for each kind of pattern and lighting.
+//! Spans of floor and ceiling: inner loops for each kind of pattern.
+
+use std::ops::Range;
 
 use super::pieces;
 use super::sampling::Sampling;
@@ -6,103 +8,92 @@ use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
 use crate::color::srgb::mean_of_two;
-use crate::visibility::{Faded, FullyLit, Lighting, PlaneSpan, Scene, SpanMapping, TexelPlaces};
+use crate::visibility::{Pass, Scene, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevel, MipLevelByShifts};
-use crate::world::{Paint, Pattern, Texture};
+use crate::world::{Covering, Paint, Pattern, Texture};
 
-/// Draws `span`.
-pub(crate) fn draw<M: Sampling>(scene: Scene<'_>, span: &PlaneSpan<'_>, target: &mut Target<'_>) {
-    match Faded::of_plane(span.light, scene.world.fog(), span.mapping.distance) {
-        None => draw_lit::<M, _>(scene, span, FullyLit, target),
-        Some(faded) => draw_lit::<M, _>(scene, span, faded, target),
-    }
+/// Neighbouring pixels of a row that show one covering.
+pub(crate) struct PlaneSpan<'m> {
+    pub(crate) pass: Pass,
+    pub(crate) row: u32,
+    pub(crate) columns: Range<usize>,
+    pub(crate) covering: Covering,
+    /// The mapping from the row to the floor or the ceiling.
+    pub(crate) mapping: &'m SpanMapping,
 }
 
-fn draw_lit<M: Sampling, L: Lighting>(
+/// Draws `span` in full light and without fog. Returns its pixels.
+pub(crate) fn draw<'p, M: Sampling>(
     scene: Scene<'_>,
     span: &PlaneSpan<'_>,
-    lighting: L,
-    target: &mut Target<'_>,
-) {
-    let &PlaneSpan { pass, row, ref columns, covering, mapping, .. } = span;
-    let x = columns.start;
+    target: &'p mut Target<'_>,
+) -> &'p mut [Rgb] {
+    let &PlaneSpan { pass, row, ref columns, covering, mapping } = span;
     let per_cell = 1.0 / covering.scale.cells();
     let sampler = Sampler { scene, mapping, per_cell };
-    let count = columns.len();
-    match covering.pattern {
+    let color = match covering.pattern {
         Pattern::Checker(paints) | Pattern::Stripes(paints) if sampler.is_blurred() => {
             let [one, other] = paints.map(|paint| sampler.mean(paint));
-            let color = lighting.apply(mean_of_two(one, other));
-            target.span_mut(pass, row, columns.clone()).fill(color);
+            mean_of_two(one, other)
         }
         Pattern::Plain(paint) => match sampler.sample::<M>(paint) {
-            Sample::Color(color) => {
-                target.span_mut(pass, row, columns.clone()).fill(lighting.apply(color));
-            }
+            Sample::Color(color) => color,
             Sample::Level(level) => {
-                target.count_texels(pass, count);
-                let places = mapping.places(x, per_cell);
+                target.count_texels(pass, columns.len());
                 let pixels = target.span_mut(pass, row, columns.clone());
-                draw_level(level, lighting, places, pixels);
+                draw_level(level, mapping.places(columns.start, per_cell), pixels);
+                return pixels;
             }
         },
         Pattern::Checker(paints) => {
             let samples = paints.map(|it| sampler.sample::<M>(it));
-            pieces::draw::<true, _>(span, &samples, lighting, target);
+            return pieces::draw::<true>(span, &samples, target);
         }
         Pattern::Stripes(paints) => {
             let samples = paints.map(|it| sampler.sample::<M>(it));
-            pieces::draw::<false, _>(span, &samples, lighting, target);
+            return pieces::draw::<false>(span, &samples, target);
         }
-    }
+    };
+    let pixels = target.span_mut(pass, row, columns.clone());
+    pixels.fill(color);
+    pixels
 }
 
 /// Draws `level` on `pixels`.
-pub(crate) fn draw_level<L: Lighting>(
-    level: &MipLevel,
-    lighting: L,
-    places: TexelPlaces,
-    pixels: &mut [Rgb],
-) {
+pub(crate) fn draw_level(level: &MipLevel, places: TexelPlaces, pixels: &mut [Rgb]) {
     match level.by_shifts() {
         Some(level) => match TexelRuns::of(level, &places, pixels.len()) {
-            Some(runs) => runs.draw(level, lighting, pixels),
-            None => draw_by_shifts(level, lighting, places, pixels),
+            Some(runs) => runs.draw(level, pixels),
+            None => draw_by_shifts(level, places, pixels),
         },
         None => {
             for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-                *pixel = lighting.apply(level.at_fraction(x, y));
+                *pixel = level.at_fraction(x, y);
             }
         }
     }
 }
 
 /// Draws `level` on `pixels`. For the usual numbers of texels, no lookup needs a bounds check.
-fn draw_by_shifts<L: Lighting>(
-    level: MipLevelByShifts<'_>,
-    lighting: L,
-    places: TexelPlaces,
-    pixels: &mut [Rgb],
-) {
+fn draw_by_shifts(level: MipLevelByShifts<'_>, places: TexelPlaces, pixels: &mut [Rgb]) {
     match level.texels().len() {
-        16384 => draw_texels::<_, 16384>(level, lighting, places, pixels),
-        4096 => draw_texels::<_, 4096>(level, lighting, places, pixels),
-        1024 => draw_texels::<_, 1024>(level, lighting, places, pixels),
-        256 => draw_texels::<_, 256>(level, lighting, places, pixels),
-        64 => draw_texels::<_, 64>(level, lighting, places, pixels),
-        16 => draw_texels::<_, 16>(level, lighting, places, pixels),
+        16384 => draw_texels::<16384>(level, places, pixels),
+        4096 => draw_texels::<4096>(level, places, pixels),
+        1024 => draw_texels::<1024>(level, places, pixels),
+        256 => draw_texels::<256>(level, places, pixels),
+        64 => draw_texels::<64>(level, places, pixels),
+        16 => draw_texels::<16>(level, places, pixels),
         _ => {
             for (pixel, (x, y)) in pixels.iter_mut().zip(places) {
-                *pixel = lighting.apply(level.at_index(level.index(x, y)));
+                *pixel = level.at_index(level.index(x, y));
             }
         }
     }
 }
 
 /// Draws `level`, which has `N` texels, on `pixels`.
-fn draw_texels<L: Lighting, const N: usize>(
+fn draw_texels<const N: usize>(
     level: MipLevelByShifts<'_>,
-    lighting: L,
     places: TexelPlaces,
     pixels: &mut [Rgb],
 ) {
@@ -114,11 +105,11 @@ fn draw_texels<L: Lighting, const N: usize>(
         let (indices, rest_of_indices) = indices.split_at(pixels.as_flattened().len());
         for (pixels, indices) in pixels.iter_mut().zip(indices.as_chunks::<UNROLLED>().0) {
             for (pixel, &index) in pixels.iter_mut().zip(indices) {
-                *pixel = lighting.apply(texels[index as usize % N]);
+                *pixel = texels[index as usize % N];
             }
         }
         for (pixel, &index) in rest.iter_mut().zip(rest_of_indices) {
-            *pixel = lighting.apply(texels[index as usize % N]);
+            *pixel = texels[index as usize % N];
         }
     });
 }

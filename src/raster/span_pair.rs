@@ -4,12 +4,15 @@
 //! What all pairs of a frame share, such as these textures, is found once for the frame: in small pictures,
 //! a span has a dozen pixels, and finding it for each span took as long as drawing.
 
+use std::ops::Range;
+
+use super::planes::DrawnPlane;
 use super::sampling::Sampling;
-use super::span::{self, AT_ONCE, Sampler, UNROLLED, for_each_block};
+use super::span::{self, AT_ONCE, PlaneSpan, Sampler, UNROLLED, for_each_block};
 use super::target::Target;
 use super::texel_runs::TexelRuns;
 use crate::color::Rgb;
-use crate::visibility::{DrawnPlane, Faded, Scene, SpanPair, TexelPlaces};
+use crate::visibility::{Faded, Lighting, Scene, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
@@ -19,6 +22,33 @@ pub(crate) struct SpanPairs<'a, M: Sampling> {
     is_begun: bool,
     /// The textures of the planes, if they have textures of one size.
     textures: Option<TexturePair<'a, M>>,
+}
+
+/// A span of the ceiling and its mirror image, a span of the floor.
+struct SpanPair<'m> {
+    /// The row of each; the first one is further up.
+    rows: [u32; 2],
+    columns: Range<usize>,
+    planes: &'m [DrawnPlane; 2],
+    mapping: &'m SpanMapping,
+}
+
+impl<'m> SpanPair<'m> {
+    /// Both spans, each by itself, and their light.
+    fn spans(&self) -> [Option<(PlaneSpan<'m>, Light)>; 2] {
+        let [ceiling, floor] = self.planes;
+        let [above, below] = self.rows;
+        [(above, ceiling), (below, floor)].map(|(row, plane)| {
+            let span = PlaneSpan {
+                pass: plane.pass,
+                row,
+                columns: self.columns.clone(),
+                covering: plane.covering?,
+                mapping: self.mapping,
+            };
+            Some((span, plane.light))
+        })
+    }
 }
 
 /// Two textures of one size on planes in one light.
@@ -45,16 +75,30 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
         Self { is_begun: false, textures: None }
     }
 
-    /// Draws `pair`, whose planes are those of the pairs before.
-    pub(crate) fn draw(&mut self, scene: Scene<'a>, pair: &SpanPair<'_>, target: &mut Target<'_>) {
+    /// Draws `columns` of `row` of a floor, and their mirror image on a ceiling. The planes are those of the pairs
+    /// before.
+    pub(crate) fn draw(
+        &mut self,
+        scene: Scene<'a>,
+        (row, columns): (u32, Range<usize>),
+        planes: &[DrawnPlane; 2],
+        mapping: &SpanMapping,
+        target: &mut Target<'_>,
+    ) {
+        let rows = [scene.projection.rows() - 1 - row, row];
+        let pair = &SpanPair { rows, columns, planes, mapping };
         if !self.is_begun {
             self.is_begun = true;
             self.textures = TexturePair::new(scene, pair.planes);
         }
         let drawn = self.textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
-            for span in pair.spans() {
-                span::draw::<M>(scene, &span, target);
+            for (span, light) in pair.spans().into_iter().flatten() {
+                let faded = Faded::of_plane(light, scene.world.fog(), mapping.distance);
+                let pixels = span::draw::<M>(scene, &span, target);
+                if let Some(faded) = faded {
+                    faded.apply_to_all(pixels);
+                }
             }
         }
     }
@@ -63,14 +107,15 @@ impl<'a, M: Sampling> SpanPairs<'a, M> {
 impl<'a, M: Sampling> TexturePair<'a, M> {
     fn new(scene: Scene<'a>, planes: &[DrawnPlane; 2]) -> Option<Self> {
         let [upper, lower] = planes;
-        let (scale, light) = (upper.covering.scale, upper.light);
-        let texture = |plane: &DrawnPlane| match plane.covering.pattern {
+        let (covering, light) = (upper.covering?, upper.light);
+        let scale = covering.scale;
+        let texture = |plane: &DrawnPlane| match plane.covering?.pattern {
             Pattern::Plain(Paint::Texture(id)) => Some(scene.world.texture(id)),
             _ => None,
         };
         let textures = [texture(upper)?, texture(lower)?];
         let [one, other] = textures.map(|texture| (texture.width(), texture.height()));
-        let are_alike = one == other && scale == lower.covering.scale && light == lower.light;
+        let are_alike = one == other && scale == lower.covering?.scale && light == lower.light;
         are_alike.then(|| Self { textures, per_cell: 1.0 / scale.cells(), light, levels: None })
     }
 

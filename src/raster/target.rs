@@ -35,6 +35,11 @@ impl<'a> Target<'a> {
         self.stats.are_kept()
     }
 
+    /// Whether it keeps the surfaces of pixels.
+    pub(crate) fn keeps_surfaces(&self) -> bool {
+        !self.surfaces.surfaces.is_empty()
+    }
+
     /// The indices of its rows in the frame.
     pub(crate) fn rows(&self) -> Range<u32> {
         self.band.rows()
@@ -48,6 +53,10 @@ impl<'a> Target<'a> {
 
     /// All pixels of `rows`, to be written for `pass`.
     pub(crate) fn whole_rows_mut(&mut self, pass: Pass, rows: Range<u32>) -> &mut [Rgb] {
+        if self.keeps_surfaces() {
+            let width = self.band.width();
+            rows.clone().for_each(|row| self.surfaces.fill(row, 0..width, pass));
+        }
         let pixels = self.band.rows_mut(rows);
         self.stats.change(|stats| stats.of_mut(pass).pixels += pixels.len() as u64);
         pixels
@@ -60,6 +69,9 @@ impl<'a> Target<'a> {
             stats.spans += 1;
             stats.of_mut(pass).pixels += columns.len() as u64;
         });
+        if self.keeps_surfaces() {
+            self.surfaces.fill(row, columns.clone(), pass);
+        }
         &mut self.band.row_mut(row)[columns]
     }
 
@@ -81,6 +93,11 @@ impl<'a> Target<'a> {
                 stats.texels += columns.len() as u64;
             }
         });
+        if self.keeps_surfaces() {
+            for (row, pass) in rows.into_iter().zip(passes) {
+                self.surfaces.fill(row, columns.clone(), pass);
+            }
+        }
         self.band.two_rows_mut(rows).map(|row| &mut row[columns.clone()])
     }
 
@@ -153,11 +170,6 @@ impl SurfaceBuffer {
         self.surfaces.clear();
     }
 
-    /// Whether surfaces are kept.
-    pub(crate) fn are_kept(&self) -> bool {
-        self.are_kept
-    }
-
     /// Removes all surfaces, and prepares for a frame of this size.
     pub(crate) fn begin(&mut self, width: u32, height: u32) {
         if self.are_kept {
@@ -180,7 +192,8 @@ impl SurfaceBuffer {
 
     /// The surface of pixel `(x, y)`, if it was recorded.
     pub(crate) fn surface(&self, x: u32, y: u32) -> Option<Surface> {
-        *self.surfaces.get(y as usize * self.width + x as usize)?
+        let row = self.surfaces.chunks(self.width.max(1)).nth(y as usize)?;
+        *row.get(x as usize)?
     }
 }
 
@@ -195,6 +208,19 @@ pub(crate) struct SurfaceRows<'a> {
 }
 
 impl SurfaceRows<'_> {
+    /// Records the surface that `pass` draws in `columns` of `row`.
+    #[cold]
+    #[inline(never)]
+    fn fill(&mut self, row: u32, columns: Range<usize>, pass: Pass) {
+        let surface = match pass {
+            Pass::Ceiling => Surface::Ceiling,
+            Pass::Sky => Surface::Sky,
+            _ => Surface::Floor,
+        };
+        let start = (row - self.first) as usize * self.width;
+        self.surfaces[start..][columns].fill(Some(surface));
+    }
+
     /// Records `surface` for the pixels of column `x` from `row` on, which is in the band, if their
     /// item in `shown` is true.
     pub(crate) fn mark(

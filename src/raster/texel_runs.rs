@@ -9,7 +9,7 @@
 //! predicts which, and their pixels have to be drawn one by one.
 
 use crate::color::Rgb;
-use crate::visibility::{Lighting, TexelPlaces};
+use crate::visibility::TexelPlaces;
 use crate::world::texture::MipLevelByShifts;
 
 /// The runs of a span.
@@ -55,18 +55,13 @@ impl TexelRuns {
     }
 
     /// Draws `level` on `pixels`.
-    pub(crate) fn draw<L: Lighting>(
-        self,
-        level: MipLevelByShifts<'_>,
-        lighting: L,
-        pixels: &mut [Rgb],
-    ) {
+    pub(crate) fn draw(self, level: MipLevelByShifts<'_>, pixels: &mut [Rgb]) {
         let Self { mut east, mut south } = self;
         let count = pixels.len() as u64;
         let mut start = 0;
         while start < count {
             let end = east.next.min(south.next).min(count);
-            let color = lighting.apply(level.at_index(east.index | south.index));
+            let color = level.at_index(east.index | south.index);
             fill(&mut pixels[start as usize..], (end - start) as usize, color);
             east.pass(end);
             south.pass(end);
@@ -169,7 +164,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::visibility::{FullyLit, SpanMapping};
+    use crate::visibility::SpanMapping;
     use crate::world::Texture;
 
     fn half_step() -> impl Strategy<Value = f64> {
@@ -204,7 +199,7 @@ mod tests {
                 prop_assert!(pixels.len() < FEWEST_PIXELS || !is_near || is_one);
                 return Ok(());
             };
-            runs.draw(by_shifts, FullyLit, &mut pixels);
+            runs.draw(by_shifts, &mut pixels);
             for (pixel, (x, y)) in pixels.into_iter().zip(places) {
                 prop_assert_eq!(pixel, level.at_fraction(x, y));
             }

@@ -1,306 +1,219 @@
-//! The draw list: the contents of a frame, as spans, columns and billboards.
+//! The draw list: the contents of a frame, as planes, faces and layers.
 //!
-//! Each kind is stored in the form in which it is found: rows of floor and ceiling by column, from
-//! which spans are made for each band of rows; upright faces as wall columns; see-through columns
-//! and billboards as layers, in the order of painting. Rejected: a list of finished spans. There
-//! may be as many as pixels, and each band needs its own.
-//!
-//! In a block of columns, all layers behind the next translucent one are painted first, then the
-//! translucent layers of all columns. This draws neighbours of one tint together, row by row.
+//! Each item is found once for all of its columns, and keeps for each of them only what differs. Rows are clipped to
+//! bands when they are drawn. Rejected: a list of finished spans. There may be as many as pixels, and each band
+//! needs its own.
 
 use std::ops::Range;
 
-use super::flat::PlaneRow;
-use super::runs::{ColumnRuns, Shown};
-use super::stats::Pass;
-use super::wall_part::WallPart;
-use super::{
-    Billboard, Column, Material, Scene, SeeThroughColumn, SpanMapping, Surface, WallColumn,
-    WallRun, WallSink, flat, portal,
-};
+use super::face::{Face, FaceColumn, Material, Rows};
+use super::fan::Directions;
+use super::sectors::{PlaneSide, SectorId, Sectors};
+use super::{Billboard, Column};
 use crate::cast::MirrorTransform;
 use crate::color::Rgb;
-use crate::world::{Covering, Light, Sprite};
+use crate::world::{Light, Sprite, TileId};
 
 /// The contents of a frame, in memory that is reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DrawList {
     /// The hit of the ray of each column of pixels.
     pub(crate) columns: Vec<Column>,
-    /// Whether the flat way filled any column.
-    pub(crate) is_flat: bool,
-    /// The columns as the flat way sees them, if the portal way filled some; else empty.
-    pub(crate) flat_columns: Vec<Column>,
-    /// The columns around which planes are drawn, if walls are blended over what is behind them: with the rows
-    /// that walls cover as a whole; else empty.
-    pub(crate) opaque_columns: Vec<Column>,
-    /// The walls of these columns, from left to right.
-    pub(crate) parts: Vec<WallPart>,
-    /// The rows of floor, ceiling and sky that the portal way found.
-    pub(crate) runs: ColumnRuns,
-    /// The wall columns that the portal way found, those of a column of pixels together.
-    pub(crate) walls: Vec<WallColumn>,
-    /// Masked and translucent columns in any order: the layers give the order of painting.
-    pub(crate) see_through: Vec<SeeThroughColumn>,
+    /// The directions of these rays.
+    pub(crate) directions: Directions,
+    pub(crate) sectors: Sectors,
+    /// The images in view, the direct one first.
+    pub(crate) images: Vec<MirrorTransform>,
+    /// What is behind everything else below the horizon and above it, if that is the same in all columns.
+    pub(crate) backdrops: [Option<Backdrop>; 2],
+    pub(crate) planes: Vec<Plane>,
+    /// The rows of each column of the planes.
+    pub(crate) plane_rows: Vec<Rows>,
+    /// The faces that hide what is behind them.
+    pub(crate) faces: Vec<Face>,
+    /// The masks and tints.
+    pub(crate) see_through: Vec<Face>,
+    pub(crate) face_columns: Vec<FaceColumn>,
+    /// What rays passed, nearer items earlier in each column.
+    pub(crate) passed: Vec<Layer>,
+    /// The columns of the parts of rays among them.
+    pub(crate) stretches: Vec<Stretch>,
     /// The items that are painted in front of all others, in the order of painting.
     pub(crate) layers: Vec<Layer>,
-    /// The billboards of the billboard columns among the layers.
     pub(crate) billboards: Vec<Billboard>,
+    /// The rows of each column of the billboards among the layers.
+    pub(crate) billboard_rows: Vec<Rows>,
     /// The player, as seen in mirrors; `None` until there is a mirror.
     pub(crate) player: Option<Sprite>,
 }
 
-/// Neighbouring pixels of a row that show a floor, a ceiling or the sky.
-pub(crate) enum Span<'m> {
-    /// Whole rows in one colour.
-    Fill { pass: Pass, rows: Range<u32>, color: Rgb },
-    /// A floor or a ceiling.
-    Plane(PlaneSpan<'m>),
-    /// A ceiling and a floor, with the same columns and the same mapping.
-    Pair(SpanPair<'m>),
-    /// The sky, directly or in the mirrors of `image`.
-    Sky { row: u32, columns: Range<usize>, image: Option<MirrorTransform> },
+/// A floor, a ceiling or a sky without texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Backdrop {
+    Color { color: Rgb, light: Light, height: f64 },
+    Sky,
 }
 
-/// A span of a floor or a ceiling, with one covering in one light.
-pub(crate) struct PlaneSpan<'m> {
-    pub(crate) pass: Pass,
-    pub(crate) row: u32,
-    pub(crate) columns: Range<usize>,
-    pub(crate) covering: Covering,
-    pub(crate) light: Light,
-    /// The mapping from the row to the floor or the ceiling.
-    pub(crate) mapping: &'m SpanMapping,
+/// A floor, a ceiling or a sky in neighbouring columns.
+#[derive(Clone, Debug)]
+pub(crate) struct Plane {
+    pub(crate) columns: Range<u32>,
+    /// The index of the rows of the first column. The others follow.
+    pub(crate) first: usize,
+    pub(crate) kind: PlaneKind,
+    /// The image in which it is seen.
+    pub(crate) image: MirrorTransform,
 }
 
-/// A span of the ceiling and its mirror image, a span of the floor.
-pub(crate) struct SpanPair<'m> {
-    /// The row of each; the first one is further up.
-    pub(crate) rows: [u32; 2],
-    pub(crate) columns: Range<usize>,
-    /// The planes, which are the same for all pairs of a frame.
-    pub(crate) planes: &'m [DrawnPlane; 2],
-    pub(crate) mapping: &'m SpanMapping,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlaneKind {
+    Floor(SectorId),
+    Ceiling(SectorId),
+    /// A floor, and a ceiling whose rows are the mirror image of those of the floor.
+    FloorAndCeiling(SectorId),
+    /// The top of a pillar of this tile.
+    Top(TileId),
 }
 
-/// A floor or a ceiling with one covering in one light.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DrawnPlane {
-    pub(crate) pass: Pass,
-    pub(crate) covering: Covering,
-    pub(crate) light: Light,
-}
-
-/// Memory for making spans, one for each thread.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SpanMemory {
-    plane_rows: Vec<PlaneRow>,
-    /// The first column of the current span of each row.
-    pub(crate) starts: Vec<usize>,
-}
-
-/// An item, as wide as a pixel, that is painted in front of the items before it.
+/// An item in front of the faces that hide everything.
 #[derive(Clone, Debug)]
 pub(crate) enum Layer {
-    /// An index into the masked and translucent columns.
-    SeeThrough(usize),
-    /// A column of a billboard.
-    Billboard(BillboardColumn),
+    /// An index into the masks and tints.
+    Face(usize),
+    /// The part of rays in a sector, before the billboards in it are known.
+    Part(RayPart),
+    Billboard(BillboardPart),
 }
 
-/// A column of pixels of a billboard.
+/// The parts of neighbouring rays in one sector.
 #[derive(Clone, Debug)]
-pub(crate) struct BillboardColumn {
-    pub(crate) column: u32,
-    pub(crate) rows: Range<u32>,
+pub(crate) struct RayPart {
+    pub(crate) columns: Range<u32>,
+    /// The index of the first stretch. The others follow.
+    pub(crate) first: usize,
+    pub(crate) sector: SectorId,
+    /// The height of the top of a pillar below it, which hides what is lower.
+    pub(crate) top_below: Option<f64>,
+    pub(crate) image: MirrorTransform,
+}
+
+/// The part of a ray in one sector: the rows that no nearer surface covers, and its ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    pub(crate) rows: Rows,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+/// Neighbouring columns of a billboard.
+#[derive(Clone, Debug)]
+pub(crate) struct BillboardPart {
+    pub(crate) columns: Range<u32>,
+    /// The index of the rows of the first column. The others follow.
+    pub(crate) first: usize,
     /// An index into the billboards.
     pub(crate) billboard: usize,
 }
 
-impl<'m> SpanPair<'m> {
-    /// Both spans, each by itself.
-    pub(crate) fn spans(&self) -> [PlaneSpan<'m>; 2] {
-        let [ceiling, floor] = self.planes;
-        let [above, below] = self.rows;
-        [(above, ceiling), (below, floor)].map(|(row, plane)| PlaneSpan {
-            pass: plane.pass,
-            row,
-            columns: self.columns.clone(),
-            covering: plane.covering,
-            light: plane.light,
-            mapping: self.mapping,
-        })
-    }
-}
-
 impl DrawList {
-    /// Removes the contents of the last frame.
-    pub(crate) fn clear(&mut self) {
+    /// Removes the contents of the last frame, and reserves memory for all but extreme views of `width` columns, so
+    /// that a turn of the camera towards more faces allocates nothing.
+    pub(crate) fn begin(&mut self, width: usize) {
+        const OF_A_COLUMN: usize = 16;
         self.columns.clear();
-        self.is_flat = false;
-        self.flat_columns.clear();
-        self.opaque_columns.clear();
-        self.parts.clear();
-        self.runs.clear();
-        self.walls.clear();
+        self.columns.resize(width, Column::UNKNOWN);
+        self.images.clear();
+        self.images.push(MirrorTransform::default());
+        self.backdrops = [None; 2];
+        self.planes.clear();
+        self.planes.reserve(4 * width);
+        self.plane_rows.clear();
+        self.plane_rows.reserve(width * OF_A_COLUMN);
+        self.faces.clear();
+        self.faces.reserve(4 * width);
         self.see_through.clear();
+        self.face_columns.clear();
+        self.face_columns.reserve(width * OF_A_COLUMN);
+        self.passed.clear();
+        self.stretches.clear();
         self.layers.clear();
         self.billboards.clear();
+        self.billboard_rows.clear();
     }
 
-    /// Reserves memory for the portal way in all but extreme maps, so that a turn of the camera
-    /// towards more faces allocates nothing.
-    pub(crate) fn make_room_for_portals(&mut self, width: usize) {
+    /// Reserves memory for things, masks, glass and mirrors.
+    pub(crate) fn make_room_for_layers(&mut self, width: usize, billboards: usize, images: usize) {
         const OF_A_COLUMN: usize = 16;
-        self.columns.reserve(width);
-        self.flat_columns.reserve(width);
-        self.runs.reserve(width);
-        self.walls.reserve(width * OF_A_COLUMN);
-        self.make_room_for_layers(width * OF_A_COLUMN);
+        self.images.reserve(images);
+        self.see_through.reserve(4 * width);
+        self.passed.reserve(8 * width);
+        self.stretches.reserve(width * OF_A_COLUMN);
+        self.layers.reserve(8 * width);
+        self.billboards.reserve(billboards);
+        self.billboard_rows.reserve(width * OF_A_COLUMN);
     }
 
-    /// Reserves memory for this number of layers in total.
-    pub(crate) fn make_room_for_layers(&mut self, count: usize) {
-        self.see_through.reserve(count.saturating_sub(self.see_through.len()));
-        self.layers.reserve(count.saturating_sub(self.layers.len()));
-    }
-
-    /// Adds a masked or translucent column as the next layer.
-    pub(crate) fn push_see_through(&mut self, column: SeeThroughColumn) {
-        if !column.rows.is_empty() {
-            self.layers.push(Layer::SeeThrough(self.see_through.len()));
-            self.see_through.push(column);
-        }
-    }
-
-    /// Passes every span in `rows` to `emit`. `memory` is working memory.
-    pub(crate) fn for_each_span(
-        &self,
-        scene: Scene<'_>,
-        rows: &Range<u32>,
-        memory: &mut SpanMemory,
-        mut emit: impl FnMut(Span<'_>),
-    ) {
-        if self.is_flat {
-            flat::for_each_span(
-                scene,
-                self.drawn_columns(),
-                rows,
-                &mut memory.plane_rows,
-                &mut emit,
-            );
-        }
-        portal::for_each_span(scene, &self.runs, rows, &mut memory.starts, &mut emit);
-    }
-
-    /// Passes every wall column in `rows` that the flat way found to `sink`, from left to right.
+    /// Adds a plane with these rows in `columns`, unless there are none.
     #[inline]
-    pub(crate) fn for_each_flat_wall_column(
-        &self,
-        scene: Scene<'_>,
-        rows: &Range<u32>,
-        sink: &mut impl WallSink,
+    pub(crate) fn add_plane(
+        &mut self,
+        kind: PlaneKind,
+        image: MirrorTransform,
+        columns: &Range<u32>,
+        rows: impl Iterator<Item = Rows>,
     ) {
-        if self.has_flat_walls() {
-            flat::for_each_wall_column(scene, self.flat_columns(), rows, sink);
+        let first = self.plane_rows.len();
+        self.plane_rows.extend(rows);
+        if self.plane_rows[first..].iter().all(|rows| rows.is_empty()) {
+            self.plane_rows.truncate(first);
+            return;
         }
+        self.planes.push(Plane { columns: columns.clone(), first, kind, image });
     }
 
-    /// Passes the same wall columns in runs to `draw`, from left to right. No shape may be in view.
+    /// Adds a face with these columns, unless it shows in none. Returns whether it does.
     #[inline]
-    pub(crate) fn for_each_wall_run<'l>(&'l self, scene: Scene<'_>, draw: impl FnMut(WallRun<'l>)) {
-        if self.has_flat_walls() {
-            flat::for_each_wall_run(scene, self.flat_columns(), draw);
+    pub(crate) fn add_face(
+        &mut self,
+        face: Face,
+        columns: impl Iterator<Item = FaceColumn>,
+    ) -> bool {
+        self.face_columns.extend(columns);
+        self.push_face(face)
+    }
+
+    /// Adds a face whose columns are the last face columns, unless it shows in none. Returns whether it does.
+    pub(crate) fn push_face(&mut self, face: Face) -> bool {
+        let first = face.first;
+        if self.face_columns[first..].iter().all(|column| column.rows.is_empty()) {
+            self.face_columns.truncate(first);
+            return false;
         }
-    }
-
-    /// Passes every wall column in `rows` that the portal way found to `sink`, neighbours in succession as
-    /// far as possible.
-    #[inline]
-    pub(crate) fn for_each_portal_wall_column(&self, rows: &Range<u32>, sink: &mut impl WallSink) {
-        portal::for_each_wall_column(&self.walls, rows, sink);
-    }
-
-    /// Whether the flat way found walls that are drawn as columns.
-    fn has_flat_walls(&self) -> bool {
-        self.is_flat && self.opaque_columns.is_empty()
-    }
-
-    /// Passes every part of a wall to `draw`, from left to right, with the wall column in its middle: the walls of
-    /// the flat way, if they are blended over what is behind them. The light is computed only if `is_lit`.
-    pub(crate) fn for_each_wall_part<'l>(
-        &'l self,
-        scene: Scene<'_>,
-        is_lit: bool,
-        draw: impl FnMut(&'l WallPart, &WallColumn),
-    ) {
-        flat::for_each_wall_part(scene, &self.parts, is_lit, draw);
-    }
-
-    /// The columns around which the flat way draws planes.
-    fn drawn_columns(&self) -> &[Column] {
-        if self.opaque_columns.is_empty() { self.flat_columns() } else { &self.opaque_columns }
-    }
-
-    /// The columns as the flat way sees them.
-    pub(crate) fn flat_columns(&self) -> &[Column] {
-        if self.flat_columns.is_empty() { &self.columns } else { &self.flat_columns }
-    }
-
-    /// The surface of pixel `(x, y)` behind all layers; `None` if there is no column `x`.
-    pub(crate) fn surface(&self, x: u32, y: u32, ground: u32) -> Option<Surface> {
-        let column = self.flat_columns().get(x as usize)?;
-        let shown = self.runs.shown(x, y).and_then(Shown::surface);
-        Some(shown.unwrap_or_else(|| column.surface(y, ground)))
-    }
-}
-
-/// The number of columns that are ordered together.
-const BLOCK: usize = 32;
-
-/// Adds the layers `by_column`, those of each column together from far to near, to `layers` in the
-/// order of painting.
-pub(crate) fn put_in_order(
-    by_column: &[Layer],
-    see_through: &[SeeThroughColumn],
-    layers: &mut Vec<Layer>,
-) {
-    let column_of = |layer: &Layer| match layer {
-        Layer::SeeThrough(index) => see_through[*index].column as usize,
-        Layer::Billboard(column) => column.column as usize,
-    };
-    let is_glass = |layer: &Layer| match layer {
-        Layer::SeeThrough(index) => {
-            matches!(see_through[*index].material, Material::Translucent(_))
+        if !matches!(face.material, Material::Opaque(_)) {
+            self.passed.push(Layer::Face(self.see_through.len()));
+            self.see_through.push(face);
+            return true;
         }
-        Layer::Billboard(_) => false,
-    };
-    for mut columns in by_columns::<BLOCK, _>(by_column, column_of) {
-        while columns.iter().any(|column| !column.is_empty()) {
-            let mut glass = [const { None }; BLOCK];
-            for (column, glass) in columns.iter_mut().zip(&mut glass) {
-                let before = column.iter().position(is_glass).unwrap_or(column.len());
-                let (behind, rest) = column.split_at(before);
-                layers.extend_from_slice(behind);
-                (*glass, *column) = (rest.first(), &rest[rest.len().min(1)..]);
+        self.faces.push(face);
+        true
+    }
+
+    /// Whether the sky may be in view.
+    pub(crate) fn shows_sky(&self) -> bool {
+        let is_of_sky = |plane: &Plane| match plane.kind {
+            PlaneKind::Ceiling(sector) => {
+                let surface = self.sectors.even_surface(sector, PlaneSide::Ceiling);
+                surface.is_none_or(|surface| surface.covering.is_none())
             }
-            layers.extend(glass.into_iter().flatten().cloned());
+            _ => false,
+        };
+        self.backdrops.contains(&Some(Backdrop::Sky)) || self.planes.iter().any(is_of_sky)
+    }
+
+    /// Adds an image, unless it is known.
+    pub(crate) fn add_image(&mut self, image: MirrorTransform) {
+        if !self.images.contains(&image) {
+            self.images.push(image);
         }
     }
-}
-
-/// The `items` of each block of `N` columns of pixels, split by column. The items of a column, and
-/// those of a block, are contiguous.
-fn by_columns<const N: usize, T>(
-    items: &[T],
-    column_of: impl Fn(&T) -> usize + Copy,
-) -> impl Iterator<Item = [&[T]; N]> {
-    let blocks = items.chunk_by(move |one, other| column_of(one) / N == column_of(other) / N);
-    blocks.map(move |block| {
-        let mut columns: [&[T]; N] = [&[]; N];
-        for column in block.chunk_by(|one, other| column_of(one) == column_of(other)) {
-            columns[column_of(&column[0]) % N] = column;
-        }
-        columns
-    })
 }

@@ -1,7 +1,7 @@
 //! Lighting: the effect of light and fog on the colour of a texel.
 //!
-//! A row of the floor and a column of a wall have one lighting each. The inner loops are compiled
-//! for each kind, so that a scene without fog and darkness has no such code in them.
+//! A row of the floor and a column of a wall have one lighting each. It is applied to many colours at once, several
+//! channels by one instruction, and not at all where everything is near and fully lit.
 
 use glam::DVec2;
 
@@ -10,18 +10,18 @@ use crate::color::Rgb;
 use crate::world::texture::MipLevel;
 use crate::world::{Fog, Light};
 
-/// The effect of light and fog on a colour.
+/// The effect of light and fog on colours.
 pub(crate) trait Lighting: Copy + PartialEq {
-    /// The lighting that is left to [`Lighting::lit_texels`]'s caller.
-    type Rest: Lighting;
-    /// Whether mip levels have texels in this lighting, so that nothing is left.
+    /// Whether mip levels have texels in this lighting.
     const HAS_TEXELS: bool;
 
     fn apply(self, color: Rgb) -> Rgb;
 
-    /// The texels of `level`, column by column, lit as far as the level has them so, and the rest of the
-    /// lighting.
-    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self::Rest);
+    /// Applies it to each of `colors`.
+    fn apply_to_all(self, colors: &mut [Rgb]);
+
+    /// The texels of `level`, column by column, in this lighting if the level has them so, else unlit.
+    fn texels(self, level: &MipLevel) -> &[Rgb];
 }
 
 /// No effect: the surface is near and in full light.
@@ -43,7 +43,6 @@ pub(crate) struct Faded {
 }
 
 impl Lighting for FullyLit {
-    type Rest = Self;
     const HAS_TEXELS: bool = true;
 
     #[inline]
@@ -52,13 +51,15 @@ impl Lighting for FullyLit {
     }
 
     #[inline]
-    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self) {
-        (level.texels(), self)
+    fn apply_to_all(self, _: &mut [Rgb]) {}
+
+    #[inline]
+    fn texels(self, level: &MipLevel) -> &[Rgb] {
+        level.texels()
     }
 }
 
 impl Lighting for SideLit {
-    type Rest = FullyLit;
     const HAS_TEXELS: bool = true;
 
     #[inline]
@@ -70,17 +71,24 @@ impl Lighting for SideLit {
     }
 
     #[inline]
-    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], FullyLit) {
-        let texels = match self.0 {
+    fn apply_to_all(self, colors: &mut [Rgb]) {
+        if self.0 == Side::Y {
+            for color in colors {
+                *color = color.halved();
+            }
+        }
+    }
+
+    #[inline]
+    fn texels(self, level: &MipLevel) -> &[Rgb] {
+        match self.0 {
             Side::X => level.texels(),
             Side::Y => level.halved_texels(),
-        };
-        (texels, FullyLit)
+        }
     }
 }
 
 impl Lighting for Faded {
-    type Rest = Self;
     const HAS_TEXELS: bool = false;
 
     #[inline]
@@ -88,9 +96,13 @@ impl Lighting for Faded {
         color.blended(self.own, self.fog, self.share)
     }
 
+    fn apply_to_all(self, colors: &mut [Rgb]) {
+        Rgb::blend_all(colors, self.own, self.fog, self.share);
+    }
+
     #[inline]
-    fn lit_texels(self, level: &MipLevel) -> (&[Rgb], Self) {
-        (level.texels(), self)
+    fn texels(self, level: &MipLevel) -> &[Rgb] {
+        level.texels()
     }
 }
 

@@ -6,17 +6,12 @@
 
 use std::fmt;
 
-use super::Projection;
 use crate::color::Rgb;
-use crate::world::{Camera, Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind, World};
+use crate::world::{Ceiling, Covering, Light, Paint, Pattern, Sky, Tile, TileKind, World};
 
 /// The loops that draw a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FramePlan {
-    /// How visible surfaces are found.
-    pub visibility: Visibility,
-    /// How exact rays go from cell to cell.
-    pub rays: RayLoop,
     /// How ceilings are drawn.
     pub ceiling: CeilingLoop,
     /// How the floor is drawn.
@@ -29,40 +24,8 @@ pub struct FramePlan {
     pub things: ThingLoop,
     /// How textures are sampled.
     pub filter: Filter,
-}
-
-/// How visible surfaces are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visibility {
-    /// By the flat way: one wall for each column, and floor and ceiling around it.
-    Flat,
-    /// By the flat way, and by the portal way in the columns whose rays meet cells that are not
-    /// level.
-    Mixed(WhyPortals),
-    /// By the portal way: floors, ceilings and walls of any height, and mirrors.
-    Portals(WhyPortals),
-}
-
-/// Why the flat way alone is not sufficient.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhyPortals {
-    /// Floors, ceilings or walls differ in height.
-    Heights,
-    /// The map has mirrors.
-    Mirrors,
-    /// The eye is not between floor and ceiling.
-    Eye,
-}
-
-/// How exact rays go from cell to cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RayLoop {
-    /// They cross one line after the other and look up every cell.
-    Cells,
-    /// They cross the lines of one axis in turn.
-    Lines,
-    /// They cross many lines at once where no wall is near: the map is mostly empty.
-    Leaps,
+    /// Whether anything may be in front of what hides everything: things, masks, glass or mirrors.
+    pub(crate) has_layers: bool,
 }
 
 /// How the floor or the ceiling is drawn.
@@ -117,8 +80,8 @@ pub enum ThingLoop {
 }
 
 impl FramePlan {
-    /// The plan for the view of `camera` in `world`.
-    pub fn new(world: &World, camera: &Camera, filter: Filter) -> Self {
+    /// The plan for views of `world`.
+    pub fn new(world: &World, filter: Filter) -> Self {
         let tiles = world.tiles();
         let is_open = |tile: &&Tile| !matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
         let dims = |tile: &Tile| tile.light.is_some_and(|light| light != Light::FULL);
@@ -131,15 +94,7 @@ impl FramePlan {
             is_lamplit || open().any(|tile| dims(tile) || tile.ceiling != world.ceiling());
         let is_textured = |tile: &Tile| matches!(tile.kind, TileKind::Wall(Paint::Texture(_)));
         let is_door = |tile: &Tile| matches!(tile.kind, TileKind::Door(_) | TileKind::Doorway(_));
-        let visibility = Visibility::new(world, camera);
-        let grid = world.level_grid().unwrap_or(world.grid());
         Self {
-            visibility,
-            rays: match visibility {
-                Visibility::Portals(_) => RayLoop::Cells,
-                _ if grid.distance_field().is_measured() => RayLoop::Leaps,
-                _ => RayLoop::Lines,
-            },
             floor: PlaneLoop::new(world.floor(), floor_varies, is_foggy),
             ceiling: match world.ceiling() {
                 Ceiling::Sky if open().all(|tile| tile.ceiling == Ceiling::Sky) => CeilingLoop::Sky,
@@ -162,54 +117,16 @@ impl FramePlan {
                 _ => ThingLoop::Billboards,
             },
             filter,
+            has_layers: !world.things().is_empty()
+                || !world.figures().is_empty()
+                || tiles.iter().any(|tile| {
+                    matches!(
+                        tile.kind,
+                        TileKind::Mask(_) | TileKind::Glass(_) | TileKind::Mirror(_)
+                    )
+                }),
         }
     }
-}
-
-impl FramePlan {
-    /// Selects the portal way for a frame of which only a part is level, if any cell of `world` is
-    /// open to the sky: recorded surfaces of the flat way do not distinguish the sky from a
-    /// ceiling.
-    pub(crate) fn tell_sky_from_ceilings(&mut self, world: &World) {
-        let is_open = |tile: &Tile| tile.ceiling == Ceiling::Sky;
-        if let Visibility::Mixed(why) = self.visibility
-            && world.tiles().iter().any(is_open)
-        {
-            self.visibility = Visibility::Portals(why);
-        }
-    }
-}
-
-impl Visibility {
-    fn new(world: &World, camera: &Camera) -> Self {
-        let why = match (world.is_level(), world.has_mirrors()) {
-            (true, false) => None,
-            (true, true) => Some(WhyPortals::Mirrors),
-            (false, _) => Some(WhyPortals::Heights),
-        };
-        let is_between = Projection::is_between_floor_and_ceiling(camera.eye());
-        match why {
-            Some(why) if stands_on_level_floor(world, camera) => Self::Mixed(why),
-            Some(why) => Self::Portals(why),
-            None if is_between => Self::Flat,
-            None => Self::Portals(WhyPortals::Eye),
-        }
-    }
-}
-
-/// Whether `camera` is well inside a cell with a level floor, between floor and ceiling, so that
-/// rounding puts no ray into another cell.
-fn stands_on_level_floor(world: &World, camera: &Camera) -> bool {
-    /// Far more than the rounding error, in cells.
-    const EPSILON: f64 = 1e-6;
-    let (place, eye) = (camera.position(), camera.eye());
-    let inside = place - place.floor();
-    let is_inside = inside.min_element() > EPSILON && inside.max_element() < 1.0 - EPSILON;
-    let is_between = Projection::is_between_floor_and_ceiling(eye);
-    let tile = world.grid().tile(place.x.floor() as i64, place.y.floor() as i64);
-    let is_level_floor =
-        |tile: Tile| tile.is_level() && matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
-    is_inside && is_between && tile.is_some_and(|tile| is_level_floor(world.tile(tile)))
 }
 
 impl PlaneLoop {
@@ -226,44 +143,12 @@ impl PlaneLoop {
 impl fmt::Display for FramePlan {
     /// Writes a line for each pass, with its loop and the reason.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "view     {}", self.visibility)?;
-        writeln!(f, "rays     {}", self.rays)?;
         writeln!(f, "ceiling  {}", self.ceiling)?;
         writeln!(f, "floor    {}", self.floor)?;
         writeln!(f, "sky      {}", self.sky)?;
         writeln!(f, "walls    {}", self.walls)?;
         writeln!(f, "things   {}", self.things)?;
         writeln!(f, "filter   {}", self.filter)
-    }
-}
-
-impl fmt::Display for Visibility {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flat => f.write_str("flat: a ray ends at the first wall"),
-            Self::Mixed(why) => write!(f, "flat, and portals in part of it: {why}"),
-            Self::Portals(why) => write!(f, "portals: {why}"),
-        }
-    }
-}
-
-impl fmt::Display for WhyPortals {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Heights => "floors, ceilings or walls are not all of one height",
-            Self::Mirrors => "there are mirrors",
-            Self::Eye => "the eye is not between floor and ceiling",
-        })
-    }
-}
-
-impl fmt::Display for RayLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Cells => "cell by cell: each is looked at",
-            Self::Lines => "line by line, along one axis: walls are near",
-            Self::Leaps => "many lines at once, along one axis: most of the map is empty",
-        })
     }
 }
 
@@ -338,9 +223,9 @@ pub enum Filter {
     /// By area: from the mean of the texture over the pixel's width and height on the surface, with walls
     /// blended over what is behind them by the share of the pixel that they cover.
     ///
-    /// Walls of level scenes are blended. The borders of tiles and of pieces of a pattern, things, masks, glass, doors,
-    /// the sides of pillars and diagonals, and columns that show other heights have hard edges as by
-    /// [`Filter::Mip`].
+    /// Walls and steps are blended along their tops and bottoms, and walls in columns that they share. The borders of
+    /// tiles and of pieces of a pattern, things, masks, glass, doors, and the sides of pillars, diagonals and steps have
+    /// hard edges as by [`Filter::Mip`].
     Area,
 }
 

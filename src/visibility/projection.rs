@@ -10,8 +10,7 @@ use std::ops::{Range, RangeInclusive};
 use glam::DVec2;
 
 use super::SpanMapping;
-use super::texture_stepper::{FaceTexels, Horizon, TextureStepper, WallTexels};
-use crate::cast::{HitFace, Ray, Side};
+use super::texture_stepper::{FaceTexels, Horizon};
 use crate::numeric::rounding::{ceil, ceil_within};
 use crate::world::{Camera, Heights};
 
@@ -70,12 +69,6 @@ impl Projection {
         }
     }
 
-    /// Whether an eye at this height is well between floor and ceiling of a level scene: nearer to either,
-    /// rounding could take a ray of the flat way through it.
-    pub(crate) fn is_between_floor_and_ceiling(eye: f64) -> bool {
-        (NEAREST..=1.0 - NEAREST).contains(&eye)
-    }
-
     /// The height of the eye.
     pub(crate) fn eye(&self) -> f64 {
         self.eye
@@ -94,18 +87,6 @@ impl Projection {
     /// The number of columns of pixels.
     pub(crate) fn columns(&self) -> usize {
         self.width as usize
-    }
-
-    /// The rays of all columns, from left to right, each through the centres of its pixels. Their `t` is
-    /// the distance to the camera plane and needs no correction.
-    pub(crate) fn rays(&self) -> impl Iterator<Item = Ray> {
-        (0..self.width).map(|column| self.ray(column))
-    }
-
-    /// The ray of `column`.
-    #[inline]
-    pub(crate) fn ray(&self, column: u32) -> Ray {
-        Ray::of_camera(self.origin, self.direction_of(column))
     }
 
     /// Whether neighbouring rays differ by far more than rounding.
@@ -128,21 +109,43 @@ impl Projection {
         self.horizon.abs() <= 4096.0
     }
 
+    /// The direction of the camera, and the vector from there to the right edge of the picture at distance 1.
+    pub(crate) fn direction(&self) -> DVec2 {
+        self.direction
+    }
+
+    pub(crate) fn plane(&self) -> DVec2 {
+        self.plane
+    }
+
+    /// The place of `column` across the picture, from −1 at the left edge to 1 at the right one.
+    #[inline]
+    pub(crate) fn place_of(&self, column: u32) -> f64 {
+        let width = f64::from(self.width);
+        // The quotient of two integers: a column and its mirror image have opposite ones.
+        (f64::from(column) * 2.0 + 1.0 - width) / width
+    }
+
+    /// The direction of a ray `place` columns from the left edge, of which 0.5 is the middle of the first.
+    pub(crate) fn direction_at(&self, place: f64) -> DVec2 {
+        let width = f64::from(self.width);
+        self.direction + self.plane * ((place * 2.0 - width) / width)
+    }
+
+    /// The number of rows from the top of the picture to the horizon.
+    pub(crate) fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    /// The number of rows from the horizon to a point 1 above the eye at distance 1.
+    pub(crate) fn focal_length(&self) -> f64 {
+        self.focal_length
+    }
+
     /// The direction of the ray of `column`.
     #[inline]
     pub(crate) fn direction_of(&self, column: u32) -> DVec2 {
-        let width = f64::from(self.width);
-        // The quotient of two integers: a column and its mirror image have opposite ones.
-        let across = (f64::from(column) * 2.0 + 1.0 - width) / width;
-        self.direction + self.plane * across
-    }
-
-    /// The rows whose centres are between top and bottom of a wall of height 1 at distance `t`.
-    #[inline]
-    pub(crate) fn wall_rows(&self, t: f64) -> Range<u32> {
-        let at_1 = [-((1.0 - self.eye) * self.focal_length), self.eye * self.focal_length];
-        let [top, bottom] = at_1.map(|rows| self.first_row_below(self.horizon + rows / t));
-        top..bottom
+        self.direction + self.plane * self.place_of(column)
     }
 
     /// The rise from the eye to `height`.
@@ -216,10 +219,10 @@ impl Projection {
         down * across
     }
 
-    /// The mapping of `row` to the floor, or to the ceiling for a row above the horizon.
-    pub(crate) fn mapping(&self, row: u32) -> SpanMapping {
-        let height = if self.slope(row) > 0.0 { 1.0 - self.eye } else { self.eye };
-        self.mapping_of(row, height)
+    /// The width and the height of the part of a wall's side, in cells, that a pixel covers there.
+    #[inline]
+    pub(crate) fn pixel_extent_on_wall(&self, t: f64, slope: f64) -> DVec2 {
+        DVec2::new(t / (self.focal_length_across * slope.abs()), t / self.focal_length)
     }
 
     /// The mapping of `row` to a floor or a ceiling at `height`.
@@ -267,9 +270,6 @@ impl Projection {
     }
 }
 
-/// The least distance of an eye from floor and ceiling, in cells, for the flat way.
-const NEAREST: f64 = 1.0 / 64.0;
-
 /// An eye further up or down has the same view as from here: no height is so far.
 const FARTHEST: f64 = 4.0 * Heights::MAX;
 
@@ -283,104 +283,15 @@ fn rows_of_pitch(camera: &Camera, focal_length: f64) -> f64 {
 }
 
 impl Projection {
-    /// The texels of a wall with `count` from top to bottom.
-    pub(crate) fn wall_texels(&self, count: usize) -> WallTexels {
-        WallTexels::new(count, 1.0 - self.eye)
-    }
-
-    /// The texels of a wall at distance `t`.
-    #[inline]
-    pub(crate) fn texels_down_the_wall(&self, t: f64, texels: WallTexels) -> TextureStepper {
-        TextureStepper::of_wall(self.horizon_of_texels, t / self.focal_length, texels)
-    }
-
     /// The texels of a face from the height `bottom` to `top`: `count` for each cell of height, from one integer
     /// height to the next.
     pub(crate) fn face_texels(&self, count: usize, (bottom, top): (f64, f64)) -> FaceTexels {
         // On old processors `f64::ceil` is a call.
         let above = ceil(top) as f64;
-        FaceTexels::new(count, (above - top, above - bottom), above - self.eye)
-    }
-
-    /// The texels of a face at distance `t`.
-    #[inline]
-    pub(crate) fn texels_down_the_face(&self, t: f64, texels: FaceTexels) -> TextureStepper {
-        TextureStepper::new(self.horizon_of_texels, t / self.focal_length, texels)
+        let in_picture = (self.horizon_of_texels, 1.0 / self.focal_length);
+        FaceTexels::new(count, (above - top, above - bottom), above - self.eye, in_picture)
     }
 }
-
-/// The top and the bottom of a wall of height 1 in a picture, which are straight lines.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FaceEnds {
-    /// The rows that a cell of height covers at the left edge of the picture, and their change from column to
-    /// column.
-    rows: f64,
-    change: f64,
-    horizon: f64,
-    /// The top and the bottom, in cells below the eye.
-    heights: [f64; 2],
-}
-
-impl Projection {
-    /// The direction of a ray `place` columns from the left edge, of which 0.5 is the middle of the first.
-    #[inline]
-    pub(crate) fn direction_at(&self, place: f64) -> DVec2 {
-        let width = f64::from(self.width);
-        self.direction + self.plane * ((place * 2.0 - width) / width)
-    }
-
-    /// The ray there.
-    pub(crate) fn ray_at(&self, place: f64) -> Ray {
-        Ray::of_camera(self.origin, self.direction_at(place))
-    }
-
-    /// The ends of `face`.
-    pub(crate) fn face_ends(&self, face: &HitFace) -> FaceEnds {
-        let (side, to_line) = (face.side(), face.distance_to_line(self.origin));
-        let [middle, across] = [self.direction, self.plane].map(|direction| match side {
-            Side::X => direction.x,
-            Side::Y => direction.y,
-        });
-        // The inverse of the distance to the camera plane changes evenly across the picture.
-        let rows = (self.focal_length / to_line).min(FAR);
-        let rows = if face.is_ahead() { rows } else { -rows };
-        self.ends(rows * (middle - across), rows * across * (2.0 / f64::from(self.width)))
-    }
-
-    /// The ends of a wall of height 1 at distance `t` everywhere.
-    pub(crate) fn level_ends(&self, t: f64) -> FaceEnds {
-        self.ends((self.focal_length / t).min(FAR), 0.0)
-    }
-
-    fn ends(&self, rows: f64, change: f64) -> FaceEnds {
-        let heights = [self.eye - 1.0, self.eye];
-        FaceEnds { rows, change, horizon: self.horizon, heights }
-    }
-
-    /// The width and the height of the part of a wall's side, in cells, that a pixel covers there.
-    #[inline]
-    pub(crate) fn pixel_extent_on_wall(&self, t: f64, slope: f64) -> DVec2 {
-        DVec2::new(t / (self.focal_length_across * slope.abs()), t / self.focal_length)
-    }
-}
-
-impl FaceEnds {
-    /// The rows that a cell of height covers `place` columns from the left edge.
-    #[inline]
-    pub(crate) fn rows_at(&self, place: f64) -> f64 {
-        self.rows + self.change * place
-    }
-
-    /// The top and the bottom there, in rows from the top of the picture.
-    #[inline]
-    pub(crate) fn at(&self, place: f64) -> [f64; 2] {
-        let rows = self.rows_at(place);
-        self.heights.map(|height| self.horizon + height * rows)
-    }
-}
-
-/// More rows than any picture has, for a cell of height.
-const FAR: f64 = 1e9;
 
 /// The size of a frame in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

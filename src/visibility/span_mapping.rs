@@ -10,6 +10,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use crate::cast::MirrorTransform;
+use crate::numeric::rounding::floor_double;
 
 /// The line of the floor or the ceiling that a row of pixels shows.
 #[derive(Clone, Copy, Debug)]
@@ -27,15 +28,17 @@ pub(crate) struct SpanMapping {
 }
 
 impl SpanMapping {
-    /// The same line, slightly nearer to `eye`, from which a pixel's cell is looked up. For a point
-    /// on the line between two cells, it gives the nearer cell, and at the foot of a wall the cell
-    /// before the wall.
-    pub(crate) fn just_before(self, eye: DVec2) -> Self {
+    /// The lines slightly nearer to `eye` and farther from it, from which a pixel's cell is looked up. For a point
+    /// on the line between two cells, they give the nearer cell and the farther one.
+    pub(crate) fn before_and_behind(self, eye: DVec2) -> [Self; 2] {
         /// As a fraction of the distance: more than the rounding error of a point, and too little
         /// to be visible.
         const EPSILON: f64 = 1e-9;
-        let middle = self.middle + (eye - self.middle) * EPSILON;
-        Self { middle, half_step: self.half_step * (1.0 - EPSILON), ..self }
+        [-EPSILON, EPSILON].map(|moved| Self {
+            middle: self.middle + (self.middle - eye) * moved,
+            half_step: self.half_step * (1.0 + moved),
+            ..self
+        })
     }
 
     /// The line on the map, for an image in mirrors.
@@ -63,46 +66,31 @@ impl SpanMapping {
     /// The cells that the pixels in `columns` show, each by its north-west corner and with its
     /// columns.
     ///
-    /// A cell costs a few divisions; its pixels are not looked up on the map one by one.
+    /// A cell costs a search for its end along one axis; its pixels are not looked up on the map one by one.
+    #[inline]
     pub(crate) fn cells(
         self,
         columns: Range<usize>,
     ) -> impl Iterator<Item = (DVec2, Range<usize>)> {
-        let mut first = columns.start;
+        let Range { mut start, end } = columns;
+        let mut x = AxisCells::new(self.middle.x, self.half_step.x, self.width);
+        let mut y = AxisCells::new(self.middle.y, self.half_step.y, self.width);
+        x.enter(start, end);
+        y.enter(start, end);
         std::iter::from_fn(move || {
-            (first < columns.end).then(|| {
-                let corner = self.point(first).floor();
-                let start = first;
-                first = self.end_of_cell(corner, start..columns.end);
-                (corner, start..first)
+            (start < end).then(|| {
+                let corner = DVec2::new(x.cell, y.cell);
+                let first = start;
+                start = x.next.min(y.next);
+                if start < end && x.next == start {
+                    x.enter(start, end);
+                }
+                if start < end && y.next == start {
+                    y.enter(start, end);
+                }
+                (corner, first..start)
             })
         })
-    }
-
-    /// The first of `columns` that is not in the cell at `corner`, in which the first one is; the
-    /// end of `columns` if there is none.
-    fn end_of_cell(&self, corner: DVec2, columns: Range<usize>) -> usize {
-        let along = |from: f64, corner: f64, half_step: f64| {
-            let edge = if half_step > 0.0 { corner + 1.0 } else { corner };
-            (edge - from) / (2.0 * half_step)
-        };
-        let from = self.point(columns.start);
-        let along_x = along(from.x, corner.x, self.half_step.x);
-        let along_y = along(from.y, corner.y, self.half_step.y);
-        // A step of 0 never reaches an edge: the quotient is infinite, NaN or negative.
-        let is_ahead = |&along: &f64| along >= 0.0;
-        let pixels = [along_x, along_y].into_iter().filter(is_ahead).fold(f64::INFINITY, f64::min);
-        let least = columns.start + 1;
-        let mut end = columns.start.saturating_add(pixels as usize).clamp(least, columns.end);
-        // The quotient may be wrong by a pixel through rounding; the points of the pixels decide.
-        let shows = |x: usize| self.point(x).floor() == corner;
-        while end > least && !shows(end - 1) {
-            end -= 1;
-        }
-        while end < columns.end && shows(end) {
-            end += 1;
-        }
-        end
     }
 
     /// The positions of the pixels from column `x` on in a pattern that repeats `per_cell` times in
@@ -121,6 +109,58 @@ impl SpanMapping {
     /// The number of half pixels from the middle of the row to the centre of a pixel.
     fn half_steps_to(&self, x: usize) -> i64 {
         2 * x as i64 + 1 - i64::from(self.width)
+    }
+}
+
+/// The cells that the pixels of a row show, along one axis.
+struct AxisCells {
+    middle: f64,
+    half_step: f64,
+    width: i64,
+    /// The number of half steps in a cell.
+    half_steps_in_cell: f64,
+    /// The column or row of the map.
+    cell: f64,
+    /// The first pixel in another one, or the end.
+    next: usize,
+}
+
+impl AxisCells {
+    fn new(middle: f64, half_step: f64, width: u32) -> Self {
+        let width = i64::from(width);
+        Self { middle, half_step, width, half_steps_in_cell: 1.0 / half_step, cell: 0.0, next: 0 }
+    }
+
+    fn at(&self, x: usize) -> f64 {
+        self.middle + self.half_step * (2 * x as i64 + 1 - self.width) as f64
+    }
+
+    /// Finds the cell of the pixel in column `x`, and the first pixel before `end` in another one.
+    #[inline]
+    fn enter(&mut self, x: usize, end: usize) {
+        let here = self.at(x);
+        // Mostly it is the next one.
+        let beside = self.cell + if self.half_step > 0.0 { 1.0 } else { -1.0 };
+        let is_beside = beside <= here && here < beside + 1.0;
+        self.cell = if is_beside { beside } else { floor_double(here) };
+        self.next = end;
+        if self.half_step == 0.0 || !self.cell.is_finite() {
+            return;
+        }
+        let is_forward = self.half_step > 0.0;
+        let edge = if is_forward { self.cell + 1.0 } else { self.cell };
+        let is_beyond = |x: usize| if is_forward { self.at(x) >= edge } else { self.at(x) < edge };
+        let half_steps = (edge - self.middle) * self.half_steps_in_cell;
+        let estimate = f64::midpoint(half_steps, (self.width - 1) as f64);
+        let mut next = (estimate as usize).clamp(x + 1, end);
+        // The estimate may be wrong by a pixel through rounding; the points of the pixels decide.
+        while next > x + 1 && is_beyond(next - 1) {
+            next -= 1;
+        }
+        while next < end && !is_beyond(next) {
+            next += 1;
+        }
+        self.next = next;
     }
 }
 

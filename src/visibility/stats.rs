@@ -2,12 +2,7 @@
 //!
 //! Whether the counts are kept is asked once for each span and each wall column, never for a pixel.
 //! Rejected: compiling all of drawing a second time, for counting. A fifth of the code of drawing was for
-//! explanations. Rays are counted by a caster that wraps another.
-
-use std::cell::Cell;
-
-use crate::cast::{AnyCaster, Caster, Hit, MajorAxisTraversal, Ray, Walk};
-use crate::world::{Grid, World};
+//! explanations.
 
 /// A kind of surface that pixels are written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -87,13 +82,8 @@ pub struct PassStats {
 /// The cost of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct FrameStats {
-    /// The rays cast: at most one for each column of pixels, and a second one if the first hit a
-    /// tile that may be passed.
-    pub rays: u64,
-    /// The cells that the rays entered, those that they hit included.
-    pub cells: u64,
-    /// The lookups of a tile or of a clear distance: fewer than cells, if rays do not stop in each.
-    pub looks: u64,
+    /// The cost of finding what is visible.
+    pub walk: WalkStats,
     /// The cost of ceilings.
     pub ceiling: PassStats,
     /// The cost of floors.
@@ -110,24 +100,26 @@ pub struct FrameStats {
     pub things_considered: u64,
     /// The things and figures in view.
     pub things_drawn: u64,
-    /// The cost of the portal way.
-    pub portals: PortalStats,
     /// The spans of floor, ceiling and sky.
     pub spans: u64,
     /// The pixel writes beyond the first for each pixel.
     pub overwritten: u64,
 }
 
-/// The cost of the portal way.
+/// The cost of finding what is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct PortalStats {
-    /// The rays followed.
+pub struct WalkStats {
+    /// The rays cast: few of those of the columns.
     pub rays: u64,
     /// The cells that they entered.
     pub cells: u64,
-    /// The faces that they met, each as wide as a pixel.
+    /// The lookups of a tile or of a clear distance: fewer than cells, if rays do not stop in each.
+    pub looks: u64,
+    /// The sectors entered, each by the rays of neighbouring columns.
+    pub sectors: u64,
+    /// The faces found.
     pub faces: u64,
-    /// The reflections in mirrors.
+    /// The reflections in mirrors, each as wide as a pixel.
     pub bounces: u64,
 }
 
@@ -173,62 +165,5 @@ impl FrameStats {
             sum.pixels += of_band.pixels;
         }
         self.spans += band.spans;
-    }
-}
-
-/// Casts as another caster does, and counts the cells of the exact rays, whatever that caster's
-/// method.
-pub(crate) struct RayCounter<'a> {
-    caster: &'a dyn AnyCaster,
-    grid: &'a Grid,
-    rays: Cell<u64>,
-    cells: Cell<u64>,
-    looks: Cell<u64>,
-}
-
-impl<'a> RayCounter<'a> {
-    pub(crate) fn new(caster: &'a dyn AnyCaster, grid: &'a Grid) -> Self {
-        Self { caster, grid, rays: Cell::default(), cells: Cell::default(), looks: Cell::default() }
-    }
-
-    /// Adds the counts to `stats`.
-    pub(crate) fn add_to(&self, stats: &mut FrameStats) {
-        stats.rays += self.rays.get();
-        stats.cells += self.cells.get();
-        stats.looks += self.looks.get();
-    }
-
-    fn count(&self, ray: &Ray) {
-        let grid = self.grid;
-        let mut entered = 0;
-        for crossing in Walk::new(grid, ray) {
-            entered += 1;
-            if grid.is_solid_tile(crossing.tile) {
-                break;
-            }
-        }
-        let looked = MajorAxisTraversal::new(grid, ray).map_or(entered, |mut traversal| {
-            traversal.next();
-            traversal.lookups()
-        });
-        self.rays.update(|rays| rays + 1);
-        self.cells.update(|cells| cells + entered);
-        self.looks.update(|looks| looks + looked);
-    }
-}
-
-impl Caster for RayCounter<'_> {
-    fn cast(&self, grid: &Grid, ray: &Ray) -> Option<Hit> {
-        self.count(ray);
-        self.caster.cast_any(grid, ray)
-    }
-
-    fn is_exact(&self) -> bool {
-        self.caster.is_exact_any()
-    }
-
-    fn cast_through(&self, world: &World, ray: &Ray, mut passed: impl FnMut(Hit)) -> Option<Hit> {
-        self.count(ray);
-        self.caster.cast_through_any(world, ray, &mut passed)
     }
 }

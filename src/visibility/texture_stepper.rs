@@ -8,15 +8,20 @@
 use std::iter;
 use std::ops::Range;
 
-use crate::numeric::rounding::{ceil, floor, rounded};
+use crate::numeric::rounding::{ceil, floor, rounded, rounded_to_even};
 
-/// The texels of an upright face.
+/// The texels of an upright face in a picture, at any distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceTexels {
-    /// Those of the uppermost texture, continued upwards and downwards.
-    wall: WallTexels,
-    /// The uppermost and the lowest texel on the face.
+    /// The texels of a texture, and the uppermost and the lowest one on the face, counted from the top of the
+    /// uppermost texture.
+    count: i64,
     range: (i64, i64),
+    /// The position of eye height.
+    at_horizon: i64,
+    horizon: Horizon,
+    /// The half of a step at distance 1.
+    half_step_at_1: f64,
 }
 
 /// The horizon of a picture, for the steppers of its faces.
@@ -40,30 +45,43 @@ pub(crate) struct TextureStepper {
     count: i64,
 }
 
-/// The texels of a wall of height 1 that one texture covers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct WallTexels {
-    count: i64,
-    /// The position of eye height.
-    at_horizon: i64,
-}
-
 impl FaceTexels {
     /// `count` texels, at least one, for each cell of height, of a face from `top` to `bottom`, in cells down
-    /// from the top of its uppermost texture. `at_eye` is eye height, in the same unit.
-    pub(crate) fn new(count: usize, (top, bottom): (f64, f64), at_eye: f64) -> Self {
+    /// from the top of its uppermost texture. `at_eye` is eye height, in the same unit. At distance 1, a row of
+    /// pixels covers `height_of_row` cells.
+    pub(crate) fn new(
+        count: usize,
+        (top, bottom): (f64, f64),
+        at_eye: f64,
+        (horizon, height_of_row): (Horizon, f64),
+    ) -> Self {
         let in_texels = |cells: f64| cells * count as f64;
         let uppermost = floor(in_texels(top));
         let lowest = (ceil(in_texels(bottom)) - 1).max(uppermost);
-        Self { wall: WallTexels::new(count, at_eye), range: (uppermost, lowest) }
+        Self {
+            count: count as i64,
+            range: (uppermost, lowest),
+            at_horizon: rounded(in_texels(at_eye) * TEXEL).wrapping_add(EPSILON),
+            horizon,
+            half_step_at_1: in_texels(height_of_row) / 2.0 * TEXEL,
+        }
     }
-}
 
-impl WallTexels {
-    /// `count` texels of a wall, with eye height `at_eye` cells below its top.
-    pub(crate) fn new(count: usize, at_eye: f64) -> Self {
-        let count = count as i64;
-        Self { count, at_horizon: rounded(at_eye * count as f64 * TEXEL) }
+    /// The stepper at distance `t`.
+    #[inline]
+    pub(crate) fn at(&self, t: f64) -> TextureStepper {
+        let &Self { count, range, at_horizon, horizon, half_step_at_1 } = self;
+        let half_step = rounded_to_even((t * half_step_at_1).min(MAX_HALF_STEP));
+        let half_step = half_step.max(horizon.least);
+        // Positions far above or below the face wrap around, and return to the same value at the
+        // face.
+        let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
+        TextureStepper {
+            first: at_horizon.wrapping_add(from_horizon),
+            step: 2 * half_step,
+            range,
+            count,
+        }
     }
 }
 
@@ -81,30 +99,6 @@ impl Horizon {
 }
 
 impl TextureStepper {
-    /// The stepper of `texels` in a picture with this `horizon`, if a row covers `height_of_row`
-    /// cells of the face.
-    pub(crate) fn new(horizon: Horizon, height_of_row: f64, texels: FaceTexels) -> Self {
-        let FaceTexels { wall, range } = texels;
-        Self { range, ..Self::of_wall(horizon, height_of_row, wall) }
-    }
-
-    /// The stepper of a wall of height 1 with these `texels`.
-    #[inline]
-    pub(crate) fn of_wall(horizon: Horizon, height_of_row: f64, texels: WallTexels) -> Self {
-        let WallTexels { count, at_horizon } = texels;
-        let texels_in_row = (height_of_row * count as f64).min(MAX_TEXELS);
-        let half_step = rounded(texels_in_row / 2.0 * TEXEL).max(horizon.least);
-        // Positions far above or below the face wrap around, and return to the same value at the
-        // face.
-        let from_horizon = half_step.wrapping_mul(horizon.half_rows_to_first);
-        Self {
-            first: at_horizon.wrapping_add(EPSILON).wrapping_add(from_horizon),
-            step: 2 * half_step,
-            range: (0, count - 1),
-            count,
-        }
-    }
-
     /// The texel of the texture at the centre of `row`: the nearest one if rounding puts the centre
     /// slightly above or below the face.
     #[inline]
@@ -112,13 +106,23 @@ impl TextureStepper {
         self.texel_at(self.place(row) >> TEXEL_BITS)
     }
 
-    /// Whether the centre of `row` is on the face, in spite of rounding.
+    /// The texels of the texture that `rows`, which are not empty, show, and perhaps others.
     #[inline]
-    pub(crate) fn is_on_face(self, row: u32) -> bool {
+    pub(crate) fn texels_of(self, rows: &Range<u32>) -> Range<usize> {
+        let [first, last] = [rows.start, rows.end - 1].map(|row| self.place(row) >> TEXEL_BITS);
+        let is_inside = 0 <= first && first <= last && last < self.count;
+        if is_inside { first as usize..last as usize + 1 } else { 0..self.count as usize }
+    }
+
+    /// Whether the centres of the first and the last of `rows` are on the face, in spite of rounding.
+    #[inline]
+    pub(crate) fn has_ends_of(self, rows: &Range<u32>) -> bool {
         let (uppermost, lowest) = self.range;
-        let from_top = self.place(row).wrapping_sub(uppermost << TEXEL_BITS);
+        let size = ((lowest + 1 - uppermost) as u64) << TEXEL_BITS;
+        let first = self.place(rows.start).wrapping_sub(uppermost << TEXEL_BITS);
+        let last = first.wrapping_add(self.step.wrapping_mul(i64::from(rows.end - 1 - rows.start)));
         // A place above the face is negative, and as large as any without its sign.
-        (from_top as u64) < ((lowest + 1 - uppermost) as u64) << TEXEL_BITS
+        (first as u64) < size && (last as u64) < size
     }
 
     /// The texel of the texture for the one at `place`, counted from the top of the uppermost
@@ -142,10 +146,11 @@ impl TextureStepper {
         Some(first >> TEXEL_BITS..(last >> TEXEL_BITS) + 1)
     }
 
-    /// Whether the centres of all `rows` are on the face, in spite of rounding.
+    /// Whether the face shows no texel beyond the uppermost texture.
     #[inline]
-    pub(crate) fn shows_all(self, rows: &Range<u32>) -> bool {
-        self.places(rows).is_some_and(|places| self.has(&places))
+    pub(crate) fn is_one_texture(self) -> bool {
+        let (uppermost, lowest) = self.range;
+        uppermost >= 0 && lowest < self.count
     }
 
     /// Whether all `places` are on the face.
@@ -202,8 +207,8 @@ impl TextureStepper {
 /// The size of a texel, in fixed point.
 const TEXEL: f64 = (1_u64 << TEXEL_BITS) as f64;
 const TEXEL_BITS: u32 = 40;
-/// The most texels from one row to the next; with more, only one row shows the face.
-const MAX_TEXELS: f64 = 65_536.0;
+/// The most, 65 536 texels from one row to the next: with more, only one row shows the face.
+const MAX_HALF_STEP: f64 = 32_768.0 * TEXEL;
 /// The offset that puts a row's centre on the line between two texels on the lower one, however the
 /// step was rounded: the rounding of 4096 rows, by half a unit each, is half as much.
 const EPSILON: i64 = 1 << 12;
@@ -216,14 +221,23 @@ mod tests {
 
     use super::*;
 
-    fn wall(count: usize) -> FaceTexels {
-        FaceTexels::new(count, (0.0, 1.0), 0.5)
+    /// The stepper of a face with this number of texels a cell, between two depths below the top of its uppermost
+    /// texture, for an eye at such a depth. A row covers so much of it.
+    fn stepper(
+        count: usize,
+        (ends, at_eye): ((f64, f64), f64),
+        half_rows: f64,
+        height_of_row: f64,
+    ) -> TextureStepper {
+        FaceTexels::new(count, ends, at_eye, (Horizon::new(half_rows), 1.0)).at(height_of_row)
     }
+
+    const WALL: (f64, f64) = (0.0, 1.0);
 
     #[test]
     fn halves_of_the_picture_show_halves_of_a_wall_at_any_distance() {
         for near in [0.0, f64::MIN_POSITIVE, 1e-30, 1e-9] {
-            let texels = TextureStepper::new(Horizon::new(90.0), near, wall(64));
+            let texels = stepper(64, (WALL, 0.5), 90.0, near);
             assert_eq!((texels.at(44), texels.at(45)), (31, 32), "{near}");
         }
     }
@@ -236,8 +250,7 @@ mod tests {
             let of_face = [0.0, f64::MIN_POSITIVE, at_eye / (rows as f64 + 0.5)];
             for height_of_row in of_face {
                 let half_rows = 2.0 * rows as f64;
-                let wall = WallTexels::new(1, at_eye);
-                let texels = TextureStepper::of_wall(Horizon::new(half_rows), height_of_row, wall);
+                let texels = stepper(1, (WALL, at_eye), half_rows, height_of_row);
                 let Range { start, end } = texels.places(&(0..1)).unwrap();
                 assert!(-1 <= start && end <= 2, "{rows}, {height_of_row}: {start}");
             }
@@ -249,11 +262,7 @@ mod tests {
         // Thirds and sevenths have no finite binary fraction.
         for (rows, count) in [(3_u32, 1_u32), (7, 3), (21, 5), (63, 64), (4095, 3)] {
             let height_of_row = 1.0 / f64::from(rows);
-            let texels = TextureStepper::new(
-                Horizon::new(f64::from(rows)),
-                height_of_row,
-                wall(count as usize),
-            );
+            let texels = stepper(count as usize, (WALL, 0.5), f64::from(rows), height_of_row);
             for row in 0..rows {
                 let exact = (2 * row + 1) * count / (2 * rows);
                 assert_eq!(texels.at(row), exact as usize, "{row} of {rows}");
@@ -264,8 +273,7 @@ mod tests {
     #[test]
     fn a_high_face_repeats_its_texture_at_each_integer_height() {
         // From 0.25 to 2.5, seen from 1: its uppermost texture has its top at 3.
-        let texels = FaceTexels::new(4, (0.5, 2.75), 2.0);
-        let texels = TextureStepper::new(Horizon::new(12.0), 0.25, texels);
+        let texels = stepper(4, ((0.5, 2.75), 2.0), 12.0, 0.25);
         let seen: Vec<usize> = (0..9).map(|row| texels.at(row)).collect();
         assert_eq!(seen, [2, 3, 0, 1, 2, 3, 0, 1, 2]);
     }
@@ -278,8 +286,7 @@ mod tests {
             at_eye in 0.02..0.98,
             count in 1_usize..4097,
         ) {
-            let texels = FaceTexels::new(count, (0.0, 1.0), at_eye);
-            let texels = TextureStepper::new(Horizon::new(f64::from(height)), 1.0 / rows, texels);
+            let texels = stepper(count, (WALL, at_eye), f64::from(height), 1.0 / rows);
             for row in 0..height {
                 let from_horizon = f64::from(2 * row + 1) / 2.0 - f64::from(height) / 2.0;
                 let place = (from_horizon / rows + at_eye) * count as f64;

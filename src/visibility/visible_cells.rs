@@ -1,6 +1,6 @@
 //! The cells in view: an interval of columns for each row of the map.
 //!
-//! The visible area is between the camera and the ends of all rays. Its outline is followed once,
+//! The visible area consists of the parts of rays in each sector. The outline of each is followed once,
 //! and the interval of each row that it crosses is extended to contain it. The time depends on the
 //! size of the area and not on the size of the map.
 //!
@@ -12,7 +12,6 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::{Column, Scene};
 use crate::world::{Thing, World};
 
 /// The margin around the visible area, in cells: more than the rounding error.
@@ -47,22 +46,6 @@ impl Interval {
 }
 
 impl VisibleCells {
-    /// Includes the area that the rays of `columns` cross, from the camera to their ends.
-    pub(crate) fn outline(&mut self, scene: Scene<'_>, columns: &[Column]) {
-        if self.shows_all_of(scene.world) {
-            return;
-        }
-        let origin = scene.projection.origin();
-        let ends = || ends(scene, columns);
-        let span = |(low, high): (f64, f64), end: DVec2| (low.min(end.y), high.max(end.y));
-        let (low, high) = ends().fold((origin.y, origin.y), span);
-        self.begin(scene.world, low, high);
-        ends().chain([origin]).fold(origin, |one, other| {
-            self.follow(one, other);
-            other
-        });
-    }
-
     /// Makes all things of `world` count as visible, if they are few. Returns whether they do.
     pub(crate) fn shows_all_of(&mut self, world: &World) -> bool {
         const FEW: usize = 16;
@@ -126,91 +109,5 @@ impl VisibleCells {
             below + u32::from(f64::from(below) < place)
         };
         first_from(low - self.margin)..first_from(high + self.margin)
-    }
-}
-
-/// The ends of the rays of `columns`, from left to right, except those nowhere near the map.
-fn ends(scene: Scene<'_>, columns: &[Column]) -> impl Iterator<Item = DVec2> {
-    let projection = scene.projection;
-    let end = |(x, column): (u32, &Column)| {
-        projection.origin() + projection.direction_of(x) * column.distance
-    };
-    (0..).zip(columns).map(end).filter(|end| end.is_finite())
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::cast::{Exact, MirrorTransform};
-    use crate::map;
-    use crate::visibility::flat::FlatMemory;
-    use crate::visibility::{
-        Billboard, DrawList, Filter, FramePlan, FrameSize, PixelAspect, Projection, Stats, flat,
-    };
-    use crate::world::{Camera, FieldOfView, Heading};
-
-    const SIDE: usize = 16;
-
-    /// A map of walls and plants, some of them so high that they are wider than a cell.
-    fn world(cells: &[char]) -> World {
-        let rows: String =
-            cells.chunks(SIDE).map(|row| row.iter().collect::<String>() + "\n").collect();
-        let text = format!(
-            "grid = '''\n{}'''\ntiles.'#'.wall = 'brick'\n[things]\n'@' = {{ start = 0 }}\n\
-             'p' = {{ sprite = 'plant' }}\n'P' = {{ sprite = 'table', height = 3 }}\n",
-            rows.replacen('.', "@", 1)
-        );
-        map::parse_str(&text).unwrap_or_else(|faults| panic!("{faults}"))
-    }
-
-    fn place(thing: &Thing) -> (u32, u32) {
-        (thing.cell.row, thing.cell.column)
-    }
-
-    proptest! {
-        #[test]
-        fn nothing_in_view_is_left_out(
-            cells in prop::collection::vec(
-                prop::sample::select(&['.', '.', 'p', 'p', 'p', 'P', '#'][..]),
-                SIDE * SIDE,
-            ),
-            position in (-6.0..22.0, -6.0..22.0),
-            degrees in prop_oneof![0.0..360.0, prop::sample::select(&[0.0, 45.0, 90.0, 270.0][..])],
-            field_of_view in prop_oneof![Just(66.0), 1.0..179.0],
-        ) {
-            prop_assume!(cells.contains(&'.'));
-            let world = &world(&cells);
-            let camera = Camera::new(
-                position.into(),
-                Heading::from_degrees(degrees).unwrap(),
-                FieldOfView::from_degrees(field_of_view).unwrap(),
-            )
-            .unwrap();
-            let size = FrameSize::new(40, 24).unwrap();
-            let plan = &FramePlan::new(world, &camera, Filter::Mip);
-            let projection = &Projection::new(&camera, size, PixelAspect::SQUARE);
-            let scene = Scene { world, camera: &camera, seconds: 0.0, projection, plan };
-            let mut list = DrawList::default();
-            let memory = &mut FlatMemory::default();
-            flat::find_columns(scene, (&Exact, world.grid()), memory, &mut list, &mut Stats::default());
-            let columns = &list.columns;
-
-            let mut visible = VisibleCells::default();
-            visible.outline(scene, columns);
-            let considered: Vec<_> = visible.things(world).map(place).collect();
-            prop_assert!(considered.is_sorted_by(|one, other| one < other), "each of them once");
-            let considered: BTreeSet<_> = considered.into_iter().collect();
-            for thing in world.things() {
-                let billboard = Billboard::of_thing(scene, MirrorTransform::default(), *thing);
-                let is_in_view = billboard.is_some_and(|it| {
-                    it.columns.clone().any(|x| it.depth < columns[x as usize].distance)
-                });
-                prop_assert!(!is_in_view || considered.contains(&place(thing)), "{thing:?}");
-            }
-        }
     }
 }

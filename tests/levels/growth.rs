@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use cellcaster::cast::{Caster, Exact, Ray};
 use cellcaster::map;
-use cellcaster::render::{Explanation, Frame, FrameSize, PixelAspect, RayLoop, Renderer};
+use cellcaster::render::{Explanation, Frame, FrameSize, PixelAspect, Renderer};
 use cellcaster::world::{Cell, FieldOfView, Opening, World};
 use glam::DVec2;
 
@@ -51,18 +51,16 @@ fn among_rooms_rays_go_line_by_line() {
     let rooms = square(66, |column, row| {
         (column % 8 == 0 && row % 8 != 4 || row % 8 == 0 && column % 8 != 4).then_some('#')
     });
-    let Explanation { plan, stats, .. } = explained(&rooms);
-    assert_eq!(plan.rays, RayLoop::Lines);
-    assert!(stats.looks < stats.cells);
+    let walk = explained(&rooms).stats.walk;
+    assert!(walk.looks < walk.cells);
 }
 
 #[test]
 fn a_hall_sixteen_times_as_wide_takes_twice_the_looks_at_most() {
-    let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)));
-    assert_eq!((small.plan.rays, large.plan.rays), (RayLoop::Leaps, RayLoop::Leaps));
-    assert!(large.stats.cells > 10 * small.stats.cells);
-    assert!(large.stats.looks <= 2 * small.stats.looks, "{:?}", (small.stats, large.stats));
-    assert!(small.stats.looks < small.stats.cells / 3);
+    let [small, large] = [64, 1024].map(|side| explained(&square(side, |_, _| None)).stats.walk);
+    assert!(large.cells > 10 * small.cells);
+    assert!(large.looks <= 2 * small.looks, "{:?}", (small, large));
+    assert!(small.looks < small.cells / 3);
 }
 
 /// The pillars are in one cell of each 64 by 64, and not in its middle.
@@ -72,7 +70,7 @@ fn a_plain_sixty_four_times_as_wide_takes_three_times_the_looks_for_a_ray() {
         let moved = |by: u32| 16 + (column / 64 * 37 + row / 64 * 101 + by * 53) % 32;
         ((column % 64, row % 64) == (moved(0), moved(1))).then_some('#')
     };
-    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).stats);
+    let [small, large] = [64, 4096].map(|side| explained(&square(side, pillar)).stats.walk);
     assert!(large.cells > 1000 * large.rays, "{large:?}");
     assert!(large.looks < 40 * large.rays, "{large:?}");
     let (more, fewer) = (large.looks * small.rays, small.looks * large.rays);
@@ -92,7 +90,8 @@ fn no_ray_leaps_across_a_door(side: u32) {
     let wall =
         |column, row| (column == door.column).then_some(if row == door.row { '+' } else { '#' });
     let mut world = square(side, wall);
-    assert_eq!(explained(&world).plan.rays, RayLoop::Leaps);
+    let walk = explained(&world).stats.walk;
+    assert!(walk.looks < walk.cells, "{walk:?}");
     let hit = |world: &World, x: f64| {
         let middle = f64::from(side / 2) + 0.5;
         let ray = Ray::new(DVec2::new(x, middle), DVec2::X).unwrap();

@@ -37,7 +37,7 @@ fn a_flat_scene_reads_texels_for_its_walls_alone() {
     assert_eq!((stats.floor.texels, stats.ceiling.texels, stats.sky.pixels), (0, 0, 0));
     assert_eq!(stats.walls.texels, stats.walls.pixels);
     // Rays between two that hit the same face need not be cast.
-    assert!((2..u64::from(WIDTH) / 2).contains(&stats.rays));
+    assert!((2..u64::from(WIDTH) / 2).contains(&stats.walk.rays));
     // Two fills of half the picture each, and the walls over them.
     assert_eq!(stats.floor.pixels + stats.ceiling.pixels, PIXELS);
     assert_eq!(stats.overwritten, stats.walls.pixels);
@@ -99,8 +99,8 @@ fn a_still_door_costs_the_same_as_a_wall() {
         map::parse_str(&text).unwrap()
     };
     let [door, wall] = ["door", "wall"].map(|tile| explained(&map(tile)).stats);
-    // Columns that may show the leaf are cast one by one after the others.
-    assert!(door.rays <= wall.rays + u64::from(WIDTH));
+    // The rays go on into the cell of the door.
+    assert!(door.walk.rays <= 4 * wall.walk.rays, "{:?}", [door.walk, wall.walk]);
     assert_eq!(door.see_through, wall.see_through);
     assert_eq!(door.walls.texels, door.walls.pixels);
     // It is half a cell farther away, and covers slightly fewer pixels.
@@ -120,8 +120,10 @@ fn what_is_not_level_costs_what_is_in_view_of_it() {
     // It is behind the camera.
     assert_eq!(map(0.25, 0), map(0.0, 0));
     let (level, raised) = (map(0.0, 180), map(0.25, 180));
-    assert_eq!(level.portals.rays, 0);
-    assert!((1..u64::from(WIDTH) / 2).contains(&raised.portals.rays), "{raised:?}");
+    assert_eq!(level.walk.sectors, 1);
+    // The raised tile, and the floor behind it and beside it.
+    assert!((2..6).contains(&raised.walk.sectors), "{raised:?}");
+    assert!(raised.walk.rays < level.walk.rays + 20, "{:?}", [raised.walk, level.walk]);
 }
 
 #[test]
@@ -164,7 +166,7 @@ fn lamplight_reads_and_writes_nothing_more() {
     let unlit = map::parse_str(&sprites).unwrap();
     let (lit, unlit) = (explained(&lit), explained(&unlit));
     assert_eq!(lit.plan, unlit.plan);
-    let same = |stats: FrameStats| (stats.floor, stats.ceiling, stats.walls, stats.cells);
+    let same = |stats: FrameStats| (stats.floor, stats.ceiling, stats.walls, stats.walk.cells);
     assert_eq!(same(lit.stats), same(unlit.stats));
 }
 
@@ -300,7 +302,6 @@ fn with_panes(pane: &str) -> [World; 2] {
 
 fn pixels_of(world: &World) -> Frame {
     let mut frame = frame();
-    // On a line between cells an uneven map is drawn by the portal way.
     let camera = Camera::new((2.0, 2.5).into(), Heading::default(), FieldOfView::default());
     Renderer::new().render(world, &camera.unwrap(), &mut frame);
     frame
@@ -333,7 +334,7 @@ fn opaque_glass_and_opaque_mirrors_cost_what_a_wall_does() {
 fn a_clear_mirror_has_no_tint_to_draw() {
     for mirror in with_panes("mirror = '#80c0ff', opacity = 0") {
         let stats = explained(&mirror).stats;
-        assert_eq!((stats.see_through.pixels, stats.portals.bounces > 0), (0, true));
+        assert_eq!((stats.see_through.pixels, stats.walk.bounces > 0), (0, true));
     }
 }
 

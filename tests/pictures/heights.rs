@@ -435,10 +435,9 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
     let mut renderer = Renderer::new();
     renderer.set_filter(Filter::Nearest);
     renderer.render(&world, &camera, &mut frame);
-    // With surfaces, the portal way alone draws what is partly level under the sky.
-    let mut by_portals = Frame::new(size, PixelAspect::SQUARE);
+    let mut with_surfaces = Frame::new(size, PixelAspect::SQUARE);
     renderer.keep_surfaces(true);
-    renderer.render(&world, &camera, &mut by_portals);
+    renderer.render(&world, &camera, &mut with_surfaces);
     for (x, y) in (0..scene.size.0).flat_map(|x| (0..scene.size.1).map(move |y| (x, y))) {
         let meet_beside = |right: f64, down: f64| {
             let (x, y) = (f64::from(x) + 0.5 + right, f64::from(y) + 0.5 + down);
@@ -448,7 +447,13 @@ fn compare(scene: &Scene, look: Look) -> Result<(), TestCaseError> {
         let beside = [(-DOUBTFUL, 0.0), (DOUBTFUL, 0.0), (0.0, -DOUBTFUL), (0.0, DOUBTFUL)];
         if !met.is_tied && beside.into_iter().all(|(right, down)| meet_beside(right, down) == met) {
             prop_assert_eq!(frame.pixel(x, y), met.color, "at ({}, {}): {:?}", x, y, met);
-            prop_assert_eq!(by_portals.pixel(x, y), met.color, "by portals at ({}, {})", x, y);
+            prop_assert_eq!(
+                with_surfaces.pixel(x, y),
+                met.color,
+                "with surfaces at ({}, {})",
+                x,
+                y
+            );
         }
     }
     Ok(())
@@ -493,5 +498,37 @@ proptest! {
     #[test]
     fn every_pixel_behind_walls_under_the_sky_is_where_geometry_says(scene in walled_scene()) {
         compare(&scene, Look::Colors)?;
+    }
+}
+
+#[test]
+fn a_ceiling_goes_on_over_a_step_at_the_centres_of_pixels() {
+    // A point half a cell above the eye and half a cell to its side is at the centre of some pixel.
+    let grid = "##########\n#BBBBBBBB#\n#@AAAAAAA#\n#BBBBBBBB#\n##########\n#0########";
+    let text = format!(
+        "floor = '#808080'\nceiling = '#0000ff'\nsky = {{ gradient = ['#ffffff', '#ffffff'] }}\n\
+         grid = '''\n{grid}\n'''\n[tiles]\n'#' = {{ wall = '#808080' }}\n\
+         'A' = {{ ceiling = '#ff0000' }}\n'B' = {{ floor_height = -0.5 }}\n\
+         '0' = {{ floor_height = -0.5, ceiling = 'sky' }}\n\
+         [things]\n'@' = {{ start = 0, on = 'A' }}\n"
+    );
+    let world = map::parse_str(&text).unwrap();
+    let mut renderer = Renderer::new();
+    for position in (12..36).map(|eighths| DVec2::new(f64::from(eighths) / 8.0, 2.5)) {
+        let camera = Camera::new(position, Heading::default(), FieldOfView::default()).unwrap();
+        for size in [(32, 32), (64, 48), (80, 48)] {
+            let mut frame =
+                Frame::new(FrameSize::new(size.0, size.1).unwrap(), PixelAspect::SQUARE);
+            renderer.render(&world, &camera, &mut frame);
+            for (x, y) in (0..size.0).flat_map(|x| (0..size.1 / 2).map(move |y| (x, y))) {
+                let [red, green, blue] = frame.pixel(x, y).channels();
+                assert_eq!(
+                    green,
+                    if red == blue { red } else { 0 },
+                    "{size:?}, {position}, {x}, {y}"
+                );
+                assert!(red < 255 || blue < 255, "the sky shows: {size:?}, {position}, {x}, {y}");
+            }
+        }
     }
 }

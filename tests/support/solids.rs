@@ -1,7 +1,7 @@
 //! A world as a set of solids: blocks, pillars, thin walls, cubes of glass and pictures. A line hits the nearest of
 //! them.
 //!
-//! It uses no portals, rows or cells: it tests every solid and takes the nearest hit. The colour of
+//! It uses no sectors, rows or cells: it tests every solid and takes the nearest hit. The colour of
 //! a hit depends on its position only. A mirror reflects the line, and with it the viewer.
 
 use std::f64::consts::TAU;

@@ -52,7 +52,6 @@ fn a_guard_who_moves_outside_the_view_costs_no_frame() {
     for place in [8, 11] {
         let mut rows: Vec<String> = grid.trim().lines().map(str::to_owned).collect();
         rows[1].replace_range(place..=place, "g");
-        // The portal way draws floors at several heights.
         for tiles in ["", "u = { floor_height = 0.2 }"] {
             let grid = rows.join("\n");
             let grid = if tiles.is_empty() { grid } else { grid.replacen("#@.", "#@u", 1) };

@@ -11,8 +11,7 @@
 use glam::DVec2;
 
 use super::{Axis, Order};
-use crate::cast::ray::{along_line, from_left, is_from_left, meeting};
-use crate::cast::through::meet_leaf;
+use crate::cast::ray::meeting;
 use crate::cast::{ExactOrder, Passage, Ray, Side};
 use crate::world::{Cell, Grid, TileId, TileKind, World};
 
@@ -26,7 +25,6 @@ pub(crate) struct Course {
     transform: MirrorTransform,
     column: OnMap,
     row: OnMap,
-    bounces: u32,
 }
 
 /// The cells that a ray enters, in the exact order.
@@ -85,9 +83,9 @@ impl RayWalk {
         meeting(&self.ray, crossed.side, self.course.corner(crossed)).0
     }
 
-    /// The hit of the ray on an object, as by [`Course::standing`].
+    /// The passage of the ray by an object that stands in `cell`, where the ray is now.
     pub(crate) fn standing(&self, world: &World, cell: Cell, kind: TileKind) -> Passage {
-        self.course.standing(&self.ray, world, cell, kind)
+        Passage::of_tile(&self.course.on_map(&self.ray), world, cell, kind)
     }
 }
 
@@ -103,13 +101,13 @@ impl Course {
             row: OnMap { index: y.index, step: y.step },
             x,
             y,
-            bounces: 0,
         }
     }
 
     /// The course of `ray` from its entry into `cell` by a line of kind `side`, and that line, which the
     /// ray has just crossed. The ray must enter the cell by such a line.
-    pub(crate) fn entering(grid: &Grid, ray: &Ray, (cell, side): (Cell, Side)) -> (Self, Crossed) {
+    #[cfg(feature = "tui")]
+    fn entering(grid: &Grid, ray: &Ray, (cell, side): (Cell, Side)) -> (Self, Crossed) {
         let mut course = Self::new(grid, ray);
         course.x.enter(cell.column);
         course.y.enter(cell.row);
@@ -122,6 +120,37 @@ impl Course {
         let line = axis.line - axis.stride;
         let into = course.cell(grid);
         (course, Crossed { side, into, line })
+    }
+
+    /// The course of a ray along `direction` in the cell that is at `place`, column and row, along the straight
+    /// ray in the image of `transform`.
+    pub(crate) fn resumed(
+        grid: &Grid,
+        direction: DVec2,
+        transform: MirrorTransform,
+        place: [i64; 2],
+    ) -> Self {
+        let [x, y] = [(direction.x, grid.width()), (direction.y, grid.height())];
+        let x = Axis::resumed(x, place[0]);
+        let y = Axis::resumed(y, place[1]);
+        let [column, row] = transform.cell_to_map(place);
+        let on_map = |index: i64, step: i64, axis: AxisTransform| OnMap {
+            index,
+            step: if axis.is_mirrored { -step } else { step },
+        };
+        Self {
+            column: on_map(column, x.step, transform.x),
+            row: on_map(row, y.step, transform.y),
+            transform,
+            x,
+            y,
+        }
+    }
+
+    /// The column and the row of the cell along the straight rays.
+    #[inline]
+    pub(crate) fn place(&self) -> [i64; 2] {
+        [self.x.index, self.y.index]
     }
 
     /// The cell that contains the rays; `None` off the map.
@@ -158,16 +187,6 @@ impl Course {
         }
     }
 
-    /// The face that the rays have just crossed. They are on the same side of both axes as one along
-    /// `direction`.
-    pub(crate) fn face(&self, direction: DVec2, crossed: &Crossed) -> CrossedFace {
-        let Crossed { side, .. } = *crossed;
-        let is_mirrored = self.transform.is_mirrored_along(side);
-        let direction = self.transform.direction_to_map(direction);
-        let is_from_left = is_from_left(direction, side);
-        CrossedFace { side, corner: self.corner(crossed), is_mirrored, is_from_left }
-    }
-
     /// The north or west end of the face that the rays have just crossed.
     #[inline]
     fn corner(&self, crossed: &Crossed) -> DVec2 {
@@ -177,45 +196,10 @@ impl Course {
         }
     }
 
-    /// Reflects the rays at the line of kind `side` that they have just crossed.
-    pub(crate) fn reflect(&mut self, side: Side) {
-        let (axis, on_map) = match side {
-            Side::X => (&self.x, &mut self.column),
-            Side::Y => (&self.y, &mut self.row),
-        };
-        let index = self.transform.reflect(side, axis.line as i64 - axis.step, axis.index);
-        *on_map = OnMap { index, step: -on_map.step };
-        self.bounces += 1;
-    }
-
-    /// The hit of `ray`, where it is now, on an object that stands in `cell` without filling it:
-    /// the leaf of a door, which has no interior, or a shape.
-    pub(crate) fn standing(&self, ray: &Ray, world: &World, cell: Cell, kind: TileKind) -> Passage {
-        let ray = self.on_map(ray);
-        match kind {
-            TileKind::Door(_) => {
-                let hit = meet_leaf(world.grid(), &ray, cell, world.opening(cell));
-                Passage { hit, end: None }
-            }
-            TileKind::Shape(it) => Passage::new(&ray, cell, it.outline),
-            _ => Passage::NONE,
-        }
-    }
-
     /// `ray` on the map after all reflections, as if it had come straight.
     pub(crate) fn on_map(&self, ray: &Ray) -> Ray {
         let Self { transform, .. } = self;
         Ray::moved(transform.to_map(ray.origin()), transform.direction_to_map(ray.direction()))
-    }
-
-    /// The transform of the image in which the rays are.
-    pub(crate) fn transform(&self) -> MirrorTransform {
-        self.transform
-    }
-
-    /// The number of reflections so far.
-    pub(crate) fn bounces(&self) -> u32 {
-        self.bounces
     }
 }
 
@@ -245,7 +229,7 @@ impl MirrorTransform {
     }
 
     /// Whether lines of kind `side` are mirrored along themselves.
-    fn is_mirrored_along(self, side: Side) -> bool {
+    pub(crate) fn is_mirrored_along(self, side: Side) -> bool {
         match side {
             Side::X => self.y.is_mirrored,
             Side::Y => self.x.is_mirrored,
@@ -261,6 +245,12 @@ impl MirrorTransform {
         };
         *along = along.mirrored_at(line);
         along.index_on_map(index)
+    }
+
+    /// The column and the row on the map for those along the straight ray.
+    #[inline]
+    pub(crate) fn cell_to_map(self, [column, row]: [i64; 2]) -> [i64; 2] {
+        [self.x.index_on_map(column), self.y.index_on_map(row)]
     }
 
     /// Whether left and right are exchanged.
@@ -308,38 +298,6 @@ pub(crate) struct Crossed {
     pub(crate) into: Option<(Cell, TileId)>,
     /// The coordinate of the line along the straight ray.
     pub(crate) line: f64,
-}
-
-impl Crossed {
-    /// The distance of the line along a ray, from the components of its origin and its direction across
-    /// the line.
-    #[inline]
-    pub(crate) fn distance(&self, origin: f64, direction: f64) -> f64 {
-        ((self.line - origin) / direction).abs()
-    }
-}
-
-/// The face on a line that rays have crossed.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct CrossedFace {
-    pub(crate) side: Side,
-    /// The north or west end, along the straight rays.
-    pub(crate) corner: DVec2,
-    /// Whether the face is mirrored along its line.
-    pub(crate) is_mirrored: bool,
-    /// Whether the north or west end is on the left.
-    pub(crate) is_from_left: bool,
-}
-
-impl CrossedFace {
-    /// The position along the face at which `ray` has crossed the line at `t`, as in
-    /// [`Hit`](crate::cast::Hit).
-    #[inline]
-    pub(crate) fn u(&self, ray: &Ray, t: f64) -> f64 {
-        let along = along_line(ray, t, self.side, self.corner).clamp(0.0, 1.0);
-        let along = if self.is_mirrored { 1.0 - along } else { along };
-        from_left(along, self.is_from_left)
-    }
 }
 
 #[cfg(test)]

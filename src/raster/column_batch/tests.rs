@@ -6,7 +6,7 @@ use super::*;
 use crate::cast::Side;
 use crate::raster::SurfaceBuffer;
 use crate::render::Frame;
-use crate::visibility::{FrameSize, PixelAspect, Projection, SideLit, Stats};
+use crate::visibility::{FaceColumn, FrameSize, PixelAspect, Projection, Rows, SideLit, Stats};
 use crate::world::{Camera, FieldOfView, Heading, Texture};
 
 const HEIGHT: u32 = 90;
@@ -45,10 +45,11 @@ proptest! {
         let mut batch = ColumnBatch::new(&mut memory, &mut target, false);
         let walls = || (0..).zip(&columns).filter_map(|(x, column)| Some((x, column.as_ref()?)));
         let down = |t: f64, range: &Range<usize>| {
-            projection.texels_down_the_wall(t, projection.wall_texels(range.len()))
+            projection.face_texels(range.len(), (0.0, 1.0)).at(t)
         };
+        let rows_of = |t: f64| projection.row_of_height(1.0, t)..projection.row_of_height(0.0, t);
         for (x, (t, side, range)) in walls() {
-            let (rows, lighting) = (projection.wall_rows(*t), SideLit(*side));
+            let (rows, lighting) = (rows_of(*t), SideLit(*side));
             match texels[range.clone()] {
                 [color] => batch.queue_color(x, rows, color, lighting),
                 ref texels => batch.queue_texels(x, rows, texels, down(*t, range), lighting),
@@ -58,7 +59,7 @@ proptest! {
         let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
         for (x, (t, side, range)) in walls() {
             let texels = &texels[range.clone()];
-            for row in projection.wall_rows(*t) {
+            for row in rows_of(*t) {
                 let texel = texels[down(*t, range).at(row)];
                 shown[row as usize][x as usize] = SideLit(*side).apply(texel);
             }
@@ -85,8 +86,7 @@ proptest! {
             let (bottom, top) = heights;
             let rows = projection.row_of_height(top, t)..projection.row_of_height(bottom, t);
             let texels = projection.face_texels(texels as usize, heights);
-            let stepper = projection.texels_down_the_face(t, texels);
-            (!rows.is_empty()).then_some((x, rows, u, stepper))
+            (!rows.is_empty()).then_some((x, rows, (t, u), texels))
         });
         let mut frame = Frame::new(size, PixelAspect::SQUARE);
         let mut memory = BatchMemory::default();
@@ -94,14 +94,21 @@ proptest! {
         let rows = surfaces.bands(size.height).next().unwrap();
         let mut target = Target::new(frame.whole(), rows, Stats::default());
         let mut batch = ColumnBatch::new(&mut memory, &mut target, are_direct);
-        for (x, rows, u, stepper) in faces() {
-            batch.draw_face((x, rows), (level, u), stepper, SideLit(side));
+        let shown: Vec<_> = faces()
+            .map(|(x, rows, (t, u), texels)| {
+                let rows = Rows { start: rows.start, end: rows.end };
+                (x, [FaceColumn { rows, t, u }], texels)
+            })
+            .collect();
+        for &(x, ref columns, texels) in &shown {
+            let lighting = SideLit(side);
+            batch.draw_columns(&DirectColumns { level, texels, lighting, x, columns });
         }
         batch.draw();
         let mut shown = vec![vec![Rgb::BLACK; columns.len()]; HEIGHT as usize];
-        for (x, rows, u, stepper) in faces() {
+        for (x, rows, (t, u), texels) in faces() {
             for row in rows {
-                let texel = level.column(u)[stepper.at(row)];
+                let texel = level.column(u)[texels.at(t).at(row)];
                 shown[row as usize][x as usize] = SideLit(side).apply(texel);
             }
         }

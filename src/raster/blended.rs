@@ -1,0 +1,130 @@
+//! Blended faces: walls that cover pixels in part, for the filter by area.
+//!
+//! A pixel has the mean of the wall and of what was drawn there before, in linear light, weighted by the share of the
+//! pixel that the wall covers.
+
+use std::iter;
+use std::ops::Range;
+
+use super::band::Band;
+use crate::color::Rgb;
+use crate::color::srgb::{from_linear_16, linear_16};
+use crate::visibility::{
+    Face, FaceColumn, FaceEdges, Faded, Lighting, Projection, Rows, SlopedEdge, TextureStepper,
+};
+
+/// The rows of a column of a face that it covers as a whole.
+pub(crate) fn whole_rows(
+    projection: &Projection,
+    face: &Face,
+    edges: &FaceEdges,
+    x: u32,
+    column: &FaceColumn,
+) -> Rows {
+    let [top, bottom] = edges.limits(projection, face, x).map(|edge| edge.rows(projection.rows()));
+    let Rows { start, end } = column.rows;
+    Rows { start: start.max(top.end), end: end.min(bottom.start) }
+}
+
+/// The colours of a column of a face.
+pub(crate) enum FaceColors<'a> {
+    Color(Rgb),
+    Texels { texels: &'a [Rgb], stepper: TextureStepper, lighting: Faded },
+}
+
+/// The part of a wall in a column that walls share.
+pub(crate) struct SharedPart<'a> {
+    /// Its top and its bottom.
+    pub(crate) limits: [SlopedEdge; 2],
+    /// The part of the width of the column that it covers.
+    pub(crate) width: f64,
+    /// The rows in which it covers this part from top to bottom.
+    pub(crate) whole: Rows,
+    pub(crate) colors: FaceColors<'a>,
+}
+
+impl FaceColors<'_> {
+    /// The colour in `row`.
+    #[inline]
+    fn at(&self, row: u32) -> Rgb {
+        match self {
+            Self::Color(color) => *color,
+            Self::Texels { texels, stepper, lighting } => lighting.apply(texels[stepper.at(row)]),
+        }
+    }
+}
+
+/// Blends a column of a face over the pixels that it covers in part: those of `rows` that are not `whole`.
+pub(crate) fn draw_ends(
+    projection: &Projection,
+    (face, edges): (&Face, &FaceEdges),
+    x: u32,
+    (rows, whole): (Range<u32>, Rows),
+    colors: &FaceColors<'_>,
+    band: &mut Band<'_>,
+) {
+    let limits = edges.limits(projection, face, x);
+    let whole = if whole.is_empty() { rows.end..rows.end } else { whole.start..whole.end };
+    let above = rows.start..whole.start.clamp(rows.start, rows.end);
+    let below = whole.end.clamp(above.end, rows.end)..rows.end;
+    for row in above.chain(below) {
+        let share = in_parts_of_whole(covered(limits, row)).min(WHOLE);
+        let pixel = band.pixel_mut(x, row);
+        let mut light = [0; 3];
+        add(&mut light, share, colors.at(row));
+        add(&mut light, WHOLE - share, *pixel);
+        *pixel = rounded(light);
+    }
+}
+
+/// Blends the parts of walls that share column `x` over its pixels in `rows`.
+pub(crate) fn draw_shared(
+    (x, rows): (u32, Range<u32>),
+    parts: &[Option<SharedPart<'_>>],
+    band: &mut Band<'_>,
+) {
+    let parts = || parts.iter().flatten();
+    for row in rows {
+        let pixel = band.pixel_mut(x, row);
+        let (mut light, mut left) = ([0; 3], WHOLE);
+        let mut last = *pixel;
+        for part in parts() {
+            let is_whole = part.whole.start <= row && row < part.whole.end;
+            let covered = if is_whole { 1.0 } else { covered(part.limits, row) };
+            let share = in_parts_of_whole(covered * part.width).min(left);
+            last = part.colors.at(row);
+            add(&mut light, share, last);
+            left -= share;
+        }
+        // Rounding may leave a little to be covered.
+        let is_covered = left <= parts().count() as u32;
+        add(&mut light, left, if is_covered { last } else { *pixel });
+        *pixel = rounded(light);
+    }
+}
+
+/// The share of the pixel in `row` that is between a top and a bottom.
+#[inline]
+fn covered([top, bottom]: [SlopedEdge; 2], row: u32) -> f64 {
+    (top.share_below(row) - bottom.share_below(row)).max(0.0)
+}
+
+/// The whole of a pixel.
+const WHOLE: u32 = 1 << 16;
+
+/// A share from 0 to 1, in parts of [`WHOLE`].
+fn in_parts_of_whole(share: f64) -> u32 {
+    (share * f64::from(WHOLE) + 0.5) as u32
+}
+
+/// Adds the light of `share` of a pixel in `color` to `sums`.
+fn add(sums: &mut [u32; 3], share: u32, color: Rgb) {
+    for (sum, light) in iter::zip(sums, linear_16(color)) {
+        *sum += share * u32::from(light);
+    }
+}
+
+/// The colour of the light in `sums`.
+fn rounded(sums: [u32; 3]) -> Rgb {
+    from_linear_16(sums.map(|sum| ((sum + WHOLE / 2) / WHOLE) as u16))
+}

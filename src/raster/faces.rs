@@ -1,0 +1,413 @@
+//! Faces: walls, masks and tints, column by column of their textures.
+//!
+//! A column of a wall is one column of its texture, stretched. The texel of each pixel is computed from
+//! its row, not from the texel above it, so that no error accumulates from row to row. If a wall is
+//! so near that only a few of its texels are in view, they are the right ones.
+//!
+//! The mip level changes in one direction along a wall, so that one level at both of its ends is that of all its
+//! columns.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::blended::{FaceColors, SharedPart, draw_ends, draw_shared, whole_rows};
+use super::column_batch::{BatchMemory, ColumnBatch};
+use super::direct_columns::{self, DirectColumns};
+use super::sampling::Sampling;
+use super::target::Target;
+use crate::cast::Side;
+use crate::color::Rgb;
+use crate::visibility::{
+    DrawList, Face, FaceColumn, FaceEdges, FaceTexels, Facing, Faded, Lighting, Material, Pass,
+    Scene, SideLit, Surface,
+};
+use crate::world::texture::MipLevel;
+use crate::world::{Glass, Paint, TextureId};
+
+/// Draws the faces of `list` that hide what is behind them.
+pub(crate) fn draw<M: Sampling>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    (memory, whole_columns): (&mut BatchMemory, &mut Vec<FaceColumn>),
+    target: &mut Target<'_>,
+) {
+    let are_direct = direct_columns::are_for(scene, target.band_mut());
+    // Farther faces are drawn first, because nearer ones may be blended over them.
+    let mut rest = list.faces.as_slice();
+    while let [.., face] = rest {
+        let is_joined = |face: &&Face| face.edges.is_some_and(|edges| edges.is_joined);
+        let others = rest[..rest.len() - 1].iter().rev().take_while(is_joined).count();
+        let (before, shared) = rest.split_at(rest.len() - 1 - others);
+        rest = before;
+        let Material::Opaque(paint) = face.material else { continue };
+        let mut shown = ShownFace::new(scene, list, face);
+        shown.record(paint, target);
+        if others > 0 {
+            draw_shared_column::<M>(scene, list, shared, target);
+            continue;
+        }
+        if let Some(edges) = &face.edges {
+            let whole = shown.columns.iter().zip(face.columns.clone()).map(|(column, x)| {
+                let rows = whole_rows(scene.projection, face, edges, x, column);
+                FaceColumn { rows, ..*column }
+            });
+            whole_columns.clear();
+            whole_columns.reserve(scene.projection.columns());
+            whole_columns.extend(whole);
+            shown.draw_ends::<M>(paint, edges, whole_columns, target);
+            shown.columns = whole_columns;
+        }
+        let lighting = if scene.plan.walls.faded { None } else { shown.side() };
+        if let Some(side) = lighting {
+            let batch = &mut ColumnBatch::new(memory, target, are_direct);
+            shown.draw::<M, _>(paint, batch, |_| SideLit(side));
+            batch.draw();
+        } else {
+            let batch = &mut ColumnBatch::new(memory, target, are_direct);
+            shown.draw::<M, _>(paint, batch, |index| shown.lighting(index));
+            batch.draw();
+        }
+    }
+}
+
+/// Draws the parts of walls that share a column.
+fn draw_shared_column<M: Sampling>(
+    scene: Scene<'_>,
+    list: &DrawList,
+    faces: &[Face],
+    target: &mut Target<'_>,
+) {
+    /// More walls in a column are left out.
+    const MAX: usize = 4;
+    let band = target.rows();
+    let mut parts = [const { None }; MAX];
+    let mut rows = band.end..band.start;
+    for (part, face) in parts.iter_mut().zip(faces) {
+        let shown = ShownFace::new(scene, list, face);
+        let of_part = shown.columns.first().map_or(0..0, |column| column.rows.within(&band));
+        if let (false, Some(edges)) = (of_part.is_empty(), face.edges) {
+            rows = rows.start.min(of_part.start)..rows.end.max(of_part.end);
+            let (Some(column), Some(colors)) = (shown.columns.first(), shown.colors::<M>()) else {
+                continue;
+            };
+            let x = face.columns.start;
+            let across = edges.across(x);
+            *part = Some(SharedPart {
+                limits: edges.limits(scene.projection, face, x),
+                width: across.end - across.start,
+                whole: whole_rows(scene.projection, face, &edges, x, column),
+                colors,
+            });
+        }
+    }
+    let x = faces.first().map_or(0, |face| face.columns.start);
+    draw_shared((x, rows), &parts, target.band_mut());
+}
+
+/// A face with what its columns share.
+pub(crate) struct ShownFace<'a> {
+    scene: Scene<'a>,
+    list: &'a DrawList,
+    face: &'a Face,
+    columns: &'a [FaceColumn],
+}
+
+impl<'a> ShownFace<'a> {
+    pub(crate) fn new(scene: Scene<'a>, list: &'a DrawList, face: &'a Face) -> Self {
+        let columns = &list.face_columns[face.first..][..face.columns.len()];
+        Self { scene, list, face, columns }
+    }
+
+    /// The side that it faces, if it is on the grid.
+    fn side(&self) -> Option<Side> {
+        match self.face.facing {
+            Facing::Side(side) => Some(side),
+            Facing::Normal(_) | Facing::Around(_) => None,
+        }
+    }
+
+    /// The direction of the ray of a column on the map.
+    #[inline]
+    fn direction(&self, index: usize) -> DVec2 {
+        let direction = self.list.directions.of(self.face.columns.start + index as u32);
+        self.face.image.direction_to_map(direction)
+    }
+
+    /// The normal at a column.
+    fn normal(&self, index: usize) -> DVec2 {
+        let origin = self.face.image.to_map(self.scene.projection.origin());
+        self.face.facing.normal(origin + self.direction(index) * self.columns[index].t)
+    }
+
+    /// The approach of the ray of a column to the face, in cells per unit of `t`.
+    #[inline]
+    fn slope(&self, index: usize) -> f64 {
+        match self.face.facing {
+            Facing::Side(side) => self.direction(index)[side as usize],
+            _ => self.normal(index).dot(self.direction(index)),
+        }
+    }
+
+    /// The lighting of a column.
+    pub(crate) fn lighting(&self, index: usize) -> Faded {
+        let FaceColumn { t, u, .. } = self.columns[index];
+        let (light, fog) = (self.face.light.at(u), self.scene.world.fog());
+        match self.face.facing {
+            Facing::Side(side) => Faded::of_wall(side, light, fog, t),
+            _ => Faded::of_surface(self.normal(index), light, fog, t),
+        }
+    }
+
+    /// The surface that a column shows.
+    fn surface(&self, index: usize) -> Surface {
+        let side = self.side().unwrap_or_else(|| {
+            let normal = self.normal(index).abs();
+            if normal.x >= normal.y { Side::X } else { Side::Y }
+        });
+        Surface::of_wall(side)
+    }
+
+    /// Counts the pixels and records the surfaces, if they are kept.
+    fn record(&self, paint: Paint, target: &mut Target<'_>) {
+        if !target.counts() && !target.keeps_surfaces() {
+            return;
+        }
+        let rows = target.rows();
+        for (index, (x, column)) in (self.face.columns.clone()).zip(self.columns).enumerate() {
+            let rows = column.rows.within(&rows);
+            target.count_painted(Pass::Walls, rows.len(), paint);
+            let all = rows.clone().map(|_| true);
+            target.mark(x, rows.start, self.surface(index), all);
+        }
+    }
+
+    /// Blends the face over the pixels that it covers in part.
+    fn draw_ends<M: Sampling>(
+        &self,
+        paint: Paint,
+        edges: &FaceEdges,
+        whole: &[FaceColumn],
+        target: &mut Target<'_>,
+    ) {
+        let projection = self.scene.projection;
+        let rows = target.rows();
+        let band = target.band_mut();
+        let mut draw = |index: usize, colors: &dyn Fn() -> FaceColors<'a>| {
+            let (rows, whole) = (self.columns[index].rows.within(&rows), whole[index].rows);
+            if whole.start > rows.start || whole.end < rows.end {
+                let x = self.face.columns.start + index as u32;
+                draw_ends(projection, (self.face, edges), x, (rows, whole), &colors(), band);
+            }
+        };
+        match paint {
+            Paint::Color(color) => {
+                for index in 0..self.columns.len() {
+                    draw(index, &|| FaceColors::Color(self.lighting(index).apply(color)));
+                }
+            }
+            Paint::Texture(id) => self.for_each_level::<M>(id, |level, range| {
+                let texels = self.texels(level);
+                for index in range {
+                    draw(index, &|| self.texels_of(index, level, texels));
+                }
+            }),
+        }
+    }
+
+    /// The colours of a face that is a pixel wide.
+    fn colors<M: Sampling>(&self) -> Option<FaceColors<'a>> {
+        match self.face.material {
+            Material::Opaque(Paint::Texture(id)) => {
+                let texture = self.scene.world.texture(id);
+                let t = self.columns.first()?.t;
+                let lod = M::lod_on_face(self.scene, texture, t, self.slope(0));
+                let level = M::level_on_face(texture, lod);
+                Some(self.texels_of(0, level, self.texels(level)))
+            }
+            Material::Opaque(Paint::Color(color)) => {
+                Some(FaceColors::Color(self.lighting(0).apply(color)))
+            }
+            Material::Masked(_) | Material::Translucent(_) => None,
+        }
+    }
+
+    /// The texels of a column in `level`.
+    fn texels_of(&self, index: usize, level: &'a MipLevel, texels: FaceTexels) -> FaceColors<'a> {
+        let FaceColumn { t, u, .. } = self.columns[index];
+        let lighting = self.lighting(index);
+        FaceColors::Texels { texels: level.column(u), stepper: texels.at(t), lighting }
+    }
+
+    fn draw<M: Sampling, L: Lighting>(
+        &self,
+        paint: Paint,
+        batch: &mut ColumnBatch<'_, '_, 'a, L>,
+        lighting: impl Fn(usize) -> L,
+    ) {
+        match paint {
+            Paint::Color(color) => {
+                let rows = &batch.target_mut().rows();
+                for (index, (x, column)) in self.face.columns.clone().zip(self.columns).enumerate()
+                {
+                    let rows = column.rows.within(rows);
+                    if !rows.is_empty() {
+                        batch.queue_color(x, rows, color, lighting(index));
+                    }
+                }
+            }
+            Paint::Texture(id) => {
+                self.for_each_level::<M>(id, |level, range| {
+                    self.draw_level(level, range, batch, &lighting);
+                });
+            }
+        }
+    }
+
+    /// Passes each level of the texture `id` that the face shows to `draw`, with its columns.
+    #[inline]
+    fn for_each_level<M: Sampling>(
+        &self,
+        id: TextureId,
+        mut draw: impl FnMut(&'a MipLevel, Range<usize>),
+    ) {
+        let texture = self.scene.world.texture(id);
+        let lod = |index: usize| {
+            M::lod_on_face(self.scene, texture, self.columns[index].t, self.slope(index))
+        };
+        let mut first = 0;
+        while first < self.columns.len() {
+            let level = lod(first);
+            let end = self.end_of_level(first, |index| lod(index) == level);
+            draw(M::level_on_face(texture, level), first..end);
+            first = end;
+        }
+    }
+
+    /// The first column after `first` that does not show the same level.
+    #[inline]
+    fn end_of_level(&self, first: usize, is_same: impl Fn(usize) -> bool) -> usize {
+        let count = self.columns.len();
+        if self.side().is_none() {
+            return (first + 1..count).find(|&index| !is_same(index)).unwrap_or(count);
+        }
+        // The level changes in one direction: the search halves the rest.
+        let (mut same, mut other) = (first, count);
+        if is_same(count - 1) {
+            return count;
+        }
+        while other - same > 1 {
+            let middle = usize::midpoint(same, other);
+            *(if is_same(middle) { &mut same } else { &mut other }) = middle;
+        }
+        other
+    }
+
+    /// Draws the columns of `range`, which show `level`.
+    #[inline]
+    fn draw_level<L: Lighting>(
+        &self,
+        level: &'a MipLevel,
+        range: Range<usize>,
+        batch: &mut ColumnBatch<'_, '_, 'a, L>,
+        lighting: impl Fn(usize) -> L,
+    ) {
+        let texels = self.texels(level);
+        let x = self.face.columns.start;
+        let mut first = range.start;
+        while first < range.end {
+            let of_first = lighting(first);
+            let end = if L::HAS_TEXELS {
+                range.end
+            } else {
+                (first + 1..range.end).find(|&it| lighting(it) != of_first).unwrap_or(range.end)
+            };
+            batch.draw_columns(&DirectColumns {
+                level,
+                texels,
+                lighting: of_first,
+                x: x + first as u32,
+                columns: &self.columns[first..end],
+            });
+            first = end;
+        }
+    }
+
+    /// The texels of the face at `level`.
+    fn texels(&self, level: &MipLevel) -> FaceTexels {
+        let Face { bottom, top, .. } = *self.face;
+        self.scene.projection.face_texels(level.height() as usize, (bottom, top))
+    }
+}
+
+/// Draws a mask or a tint over the pixels behind it.
+pub(crate) fn draw_over(scene: Scene<'_>, list: &DrawList, face: &Face, target: &mut Target<'_>) {
+    let shown = ShownFace::new(scene, list, face);
+    match face.material {
+        Material::Opaque(_) => {}
+        Material::Masked(texture) => shown.draw_mask(texture, target),
+        Material::Translucent(glass) => shown.draw_tint(glass, target),
+    }
+}
+
+impl ShownFace<'_> {
+    fn draw_mask(&self, id: TextureId, target: &mut Target<'_>) {
+        let texture = self.scene.world.texture(id);
+        let band = target.rows();
+        for (index, (x, column)) in self.face.columns.clone().zip(self.columns).enumerate() {
+            let rows = column.rows.within(&band);
+            let FaceColumn { t, u, .. } = *column;
+            target.count_pixels(Pass::SeeThrough, rows.len());
+            target.count_texels(Pass::SeeThrough, rows.len());
+            let area = self.scene.projection.pixel_area_on_wall(t, self.slope(index));
+            let level = texture.level(self.scene.plan.filter.lod(area * texture.area()));
+            let texels = level.column(u);
+            let Some(alphas) = level.alpha_column(u) else { return };
+            let lighting = self.lighting(index);
+            let stepper = self.texels(level).at(t);
+            for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {
+                let texel = stepper.at(row);
+                *pixel = lighting.apply(texels[texel]).over(*pixel, alphas[texel]);
+            }
+            let is_shown = |row| alphas[stepper.at(row)] > u8::MAX / 2;
+            target.mark(x, rows.start, self.surface(index), rows.map(is_shown));
+        }
+    }
+
+    fn draw_tint(&self, glass: Glass, target: &mut Target<'_>) {
+        let color = |index: usize| self.lighting(index).apply(glass.color);
+        let mut first = 0;
+        while first < self.columns.len() {
+            let shown = color(first);
+            let end = (first + 1..self.columns.len()).find(|&index| color(index) != shown);
+            let end = end.unwrap_or(self.columns.len());
+            self.paint_over(first..end, shown, glass.opacity, target);
+            first = end;
+        }
+    }
+
+    /// Blends `color` over the pixels of the columns of `range`: row by row, where all of them have the row.
+    fn paint_over(&self, range: Range<usize>, color: Rgb, opacity: u8, target: &mut Target<'_>) {
+        let band_rows = target.rows();
+        let x = self.face.columns.start as usize + range.start;
+        let rows = |column: &FaceColumn| column.rows.within(&band_rows);
+        let columns = &self.columns[range];
+        let pixels = columns.iter().map(|column| rows(column).len()).sum();
+        target.count_pixels(Pass::SeeThrough, pixels);
+        let start = columns.iter().map(|column| rows(column).start).max().unwrap_or_default();
+        let end = columns.iter().map(|column| rows(column).end).min().unwrap_or_default();
+        let end = end.max(start);
+        let band = target.band_mut();
+        for row in start..end {
+            color.paint_over(&mut band.row_mut(row)[x..x + columns.len()], opacity);
+        }
+        for (x, column) in (x as u32..).zip(columns) {
+            let Range { start: top, end: bottom } = rows(column);
+            for rest in [top..bottom.min(start), top.max(end)..bottom] {
+                for pixel in band.column_mut(x, rest) {
+                    *pixel = color.over(*pixel, opacity);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,502 @@
+//! Edges: the ends of faces for the filter by area, which are straight lines in the picture.
+//!
+//! A wall covers some pixels at its ends in part. What is behind it is drawn there first: floor and ceiling go on
+//! under its lower and its upper end. The walls are then blended over it, from far to near, by the share of each pixel
+//! that they cover; those that share a column of pixels all at once, so that nothing is rounded between them.
+//!
+//! Rejected: more samples in each pixel. Eight times the samples along both axes take sixty times as long. Walls so
+//! narrow that no ray hits them are not found, and the sides of doors, diagonals and pillars are at the borders of
+//! pixels, as they are for other filters.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::Projection;
+use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows};
+use super::fan::Border;
+use super::sectors::{Sector, SectorId, TileSectors};
+use super::walk::{ColumnMemory, Group, Visit, Walk, texture_coordinate_at};
+use crate::world::TileKind;
+
+/// The heights of a face on the grid in the picture, column by column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FaceEdges {
+    /// The rows that a cell of height covers at the left edge of the picture, and their change from column to
+    /// column.
+    rows: f64,
+    change: f64,
+    /// The part of each column that it covers, from 0 at the left to 1 at the right.
+    part: (f64, f64),
+    /// Whether it is blended together with the next face, which shares the column.
+    pub(crate) is_joined: bool,
+}
+
+/// The border between two walls that may share a column of pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint {
+    /// In columns from the left edge of the picture.
+    place: f64,
+}
+
+/// A border this near to that of a pixel is on it, in columns.
+const EPSILON: f64 = 1.0 / 512.0;
+/// More rows than any picture has, for a cell of height.
+const FAR: f64 = 1e9;
+
+impl FaceEdges {
+    /// The edges of `face`.
+    pub(crate) fn new(projection: &Projection, face: &CellFace) -> Self {
+        let to_line = face.distance_to_line(projection.origin());
+        let [middle, right] =
+            [projection.direction(), projection.plane()].map(|it| it[face.side as usize]);
+        // The inverse of the distance to the camera plane changes evenly across the picture.
+        let rows = (projection.focal_length() / to_line).min(FAR);
+        let rows = if face.is_ahead { rows } else { -rows };
+        let change = rows * right * (2.0 / projection.columns() as f64);
+        Self { rows: rows * (middle - right), change, part: (0.0, 1.0), is_joined: false }
+    }
+
+    /// The rows that a cell of height covers at `place`.
+    #[inline]
+    fn rows_at(&self, place: f64) -> f64 {
+        self.rows + self.change * place
+    }
+
+    /// The top and the bottom of `face` in column `x`.
+    #[inline]
+    pub(crate) fn limits(&self, projection: &Projection, face: &Face, x: u32) -> [SlopedEdge; 2] {
+        let across = self.across(x);
+        [face.top, face.bottom].map(|height| self.edge(projection, height, &across))
+    }
+
+    /// The edge at `height` between two places.
+    #[inline]
+    fn edge(&self, projection: &Projection, height: f64, across: &Range<f64>) -> SlopedEdge {
+        let row =
+            |place: f64| projection.horizon() + (projection.eye() - height) * self.rows_at(place);
+        SlopedEdge { ends: [row(across.start), row(across.end)] }
+    }
+
+    /// The rows that the edge at `height` crosses in column `x`.
+    #[inline]
+    fn rows_of(&self, projection: &Projection, height: f64, x: u32) -> [u32; 2] {
+        let across = f64::from(x)..f64::from(x) + 1.0;
+        let Range { start, end } = self.edge(projection, height, &across).rows(projection.rows());
+        [start, end]
+    }
+
+    /// The part of column `x` that the face covers.
+    #[inline]
+    pub(crate) fn across(&self, x: u32) -> Range<f64> {
+        let (x, (start, end)) = (f64::from(x), self.part);
+        x + start..x + end
+    }
+}
+
+impl Walk<'_> {
+    /// Whether faces are blended over what is behind their ends.
+    pub(crate) fn blends(&self) -> bool {
+        self.scene.plan.filter == super::Filter::Area
+    }
+
+    /// Finds the places at which walls of the current visit share a column of pixels.
+    pub(crate) fn find_joints(&mut self, visit: &Visit, sector: &Sector) {
+        let mut joints = std::mem::take(&mut self.memory.joints);
+        joints.clear();
+        let pairs = self.memory.borders.array_windows();
+        joints.extend(pairs.map(|[left, right]| self.joint(visit, sector, left, right)));
+        self.memory.joints = joints;
+    }
+
+    fn joint(
+        &self,
+        visit: &Visit,
+        sector: &Sector,
+        left: &Border,
+        right: &Border,
+    ) -> Option<Joint> {
+        let tile = |border: &Border| border.into.map(|(_, tile)| tile);
+        let is_one_wall = left.face.is_in_line_with(&right.face) && tile(left) == tile(right);
+        if is_one_wall || !self.is_wall(sector, left) || !self.is_wall(sector, right) {
+            return None;
+        }
+        let projection = self.scene.projection;
+        let x = f64::from(right.columns.start);
+        let [of_left, of_right] =
+            [left, right].map(|it| FaceEdges::new(projection, &it.face).rows_at(x));
+        // The ray on the border is in the middle between the two columns.
+        let between = x - 0.5..x + 0.5;
+        let end = if of_left > of_right {
+            self.end_of_wall(visit, left, left.face.right_end(), &between)
+        } else {
+            self.end_of_wall(visit, right, right.face.left_end(), &between)
+        };
+        let place = end?.max(between.start).min(between.end);
+        Some(Joint { place })
+    }
+
+    /// Whether there is a wall behind `border` that hides everything.
+    fn is_wall(&self, sector: &Sector, border: &Border) -> bool {
+        border.into.is_some_and(|(_, id)| {
+            let TileSectors { lower, .. } = self.fan.sectors.of(id);
+            let kind = self.scene.world.tiles()[usize::from(id.0)].kind;
+            matches!(kind, TileKind::Wall(_)) && self.fan.sectors.get(lower).bottom >= sector.top
+        })
+    }
+
+    /// The place of the end of the wall of `border` in the picture, which is at `end` or, where the wall goes on in
+    /// the next cells, further on, if that is still `between` two places.
+    fn end_of_wall(
+        &self,
+        visit: &Visit,
+        border: &Border,
+        mut end: DVec2,
+        between: &Range<f64>,
+    ) -> Option<f64> {
+        let grid = self.scene.world.grid();
+        let face = &border.face;
+        let is_left = end == face.left_end();
+        let step = if is_left {
+            face.left_end() - face.right_end()
+        } else {
+            face.right_end() - face.left_end()
+        };
+        let place_of = |end: DVec2| {
+            let place = self.scene.projection.place(end);
+            (place.depth > 0.0).then_some(place.column)
+        };
+        let (_, tile) = border.into?;
+        let (mut cell, mut before) = (face.place, face.place_before());
+        let mut place = place_of(end)?;
+        while between.start < place && place < between.end {
+            for place in [&mut cell, &mut before] {
+                place[0] += step.x as i64;
+                place[1] += step.y as i64;
+            }
+            let [beside, in_front] = [cell, before].map(|place| {
+                let [column, row] = visit.image.cell_to_map(place);
+                grid.tile(column, row)
+            });
+            let is_clear = in_front.is_none_or(|tile| self.fan.sectors.goes_on(visit.sector, tile));
+            if beside != Some(tile) || !is_clear {
+                break;
+            }
+            end += step;
+            place = place_of(end)?;
+        }
+        Some(place)
+    }
+
+    /// Moves `bottoms` and `tops`, the rows in which the rays leave the sector, for its planes: they go on under the rows
+    /// that a face at the border covers in part. The rows for the faces become the outer ones.
+    pub(crate) fn extend_planes(&mut self, sector: &Sector) {
+        let projection = self.scene.projection;
+        let ground = projection.first_row_of_ground();
+        for index in 0..self.memory.borders.len() {
+            let border = self.memory.borders[index].clone();
+            let [above_floor, below_ceiling] = self.faces_at(sector, &border);
+            let edges = FaceEdges::new(projection, &border.face);
+            let ColumnMemory { bottoms, tops, outer_bottoms, outer_tops, .. } =
+                &mut self.memory.columns;
+            let columns = border.columns.start as usize..border.columns.end as usize;
+            outer_bottoms[columns.clone()].copy_from_slice(&bottoms[columns.clone()]);
+            outer_tops[columns.clone()].copy_from_slice(&tops[columns]);
+            if above_floor && projection.eye() > sector.bottom {
+                for x in border.columns.clone() {
+                    let [first, end] = edges.rows_of(projection, sector.bottom, x);
+                    bottoms[x as usize] = first.max(ground);
+                    outer_bottoms[x as usize] = end;
+                }
+            }
+            if below_ceiling && projection.eye() < sector.top {
+                for x in border.columns {
+                    let [first, end] = edges.rows_of(projection, sector.top, x);
+                    tops[x as usize] = end.min(ground);
+                    outer_tops[x as usize] = first;
+                }
+            }
+        }
+        self.uncover_joints(sector);
+    }
+
+    /// Whether a face that is blended is above the floor at `border`, and below the ceiling.
+    fn faces_at(&self, sector: &Sector, border: &Border) -> [bool; 2] {
+        let sectors = self.fan.sectors;
+        let Some((_, id)) = border.into else {
+            return [sectors.get(SectorId::BEYOND).bottom > sector.bottom, false];
+        };
+        let tile = &self.scene.world.tiles()[usize::from(id.0)];
+        let TileSectors { lower, upper } = sectors.of(id);
+        let gap = sectors.get(lower);
+        let is_rock = gap.bottom > sector.bottom && !tile.reflects();
+        let is_lintel = gap.top < sector.top
+            && upper.is_some_and(|upper| sectors.get(upper).bottom >= sector.top);
+        [is_rock, is_rock && gap.bottom >= sector.top || is_lintel]
+    }
+
+    /// Lets planes show in the columns that walls share what they show beside each of them.
+    fn uncover_joints(&mut self, sector: &Sector) {
+        let projection = self.scene.projection;
+        let ground = projection.first_row_of_ground();
+        for (index, joint) in self.memory.joints.iter().enumerate() {
+            let Some(x) = joint.and_then(Joint::column) else { continue };
+            let ColumnMemory { bottoms, tops, .. } = &mut self.memory.columns;
+            let (bottom, top) = (&mut bottoms[x as usize], &mut tops[x as usize]);
+            for border in &self.memory.borders[index..=index + 1] {
+                let edges = FaceEdges::new(projection, &border.face);
+                if projection.eye() > sector.bottom {
+                    let [first, _] = edges.rows_of(projection, sector.bottom, x);
+                    *bottom = (*bottom).min(first.max(ground));
+                }
+                if projection.eye() < sector.top && sector.top < f64::INFINITY {
+                    let [_, end] = edges.rows_of(projection, sector.top, x);
+                    *top = (*top).max(end.min(ground));
+                }
+            }
+        }
+    }
+
+    /// Finds the rows of the faces at `group` between two heights, where they are in `sector`: `tops` and `bottoms`
+    /// with those that the faces cover in part.
+    pub(crate) fn find_outer_limits(
+        &mut self,
+        sector: &Sector,
+        group: &Group,
+        top: f64,
+        bottom: f64,
+    ) {
+        let projection = self.scene.projection;
+        let edges = FaceEdges::new(projection, &group.face);
+        let ColumnMemory { bottoms, tops, .. } = &mut self.memory.columns;
+        for x in group.columns.clone() {
+            if sector.is_inside(top) {
+                [tops[x as usize], _] = edges.rows_of(projection, top, x);
+            }
+            if sector.is_inside(bottom) {
+                [_, bottoms[x as usize]] = edges.rows_of(projection, bottom, x);
+            }
+        }
+    }
+
+    /// Adds an opaque face at `group`, without the columns that it shares with walls beside it.
+    pub(crate) fn show_blended_face(
+        &mut self,
+        visit: &Visit,
+        group: &Group,
+        material: Material,
+        (bottom, top): (f64, f64),
+    ) {
+        let Range { start, end } = group.columns;
+        let shared = |index: Option<usize>| {
+            self.memory.joints.get(index?).copied().flatten().and_then(Joint::column)
+        };
+        let before = shared(group.borders.start.checked_sub(1));
+        let after = shared(Some(group.borders.end - 1));
+        let columns = before.map_or(start, |x| start.max(x + 1))..after.map_or(end, |x| end.min(x));
+        if columns.is_empty() {
+            return;
+        }
+        let first = self.list.face_columns.len();
+        let ColumnMemory { starts, ends, t, u, tops, bottoms, .. } = &self.memory.columns;
+        self.list.face_columns.extend((columns.start as usize..columns.end as usize).map(|x| {
+            let rows = Rows { start: starts[x].max(tops[x]), end: ends[x].min(bottoms[x]) };
+            FaceColumn { rows, t: t[x], u: u[x] }
+        }));
+        let light = self.light_on_face(visit, group);
+        let is_shown = self.list.push_face(Face {
+            columns: columns.clone(),
+            first,
+            facing: Facing::Side(group.face.side),
+            material,
+            light,
+            bottom,
+            top,
+            image: visit.image,
+            edges: Some(FaceEdges::new(self.scene.projection, &group.face)),
+        });
+        if is_shown {
+            self.set_hits(visit, group, columns.start, first);
+        }
+    }
+
+    /// The column `x` of the face at a border, in the middle of the part `across` of it.
+    fn column_at(
+        &self,
+        visit: &Visit,
+        border: usize,
+        (x, across): (u32, Range<f64>),
+        ((bottom, top), edges): ((f64, f64), &FaceEdges),
+    ) -> FaceColumn {
+        let projection = self.scene.projection;
+        let direction = projection.direction_at(f64::midpoint(across.start, across.end));
+        let border = &self.memory.borders[border];
+        let (t, u) = texture_coordinate_at(visit.image, projection, border, direction);
+        let Rows { start, end } = self.memory.columns.entered[x as usize];
+        let [top, _] = edges.rows_of(projection, top, x);
+        let [_, bottom] = edges.rows_of(projection, bottom, x);
+        FaceColumn { rows: Rows { start: start.max(top), end: end.min(bottom) }, t, u }
+    }
+
+    /// Adds the parts of walls in the columns that they share.
+    pub(crate) fn show_shared_columns(&mut self, visit: &Visit, sector: &Sector) {
+        let mut index = 0;
+        while index < self.memory.joints.len() {
+            let column = |index: usize| self.memory.joints.get(index)?.and_then(Joint::column);
+            let Some(x) = column(index) else {
+                index += 1;
+                continue;
+            };
+            let mut end = index + 1;
+            while column(end) == Some(x) {
+                end += 1;
+            }
+            let within = |walk: &Self, index: usize| {
+                walk.memory.joints[index].map_or(0.0, |joint| joint.place - f64::from(x))
+            };
+            for border in index..=end {
+                let left = if border == index { 0.0 } else { within(self, border - 1) };
+                let right = if border == end { 1.0 } else { within(self, border) };
+                let is_last = border == end;
+                self.show_part(visit, sector, border, (x, (left, right)), is_last);
+            }
+            index = end;
+        }
+    }
+
+    /// Adds the part of the wall at a border in column `x`, which is blended together with the next one unless it
+    /// is the last.
+    fn show_part(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        border: usize,
+        (x, part): (u32, (f64, f64)),
+        is_last: bool,
+    ) {
+        let Border { columns, face, into } = self.memory.borders[border].clone();
+        let Some((_, id)) = into else { return };
+        let is_own = columns.contains(&x);
+        let group = &Group { borders: border..border + 1, columns, face };
+        let tile = &self.scene.world.tiles()[usize::from(id.0)];
+        let paint = self.paint_of_rock(visit, group, tile);
+        let edges = FaceEdges::new(self.scene.projection, &face);
+        let edges = FaceEdges { part, is_joined: !is_last, ..edges };
+        let (bottom, top) = (sector.bottom, sector.top);
+        let shown = self.column_at(visit, border, (x, edges.across(x)), ((bottom, top), &edges));
+        let first = self.list.face_columns.len();
+        self.list.face_columns.push(shown);
+        let light = self.light_on_face(visit, group);
+        self.list.faces.push(Face {
+            columns: x..x + 1,
+            first,
+            facing: Facing::Side(face.side),
+            material: Material::Opaque(paint),
+            light,
+            bottom,
+            top,
+            image: visit.image,
+            edges: Some(edges),
+        });
+        if is_own {
+            self.set_hits(visit, group, x, first);
+        }
+    }
+}
+
+impl Joint {
+    /// The column that both walls share; `None` if the border is on that of a pixel.
+    fn column(self) -> Option<u32> {
+        let column = self.place as u32;
+        let within = self.place - f64::from(column);
+        (within > EPSILON && within < 1.0 - EPSILON).then_some(column)
+    }
+}
+
+/// An edge that is straight in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SlopedEdge {
+    /// The row at its left end and at its right end, in rows from the top.
+    ends: [f64; 2],
+}
+
+impl SlopedEdge {
+    /// The rows that it crosses, at most `height`: from the first to the one after the last.
+    #[inline]
+    pub(crate) fn rows(self, height: u32) -> Range<u32> {
+        let [left, right] = self.ends;
+        let (upper, lower) = if left < right { (left, right) } else { (right, left) };
+        // Conversions saturate.
+        let (first, end) = (upper as u32, lower as u32);
+        let is_between = f64::from(end) < lower;
+        first.min(height)..end.saturating_add(u32::from(is_between)).min(height)
+    }
+
+    /// The share of the pixels of `row`, between the edge's ends, that is below the edge.
+    #[inline]
+    pub(crate) fn share_below(self, row: u32) -> f64 {
+        /// With a lower rise the edge is level: the difference is then a rounding error.
+        const LEVEL: f64 = 1e-6;
+        let bottom = f64::from(row) + 1.0;
+        let [left, right] = self.ends.map(|end| bottom - end);
+        if left <= 0.0 && right <= 0.0 {
+            return 0.0;
+        }
+        if left >= 1.0 && right >= 1.0 {
+            return 1.0;
+        }
+        let middle = 0.5 * (left + right);
+        if left >= 0.0 && right >= 0.0 && left <= 1.0 && right <= 1.0 {
+            return middle;
+        }
+        let rise = right - left;
+        if rise.abs() < LEVEL {
+            return middle.clamp(0.0, 1.0);
+        }
+        (integral(right) - integral(left)) / rise
+    }
+}
+
+/// The integral from 0 to `end` of a number that is limited to the range from 0 to 1.
+fn integral(end: f64) -> f64 {
+    let limited = end.clamp(0.0, 1.0);
+    limited * limited / 2.0 + (end - limited).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn the_share_below_an_edge_is_that_of_many_samples(
+            ends in [-3.0..13.0_f64, -3.0..13.0_f64],
+            row in 0_u32..10,
+        ) {
+            const SAMPLES: u32 = 200;
+            let edge = SlopedEdge { ends };
+            let mut below = 0.0;
+            for across in 0..SAMPLES {
+                let along = (f64::from(across) + 0.5) / f64::from(SAMPLES);
+                let edge = ends[0] + along * (ends[1] - ends[0]);
+                below += (f64::from(row) + 1.0 - edge).clamp(0.0, 1.0);
+            }
+            let off = edge.share_below(row) - below / f64::from(SAMPLES);
+            prop_assert!(off.abs() < 1e-3, "{off}");
+        }
+
+        #[test]
+        fn an_edge_crosses_its_rows_only(ends in [-3.0..13.0_f64, -3.0..13.0_f64]) {
+            let edge = SlopedEdge { ends };
+            let rows = edge.rows(10);
+            for row in 0..10 {
+                let share = edge.share_below(row);
+                prop_assert!(rows.contains(&row) || !(1e-9..=1.0 - 1e-9).contains(&share));
+                prop_assert!(row >= rows.start || share < 1e-9);
+                prop_assert!(row < rows.end || share > 1.0 - 1e-9);
+            }
+        }
+    }
+}

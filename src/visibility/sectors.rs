@@ -1,0 +1,266 @@
+//! Sectors: the gaps of tiles, by their heights.
+//!
+//! Neighbouring cells whose gaps have one bottom and one top are one room to the eye, whatever their floors look
+//! like: no face is between them, and a ray through them needs no clip range of its own for each. Such gaps have
+//! one sector, as the cells of a map of Doom have. It is found once a frame, for the height of the eye.
+//!
+//! Under the sky, a gap ends at the height above which there is nothing. It has the same sector as a room with a
+//! ceiling at that height, so that a level world under half a roof is a single sector. Seen from above that height,
+//! it has no top.
+
+use super::Scene;
+use crate::world::sprite::builtin;
+use crate::world::{Camera, Ceiling, Covering, Gap, Heights, Light, Tile, TileId, TileKind, World};
+
+/// The sectors of a frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sectors {
+    list: Vec<Sector>,
+    of_tiles: Vec<TileSectors>,
+}
+
+/// A sector: an index into those of the frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SectorId(u16);
+
+/// The gaps of one bottom and one top.
+#[derive(Clone, Debug)]
+pub(crate) struct Sector {
+    pub(crate) bottom: f64,
+    /// The height of the top; infinite if there is none.
+    pub(crate) top: f64,
+    pub(crate) holds: Holds,
+    /// The floor and the ceiling of the first tile.
+    surfaces: [Surface; 2],
+    /// Whether the floors and the ceilings of other cells may look different.
+    vary: [bool; 2],
+}
+
+/// The sectors of the gaps of a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TileSectors {
+    pub(crate) lower: SectorId,
+    /// The one above the roof, if there is a room below it.
+    pub(crate) upper: Option<SectorId>,
+}
+
+/// The object that stands at the bottom of a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Holds {
+    Nothing,
+    /// The leaf of a door, or a shape, which does not fill its cell.
+    Standing,
+    /// Glass or a mask of this tile, which fills the cell.
+    Cube(TileId),
+}
+
+/// The floor or the ceiling of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surface {
+    /// The covering; `None` for the sky.
+    pub(crate) covering: Option<Covering>,
+    pub(crate) light: Light,
+}
+
+/// A floor or a ceiling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlaneSide {
+    Floor,
+    Ceiling,
+}
+
+/// A height below all others.
+const BOTTOMLESS: f64 = -2.0 * Heights::MAX;
+
+impl SectorId {
+    /// The sector off the map.
+    pub(crate) const BEYOND: Self = Self(0);
+    /// The sector of an eye that is in no gap.
+    pub(crate) const SOLID: Self = Self(1);
+}
+
+impl Sectors {
+    /// Finds the sectors of the tiles of `scene`.
+    pub(crate) fn begin(&mut self, scene: Scene<'_>) {
+        let world = scene.world;
+        self.list.clear();
+        self.of_tiles.clear();
+        // No tile has more than two gaps.
+        self.list.reserve(2 + 2 * world.tiles().len());
+        let top_of_sky = top_of_sky(scene);
+        let ground = Surface {
+            covering: Some(world.floor()),
+            light: world.ground().light.unwrap_or(Light::FULL),
+        };
+        let sky = Surface { covering: None, light: Light::FULL };
+        for bottom in [0.0, BOTTOMLESS] {
+            self.list.push(Sector {
+                bottom,
+                top: top_of_sky,
+                holds: Holds::Nothing,
+                surfaces: [ground, sky],
+                vary: [false; 2],
+            });
+        }
+        let are_lamplit = world.has_lamplight();
+        let tiles = (0..).map(TileId).zip(world.tiles());
+        self.of_tiles.extend(tiles.map(|(id, tile)| {
+            let mut gaps = tile.gaps().enumerate().map(|(index, gap)| {
+                let surfaces = Surface::of_gap(tile, gap, index > 0);
+                let holds = Holds::new(id, tile, gap);
+                let gap = Gap { top: gap.top.min(top_of_sky), ..gap };
+                add(&mut self.list, gap, holds, surfaces, are_lamplit)
+            });
+            let lowest = gaps.next().unwrap_or(SectorId::SOLID);
+            TileSectors { lower: lowest, upper: gaps.next() }
+        }));
+    }
+
+    /// The sectors of the gaps of `tile`.
+    #[inline]
+    pub(crate) fn of(&self, TileId(tile): TileId) -> TileSectors {
+        self.of_tiles[usize::from(tile)]
+    }
+
+    #[inline]
+    pub(crate) fn get(&self, SectorId(id): SectorId) -> &Sector {
+        &self.list[usize::from(id)]
+    }
+
+    /// Whether rays in `sector` go on into a cell of `tile` without meeting anything.
+    #[inline]
+    pub(crate) fn goes_on(&self, sector: SectorId, tile: TileId) -> bool {
+        let TileSectors { lower, upper } = self.of(tile);
+        match sector {
+            SectorId::SOLID => tile == TileId(0),
+            _ => {
+                (lower == sector || upper == Some(sector))
+                    && self.get(sector).holds != Holds::Standing
+            }
+        }
+    }
+
+    /// The sector of an eye at this height in a cell of `tile`. In something solid, it is that of the map's own
+    /// floor.
+    pub(crate) fn of_eye(&self, tile: Option<TileId>, eye: f64) -> SectorId {
+        let holds = |&id: &SectorId| {
+            let Sector { bottom, top, .. } = *self.get(id);
+            Gap { bottom, top }.holds(eye)
+        };
+        let Some(tile) = tile else {
+            return if eye >= 0.0 { SectorId::BEYOND } else { SectorId::SOLID };
+        };
+        let in_tile = |tile: TileId| {
+            let TileSectors { lower, upper } = self.of(tile);
+            [Some(lower), upper].into_iter().flatten().find(holds)
+        };
+        in_tile(tile).or_else(|| in_tile(TileId(0))).unwrap_or(SectorId::SOLID)
+    }
+
+    /// The floor or the ceiling of `sector`, if it looks the same everywhere.
+    pub(crate) fn even_surface(&self, sector: SectorId, side: PlaneSide) -> Option<Surface> {
+        let sector = self.get(sector);
+        (!sector.vary[side as usize]).then_some(sector.surfaces[side as usize])
+    }
+
+    /// The floor or the ceiling of `sector` in a cell of `tile`.
+    pub(crate) fn surface(
+        &self,
+        world: &World,
+        sector: SectorId,
+        side: PlaneSide,
+        id: TileId,
+    ) -> Surface {
+        let TileSectors { lower, upper } = self.of(id);
+        let tile = &world.tiles()[usize::from(id.0)];
+        let index = match sector {
+            _ if sector == lower => 0,
+            _ if upper == Some(sector) => 1,
+            // Rounding puts the point into a cell beside the sector.
+            _ => return self.get(sector).surfaces[side as usize],
+        };
+        let gap = tile.gaps().nth(index);
+        gap.map_or(self.get(sector).surfaces[side as usize], |gap| {
+            Surface::of_gap(tile, gap, index > 0)[side as usize]
+        })
+    }
+}
+
+/// The index of the sector of a gap in `list`, to which it is added if it is not there.
+fn add(
+    list: &mut Vec<Sector>,
+    gap: Gap,
+    holds: Holds,
+    surfaces: [Surface; 2],
+    are_lamplit: bool,
+) -> SectorId {
+    let is_it = |it: &Sector| (it.bottom, it.top, it.holds) == (gap.bottom, gap.top, holds);
+    // The first two have no cells.
+    let known = list[2..].iter().position(is_it);
+    if let Some(index) = known {
+        let sector = &mut list[2 + index];
+        let differ = sector.surfaces.iter().zip(&surfaces).map(|(one, other)| one != other);
+        for (vary, differ) in sector.vary.iter_mut().zip(differ) {
+            *vary |= differ;
+        }
+        return SectorId(2 + index as u16);
+    }
+    let Gap { bottom, top } = gap;
+    list.push(Sector { bottom, top, holds, surfaces, vary: [are_lamplit; 2] });
+    SectorId(list.len() as u16 - 1)
+}
+
+/// The height above which there is only sky; infinite if the eye is above it.
+fn top_of_sky(scene: Scene<'_>) -> f64 {
+    let Scene { world, projection, .. } = scene;
+    let mut top = world.tiles().iter().map(Tile::top).fold(world.top_of_figures(), f64::max);
+    if !world.things().is_empty() {
+        top = top.max(world.limit_of_things());
+    }
+    if world.has_mirrors() {
+        top = top.max(projection.eye() - Camera::STANDING + builtin::PLAYER_HEIGHT);
+    }
+    if projection.eye() < top { top } else { f64::INFINITY }
+}
+
+impl Sector {
+    /// Whether `height` is between its bottom and its top.
+    pub(crate) fn is_inside(&self, height: f64) -> bool {
+        self.bottom < height && height < self.top
+    }
+
+    /// Whether it has a height in common with `other`.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        self.bottom.max(other.bottom) < self.top.min(other.top)
+    }
+}
+
+impl Holds {
+    fn new(id: TileId, tile: &Tile, gap: Gap) -> Self {
+        match tile.kind {
+            _ if gap.bottom != tile.heights.floor() => Self::Nothing,
+            TileKind::Door(_) | TileKind::Shape(_) => Self::Standing,
+            TileKind::Mask(_) | TileKind::Glass(_) => Self::Cube(id),
+            TileKind::Open | TileKind::Doorway(_) | TileKind::Wall(_) | TileKind::Mirror(_) => {
+                Self::Nothing
+            }
+        }
+    }
+}
+
+impl Surface {
+    /// The floor and the ceiling of a gap of `tile`, which may be above its roof.
+    fn of_gap(tile: &Tile, gap: Gap, is_roof: bool) -> [Self; 2] {
+        let light = tile.light.unwrap_or(Light::FULL);
+        let floor = match tile.kind {
+            _ if is_roof => Covering::from(tile.lintel),
+            TileKind::Wall(_) | TileKind::Mirror(_) => Covering::from(tile.riser),
+            _ => tile.floor,
+        };
+        let ceiling = match tile.ceiling {
+            Ceiling::Covered(covering) if gap.top < f64::INFINITY => Some(covering),
+            _ => None,
+        };
+        [Self { covering: Some(floor), light }, Self { covering: ceiling, light }]
+    }
+}

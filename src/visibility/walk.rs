@@ -1,0 +1,1021 @@
+//! The walk: from sector to sector, as the rays of neighbouring columns see them.
+//!
+//! A visit is a sector and neighbouring columns whose rays enter it by one line, each with a clip range: the rows
+//! that no nearer surface covers. The [fan](super::fan) finds the faces by which the rays leave it. Floor and
+//! ceiling reduce the clip range; at the face, the rest is divided among the solid parts of the next cell and its
+//! gaps, which are visited next: mostly one, two if a roof is seen from below and above at once. A mirror is a visit
+//! of the same sector in another image, with the clip range of the mirror. Sectors and portals are those of the
+//! Build engine (Ken Silverman, 1995).
+//!
+//! Everything that is found goes into the draw list, what is nearer earlier. Rejected: following the rays from cell
+//! to cell, alone or those of neighbouring columns together. In a hall, most cells that they cross look alike, and
+//! each costs every column that it is in.
+
+use std::mem;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::draw_list::{Backdrop, DrawList, Layer, PlaneKind, RayPart, Stretch};
+use super::edges::Joint;
+use super::face::{CellFace, Face, FaceColumn, Facing, Material, Rows, cell_in_front, on_map};
+use super::fan::{Border, Entry, Fan, FanMemory, View};
+use super::projection::Rise;
+use super::sectors::{Holds, PlaneSide, Sector, SectorId, TileSectors};
+use super::{Projection, Scene, WalkStats};
+use crate::cast::{
+    Caster, Course, DynCaster, Hit, MirrorTransform, Passage, Ray, along_line, from_left,
+    is_from_left,
+};
+use crate::world::{Cell, FaceLight, Glass, Paint, Pattern, Sky, Tile, TileId, TileKind};
+
+/// The most reflections of a ray. The mirror after the last one shows only its tint.
+pub(crate) const MAX_BOUNCES: u32 = 8;
+
+/// Memory of walks, reused from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WalkMemory {
+    /// The visits that remain, and their clips and entries.
+    visits: Vec<Visit>,
+    clips: Vec<Clip>,
+    entries: Vec<Entry>,
+    fan: FanMemory,
+    pub(crate) borders: Vec<Border>,
+    /// The places at which neighbouring borders share a column, for the filter by area.
+    pub(crate) joints: Vec<Option<Joint>>,
+    /// How the rays of a visit pass the object in its cell.
+    passages: Vec<Passage>,
+    /// Values of the current visit, by column.
+    pub(crate) columns: ColumnMemory,
+    /// The next visits: in the lower gap, in the upper gap, and in a mirror.
+    next: [Next; 3],
+}
+
+/// A sector, as rays enter it.
+#[derive(Clone, Debug)]
+pub(crate) struct Visit {
+    pub(crate) sector: SectorId,
+    pub(crate) image: MirrorTransform,
+    bounces: u32,
+    /// Whether the rays begin here.
+    is_at_camera: bool,
+    columns: Range<u32>,
+    /// The index of the clip of the first column, and of the first entry. The others follow.
+    first_clip: usize,
+    first_entry: usize,
+}
+
+/// The part of a ray that a visit begins with.
+#[derive(Clone, Copy, Debug)]
+struct Clip {
+    rows: Rows,
+    from: f64,
+}
+
+/// The values of columns in the current visit.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ColumnMemory {
+    /// The rows that no nearer surface covers, and the distance from which on that holds.
+    pub(crate) starts: Vec<u32>,
+    pub(crate) ends: Vec<u32>,
+    from: Vec<f64>,
+    /// The rows with which the visit began.
+    pub(crate) entered: Vec<Rows>,
+    /// The distance at which the ray leaves the sector, or meets an object in it.
+    pub(crate) t: Vec<f64>,
+    pub(crate) u: Vec<f64>,
+    /// The rows of a bottom and of a top at this distance.
+    pub(crate) bottoms: Vec<u32>,
+    pub(crate) tops: Vec<u32>,
+    /// The rows at which a face begins above them or ends below them, if it is blended over the planes there.
+    pub(crate) outer_bottoms: Vec<u32>,
+    pub(crate) outer_tops: Vec<u32>,
+}
+
+/// A visit that is not complete yet: the next face may extend it.
+#[derive(Clone, Debug, Default)]
+struct Next {
+    visit: Option<(Visit, CellFace)>,
+    rows: Vec<Rows>,
+    entries: Vec<Entry>,
+}
+
+/// Borders beside each other that look alike.
+pub(crate) struct Group {
+    /// Their indices.
+    pub(crate) borders: Range<usize>,
+    pub(crate) columns: Range<u32>,
+    /// The face of the first one.
+    pub(crate) face: CellFace,
+}
+
+/// The places of the next visits.
+#[derive(Clone, Copy)]
+enum Slot {
+    Lower,
+    Upper,
+    Mirror,
+}
+
+impl WalkMemory {
+    /// Reserves memory for all but extreme maps, in pictures of `width` columns.
+    pub(crate) fn make_room(&mut self, width: usize) {
+        const OF_A_COLUMN: usize = 8;
+        self.visits.clear();
+        self.clips.clear();
+        self.entries.clear();
+        self.visits.reserve(2 * width);
+        self.clips.reserve(width * OF_A_COLUMN);
+        self.entries.reserve(width * OF_A_COLUMN);
+        self.borders.clear();
+        self.borders.reserve(width);
+        self.passages.clear();
+        self.passages.reserve(width);
+        self.fan.clear();
+        self.fan.reserve(width);
+        let columns = &mut self.columns;
+        columns.entered.resize(width, Rows::NONE);
+        let ColumnMemory { starts, ends, bottoms, tops, outer_bottoms, outer_tops, .. } = columns;
+        for rows in [starts, ends, bottoms, tops, outer_bottoms, outer_tops] {
+            rows.resize(width, 0);
+        }
+        let ColumnMemory { from, t, u, .. } = columns;
+        for distances in [from, t, u] {
+            distances.resize(width, 0.0);
+        }
+        for next in &mut self.next {
+            next.rows.resize(width, Rows::NONE);
+            next.entries.clear();
+            next.entries.reserve(width);
+        }
+    }
+}
+
+/// Walks from the camera of `scene` to all that is in view, and puts it into `list`, whose sectors are known.
+pub(crate) fn walk(
+    scene: Scene<'_>,
+    caster: Option<&DynCaster>,
+    memory: &mut WalkMemory,
+    list: &mut DrawList,
+) -> WalkStats {
+    let sectors = mem::take(&mut list.sectors);
+    let directions = mem::take(&mut list.directions);
+    let most_bounces = if scene.world.has_mirrors() { MAX_BOUNCES } else { 0 };
+    let fan = Fan::new(scene, &sectors, &directions, caster, most_bounces);
+    let has_things = !scene.world.things().is_empty()
+        || !scene.world.figures().is_empty()
+        || scene.world.has_mirrors();
+    let stats = WalkStats::default();
+    let mut walk = Walk { scene, fan, has_things, memory, list, stats };
+    walk.begin();
+    walk.follow_all();
+    let WalkStats { rays, cells, looks, .. } = walk.fan.counts.get();
+    let stats = WalkStats { rays, cells, looks, ..walk.stats };
+    list.sectors = sectors;
+    list.directions = directions;
+    stats
+}
+
+pub(crate) struct Walk<'a> {
+    pub(crate) scene: Scene<'a>,
+    pub(crate) fan: Fan<'a>,
+    /// Whether there is any thing or figure, or the player in a mirror.
+    has_things: bool,
+    pub(crate) memory: &'a mut WalkMemory,
+    pub(crate) list: &'a mut DrawList,
+    stats: WalkStats,
+}
+
+impl Walk<'_> {
+    /// Stores the visits of the sector of the camera: several if it is on a line, which rays cross in different
+    /// directions.
+    fn begin(&mut self) {
+        let Scene { world, projection, .. } = self.scene;
+        let (grid, origin) = (world.grid(), projection.origin());
+        let edge = DVec2::new(f64::from(grid.width()), f64::from(grid.height()));
+        let is_inside = origin.cmpgt(DVec2::ZERO).all() && origin.cmplt(edge).all();
+        let is_one_cell = is_inside && origin.fract().cmpne(DVec2::ZERO).all();
+        let signs = |column: u32| {
+            let DVec2 { x, y } = self.fan.directions.of(column);
+            [x > 0.0, x < 0.0, y > 0.0, y < 0.0]
+        };
+        let width = projection.columns() as u32;
+        let mut first = 0;
+        while first < width {
+            let is_next = |&column: &u32| !is_one_cell && signs(column) != signs(first);
+            let end = (first + 1..width).find(is_next).unwrap_or(width);
+            self.store_first(first..end);
+            first = end;
+        }
+    }
+
+    /// Stores a visit of the sector of the camera.
+    fn store_first(&mut self, columns: Range<u32>) {
+        let Scene { world, projection, .. } = self.scene;
+        let ray = Ray::of_camera(projection.origin(), self.fan.directions.of(columns.start));
+        let course = Course::new(world.grid(), &ray);
+        let tile = course.cell(world.grid()).map(|(_, tile)| tile);
+        let WalkMemory { visits, clips, entries, .. } = &mut *self.memory;
+        visits.push(Visit {
+            sector: self.fan.sectors.of_eye(tile, projection.eye()),
+            image: MirrorTransform::default(),
+            bounces: 0,
+            is_at_camera: true,
+            first_clip: clips.len(),
+            first_entry: entries.len(),
+            columns: columns.clone(),
+        });
+        entries.push(Entry { column: columns.start, place: course.place() });
+    }
+
+    fn follow_all(&mut self) {
+        while let Some(visit) = self.memory.visits.pop() {
+            self.follow(&visit);
+        }
+    }
+
+    fn follow(&mut self, visit: &Visit) {
+        self.stats.sectors += 1;
+        let WalkMemory { clips, entries, columns, fan, borders, .. } = &mut *self.memory;
+        let indices = visit.columns.start as usize..visit.columns.end as usize;
+        if visit.is_at_camera {
+            columns.starts[indices.clone()].fill(0);
+            columns.ends[indices.clone()].fill(self.scene.projection.rows());
+            columns.from[indices].fill(0.0);
+        } else {
+            for (x, clip) in indices.zip(&clips[visit.first_clip..]) {
+                columns.starts[x] = clip.rows.start;
+                columns.ends[x] = clip.rows.end;
+                columns.from[x] = clip.from;
+            }
+        }
+        clips.truncate(visit.first_clip);
+        let view = View {
+            sector: visit.sector,
+            image: visit.image,
+            entries: &entries[visit.first_entry..],
+            is_at_camera: visit.is_at_camera,
+        };
+        self.fan.find(view, visit.columns.clone(), fan, borders);
+        let first_place = view.entries[0].place;
+        entries.truncate(visit.first_entry);
+        let sector = self.fan.sectors.get(visit.sector);
+        if sector.holds == Holds::Standing {
+            self.meet_standing(visit, sector, first_place);
+        }
+        self.find_distances(visit.is_at_camera);
+        if self.blends() {
+            let ColumnMemory { starts, ends, entered, .. } = &mut self.memory.columns;
+            for x in visit.columns.start as usize..visit.columns.end as usize {
+                entered[x] = Rows { start: starts[x], end: ends[x] };
+            }
+            self.find_joints(visit, sector);
+        }
+        self.close(visit, sector, visit.columns.clone(), true);
+        self.pass_borders(visit, sector);
+    }
+
+    /// Finds the distances at which the rays leave the sector.
+    fn find_distances(&mut self, are_at_camera: bool) {
+        let origin = self.scene.projection.origin();
+        let WalkMemory { borders, columns, .. } = &mut *self.memory;
+        for Border { columns: range, face, .. } in &*borders {
+            let range = range.start as usize..range.end as usize;
+            let offset = face.line() as f64 - origin[face.side as usize];
+            let across = &self.fan.directions.across(face.side)[range.clone()];
+            for (t, direction) in columns.t[range].iter_mut().zip(across) {
+                *t = (offset / direction).abs();
+            }
+        }
+        if let Some(caster) = self.fan.caster.filter(|_| are_at_camera) {
+            let grid = self.scene.world.level_grid().unwrap_or(self.scene.world.grid());
+            for column in borders.iter().flat_map(|border| border.columns.clone()) {
+                let ray = Ray::of_camera(origin, self.fan.directions.of(column));
+                if let Some(hit) = caster.cast(grid, &ray) {
+                    columns.t[column as usize] = hit.t;
+                }
+            }
+        }
+    }
+
+    /// Finds the rows at which the rays of `range` meet `height`, in `bottoms` or `tops`.
+    fn find_rows(&mut self, height: f64, range: &Range<u32>, is_top: bool) {
+        let ColumnMemory { t, bottoms, tops, .. } = &mut self.memory.columns;
+        let range = range.start as usize..range.end as usize;
+        let rows = if is_top { tops } else { bottoms };
+        let rise: Rise = self.scene.projection.rise_to(height);
+        self.scene.projection.rows_of(rise, &t[range.clone()], &mut rows[range]);
+    }
+
+    /// Shows floor and ceiling of the sector in `range` up to the distances found, and removes their rows from the
+    /// clip ranges. The rays are leaving the sector, or meet an object in it.
+    fn close(&mut self, visit: &Visit, sector: &Sector, range: Range<u32>, is_leaving: bool) {
+        let projection = self.scene.projection;
+        let (eye, ground) = (projection.eye(), projection.first_row_of_ground());
+        if self.has_things {
+            self.add_part(visit, range.clone(), None);
+        }
+        // An eye at the height of a plane sees the point of it where it is.
+        let shows_floor = eye >= sector.bottom;
+        let shows_ceiling = eye <= sector.top;
+        if shows_floor {
+            self.find_rows(sector.bottom, &range, false);
+        }
+        if sector.top == f64::INFINITY {
+            // Above the horizon, there is only sky.
+            self.memory.columns.tops[range.start as usize..range.end as usize].fill(ground);
+        } else if shows_ceiling {
+            self.find_rows(sector.top, &range, true);
+        }
+        let blends = is_leaving && self.blends();
+        if blends {
+            self.extend_planes(sector);
+        }
+        let is_everything = visit.is_at_camera
+            && range.len() == projection.columns()
+            && sector.holds != Holds::Standing;
+        if !(is_everything && self.show_as_pair(visit, sector)) {
+            if shows_floor && !(is_everything && self.show_behind(visit, PlaneSide::Floor)) {
+                self.add_plane(visit, &range, PlaneSide::Floor);
+            }
+            if shows_ceiling && !(is_everything && self.show_behind(visit, PlaneSide::Ceiling)) {
+                self.add_plane(visit, &range, PlaneSide::Ceiling);
+            }
+        }
+        if blends {
+            let ColumnMemory { bottoms, tops, outer_bottoms, outer_tops, .. } =
+                &mut self.memory.columns;
+            mem::swap(bottoms, outer_bottoms);
+            mem::swap(tops, outer_tops);
+        }
+        let indices = range.start as usize..range.end as usize;
+        let ColumnMemory { starts, ends, from, t, bottoms, tops, .. } = &mut self.memory.columns;
+        if shows_floor {
+            for (end, bottom) in ends[indices.clone()].iter_mut().zip(&bottoms[indices.clone()]) {
+                *end = (*end).min(*bottom);
+            }
+        }
+        if shows_ceiling {
+            for (start, top) in starts[indices.clone()].iter_mut().zip(&tops[indices.clone()]) {
+                *start = (*start).max(*top);
+            }
+        }
+        from[indices.clone()].copy_from_slice(&t[indices.clone()]);
+        if visit.bounces == 0 {
+            for (column, t) in self.list.columns[indices.clone()].iter_mut().zip(&t[indices]) {
+                column.distance = column.distance.max(*t);
+            }
+        }
+    }
+
+    /// Adds the floor or the ceiling of the sector in `range`, whose rows were found.
+    fn add_plane(&mut self, visit: &Visit, range: &Range<u32>, side: PlaneSide) {
+        let indices = range.start as usize..range.end as usize;
+        let ColumnMemory { starts, ends, bottoms, tops, .. } = &self.memory.columns;
+        let clips = starts[indices.clone()].iter().zip(&ends[indices.clone()]);
+        match side {
+            PlaneSide::Floor => {
+                let rows = clips.zip(&bottoms[indices]);
+                let rows =
+                    rows.map(|((&start, &end), &bottom)| Rows { start: bottom.max(start), end });
+                self.list.add_plane(PlaneKind::Floor(visit.sector), visit.image, range, rows);
+            }
+            PlaneSide::Ceiling => {
+                let rows = clips.zip(&tops[indices]);
+                let rows = rows.map(|((&start, &end), &top)| Rows { start, end: top.min(end) });
+                self.list.add_plane(PlaneKind::Ceiling(visit.sector), visit.image, range, rows);
+            }
+        }
+    }
+
+    /// Shows the floor or the ceiling of the sector of the camera behind everything else, if it has one colour or
+    /// is a sky without texels. Returns whether it does.
+    fn show_behind(&mut self, visit: &Visit, side: PlaneSide) -> bool {
+        let Some(surface) = self.fan.sectors.even_surface(visit.sector, side) else { return false };
+        let sector = self.fan.sectors.get(visit.sector);
+        let backdrop = match surface.covering.map(|covering| covering.pattern) {
+            Some(Pattern::Plain(Paint::Color(color))) => {
+                let height = if side == PlaneSide::Floor { sector.bottom } else { sector.top };
+                Some(Backdrop::Color { color, light: surface.light, height })
+            }
+            None if matches!(self.scene.world.sky(), Sky::Gradient(_)) => Some(Backdrop::Sky),
+            _ => None,
+        };
+        self.list.backdrops[side as usize] = backdrop;
+        backdrop.is_some()
+    }
+
+    /// Shows floor and ceiling of the sector of the camera as one plane, if each row of the ceiling is the mirror
+    /// image of a row of the floor in every column, and both have texels. Returns whether it does.
+    fn show_as_pair(&mut self, visit: &Visit, sector: &Sector) -> bool {
+        let projection = self.scene.projection;
+        let has_texels = |side| {
+            let surface = self.fan.sectors.even_surface(visit.sector, side);
+            let covering = surface.and_then(|surface| surface.covering);
+            covering.is_some_and(|it| !matches!(it.pattern, Pattern::Plain(Paint::Color(_))))
+        };
+        let height = projection.rows();
+        let ColumnMemory { bottoms, tops, .. } = &self.memory.columns;
+        let are_mirror_images =
+            || bottoms.iter().zip(tops).all(|(bottom, top)| bottom + top == height);
+        let is_pair = projection.is_symmetric()
+            && sector.bottom + sector.top == 2.0 * projection.eye()
+            && has_texels(PlaneSide::Floor)
+            && has_texels(PlaneSide::Ceiling)
+            && are_mirror_images();
+        if is_pair {
+            let rows = bottoms.iter().map(|&bottom| Rows { start: bottom, end: height });
+            let range = &visit.columns;
+            self.list.add_plane(PlaneKind::FloorAndCeiling(visit.sector), visit.image, range, rows);
+        }
+        is_pair
+    }
+
+    /// Adds the parts of the rays of `range` up to the distances found, in which billboards may show.
+    fn add_part(&mut self, visit: &Visit, range: Range<u32>, top_below: Option<f64>) {
+        let ColumnMemory { starts, ends, from, t, .. } = &self.memory.columns;
+        let first = self.list.stretches.len();
+        self.list.stretches.extend(range.clone().map(|column| {
+            let x = column as usize;
+            let rows = Rows { start: starts[x], end: ends[x] };
+            Stretch { rows, from: from[x], to: t[x] }
+        }));
+        let part =
+            RayPart { columns: range, first, sector: visit.sector, top_below, image: visit.image };
+        self.list.passed.push(Layer::Part(part));
+    }
+
+    /// Shows what is at the faces by which the rays leave the sector, and stores the visits behind them.
+    fn pass_borders(&mut self, visit: &Visit, sector: &Sector) {
+        if self.blends() {
+            self.show_shared_columns(visit, sector);
+        }
+        let mut first = 0;
+        while first < self.memory.borders.len() {
+            let borders = &self.memory.borders;
+            let is_other = |&index: &usize| !self.looks_like(&borders[first], &borders[index]);
+            let end = (first + 1..borders.len()).find(is_other).unwrap_or(borders.len());
+            let group = &Group {
+                borders: first..end,
+                columns: borders[first].columns.start..borders[end - 1].columns.end,
+                face: borders[first].face,
+            };
+            match borders[first].into {
+                Some((_, id)) => self.meet(visit, sector, group, id),
+                None => self.meet_edge(visit, sector, group),
+            }
+            first = end;
+        }
+        for slot in [Slot::Lower, Slot::Upper, Slot::Mirror] {
+            self.store(slot);
+        }
+    }
+
+    /// Whether two faces beside each other are one face of one tile in one light.
+    fn looks_like(&self, one: &Border, other: &Border) -> bool {
+        let walls = self.scene.plan.walls;
+        let tile = |border: &Border| border.into.map(|(_, tile)| tile);
+        let stands = |id: TileId| {
+            let TileSectors { lower, .. } = self.fan.sectors.of(id);
+            self.fan.sectors.get(lower).holds == Holds::Standing
+        };
+        !(walls.faded || walls.jambs)
+            && one.face.is_in_line_with(&other.face)
+            && tile(one) == tile(other)
+            && !tile(one).is_some_and(stands)
+    }
+
+    /// Shows what is beyond the edge of the map: the side of the ground, seen from a lower floor, the sky, and below
+    /// the horizon the ground.
+    fn meet_edge(&mut self, visit: &Visit, sector: &Sector, group: &Group) {
+        let ground = self.fan.sectors.get(SectorId::BEYOND).bottom;
+        let range = &group.columns;
+        if ground > sector.bottom {
+            self.find_limits(sector, group, ground, f64::NEG_INFINITY);
+            let material = Material::Opaque(self.scene.world.ground().riser);
+            let heights = (sector.bottom, ground.min(sector.top));
+            self.show_face(visit, group, material, heights);
+        }
+        self.find_limits(sector, group, f64::INFINITY, ground);
+        let horizon = self.scene.projection.first_row_of_ground();
+        let indices = range.start as usize..range.end as usize;
+        let ColumnMemory { starts, ends, bottoms, .. } = &self.memory.columns;
+        let ends = || ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
+        let clips =
+            || starts[indices.clone()].iter().zip(ends().map(|(end, bottom)| end.min(bottom)));
+        let above = clips().map(|(&start, &end)| Rows { start, end: end.min(horizon) });
+        let below = clips().map(|(&start, &end)| Rows { start: start.max(horizon), end });
+        let [sky, ground] =
+            [PlaneKind::Ceiling(SectorId::BEYOND), PlaneKind::Floor(SectorId::BEYOND)];
+        self.list.add_plane(sky, visit.image, range, above);
+        self.list.add_plane(ground, visit.image, range, below);
+    }
+
+    /// Shows the solid parts of the cells of the tile `id` behind `group`, and visits their gaps.
+    fn meet(&mut self, visit: &Visit, sector: &Sector, group: &Group, id: TileId) {
+        let tile = &self.scene.world.tiles()[usize::from(id.0)];
+        let TileSectors { lower, upper } = self.fan.sectors.of(id);
+        let gap = self.fan.sectors.get(lower);
+        if gap.bottom > sector.bottom {
+            self.meet_rock(visit, sector, group, (tile, gap.bottom));
+        }
+        if gap.overlaps(sector) {
+            self.open(visit, sector, group, (Slot::Lower, lower, tile));
+        }
+        let Some(upper) = upper else { return };
+        let above = self.fan.sectors.get(upper);
+        let (bottom, top) = (gap.top.max(sector.bottom), above.bottom.min(sector.top));
+        if bottom < top {
+            self.find_limits(sector, group, above.bottom, gap.top);
+            self.show_face(visit, group, Material::Opaque(tile.lintel), (bottom, top));
+        }
+        if above.overlaps(sector) {
+            self.open(visit, sector, group, (Slot::Upper, upper, tile));
+        }
+    }
+
+    /// Finds the rows of `group` between two heights, where they are in `sector`: `tops` and `bottoms`.
+    fn find_limits(&mut self, sector: &Sector, group: &Group, top: f64, bottom: f64) {
+        let range = &group.columns;
+        let indices = range.start as usize..range.end as usize;
+        if sector.is_inside(top) {
+            self.find_rows(top, range, true);
+        } else {
+            let everything = if top >= sector.top { 0 } else { u32::MAX };
+            self.memory.columns.tops[indices.clone()].fill(everything);
+        }
+        if sector.is_inside(bottom) {
+            self.find_rows(bottom, range, false);
+        } else {
+            let everything = if bottom <= sector.bottom { u32::MAX } else { 0 };
+            self.memory.columns.bottoms[indices].fill(everything);
+        }
+        let into = self.memory.borders[group.borders.start].into;
+        let tile = into.map(|(_, id)| &self.scene.world.tiles()[usize::from(id.0)]);
+        if self.blends() && !tile.is_some_and(Tile::reflects) {
+            self.find_outer_limits(sector, group, top, bottom);
+        }
+    }
+
+    /// Shows the solid part of `tile` up to `top` behind `group`: its face, or a mirror.
+    fn meet_rock(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        group: &Group,
+        (tile, top): (&Tile, f64),
+    ) {
+        self.find_limits(sector, group, top, f64::NEG_INFINITY);
+        let paint = match tile.kind {
+            TileKind::Mirror(tint) if !tint.is_opaque() && visit.bounces < MAX_BOUNCES => {
+                self.reflect(visit, group, tint);
+                return;
+            }
+            _ => self.paint_of_rock(visit, group, tile),
+        };
+        let heights = (sector.bottom, top.min(sector.top));
+        self.show_face(visit, group, Material::Opaque(paint), heights);
+    }
+
+    /// The paint of the sides of `tile`.
+    pub(crate) fn paint_of_rock(&self, visit: &Visit, group: &Group, tile: &Tile) -> Paint {
+        match tile.kind {
+            TileKind::Wall(_) if self.scene.plan.walls.jambs => {
+                self.jamb(visit, group).unwrap_or(tile.riser)
+            }
+            _ => tile.riser,
+        }
+    }
+
+    /// The paint of a wall towards a door.
+    fn jamb(&self, visit: &Visit, group: &Group) -> Option<Paint> {
+        let (_, before) = self.cell_before(visit, group)?;
+        match self.scene.world.tiles()[usize::from(before.0)].kind {
+            TileKind::Door(door) | TileKind::Doorway(door) => Some(door.jamb),
+            _ => None,
+        }
+    }
+
+    /// The cell from which the rays come to `border`.
+    fn cell_before(&self, visit: &Visit, group: &Group) -> Option<(Cell, TileId)> {
+        let [column, row] = visit.image.cell_to_map(group.face.place_before());
+        self.scene.world.grid().cell(column, row)
+    }
+
+    /// Stores the mirror image, in the rows of the mirror, behind its tint.
+    fn reflect(&mut self, visit: &Visit, group: &Group, tint: Glass) {
+        if !tint.is_clear() {
+            let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+            self.show_face(visit, group, Material::Translucent(tint), everywhere);
+        }
+        let face = group.face;
+        let mut image = visit.image;
+        _ = image.reflect(face.side, face.line(), 0);
+        self.list.add_image(image);
+        let ColumnMemory { starts, ends, tops, .. } = &self.memory.columns;
+        let rows = &mut self.memory.next[Slot::Mirror as usize].rows;
+        for x in group.columns.start as usize..group.columns.end as usize {
+            rows[x] = Rows { start: starts[x].max(tops[x]), end: ends[x] };
+            self.stats.bounces += u64::from(!rows[x].is_empty());
+        }
+        let bounces = visit.bounces + 1;
+        self.extend(Slot::Mirror, visit.sector, (image, bounces), group);
+    }
+
+    /// Visits a gap of the cells of `tile` behind `group`.
+    fn open(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        group: &Group,
+        (slot, id, tile): (Slot, SectorId, &Tile),
+    ) {
+        let gap = self.fan.sectors.get(id);
+        self.find_limits(sector, group, gap.top, gap.bottom);
+        let ColumnMemory { starts, ends, tops, bottoms, .. } = &self.memory.columns;
+        let rows = &mut self.memory.next[slot as usize].rows;
+        let mut is_seen = false;
+        for x in group.columns.start as usize..group.columns.end as usize {
+            rows[x] = Rows { start: starts[x].max(tops[x]), end: ends[x].min(bottoms[x]) };
+            is_seen |= !rows[x].is_empty();
+        }
+        if !is_seen {
+            return;
+        }
+        if let Holds::Cube(_) = gap.holds {
+            self.pass_cube(visit, group, slot, tile);
+        }
+        self.extend(slot, id, (visit.image, visit.bounces), group);
+    }
+
+    /// Shows the face of the glass or the mask behind `group`, in the rows of the next visit.
+    fn pass_cube(&mut self, visit: &Visit, group: &Group, slot: Slot, tile: &Tile) {
+        let (bottom, top) = (tile.heights.floor(), tile.heights.ceiling());
+        let material = match tile.kind {
+            TileKind::Glass(glass) if glass.is_clear() => return,
+            TileKind::Glass(glass) if glass.is_opaque() => {
+                Material::Opaque(Paint::Color(glass.color))
+            }
+            TileKind::Glass(glass) => Material::Translucent(glass),
+            TileKind::Mask(texture) => Material::Masked(texture),
+            _ => return,
+        };
+        self.find_rows(bottom, &group.columns, false);
+        self.find_rows(top, &group.columns, true);
+        let indices = group.columns.start as usize..group.columns.end as usize;
+        let rows = &mut self.memory.next[slot as usize].rows;
+        let ColumnMemory { tops, bottoms, .. } = &mut self.memory.columns;
+        for x in indices {
+            tops[x] = tops[x].max(rows[x].start);
+            bottoms[x] = bottoms[x].min(rows[x].end);
+            if matches!(material, Material::Opaque(_)) && tops[x] < bottoms[x] {
+                rows[x].end = tops[x];
+            }
+        }
+        self.show_face(visit, group, material, (bottom, top));
+    }
+
+    /// Adds a face at `group` in the rows between `tops` and `bottoms`. An opaque one is the hit of its columns.
+    fn show_face(
+        &mut self,
+        visit: &Visit,
+        group: &Group,
+        material: Material,
+        (bottom, top): (f64, f64),
+    ) {
+        let Group { columns: range, face, .. } = group;
+        for border in &self.memory.borders[group.borders.clone()] {
+            find_texture_coordinates(visit.image, &self.fan, border, &mut self.memory.columns);
+        }
+        let is_blended = self.blends() && matches!(material, Material::Opaque(_));
+        if is_blended && !self.is_cube(group) {
+            self.show_blended_face(visit, group, material, (bottom, top));
+            return;
+        }
+        let indices = range.start as usize..range.end as usize;
+        let ColumnMemory { starts, ends, t, u, bottoms, tops, .. } = &self.memory.columns;
+        let starts = starts[indices.clone()].iter().zip(&tops[indices.clone()]);
+        let ends = ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
+        let places = t[indices.clone()].iter().zip(&u[indices]);
+        let columns =
+            starts.zip(ends).zip(places).map(|(((start, top), (end, bottom)), (&t, &u))| {
+                FaceColumn { rows: Rows { start: *start.max(top), end: *end.min(bottom) }, t, u }
+            });
+        let first = self.list.face_columns.len();
+        let is_shown = self.list.add_face(
+            Face {
+                columns: range.clone(),
+                first,
+                facing: Facing::Side(face.side),
+                material,
+                light: self.light_on_face(visit, group),
+                bottom,
+                top,
+                image: visit.image,
+                edges: None,
+            },
+            columns,
+        );
+        if is_shown && matches!(material, Material::Opaque(_)) {
+            self.set_hits(visit, group, group.columns.start, first);
+        }
+    }
+
+    /// Makes the faces of `group` the hits of those of its columns that show them, from column `x` on, of which
+    /// `first` is the face column.
+    pub(crate) fn set_hits(&mut self, visit: &Visit, group: &Group, x: u32, first: usize) {
+        if visit.bounces > 0 {
+            return;
+        }
+        let mut shown = self.list.face_columns[first..].iter();
+        for Border { columns: range, face, into } in &self.memory.borders[group.borders.clone()] {
+            let columns = range.start.max(x) as usize..range.end.max(x) as usize;
+            for (column, shown) in self.list.columns[columns].iter_mut().zip(&mut shown) {
+                let &FaceColumn { rows, t, u } = shown;
+                if !rows.is_empty() {
+                    let hit = into.map(|(cell, _)| Hit { cell, side: face.side, t, u });
+                    column.hit = hit.or(column.hit);
+                }
+            }
+        }
+    }
+
+    /// Whether there is glass or a mask behind `group`.
+    fn is_cube(&self, group: &Group) -> bool {
+        let into = self.memory.borders[group.borders.start].into;
+        into.is_some_and(|(_, id)| {
+            let TileSectors { lower, .. } = self.fan.sectors.of(id);
+            matches!(self.fan.sectors.get(lower).holds, Holds::Cube(_))
+        })
+    }
+
+    /// The light on the faces of `group`, seen from the cell before the first: that of their tile if it is solid and
+    /// has one, else the light there.
+    pub(crate) fn light_on_face(&self, visit: &Visit, group: &Group) -> FaceLight {
+        let world = self.scene.world;
+        if !self.scene.plan.walls.faded {
+            return FaceLight::FULL;
+        }
+        let into = self.memory.borders[group.borders.start].into;
+        let tile = into.map(|(_, id)| &world.tiles()[usize::from(id.0)]);
+        let is_solid = |tile: &&Tile| !matches!(tile.kind, TileKind::Open | TileKind::Doorway(_));
+        if let Some(own) = tile.filter(is_solid).and_then(|tile| tile.light) {
+            return FaceLight::even(own);
+        }
+        let Some((before, _)) = self.cell_before(visit, group) else { return FaceLight::FULL };
+        let is_door = tile.is_some_and(|tile| matches!(tile.kind, TileKind::Door(_)));
+        match into {
+            // The step below a door has the same light everywhere, as its leaf has.
+            Some((cell, _)) if !is_door => world.face_light(cell, before),
+            _ => FaceLight::even(world.light_in(before)),
+        }
+    }
+
+    /// Extends the visit in `slot` by the cells behind `group`, or stores it and begins another one.
+    fn extend(
+        &mut self,
+        slot: Slot,
+        sector: SectorId,
+        (image, bounces): (MirrorTransform, u32),
+        group: &Group,
+    ) {
+        let Group { columns: range, face, .. } = group;
+        let holds = self.fan.sectors.get(sector).holds;
+        let goes_on = |(visit, of_visit): &(Visit, CellFace)| {
+            (visit.sector, visit.image) == (sector, image)
+                && visit.columns.end == range.start
+                && of_visit.is_in_line_with(face)
+                && holds != Holds::Standing
+        };
+        if !self.memory.next[slot as usize].visit.as_ref().is_some_and(goes_on) {
+            self.store(slot);
+        }
+        let WalkMemory { next, borders, .. } = &mut *self.memory;
+        let Next { visit, entries, .. } = &mut next[slot as usize];
+        entries.extend(
+            borders[group.borders.clone()]
+                .iter()
+                .map(|border| Entry { column: border.columns.start, place: border.face.place }),
+        );
+        if let Some((visit, _)) = visit {
+            visit.columns.end = range.end;
+            return;
+        }
+        let (columns, is_at_camera) = (range.clone(), false);
+        let (first_clip, first_entry) = (0, 0);
+        let new = Visit { sector, image, bounces, is_at_camera, columns, first_clip, first_entry };
+        *visit = Some((new, *face));
+    }
+
+    /// Stores the visit in `slot`, without the columns in which nothing of it shows.
+    fn store(&mut self, slot: Slot) {
+        let WalkMemory { visits, clips, entries, next, columns, .. } = &mut *self.memory;
+        let Next { visit, rows, entries: of_visit } = &mut next[slot as usize];
+        let Some((visit, _)) = visit.take() else { return };
+        let is_open = |&column: &u32| !rows[column as usize].is_empty();
+        let mut rest = visit.columns.clone();
+        while let Some(start) = rest.clone().find(is_open) {
+            let end = (start..rest.end).find(|column| !is_open(column)).unwrap_or(rest.end);
+            rest.start = end;
+            let first_clip = clips.len();
+            clips.extend(
+                (start as usize..end as usize).map(|x| Clip { rows: rows[x], from: columns.t[x] }),
+            );
+            let first_entry = entries.len();
+            let first = of_visit.iter().rposition(|entry| entry.column <= start).unwrap_or(0);
+            let here = of_visit[first..].iter().take_while(|entry| entry.column < end);
+            entries.extend(here);
+            visits.push(Visit { columns: start..end, first_clip, first_entry, ..visit.clone() });
+        }
+        of_visit.clear();
+    }
+
+    /// Shows the object in the cell at `place` along the straight rays. The rows above it remain open.
+    fn meet_standing(&mut self, visit: &Visit, sector: &Sector, place: [i64; 2]) {
+        let world = self.scene.world;
+        let [column, row] = visit.image.cell_to_map(place);
+        let Some((cell, id)) = world.grid().cell(column, row) else { return };
+        let tile = &world.tiles()[usize::from(id.0)];
+        let WalkMemory { columns, passages, .. } = &mut *self.memory;
+        passages.clear();
+        passages.extend(visit.columns.clone().map(|column| {
+            let direction = self.fan.directions.of(column);
+            let ray = on_map(visit.image, self.scene.projection.origin(), direction);
+            let passage = Passage::of_tile(&ray, world, cell, tile.kind);
+            // The ray after a reflection in this cell starts at the mirror: an earlier hit is not on its path.
+            let is_before_mirror =
+                |hit: Hit| visit.bounces > 0 && hit.t < columns.from[column as usize];
+            if passage.hit.is_some_and(is_before_mirror) { Passage::NONE } else { passage }
+        }));
+        let first = visit.columns.start;
+        let at = |walk: &Self, column: u32| walk.memory.passages[(column - first) as usize];
+        let mut rest = visit.columns.clone();
+        while let Some(start) = rest.clone().find(|&column| at(self, column).hit.is_some()) {
+            let side = at(self, start).hit.map(|hit| hit.side);
+            let is_other = |&column: &u32| at(self, column).hit.map(|hit| hit.side) != side;
+            let end = (start..rest.end).find(is_other).unwrap_or(rest.end);
+            rest.start = end;
+            self.meet_side(visit, sector, start..end, (cell, tile));
+        }
+        let mut rest = visit.columns.clone();
+        let is_seen = |walk: &Self, column: u32| {
+            let ColumnMemory { starts, ends, from, .. } = &walk.memory.columns;
+            let x = column as usize;
+            at(walk, column).end.is_some_and(|end| from[x] <= end) && starts[x] < ends[x]
+        };
+        if self.scene.projection.eye() <= tile.top_of_what_stands() {
+            return;
+        }
+        while let Some(start) = rest.clone().find(|&column| is_seen(self, column)) {
+            let end = (start..rest.end).find(|&column| !is_seen(self, column)).unwrap_or(rest.end);
+            rest.start = end;
+            self.look_down_at(visit, start..end, id, tile.top_of_what_stands());
+        }
+    }
+
+    /// Shows the face of a leaf or a shape, which all rays of `range` hit.
+    fn meet_side(
+        &mut self,
+        visit: &Visit,
+        sector: &Sector,
+        range: Range<u32>,
+        (cell, tile): (Cell, &Tile),
+    ) {
+        let (world, projection) = (self.scene.world, self.scene.projection);
+        let first = visit.columns.start;
+        let WalkMemory { columns, passages, .. } = &mut *self.memory;
+        for column in range.clone() {
+            let hit = passages[(column - first) as usize].hit;
+            columns.t[column as usize] = hit.map_or(0.0, |hit| hit.t);
+        }
+        self.close(visit, sector, range.clone(), false);
+        let WalkMemory { columns, passages, .. } = &mut *self.memory;
+        let hits = range.clone().filter_map(|column| passages[(column - first) as usize].hit);
+        let Some(hit) = hits.clone().next() else { return };
+        let (paint, facing, before) = match tile.kind {
+            // The cell in front of a leaf's cell, on the side from which the rays come.
+            TileKind::Door(door) => {
+                let direction = self.fan.directions.of(range.start);
+                let direction = visit.image.direction_to_map(direction);
+                let before = cell_in_front(world.grid(), direction, &hit);
+                (door.leaf, Facing::Side(hit.side), before.map(|(cell, _)| cell))
+            }
+            // A shape stands in a cell of its own.
+            TileKind::Shape(it) => (it.paint, Facing::of_shape(it.outline, cell), Some(cell)),
+            _ => return,
+        };
+        let light = match (self.scene.plan.walls.faded, tile.light, before) {
+            (false, ..) | (true, None, None) => FaceLight::FULL,
+            (true, Some(own), _) => FaceLight::even(own),
+            (true, None, Some(before)) => FaceLight::even(world.light_in(before)),
+        };
+        let (bottom, top) = (tile.heights.floor(), tile.top_of_what_stands());
+        let face = Face {
+            columns: range.clone(),
+            first: self.list.face_columns.len(),
+            facing,
+            material: Material::Opaque(paint),
+            light,
+            bottom,
+            top,
+            image: visit.image,
+            edges: None,
+        };
+        let shown = range.clone().zip(hits.clone()).map(|(column, Hit { t, u, .. })| {
+            let x = column as usize;
+            let above = projection.row_of_height(top, t);
+            let start = columns.starts[x].max(above);
+            let end = columns.ends[x].min(projection.row_of_height(bottom, t));
+            columns.ends[x] = columns.ends[x].min(above);
+            FaceColumn { rows: Rows { start, end }, t, u }
+        });
+        self.list.add_face(face, shown);
+        if visit.bounces == 0 {
+            for (column, hit) in range.zip(hits) {
+                self.list.columns[column as usize].hit = Some(hit);
+            }
+        }
+    }
+
+    /// Shows the top of a pillar of the tile `id`, on which the rays of `range` go down.
+    fn look_down_at(&mut self, visit: &Visit, range: Range<u32>, id: TileId, top: f64) {
+        let projection = self.scene.projection;
+        let first = visit.columns.start;
+        let WalkMemory { columns, passages, .. } = &mut *self.memory;
+        for column in range.clone() {
+            let end = passages[(column - first) as usize].end;
+            columns.t[column as usize] = end.unwrap_or_default();
+        }
+        // What stands on the top is in front of it.
+        if self.has_things {
+            self.add_part(visit, range.clone(), Some(top));
+        }
+        let ColumnMemory { starts, ends, from, t, .. } = &mut self.memory.columns;
+        let rows = range.clone().map(|column| {
+            let x = column as usize;
+            from[x] = t[x];
+            let end = ends[x];
+            ends[x] = projection.row_of_height(top, t[x]).clamp(starts[x], end);
+            Rows { start: ends[x], end }
+        });
+        self.list.add_plane(PlaneKind::Top(id), visit.image, &range, rows);
+    }
+}
+
+/// Finds the texture coordinates where the rays meet `border` in this image.
+fn find_texture_coordinates(
+    image: MirrorTransform,
+    fan: &Fan<'_>,
+    border: &Border,
+    columns: &mut ColumnMemory,
+) {
+    /// As in [`along_line`].
+    const FAR: f64 = 1024.0;
+    let Border { columns: range, face, .. } = border;
+    let origin = fan.scene.projection.origin();
+    let corner = face.corner();
+    let is_mirrored = image.is_mirrored_along(face.side);
+    let direction = image.direction_to_map(fan.directions.of(range.start));
+    let is_from_left = is_from_left(direction, face.side);
+    let flipped = |along: f64| {
+        let along = along.clamp(0.0, 1.0);
+        from_left(if is_mirrored { 1.0 - along } else { along }, is_from_left)
+    };
+    let indices = range.start as usize..range.end as usize;
+    let across = &fan.directions.across(face.side.other())[indices.clone()];
+    let ColumnMemory { t, u, .. } = columns;
+    let (t, u) = (&t[indices.clone()], &mut u[indices]);
+    let other = face.side.other() as usize;
+    let start = -(corner[other] - origin[other]);
+    let is_near = |t: Option<&f64>, across: Option<&f64>| {
+        let moved = t.zip(across).map_or(0.0, |(t, across)| t * across);
+        start.abs() + moved.abs() <= FAR
+    };
+    if is_near(t.first(), across.first()) && is_near(t.last(), across.last()) {
+        for (u, (t, across)) in u.iter_mut().zip(t.iter().zip(across)) {
+            *u = flipped(start + t * across);
+        }
+        return;
+    }
+    for (u, (t, column)) in u.iter_mut().zip(t.iter().zip(range.clone())) {
+        let ray = Ray::of_camera(origin, fan.directions.of(column));
+        *u = flipped(along_line(&ray, *t, face.side, corner));
+    }
+}
+
+/// The distance and the texture coordinate at which a ray along `direction` meets `border` in this image.
+pub(crate) fn texture_coordinate_at(
+    image: MirrorTransform,
+    projection: &Projection,
+    border: &Border,
+    direction: DVec2,
+) -> (f64, f64) {
+    let Border { face, .. } = border;
+    let side = face.side as usize;
+    let ray = Ray::of_camera(projection.origin(), direction);
+    let t = ((face.line() as f64 - projection.origin()[side]) / direction[side]).abs();
+    let along = along_line(&ray, t, face.side, face.corner()).clamp(0.0, 1.0);
+    let along = if image.is_mirrored_along(face.side) { 1.0 - along } else { along };
+    let is_from_left = is_from_left(image.direction_to_map(direction), face.side);
+    (t, from_left(along, is_from_left))
+}
