@@ -171,31 +171,19 @@ impl DrawList {
         self.planes.push(Plane { columns: columns.clone(), first, kind, image });
     }
 
-    /// Adds a face with these columns, unless it shows in none. Returns whether it does.
-    #[inline]
-    pub(crate) fn add_face(
-        &mut self,
-        face: Face,
-        columns: impl Iterator<Item = FaceColumn>,
-    ) -> bool {
-        self.face_columns.extend(columns);
-        self.push_face(face)
-    }
-
-    /// Adds a face whose columns are the last face columns, unless it shows in none. Returns whether it does.
-    pub(crate) fn push_face(&mut self, face: Face) -> bool {
+    /// Adds a face whose columns are the last face columns, unless it shows in none.
+    pub(crate) fn push_face(&mut self, face: Face) {
         let first = face.first;
         if self.face_columns[first..].iter().all(|column| column.rows.is_empty()) {
             self.face_columns.truncate(first);
-            return false;
+            return;
         }
         if !matches!(face.material, Material::Opaque(_)) {
             self.passed.push(Layer::Face(self.see_through.len()));
             self.see_through.push(face);
-            return true;
+            return;
         }
         self.faces.push(face);
-        true
     }
 
     /// Whether the sky may be in view.

@@ -304,7 +304,8 @@ impl Walk<'_> {
             FaceColumn { rows, t: t[x], u: u[x] }
         }));
         let light = self.light_on_face(visit, group);
-        let is_shown = self.list.push_face(Face {
+        self.set_hits(visit, group, columns.start, first);
+        self.list.push_face(Face {
             columns: columns.clone(),
             first,
             facing: Facing::Side(group.face.side),
@@ -315,9 +316,6 @@ impl Walk<'_> {
             image: visit.image,
             edges: Some(FaceEdges::new(self.scene.projection, &group.face)),
         });
-        if is_shown {
-            self.set_hits(visit, group, columns.start, first);
-        }
     }
 
     /// The column `x` of the face at a border, in the middle of the part `across` of it.

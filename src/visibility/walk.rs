@@ -348,6 +348,9 @@ impl Walk<'_> {
             mem::swap(bottoms, outer_bottoms);
             mem::swap(tops, outer_tops);
         }
+        if visit.bounces == 0 {
+            self.extend_distances(&range);
+        }
         let indices = range.start as usize..range.end as usize;
         let ColumnMemory { starts, ends, from, t, bottoms, tops, .. } = &mut self.memory.columns;
         if shows_floor {
@@ -360,10 +363,16 @@ impl Walk<'_> {
                 *start = (*start).max(*top);
             }
         }
-        from[indices.clone()].copy_from_slice(&t[indices.clone()]);
-        if visit.bounces == 0 {
-            for (column, t) in self.list.columns[indices.clone()].iter_mut().zip(&t[indices]) {
-                column.distance = column.distance.max(*t);
+        from[indices.clone()].copy_from_slice(&t[indices]);
+    }
+
+    /// Makes the distances found those of the columns of `range` in which anything is still in view.
+    fn extend_distances(&mut self, range: &Range<u32>) {
+        let ColumnMemory { starts, ends, t, .. } = &self.memory.columns;
+        for x in range.start as usize..range.end as usize {
+            if starts[x] < ends[x] {
+                let column = &mut self.list.columns[x];
+                column.distance = column.distance.max(t[x]);
             }
         }
     }
@@ -702,23 +711,21 @@ impl Walk<'_> {
                 FaceColumn { rows: Rows { start: *start.max(top), end: *end.min(bottom) }, t, u }
             });
         let first = self.list.face_columns.len();
-        let is_shown = self.list.add_face(
-            Face {
-                columns: range.clone(),
-                first,
-                facing: Facing::Side(face.side),
-                material,
-                light: self.light_on_face(visit, group),
-                bottom,
-                top,
-                image: visit.image,
-                edges: None,
-            },
-            columns,
-        );
-        if is_shown && matches!(material, Material::Opaque(_)) {
+        self.list.face_columns.extend(columns);
+        if matches!(material, Material::Opaque(_)) {
             self.set_hits(visit, group, group.columns.start, first);
         }
+        self.list.push_face(Face {
+            columns: range.clone(),
+            first,
+            facing: Facing::Side(face.side),
+            material,
+            light: self.light_on_face(visit, group),
+            bottom,
+            top,
+            image: visit.image,
+            edges: None,
+        });
     }
 
     /// Makes the faces of `group` the hits of those of its columns that show them, from column `x` on, of which
@@ -732,7 +739,8 @@ impl Walk<'_> {
             let columns = range.start.max(x) as usize..range.end.max(x) as usize;
             for (column, shown) in self.list.columns[columns].iter_mut().zip(&mut shown) {
                 let &FaceColumn { rows, t, u } = shown;
-                if !rows.is_empty() {
+                // A wall above or below the picture is a hit, too.
+                if !rows.is_empty() || column.hit.is_none() {
                     let hit = into.map(|(cell, _)| Hit { cell, side: face.side, t, u });
                     column.hit = hit.or(column.hit);
                 }
@@ -929,7 +937,8 @@ impl Walk<'_> {
             columns.ends[x] = columns.ends[x].min(above);
             FaceColumn { rows: Rows { start, end }, t, u }
         });
-        self.list.add_face(face, shown);
+        self.list.face_columns.extend(shown);
+        self.list.push_face(face);
         if visit.bounces == 0 {
             for (column, hit) in range.zip(hits) {
                 self.list.columns[column as usize].hit = Some(hit);
