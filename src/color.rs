@@ -90,29 +90,44 @@ impl Rgb {
 
     /// Blends this colour over each of `pixels`, as [`Rgb::over`] does: several channels by one instruction.
     pub(crate) fn paint_over(self, pixels: &mut [Self], alpha: u8) {
-        /// The number of pixels in a register.
+        let rest = u16::from(u8::MAX - alpha);
+        let channel = |behind: u16, own: u16| {
+            // Divided by 255 and rounded to the nearest. No sum exceeds 16 bits.
+            let sum = behind * rest + own + u16::from(u8::MAX) / 2;
+            ((sum + 1 + (sum >> 8)) >> 8) as u8
+        };
+        Self::mix_all(pixels, (self, alpha.into()), channel, |pixel| self.over(pixel, alpha));
+    }
+
+    /// Makes each channel of `pixels` what `channel` makes of it and of a multiple of that of another colour. The
+    /// pixels of an incomplete block become what `pixel` makes of them, which must be the same.
+    #[inline]
+    fn mix_all(
+        pixels: &mut [Self],
+        (other, factor): (Self, u16),
+        channel: impl Fn(u16, u16) -> u8,
+        pixel: impl Fn(Self) -> Self,
+    ) {
+        /// The number of pixels in a register, with eight bits for each channel.
         const AT_ONCE: usize = 4;
         const CHANNELS: usize = 4 * AT_ONCE;
-        let (opacity, rest) = (u16::from(alpha), u16::from(u8::MAX - alpha));
-        let own = self.0.to_le_bytes().map(|channel| u16::from(channel) * opacity);
-        let own: [u16; CHANNELS] = std::array::from_fn(|channel| own[channel % 4]);
-        let (blocks, others) = pixels.as_chunks_mut::<AT_ONCE>();
+        let others = other.0.to_le_bytes().map(|of_other| u16::from(of_other) * factor);
+        let others: [u16; CHANNELS] = std::array::from_fn(|channel| others[channel % 4]);
+        let (blocks, rest) = pixels.as_chunks_mut::<AT_ONCE>();
         for block in blocks {
             let mut channels = [0; CHANNELS];
             for (channels, pixel) in channels.as_chunks_mut().0.iter_mut().zip(&*block) {
                 *channels = pixel.0.to_le_bytes();
             }
-            for (channel, own) in channels.iter_mut().zip(own) {
-                // Divided by 255 and rounded to the nearest. No sum exceeds 16 bits.
-                let sum = u16::from(*channel) * rest + own + u16::from(u8::MAX) / 2;
-                *channel = ((sum + 1 + (sum >> 8)) >> 8) as u8;
+            for (of_pixel, of_other) in channels.iter_mut().zip(others) {
+                *of_pixel = channel(u16::from(*of_pixel), of_other);
             }
             for (channels, pixel) in channels.as_chunks().0.iter().zip(block) {
                 *pixel = Self(u32::from_le_bytes(*channels));
             }
         }
-        for pixel in others {
-            *pixel = self.over(*pixel, alpha);
+        for it in rest {
+            *it = pixel(*it);
         }
     }
 
@@ -131,28 +146,10 @@ impl Rgb {
 
     /// Blends each of `pixels` with `other`, as [`Rgb::blended`] does: several channels by one instruction.
     pub(crate) fn blend_all(pixels: &mut [Self], own: u32, other: Self, share: u32) {
-        /// The number of pixels in two registers.
-        const AT_ONCE: usize = 4;
-        const CHANNELS: usize = 4 * AT_ONCE;
-        // No sum exceeds 16 bits.
-        let added = other.0.to_le_bytes().map(|channel| u16::from(channel) * share as u16);
-        let added: [u16; CHANNELS] = std::array::from_fn(|channel| added[channel % 4]);
-        let (blocks, others) = pixels.as_chunks_mut::<AT_ONCE>();
-        for block in blocks {
-            let mut channels = [0; CHANNELS];
-            for (channels, pixel) in channels.as_chunks_mut().0.iter_mut().zip(&*block) {
-                *channels = pixel.0.to_le_bytes();
-            }
-            for (channel, added) in channels.iter_mut().zip(added) {
-                *channel = ((u16::from(*channel) * own as u16 + added) >> 8) as u8;
-            }
-            for (channels, pixel) in channels.as_chunks().0.iter().zip(block) {
-                *pixel = Self(u32::from_le_bytes(*channels));
-            }
-        }
-        for pixel in others {
-            *pixel = pixel.blended(own, other, share);
-        }
+        let channel =
+            |of_pixel: u16, of_other: u16| ((of_pixel * own as u16 + of_other) >> 8) as u8;
+        let blended = |pixel: Self| pixel.blended(own, other, share);
+        Self::mix_all(pixels, (other, share as u16), channel, blended);
     }
 
     /// The luma of the colour, from 0 to 255, by the weights of ITU-R BT.709 in 16-bit fixed point.

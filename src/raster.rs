@@ -1,7 +1,7 @@
 //! Raster: a draw list to pixels, one file for each kind of item.
 //!
-//! [`draw`] draws the rows of a [`DrawList`] that a [`Target`] covers: first spans, then wall
-//! columns, then the layers in front of both. It does not know which way filled the list. Rules:
+//! [`draw`] draws the rows of a [`DrawList`] that a [`Target`] covers: first planes, then faces, then the layers in
+//! front of both. Rules:
 //!
 //! - The pixels of a band do not depend on its first and last row.
 //! - Every pixel's texel is computed in fixed point from its own row or column.

@@ -19,7 +19,7 @@ use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
     Backdrop, DrawList, Faded, Lighting, Pass, Plane, PlaneKind, PlaneSide, PlaneSurface, Rows,
-    Scene, SectorId, SpanMapping, TileSectors,
+    Scene, SectorId, SpanMapping,
 };
 use crate::world::{Covering, Light, Tile, TileId, TileKind};
 
@@ -269,7 +269,7 @@ impl<'a> PlaneDrawing<'a> {
         target: &mut Target<'_>,
     ) {
         let rows = target.rows();
-        let image = Some(self.image).filter(|image| *image != MirrorTransform::default());
+        let image = self.mirrored();
         for_each_span(self.first, columns, &rows, starts, |row, columns| {
             if let Some(DrawnPlane { covering: None, .. }) = self.even {
                 sky.draw(row, columns, image, target);
@@ -347,8 +347,7 @@ impl<'a> PlaneDrawing<'a> {
         let ([(first, _), ..], [.., (last, _)]) = (lights, lights) else { return };
         let columns = first.start..last.end;
         let Some(covering) = covering else {
-            let is_mirrored = self.image != MirrorTransform::default();
-            sky.draw(row, columns, Some(self.image).filter(|_| is_mirrored), target);
+            sky.draw(row, columns, self.mirrored(), target);
             return;
         };
         let first = columns.start;
@@ -362,10 +361,14 @@ impl<'a> PlaneDrawing<'a> {
         }
     }
 
+    /// The image in mirrors; `None` for the direct one.
+    fn mirrored(&self) -> Option<MirrorTransform> {
+        Some(self.image).filter(|image| *image != MirrorTransform::default())
+    }
+
     /// Whether cells of this tile may have the plane.
     fn is_of(&self, tile: TileId) -> bool {
-        let TileSectors { lower, upper } = self.list.sectors.of(tile);
-        self.top.is_some() || self.sector == lower || Some(self.sector) == upper
+        self.top.is_some() || self.list.sectors.of(tile).have(self.sector)
     }
 
     /// The look of the plane in a cell of this tile, without lamplight.

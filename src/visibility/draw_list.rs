@@ -198,6 +198,11 @@ impl DrawList {
         self.backdrops.contains(&Some(Backdrop::Sky)) || self.planes.iter().any(is_of_sky)
     }
 
+    /// The index of the image in which `part` sees things.
+    pub(crate) fn index_of_image(&self, part: &RayPart) -> usize {
+        self.images.iter().position(|&image| image == part.image).unwrap_or(0)
+    }
+
     /// Adds an image, unless it is known.
     pub(crate) fn add_image(&mut self, image: MirrorTransform) {
         if !self.images.contains(&image) {

@@ -298,11 +298,7 @@ impl Walk<'_> {
             return;
         }
         let first = self.list.face_columns.len();
-        let ColumnMemory { starts, ends, t, u, tops, bottoms, .. } = &self.memory.columns;
-        self.list.face_columns.extend((columns.start as usize..columns.end as usize).map(|x| {
-            let rows = Rows { start: starts[x].max(tops[x]), end: ends[x].min(bottoms[x]) };
-            FaceColumn { rows, t: t[x], u: u[x] }
-        }));
+        self.list.face_columns.extend(self.memory.columns.of_face(&columns));
         let light = self.light_on_face(visit, group);
         self.set_hits(visit, group, columns.start, first);
         self.list.push_face(Face {

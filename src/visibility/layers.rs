@@ -16,6 +16,7 @@ use glam::DVec2;
 
 use super::draw_list::{BillboardPart, DrawList, Layer, RayPart, Stretch};
 use super::face::Rows;
+use super::sectors::Sector;
 use super::visible_cells::VisibleCells;
 use super::{Billboard, Scene};
 use crate::world::World;
@@ -135,7 +136,7 @@ fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize
     let origin = scene.projection.origin();
     for layer in &list.passed {
         let Layer::Part(part) = layer else { continue };
-        let index = list.images.iter().position(|&image| image == part.image).unwrap_or(0);
+        let index = list.index_of_image(part);
         let ends = |column: u32| {
             let stretch = list.stretches[part.first + (column - part.columns.start) as usize];
             let direction = list.directions.of(column);
@@ -172,7 +173,7 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
 
 /// Adds the layers of the billboards in a part of rays, from far to near.
 fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawList) {
-    let index = list.images.iter().position(|&image| image == part.image).unwrap_or(0);
+    let index = list.index_of_image(part);
     let of_image = memory.of_image[index].clone();
     if of_image.is_empty() {
         return;
@@ -210,12 +211,7 @@ fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawLi
 }
 
 /// The rows of `billboard` between the heights of a part of rays.
-fn limits(
-    scene: Scene<'_>,
-    part: &RayPart,
-    sector: &super::sectors::Sector,
-    billboard: &Billboard,
-) -> Rows {
+fn limits(scene: Scene<'_>, part: &RayPart, sector: &Sector, billboard: &Billboard) -> Rows {
     let row_of = |height| scene.projection.row_of_height(height, billboard.depth);
     let top = if sector.top < f64::INFINITY { row_of(sector.top) } else { 0 };
     let bottom = row_of(part.top_below.unwrap_or(sector.bottom));

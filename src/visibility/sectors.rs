@@ -1,8 +1,8 @@
 //! Sectors: the gaps of tiles, by their heights.
 //!
 //! Neighbouring cells whose gaps have one bottom and one top are one room to the eye, whatever their floors look
-//! like: no face is between them, and a ray through them needs no clip range of its own for each. Such gaps have
-//! one sector, as the cells of a map of Doom have. It is found once a frame, for the height of the eye.
+//! like: no face is between them, and a ray through them needs no clip range of its own for each. Such gaps share
+//! one sector, as neighbouring cells would in a map of Doom. Sectors are found once a frame, for the height of the eye.
 //!
 //! Under the sky, a gap ends at the height above which there is nothing. It has the same sector as a room with a
 //! ceiling at that height, so that a level world under half a roof is a single sector. Seen from above that height,
@@ -122,6 +122,11 @@ impl Sectors {
         self.of_tiles[usize::from(tile)]
     }
 
+    /// The object that stands in the cells of `tile`, in the lower gap.
+    pub(crate) fn held_by(&self, tile: TileId) -> Holds {
+        self.get(self.of(tile).lower).holds
+    }
+
     #[inline]
     pub(crate) fn get(&self, SectorId(id): SectorId) -> &Sector {
         &self.list[usize::from(id)]
@@ -130,13 +135,9 @@ impl Sectors {
     /// Whether rays in `sector` go on into a cell of `tile` without meeting anything.
     #[inline]
     pub(crate) fn goes_on(&self, sector: SectorId, tile: TileId) -> bool {
-        let TileSectors { lower, upper } = self.of(tile);
         match sector {
             SectorId::SOLID => tile == TileId(0),
-            _ => {
-                (lower == sector || upper == Some(sector))
-                    && self.get(sector).holds != Holds::Standing
-            }
+            _ => self.of(tile).have(sector) && self.get(sector).holds != Holds::Standing,
         }
     }
 
@@ -221,6 +222,14 @@ fn top_of_sky(scene: Scene<'_>) -> f64 {
         top = top.max(projection.eye() - Camera::STANDING + builtin::PLAYER_HEIGHT);
     }
     if projection.eye() < top { top } else { f64::INFINITY }
+}
+
+impl TileSectors {
+    /// Whether a gap of the tile has `sector`.
+    #[inline]
+    pub(crate) fn have(self, sector: SectorId) -> bool {
+        self.lower == sector || self.upper == Some(sector)
+    }
 }
 
 impl Sector {

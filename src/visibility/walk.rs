@@ -117,6 +117,22 @@ enum Slot {
     Mirror,
 }
 
+impl ColumnMemory {
+    /// The columns of a face in `range`, in the open rows between `tops` and `bottoms`.
+    #[inline]
+    pub(crate) fn of_face(&self, range: &Range<u32>) -> impl Iterator<Item = FaceColumn> {
+        let indices = range.start as usize..range.end as usize;
+        let Self { starts, ends, t, u, bottoms, tops, .. } = self;
+        let starts = starts[indices.clone()].iter().zip(&tops[indices.clone()]);
+        let ends = ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
+        let places = t[indices.clone()].iter().zip(&u[indices]);
+        starts.zip(ends).zip(places).map(|(((start, top), (end, bottom)), (&t, &u))| {
+            let rows = Rows { start: *start.max(top), end: *end.min(bottom) };
+            FaceColumn { rows, t, u }
+        })
+    }
+}
+
 impl WalkMemory {
     /// Reserves memory for all but extreme maps, in pictures of `width` columns.
     pub(crate) fn make_room(&mut self, width: usize) {
@@ -484,10 +500,7 @@ impl Walk<'_> {
     fn looks_like(&self, one: &Border, other: &Border) -> bool {
         let walls = self.scene.plan.walls;
         let tile = |border: &Border| border.into.map(|(_, tile)| tile);
-        let stands = |id: TileId| {
-            let TileSectors { lower, .. } = self.fan.sectors.of(id);
-            self.fan.sectors.get(lower).holds == Holds::Standing
-        };
+        let stands = |id: TileId| self.fan.sectors.held_by(id) == Holds::Standing;
         !(walls.faded || walls.jambs)
             && one.face.is_in_line_with(&other.face)
             && tile(one) == tile(other)
@@ -701,17 +714,8 @@ impl Walk<'_> {
             self.show_blended_face(visit, group, material, (bottom, top));
             return;
         }
-        let indices = range.start as usize..range.end as usize;
-        let ColumnMemory { starts, ends, t, u, bottoms, tops, .. } = &self.memory.columns;
-        let starts = starts[indices.clone()].iter().zip(&tops[indices.clone()]);
-        let ends = ends[indices.clone()].iter().zip(&bottoms[indices.clone()]);
-        let places = t[indices.clone()].iter().zip(&u[indices]);
-        let columns =
-            starts.zip(ends).zip(places).map(|(((start, top), (end, bottom)), (&t, &u))| {
-                FaceColumn { rows: Rows { start: *start.max(top), end: *end.min(bottom) }, t, u }
-            });
         let first = self.list.face_columns.len();
-        self.list.face_columns.extend(columns);
+        self.list.face_columns.extend(self.memory.columns.of_face(range));
         if matches!(material, Material::Opaque(_)) {
             self.set_hits(visit, group, group.columns.start, first);
         }
@@ -751,10 +755,7 @@ impl Walk<'_> {
     /// Whether there is glass or a mask behind `group`.
     fn is_cube(&self, group: &Group) -> bool {
         let into = self.memory.borders[group.borders.start].into;
-        into.is_some_and(|(_, id)| {
-            let TileSectors { lower, .. } = self.fan.sectors.of(id);
-            matches!(self.fan.sectors.get(lower).holds, Holds::Cube(_))
-        })
+        into.is_some_and(|(_, id)| matches!(self.fan.sectors.held_by(id), Holds::Cube(_)))
     }
 
     /// The light on the faces of `group`, seen from the cell before the first: that of their tile if it is solid and
@@ -986,10 +987,7 @@ fn find_texture_coordinates(
     let is_mirrored = image.is_mirrored_along(face.side);
     let direction = image.direction_to_map(fan.directions.of(range.start));
     let is_from_left = is_from_left(direction, face.side);
-    let flipped = |along: f64| {
-        let along = along.clamp(0.0, 1.0);
-        from_left(if is_mirrored { 1.0 - along } else { along }, is_from_left)
-    };
+    let coordinate = |along: f64| texture_coordinate(along, is_mirrored, is_from_left);
     let indices = range.start as usize..range.end as usize;
     let across = &fan.directions.across(face.side.other())[indices.clone()];
     let ColumnMemory { t, u, .. } = columns;
@@ -1002,13 +1000,13 @@ fn find_texture_coordinates(
     };
     if is_near(t.first(), across.first()) && is_near(t.last(), across.last()) {
         for (u, (t, across)) in u.iter_mut().zip(t.iter().zip(across)) {
-            *u = flipped(start + t * across);
+            *u = coordinate(start + t * across);
         }
         return;
     }
     for (u, (t, column)) in u.iter_mut().zip(t.iter().zip(range.clone())) {
         let ray = Ray::of_camera(origin, fan.directions.of(column));
-        *u = flipped(along_line(&ray, *t, face.side, corner));
+        *u = coordinate(along_line(&ray, *t, face.side, corner));
     }
 }
 
@@ -1023,8 +1021,15 @@ pub(crate) fn texture_coordinate_at(
     let side = face.side as usize;
     let ray = Ray::of_camera(projection.origin(), direction);
     let t = ((face.line() as f64 - projection.origin()[side]) / direction[side]).abs();
-    let along = along_line(&ray, t, face.side, face.corner()).clamp(0.0, 1.0);
-    let along = if image.is_mirrored_along(face.side) { 1.0 - along } else { along };
+    let along = along_line(&ray, t, face.side, face.corner());
+    let is_mirrored = image.is_mirrored_along(face.side);
     let is_from_left = is_from_left(image.direction_to_map(direction), face.side);
-    (t, from_left(along, is_from_left))
+    (t, texture_coordinate(along, is_mirrored, is_from_left))
+}
+
+/// The texture coordinate of a point this far along a face, from its north or west end in the straight picture.
+#[inline]
+fn texture_coordinate(along: f64, is_mirrored: bool, is_from_left: bool) -> f64 {
+    let along = along.clamp(0.0, 1.0);
+    from_left(if is_mirrored { 1.0 - along } else { along }, is_from_left)
 }
