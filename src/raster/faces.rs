@@ -367,7 +367,11 @@ impl ShownFace<'_> {
             let stepper = self.texels(level).at(t);
             for (row, pixel) in rows.clone().zip(target.column_mut(x, rows.clone())) {
                 let texel = stepper.at(row);
-                *pixel = lighting.apply(texels[texel]).over(*pixel, alphas[texel]);
+                *pixel = match alphas[texel] {
+                    0 => *pixel,
+                    u8::MAX => lighting.apply(texels[texel]),
+                    alpha => lighting.apply(texels[texel]).over(*pixel, alpha),
+                };
             }
             let is_shown = |row| alphas[stepper.at(row)] > u8::MAX / 2;
             target.mark(x, rows.start, self.surface(index), rows.map(is_shown));

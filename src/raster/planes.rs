@@ -5,6 +5,10 @@
 //! `r_plane.c`, id Software 1993). Rejected: searching each row for its spans, which takes
 //! half as long as drawing them. One colour everywhere is a fill: at 160×90 pixels that takes less
 //! time than reading the rows of the wall in every column.
+//!
+//! Planes of one height and one look are joined before their spans are made. A cell with a shape is a sector by
+//! itself, and would cut the floor around it into short spans. A floor and a ceiling that are mirror images of each
+//! other share their spans.
 
 use std::mem;
 use std::ops::Range;
@@ -19,13 +23,23 @@ use super::target::Target;
 use crate::cast::MirrorTransform;
 use crate::visibility::{
     Backdrop, DrawList, Faded, Lighting, Pass, Plane, PlaneKind, PlaneSide, PlaneSurface, Rows,
-    Scene, SectorId, SpanMapping,
+    Scene, SpanMapping,
 };
-use crate::world::{Covering, Light, Tile, TileId, TileKind};
+use crate::world::{Covering, Light, Paint, Pattern, Tile, TileId, TileKind};
 
-/// Memory for making spans, one for each thread.
+/// Memory for drawing planes, one for each thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PlaneMemory {
+    /// The planes in the order of drawing.
+    order: Vec<PlaneKey>,
+    /// The rows of a floor and of a ceiling, joined from several planes.
+    joined: [JoinedRows; 2],
+    spans: SpanMemory,
+}
+
+/// Memory for making spans.
+#[derive(Clone, Debug, Default)]
+struct SpanMemory {
     /// The first column of the current span of each row of the band.
     starts: Vec<usize>,
     mappings: RowMappings,
@@ -42,6 +56,14 @@ struct RowMappings {
     rows: Vec<(u32, Option<SpanMapping>)>,
 }
 
+/// The rows of planes of one look, joined in each column.
+#[derive(Clone, Debug, Default)]
+struct JoinedRows {
+    columns: Range<usize>,
+    /// One item for each column of the picture.
+    rows: Vec<Rows>,
+}
+
 /// Draws the backdrops and the planes of `list`.
 pub(crate) fn draw<M: Sampling>(
     scene: Scene<'_>,
@@ -51,49 +73,62 @@ pub(crate) fn draw<M: Sampling>(
     target: &mut Target<'_>,
 ) {
     draw_backdrops(scene, list, sky, target);
-    let rows = target.rows();
-    memory.starts.resize(rows.len(), 0);
-    memory.mappings.begin(rows.len());
-    memory.lights.clear();
-    memory.lights.reserve(scene.projection.columns());
-    let PlaneMemory { starts, mappings, lights } = memory;
-    let mut pairs = SpanPairs::<M>::new();
-    for plane in &list.planes {
-        let drawing = PlaneDrawing::new(scene, list, plane);
-        mappings.set_height(drawing.height);
-        let of_plane = &list.plane_rows[plane.first..][..plane.columns.len()];
-        let is_whole = rows == (0..scene.projection.rows());
-        match plane.kind {
-            PlaneKind::FloorAndCeiling(sector) if is_whole => {
-                let planes = [PlaneSide::Ceiling, PlaneSide::Floor]
-                    .map(|side| DrawnPlane::new(side, list.sectors.even_surface(sector, side)));
-                let first = plane.columns.start as usize;
-                for_each_span(first, of_plane.iter().copied(), &rows, starts, |row, columns| {
-                    let mapping = mappings.of(scene, row, &rows);
-                    pairs.draw(scene, (row, columns), &planes, mapping, target);
-                });
-            }
-            PlaneKind::FloorAndCeiling(sector) => {
-                let height = scene.projection.rows();
-                let mirrored = of_plane.iter().map(|rows| Rows {
-                    start: height - rows.end.max(rows.start),
-                    end: height - rows.start.min(rows.end),
-                });
-                let floor = Plane { kind: PlaneKind::Floor(sector), ..plane.clone() };
-                let ceiling = Plane { kind: PlaneKind::Ceiling(sector), ..plane.clone() };
-                let floor = PlaneDrawing::new(scene, list, &floor);
-                let memory = (&mut starts[..], &mut *mappings, &mut *lights);
-                floor.draw::<M>(sky, of_plane.iter().copied(), memory, target);
-                let ceiling = PlaneDrawing::new(scene, list, &ceiling);
-                mappings.set_height(ceiling.height);
-                let memory = (&mut starts[..], &mut *mappings, &mut *lights);
-                ceiling.draw::<M>(sky, mirrored, memory, target);
-            }
-            _ => {
-                let memory = (&mut starts[..], &mut *mappings, &mut *lights);
-                drawing.draw::<M>(sky, of_plane.iter().copied(), memory, target);
-            }
+    let PlaneMemory { order, joined, spans } = memory;
+    spans.begin(target.rows().len(), scene.projection.columns());
+    joined.iter_mut().for_each(|rows| rows.begin(scene.projection.columns()));
+    sort::<M>(scene, list, order);
+    let is_whole = target.rows() == (0..scene.projection.rows());
+    // The planes drawn next, unless they are drawn with their mirror image.
+    let mut waiting: Option<PlaneDrawing<'_>> = None;
+    let mut rest = order.as_slice();
+    while let Some((&(.., first), others)) = rest.split_first() {
+        let mut drawing = PlaneDrawing::new(scene, list, &list.planes[first]);
+        if let Some(before) = waiting.take_if(|before| before.side == drawing.side) {
+            before.draw::<M>(sky, joined, spans, target);
         }
+        let is_alike = |key: &PlaneKey| M::JOINS_PLANES && drawing.is_alike(&list.planes[key.3]);
+        let is_joined = others.first().is_some_and(is_alike);
+        rest = others;
+        if is_joined {
+            let rows = &mut joined[drawing.side as usize];
+            rows.clear();
+            rows.join(list, first);
+            let count = others.iter().take_while(|key| is_alike(key) && rows.join(list, key.3));
+            rest = &others[count.count()..];
+        }
+        drawing.is_joined = is_joined;
+        match waiting.take() {
+            Some(before) if is_whole && drawing.is_mirror_image(&before, joined) => {
+                drawing.draw_with_mirror_image::<M>(&before, joined, spans, target);
+            }
+            Some(before) => {
+                before.draw::<M>(sky, joined, spans, target);
+                waiting = Some(drawing);
+            }
+            None => waiting = Some(drawing),
+        }
+    }
+    if let Some(last) = waiting {
+        last.draw::<M>(sky, joined, spans, target);
+    }
+}
+
+/// The order in which a plane is drawn: by the distance of its height from the eye, its image and its side. Last is its
+/// index.
+type PlaneKey = (u64, usize, u8, usize);
+
+/// Finds the `order` of the planes of `list`: those that may be joined are beside each other, and after them are those
+/// that may be their mirror images.
+fn sort<M: Sampling>(scene: Scene<'_>, list: &DrawList, order: &mut Vec<PlaneKey>) {
+    order.clear();
+    order.reserve(list.planes.capacity());
+    let eye = scene.projection.eye();
+    order.extend(list.planes.iter().enumerate().map(|(index, plane)| {
+        let from_eye = (plane.height - eye).abs().to_bits();
+        (from_eye, list.index_of_image(plane.image), plane.kind.side() as u8, index)
+    }));
+    if M::JOINS_PLANES {
+        order.sort_unstable();
     }
 }
 
@@ -124,6 +159,62 @@ fn draw_backdrops(scene: Scene<'_>, list: &DrawList, sky: &SkyView<'_>, target: 
                 }
             }
         }
+    }
+}
+
+impl SpanMemory {
+    /// Prepares for the planes of a band of `rows` rows.
+    fn begin(&mut self, rows: usize, columns: usize) {
+        self.starts.resize(rows, 0);
+        self.mappings.begin(rows);
+        self.lights.clear();
+        self.lights.reserve(columns);
+    }
+}
+
+impl JoinedRows {
+    /// Prepares for pictures of this number of `columns`.
+    fn begin(&mut self, columns: usize) {
+        self.clear();
+        self.rows.resize(columns, Rows::NONE);
+    }
+
+    /// Forgets all rows.
+    fn clear(&mut self) {
+        let columns = mem::replace(&mut self.columns, 0..0);
+        self.rows[columns].fill(Rows::NONE);
+    }
+
+    /// The first column, and the rows from there on.
+    fn of_columns(&self) -> (usize, &[Rows]) {
+        (self.columns.start, &self.rows[self.columns.clone()])
+    }
+
+    /// Adds the rows of a plane of `list`, unless that leaves a gap in a column. Returns whether it does.
+    fn join(&mut self, list: &DrawList, index: usize) -> bool {
+        let (first, of_plane) = list.rows_of_plane(&list.planes[index]);
+        let columns = first..first + of_plane.len();
+        let known = &mut self.rows[columns.clone()];
+        let adjoin = |(known, added): (&Rows, &Rows)| {
+            let are_both = !known.is_empty() && !added.is_empty();
+            !are_both || known.end == added.start || added.end == known.start
+        };
+        if !known.iter().zip(of_plane).all(adjoin) {
+            return false;
+        }
+        for (known, added) in known.iter_mut().zip(of_plane) {
+            *known = match (known.is_empty(), added.is_empty()) {
+                (true, _) => *added,
+                (_, true) => *known,
+                _ => Rows { start: known.start.min(added.start), end: known.end.max(added.end) },
+            };
+        }
+        self.columns = if self.columns.is_empty() {
+            columns
+        } else {
+            self.columns.start.min(columns.start)..self.columns.end.max(columns.end)
+        };
+        true
     }
 }
 
@@ -160,7 +251,7 @@ impl RowMappings {
 #[inline]
 fn for_each_span(
     first: usize,
-    columns: impl Iterator<Item = Rows>,
+    columns: &[Rows],
     rows: &Range<u32>,
     starts: &mut [usize],
     mut emit: impl FnMut(u32, Range<usize>),
@@ -200,7 +291,7 @@ fn for_each_span(
 }
 
 /// A floor or a ceiling with one covering in one light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnPlane {
     pub(crate) pass: Pass,
     /// `None` for the sky.
@@ -218,59 +309,116 @@ impl DrawnPlane {
 }
 
 /// A plane with what its spans share.
+#[derive(Clone, Copy)]
 struct PlaneDrawing<'a> {
     scene: Scene<'a>,
     list: &'a DrawList,
-    first: usize,
-    image: MirrorTransform,
-    sector: SectorId,
+    plane: &'a Plane,
+    /// Whether its rows were joined to those of others.
+    is_joined: bool,
     side: PlaneSide,
-    /// The top of a pillar.
-    top: Option<TileId>,
-    height: f64,
     /// The look, if it is the same in all cells.
     even: Option<DrawnPlane>,
 }
 
 impl<'a> PlaneDrawing<'a> {
-    fn new(scene: Scene<'a>, list: &'a DrawList, plane: &Plane) -> Self {
-        let (world, sectors) = (scene.world, &list.sectors);
-        let of_sector = |sector: SectorId, side: PlaneSide| {
-            let surface = sectors.even_surface(sector, side);
-            let even = surface.map(|surface| DrawnPlane::new(side, Some(surface)));
-            let height = match side {
-                PlaneSide::Floor => sectors.get(sector).bottom,
-                PlaneSide::Ceiling => sectors.get(sector).top,
-            };
-            (sector, side, None, height, even)
-        };
-        let (sector, side, top, height, even) = match plane.kind {
-            PlaneKind::Floor(sector) | PlaneKind::FloorAndCeiling(sector) => {
-                of_sector(sector, PlaneSide::Floor)
+    fn new(scene: Scene<'a>, list: &'a DrawList, plane: &'a Plane) -> Self {
+        let side = plane.kind.side();
+        let surface = match plane.kind {
+            PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
+                list.sectors.even_surface(sector, side)
             }
-            PlaneKind::Ceiling(sector) => of_sector(sector, PlaneSide::Ceiling),
             PlaneKind::Top(id) => {
-                let tile = &world.tiles()[usize::from(id.0)];
-                let even = DrawnPlane::new(PlaneSide::Floor, Some(surface_of_top(tile)));
-                let even = Some(even).filter(|_| !world.has_lamplight());
-                let height = tile.top_of_what_stands();
-                (SectorId::SOLID, PlaneSide::Floor, Some(id), height, even)
+                let surface = surface_of_top(&scene.world.tiles()[usize::from(id.0)]);
+                Some(surface).filter(|_| !scene.world.has_lamplight())
             }
         };
-        let (first, image) = (plane.columns.start as usize, plane.image);
-        Self { scene, list, first, image, sector, side, top, height, even }
+        let even = surface.map(|surface| DrawnPlane::new(side, Some(surface)));
+        Self { scene, list, plane, is_joined: false, side, even }
+    }
+
+    /// Whether `plane` looks the same in each cell.
+    fn is_alike(&self, plane: &'a Plane) -> bool {
+        let Plane { height, kind, image, .. } = *plane;
+        (height, kind.side(), image) == (self.plane.height, self.side, self.plane.image)
+            && (kind == self.plane.kind
+                || self.even.is_some() && self.even == Self::new(self.scene, self.list, plane).even)
+    }
+
+    /// The first column, and the rows from there on.
+    fn rows<'r>(&self, joined: &'r [JoinedRows; 2]) -> (usize, &'r [Rows])
+    where
+        'a: 'r,
+    {
+        if self.is_joined {
+            joined[self.side as usize].of_columns()
+        } else {
+            self.list.rows_of_plane(self.plane)
+        }
+    }
+
+    /// Whether each row of the plane is the mirror image of a row of `other`, and both have texels.
+    fn is_mirror_image(&self, other: &Self, joined: &[JoinedRows; 2]) -> bool {
+        let projection = self.scene.projection;
+        let height = projection.rows();
+        let has_texels = |plane: &Self| {
+            let covering = plane.even.and_then(|plane| plane.covering);
+            covering.is_some_and(|it| !matches!(it.pattern, Pattern::Plain(Paint::Color(_))))
+        };
+        let are_mirrored = || {
+            let ((first, rows), (first_of_other, of_other)) =
+                (self.rows(joined), other.rows(joined));
+            let is_mirrored = |(one, other): (&Rows, &Rows)| {
+                one.is_empty() && other.is_empty()
+                    || (one.start + other.end, one.end + other.start) == (height, height)
+            };
+            first == first_of_other
+                && rows.len() == of_other.len()
+                && rows.iter().zip(of_other).all(is_mirrored)
+        };
+        projection.is_symmetric()
+            && self.plane.height + other.plane.height == 2.0 * projection.eye()
+            && self.plane.image == other.plane.image
+            && self.mirrored().is_none()
+            && has_texels(self)
+            && has_texels(other)
+            && are_mirrored()
+    }
+
+    /// Draws the plane, and its mirror image `other`.
+    fn draw_with_mirror_image<M: Sampling>(
+        &self,
+        other: &Self,
+        joined: &[JoinedRows; 2],
+        memory: &mut SpanMemory,
+        target: &mut Target<'_>,
+    ) {
+        let (floor, ceiling) =
+            if self.side == PlaneSide::Floor { (self, other) } else { (other, self) };
+        let (Some(of_floor), Some(of_ceiling)) = (floor.even, ceiling.even) else { return };
+        let SpanMemory { starts, mappings, .. } = memory;
+        mappings.set_height(floor.plane.height);
+        let mut pairs = SpanPairs::<M>::new(self.scene, [of_ceiling, of_floor]);
+        let rows = target.rows();
+        let (first, columns) = floor.rows(joined);
+        for_each_span(first, columns, &rows, starts, |row, columns| {
+            pairs.draw((row, columns), mappings.of(self.scene, row, &rows), target);
+        });
     }
 
     fn draw<M: Sampling>(
         &self,
         sky: &SkyView<'_>,
-        columns: impl Iterator<Item = Rows>,
-        (starts, mappings, lights): (&mut [usize], &mut RowMappings, &mut Vec<LitColumns>),
+        joined: &[JoinedRows; 2],
+        memory: &mut SpanMemory,
         target: &mut Target<'_>,
     ) {
+        let SpanMemory { starts, mappings, lights } = memory;
+        mappings.set_height(self.plane.height);
+        let (first, columns) = self.rows(joined);
         let rows = target.rows();
         let image = self.mirrored();
-        for_each_span(self.first, columns, &rows, starts, |row, columns| {
+        for_each_span(first, columns, &rows, starts, |row, columns| {
             if let Some(DrawnPlane { covering: None, .. }) = self.even {
                 sky.draw(row, columns, image, target);
                 return;
@@ -284,7 +432,7 @@ impl<'a> PlaneDrawing<'a> {
                 self.draw_span::<M>(sky, row, covering, mapping, lights, target);
             } else {
                 let lines = direct.before_and_behind(self.scene.projection.origin());
-                let lines = lines.map(|line| line.seen_in_mirrors(self.image));
+                let lines = lines.map(|line| line.seen_in_mirrors(self.plane.image));
                 self.draw_cells::<M>(sky, row, columns, (mapping, lines), lights, target);
             }
         });
@@ -363,20 +511,27 @@ impl<'a> PlaneDrawing<'a> {
 
     /// The image in mirrors; `None` for the direct one.
     fn mirrored(&self) -> Option<MirrorTransform> {
-        Some(self.image).filter(|image| *image != MirrorTransform::default())
+        Some(self.plane.image).filter(|image| *image != MirrorTransform::default())
     }
 
     /// Whether cells of this tile may have the plane.
     fn is_of(&self, tile: TileId) -> bool {
-        self.top.is_some() || self.list.sectors.of(tile).have(self.sector)
+        match self.plane.kind {
+            PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
+                self.list.sectors.of(tile).have(sector)
+            }
+            PlaneKind::Top(_) => true,
+        }
     }
 
     /// The look of the plane in a cell of this tile, without lamplight.
     fn look_of(&self, tile: TileId) -> PlaneSurface {
-        let (world, sectors) = (self.scene.world, &self.list.sectors);
-        match self.top {
-            Some(id) => surface_of_top(&world.tiles()[usize::from(id.0)]),
-            None => sectors.surface(world, self.sector, self.side, tile),
+        let world = self.scene.world;
+        match self.plane.kind {
+            PlaneKind::Floor(sector) | PlaneKind::Ceiling(sector) => {
+                self.list.sectors.surface(world, sector, self.side, tile)
+            }
+            PlaneKind::Top(id) => surface_of_top(&world.tiles()[usize::from(id.0)]),
         }
     }
 }

@@ -14,6 +14,10 @@ pub(crate) trait Sampling: Copy {
     /// What distinguishes the levels of a texture.
     type Lod: Copy + PartialEq + fmt::Debug;
 
+    /// Whether planes of one height never overlap, so that they may be joined and drawn in any order. Planes of the
+    /// filter by area go on under the ends of faces.
+    const JOINS_PLANES: bool;
+
     /// The level of detail of a face at distance `t`, which the ray approaches by `slope` cells per unit of
     /// `t`.
     fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> Self::Lod;
@@ -43,6 +47,8 @@ pub(crate) struct Means;
 
 impl Sampling for MipLevels {
     type Lod = usize;
+
+    const JOINS_PLANES: bool = true;
 
     #[inline]
     fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> usize {
@@ -74,6 +80,8 @@ impl Sampling for MipLevels {
 
 impl Sampling for Means {
     type Lod = AreaLod;
+
+    const JOINS_PLANES: bool = false;
 
     #[inline]
     fn lod_on_face(scene: Scene<'_>, texture: &Texture, t: f64, slope: f64) -> AreaLod {

@@ -16,10 +16,11 @@ use crate::visibility::{Faded, Lighting, Scene, SpanMapping, TexelPlaces};
 use crate::world::texture::{MipLevelByShifts, Texture};
 use crate::world::{Light, Paint, Pattern};
 
-/// The drawing of a frame's span pairs.
+/// The drawing of a ceiling and of a floor that is its mirror image.
 pub(crate) struct SpanPairs<'a, M: Sampling> {
-    /// Whether there was a pair.
-    is_begun: bool,
+    scene: Scene<'a>,
+    /// The ceiling and the floor.
+    planes: [DrawnPlane; 2],
     /// The textures of the planes, if they have textures of one size.
     textures: Option<TexturePair<'a, M>>,
 }
@@ -70,28 +71,23 @@ struct LevelPair<'a, M: Sampling> {
 }
 
 impl<'a, M: Sampling> SpanPairs<'a, M> {
-    /// The drawing before the first pair.
-    pub(crate) fn new() -> Self {
-        Self { is_begun: false, textures: None }
+    /// The drawing of these `planes`: a ceiling and a floor.
+    pub(crate) fn new(scene: Scene<'a>, planes: [DrawnPlane; 2]) -> Self {
+        Self { scene, planes, textures: TexturePair::new(scene, &planes) }
     }
 
-    /// Draws `columns` of `row` of a floor, and their mirror image on a ceiling. The planes are those of the pairs
-    /// before.
+    /// Draws `columns` of `row` of the floor, and their mirror image on the ceiling.
     pub(crate) fn draw(
         &mut self,
-        scene: Scene<'a>,
         (row, columns): (u32, Range<usize>),
-        planes: &[DrawnPlane; 2],
         mapping: &SpanMapping,
         target: &mut Target<'_>,
     ) {
+        let Self { scene, planes, textures } = self;
+        let scene = *scene;
         let rows = [scene.projection.rows() - 1 - row, row];
         let pair = &SpanPair { rows, columns, planes, mapping };
-        if !self.is_begun {
-            self.is_begun = true;
-            self.textures = TexturePair::new(scene, pair.planes);
-        }
-        let drawn = self.textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
+        let drawn = textures.as_mut().and_then(|textures| textures.draw(scene, pair, target));
         if drawn.is_none() {
             for (span, light) in pair.spans().into_iter().flatten() {
                 let faded = Faded::of_plane(light, scene.world.fog(), mapping.distance);

@@ -61,6 +61,7 @@ pub(crate) struct Plane {
     /// The index of the rows of the first column. The others follow.
     pub(crate) first: usize,
     pub(crate) kind: PlaneKind,
+    pub(crate) height: f64,
     /// The image in which it is seen.
     pub(crate) image: MirrorTransform,
 }
@@ -69,8 +70,6 @@ pub(crate) struct Plane {
 pub(crate) enum PlaneKind {
     Floor(SectorId),
     Ceiling(SectorId),
-    /// A floor, and a ceiling whose rows are the mirror image of those of the floor.
-    FloorAndCeiling(SectorId),
     /// The top of a pillar of this tile.
     Top(TileId),
 }
@@ -115,6 +114,15 @@ pub(crate) struct BillboardPart {
     pub(crate) billboard: usize,
 }
 
+impl PlaneKind {
+    pub(crate) fn side(self) -> PlaneSide {
+        match self {
+            Self::Floor(_) | Self::Top(_) => PlaneSide::Floor,
+            Self::Ceiling(_) => PlaneSide::Ceiling,
+        }
+    }
+}
+
 impl DrawList {
     /// Removes the contents of the last frame, and reserves memory for all but extreme views of `width` columns, so
     /// that a turn of the camera towards more faces allocates nothing.
@@ -157,7 +165,7 @@ impl DrawList {
     #[inline]
     pub(crate) fn add_plane(
         &mut self,
-        kind: PlaneKind,
+        (kind, height): (PlaneKind, f64),
         image: MirrorTransform,
         columns: &Range<u32>,
         rows: impl Iterator<Item = Rows>,
@@ -168,7 +176,12 @@ impl DrawList {
             self.plane_rows.truncate(first);
             return;
         }
-        self.planes.push(Plane { columns: columns.clone(), first, kind, image });
+        self.planes.push(Plane { columns: columns.clone(), first, kind, height, image });
+    }
+
+    /// The first column of `plane`, and its rows from there on.
+    pub(crate) fn rows_of_plane(&self, plane: &Plane) -> (usize, &[Rows]) {
+        (plane.columns.start as usize, &self.plane_rows[plane.first..][..plane.columns.len()])
     }
 
     /// Adds a face whose columns are the last face columns, unless it shows in none.
@@ -198,9 +211,9 @@ impl DrawList {
         self.backdrops.contains(&Some(Backdrop::Sky)) || self.planes.iter().any(is_of_sky)
     }
 
-    /// The index of the image in which `part` sees things.
-    pub(crate) fn index_of_image(&self, part: &RayPart) -> usize {
-        self.images.iter().position(|&image| image == part.image).unwrap_or(0)
+    /// The index of `image`, which is in view.
+    pub(crate) fn index_of_image(&self, image: MirrorTransform) -> usize {
+        self.images.iter().position(|&known| known == image).unwrap_or(0)
     }
 
     /// Adds an image, unless it is known.

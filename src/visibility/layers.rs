@@ -136,7 +136,7 @@ fn for_each_edge(scene: Scene<'_>, list: &DrawList, mut follow: impl FnMut(usize
     let origin = scene.projection.origin();
     for layer in &list.passed {
         let Layer::Part(part) = layer else { continue };
-        let index = list.index_of_image(part);
+        let index = list.index_of_image(part.image);
         let ends = |column: u32| {
             let stretch = list.stretches[part.first + (column - part.columns.start) as usize];
             let direction = list.directions.of(column);
@@ -173,7 +173,7 @@ fn from_near_to_far(one: &Billboard, other: &Billboard) -> Ordering {
 
 /// Adds the layers of the billboards in a part of rays, from far to near.
 fn cut(scene: Scene<'_>, memory: &LayerMemory, part: &RayPart, list: &mut DrawList) {
-    let index = list.index_of_image(part);
+    let index = list.index_of_image(part.image);
     let of_image = memory.of_image[index].clone();
     if of_image.is_empty() {
         return;

@@ -350,13 +350,11 @@ impl Walk<'_> {
         let is_everything = visit.is_at_camera
             && range.len() == projection.columns()
             && sector.holds != Holds::Standing;
-        if !(is_everything && self.show_as_pair(visit, sector)) {
-            if shows_floor && !(is_everything && self.show_behind(visit, PlaneSide::Floor)) {
-                self.add_plane(visit, &range, PlaneSide::Floor);
-            }
-            if shows_ceiling && !(is_everything && self.show_behind(visit, PlaneSide::Ceiling)) {
-                self.add_plane(visit, &range, PlaneSide::Ceiling);
-            }
+        if shows_floor && !(is_everything && self.show_behind(visit, PlaneSide::Floor)) {
+            self.add_plane(visit, sector, &range, PlaneSide::Floor);
+        }
+        if shows_ceiling && !(is_everything && self.show_behind(visit, PlaneSide::Ceiling)) {
+            self.add_plane(visit, sector, &range, PlaneSide::Ceiling);
         }
         if blends {
             let ColumnMemory { bottoms, tops, outer_bottoms, outer_tops, .. } =
@@ -394,7 +392,7 @@ impl Walk<'_> {
     }
 
     /// Adds the floor or the ceiling of the sector in `range`, whose rows were found.
-    fn add_plane(&mut self, visit: &Visit, range: &Range<u32>, side: PlaneSide) {
+    fn add_plane(&mut self, visit: &Visit, sector: &Sector, range: &Range<u32>, side: PlaneSide) {
         let indices = range.start as usize..range.end as usize;
         let ColumnMemory { starts, ends, bottoms, tops, .. } = &self.memory.columns;
         let clips = starts[indices.clone()].iter().zip(&ends[indices.clone()]);
@@ -403,12 +401,14 @@ impl Walk<'_> {
                 let rows = clips.zip(&bottoms[indices]);
                 let rows =
                     rows.map(|((&start, &end), &bottom)| Rows { start: bottom.max(start), end });
-                self.list.add_plane(PlaneKind::Floor(visit.sector), visit.image, range, rows);
+                let plane = (PlaneKind::Floor(visit.sector), sector.bottom);
+                self.list.add_plane(plane, visit.image, range, rows);
             }
             PlaneSide::Ceiling => {
                 let rows = clips.zip(&tops[indices]);
                 let rows = rows.map(|((&start, &end), &top)| Rows { start, end: top.min(end) });
-                self.list.add_plane(PlaneKind::Ceiling(visit.sector), visit.image, range, rows);
+                let plane = (PlaneKind::Ceiling(visit.sector), sector.top);
+                self.list.add_plane(plane, visit.image, range, rows);
             }
         }
     }
@@ -428,32 +428,6 @@ impl Walk<'_> {
         };
         self.list.backdrops[side as usize] = backdrop;
         backdrop.is_some()
-    }
-
-    /// Shows floor and ceiling of the sector of the camera as one plane, if each row of the ceiling is the mirror
-    /// image of a row of the floor in every column, and both have texels. Returns whether it does.
-    fn show_as_pair(&mut self, visit: &Visit, sector: &Sector) -> bool {
-        let projection = self.scene.projection;
-        let has_texels = |side| {
-            let surface = self.fan.sectors.even_surface(visit.sector, side);
-            let covering = surface.and_then(|surface| surface.covering);
-            covering.is_some_and(|it| !matches!(it.pattern, Pattern::Plain(Paint::Color(_))))
-        };
-        let height = projection.rows();
-        let ColumnMemory { bottoms, tops, .. } = &self.memory.columns;
-        let are_mirror_images =
-            || bottoms.iter().zip(tops).all(|(bottom, top)| bottom + top == height);
-        let is_pair = projection.is_symmetric()
-            && sector.bottom + sector.top == 2.0 * projection.eye()
-            && has_texels(PlaneSide::Floor)
-            && has_texels(PlaneSide::Ceiling)
-            && are_mirror_images();
-        if is_pair {
-            let rows = bottoms.iter().map(|&bottom| Rows { start: bottom, end: height });
-            let range = &visit.columns;
-            self.list.add_plane(PlaneKind::FloorAndCeiling(visit.sector), visit.image, range, rows);
-        }
-        is_pair
     }
 
     /// Adds the parts of the rays of `range` up to the distances found, in which billboards may show.
@@ -527,8 +501,8 @@ impl Walk<'_> {
             || starts[indices.clone()].iter().zip(ends().map(|(end, bottom)| end.min(bottom)));
         let above = clips().map(|(&start, &end)| Rows { start, end: end.min(horizon) });
         let below = clips().map(|(&start, &end)| Rows { start: start.max(horizon), end });
-        let [sky, ground] =
-            [PlaneKind::Ceiling(SectorId::BEYOND), PlaneKind::Floor(SectorId::BEYOND)];
+        let sky = (PlaneKind::Ceiling(SectorId::BEYOND), f64::INFINITY);
+        let ground = (PlaneKind::Floor(SectorId::BEYOND), ground);
         self.list.add_plane(sky, visit.image, range, above);
         self.list.add_plane(ground, visit.image, range, below);
     }
@@ -968,7 +942,7 @@ impl Walk<'_> {
             ends[x] = projection.row_of_height(top, t[x]).clamp(starts[x], end);
             Rows { start: ends[x], end }
         });
-        self.list.add_plane(PlaneKind::Top(id), visit.image, &range, rows);
+        self.list.add_plane((PlaneKind::Top(id), top), visit.image, &range, rows);
     }
 }
 
