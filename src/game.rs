@@ -1,12 +1,13 @@
-//! The rules of the game: a player walks through a world in fixed steps, takes what they find, opens
+//! The rules of the game: a player walks through a world in fixed steps, picks things up, opens
 //! doors, avoids guards and reaches the exit.
 //!
-//! A step lasts [`STEP`] seconds and depends on the [`Intents`] only. The same level, [`Rules`] and
-//! intents give the same states, bit for bit, on every machine. Steps as long as the last frame were
-//! refused: a slow machine would play another game than a fast one, and no game could be repeated.
+//! A step lasts [`STEP`] seconds and depends only on the [`Intents`]. The same level, [`Rules`] and
+//! intents produce the same states, bit for bit, on every machine. Rejected: steps as long as the
+//! last frame. A slow machine would play a different game from a fast one, and no game could be
+//! replayed.
 //!
-//! A level without guards, mechanisms, hazards and finds is only walked through: nothing hurts in
-//! it, the player has no tools, and it costs nothing that a mission would cost.
+//! In a level without guards, mechanisms, hazards and pickups, the player only walks. Nothing hurts
+//! them, they have no tools, and the level pays nothing for the features of a mission.
 
 mod checkpoint;
 mod collision;
@@ -92,13 +93,13 @@ pub use tally::{Rank, Share, Tally};
 pub struct Game {
     rules: Rules,
     world: World,
-    /// Whether there is more in the world than walls, doors, keys and exits.
+    /// Whether the world contains more than walls, doors, keys and exits.
     is_mission: bool,
-    /// The window of a generated level, of which `world` shows a part.
+    /// The window of a generated level. `world` is the part of the level in this window.
     window: Option<Window>,
-    /// The player of a game for one; in a game for several, the one whose turn it is.
+    /// The player. In a multiplayer game, the current player, whose turn it is.
     player: Player,
-    /// The players of a game for several.
+    /// The players of a multiplayer game.
     members: Option<Box<Members>>,
     doors: Doors,
     mechanisms: Mechanisms,
@@ -111,21 +112,21 @@ pub struct Game {
     sounds: Vec<Sound>,
     checkpoint: Checkpoint,
     steps: u64,
-    /// Grows with every visible change but those of the viewpoint and of figures.
+    /// Incremented by every visible change except changes of the viewpoint and of figures.
     revision: u64,
-    /// Grows with every change of figures.
+    /// Incremented by every change of figures.
     figure_revision: u64,
     /// See [`Game::work`].
     work: Scratch<u64>,
 }
 
 impl Game {
-    /// More than [`Game::work`] is in any step on any map that is accepted: what a step can do in about
-    /// a millisecond.
+    /// An upper bound on [`Game::work`] for any step on any accepted map. A step does about this
+    /// much work in a millisecond.
     #[doc(hidden)]
     pub const MOST_WORK: u64 = 1 << 20;
 
-    /// A game at its start with the usual rules: the player stands still at the world's start.
+    /// A game at its start with the default rules. The player stands still at the world's start.
     pub fn new(world: World) -> Self {
         Self::with_rules(world, Rules::default())
     }
@@ -164,16 +165,16 @@ impl Game {
         game.shown().with_start()
     }
 
-    /// A game in a generated level, which starts at `site` or near it. `None` if there is nowhere
-    /// to stand, such as outside the level.
+    /// A game in a generated level, which starts at `site` or near it. `None` if the player can
+    /// stand nowhere there, for example outside the level.
     pub fn in_level(level: generate::Level, site: Site) -> Option<Self> {
         let (window, world) = Window::open(level, site)?;
         Some(Self::begun(world, Rules::default(), Some(window)))
     }
 
-    /// A game in another world that continues this one: the player stands still at the same
+    /// A game in another world that continues this one. The player stands still at the same
     /// position with the same heading. If there is no room, or if the position is an exit, the
-    /// player is at the world's start.
+    /// player stands at the world's start.
     #[must_use]
     pub fn begun_again_in(&self, world: World) -> Self {
         let motion = self.player.motion.placed_in(&world);

@@ -1,9 +1,10 @@
-//! Checkpoints: from where a dead player goes on.
+//! Checkpoints: the places where a dead player continues.
 //!
-//! A checkpoint is a copy of the game at the time when the player reached it, and before that, of
-//! the game at its start. Worlds share their textures and sprites, so that a copy holds little more
-//! than the cells. Going on restores the copy; the clock, the alarms and the deaths are those of the
-//! game. In the easiest game the player keeps what they have found since.
+//! A checkpoint is a copy of the game at the time when the player reached it. Before the first
+//! checkpoint, it is a copy of the game at its start. Worlds share their textures and sprites, so a
+//! copy contains little more than the cells. A retry restores the copy, but keeps the clock, the
+//! alarms and the deaths. On the easiest difficulty, the player also keeps everything that they
+//! have found since.
 
 use std::sync::Arc;
 
@@ -12,10 +13,10 @@ use super::guards::Alarm;
 use crate::world::sprite::builtin::CheckpointFrame;
 use crate::world::{Cell, Difficulty, ThingKind};
 
-/// The game from which a dead player goes on.
+/// The game from which a dead player continues.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Checkpoint {
-    /// `None` in a level where nothing kills.
+    /// `None` in a level in which nothing kills.
     game: Option<Arc<Game>>,
     /// The cell of the checkpoint; `None` for the start.
     cell: Option<Cell>,
@@ -27,7 +28,7 @@ impl Checkpoint {
         Self { game, cell }
     }
 
-    /// The game from which a dead player goes on.
+    /// The game from which a dead player continues.
     pub(crate) fn game(&self) -> Option<&Game> {
         self.game.as_deref()
     }
@@ -46,7 +47,8 @@ impl Game {
         self
     }
 
-    /// Whether the player has reached another checkpoint than the last one, and nobody follows them.
+    /// Whether the player has reached a checkpoint other than the last one while no guard follows a
+    /// player.
     pub(crate) fn is_at_a_new_checkpoint(&self) -> bool {
         self.is_mission
             && self.rules.difficulty < Difficulty::Hard
@@ -56,7 +58,7 @@ impl Game {
             && self.things_reached().any(|thing| thing.kind == ThingKind::Checkpoint)
     }
 
-    /// Makes the checkpoint that the player has reached the one to go on from.
+    /// Activates the checkpoint that the player has reached, if it is a new one.
     pub(crate) fn reach_checkpoint(&mut self) {
         if !self.is_at_a_new_checkpoint() {
             return;
@@ -86,14 +88,14 @@ impl Game {
         }
     }
 
-    /// Makes `cell` the checkpoint of the player whose turn it is; returns `false` in a game for one.
+    /// Makes `cell` the checkpoint of the current player. Returns `false` in a single-player game.
     fn set_own_checkpoint(&mut self, cell: Cell) -> bool {
         let Some(members) = self.members.as_deref_mut() else { return false };
         members.set_checkpoint(cell);
         true
     }
 
-    /// Shows a checkpoint as one that nobody goes on from, if that is so.
+    /// Shows a checkpoint as inactive, unless a player would continue from it.
     pub(crate) fn grey_checkpoint(&mut self, cell: Option<Cell>) {
         let is_used = |cell| self.members.as_ref().is_some_and(|it| it.has_checkpoint(cell));
         if let Some(cell) = cell.filter(|&cell| !is_used(cell)) {
@@ -101,7 +103,7 @@ impl Game {
         }
     }
 
-    /// Goes on from the last checkpoint.
+    /// Continues from the last checkpoint.
     pub(crate) fn retry(&mut self) {
         let Some(saved) = self.checkpoint.game.clone() else { return };
         let mut game = Self::clone(&saved);
@@ -118,7 +120,7 @@ impl Game {
         *self = game;
     }
 
-    /// Gives the player what they have found in `other`, a later state of this game.
+    /// Gives the player everything that they have found in `other`, a later state of this game.
     fn keep_finds(&mut self, other: &Self) {
         self.player.keys.extend(&other.player.keys);
         self.player.treasure = other.player.treasure;

@@ -1,33 +1,34 @@
-//! Collision of a circle with what blocks: it is never inside anything, never passes through
-//! anything, and slides along walls.
+//! Collision of a circle with obstacles. The circle is never inside an obstacle, never passes
+//! through one, and slides along walls.
 //!
-//! The predicate [`is_clear`] says where the circle may be, and no position that fails it is ever
-//! accepted. If rounding puts a contact slightly inside, the circle is moved back along its path to
-//! a position that passes. So the circle is clear after a step because it was clear before. Rejected: to
-//! move first and push out of walls afterwards, which picks the wrong side of a wall at speed, and jitters
-//! in corners.
+//! The predicate [`is_clear`] decides where the circle may be, and no position that fails it is
+//! ever accepted. If rounding puts a contact slightly inside an obstacle, the circle moves back
+//! along its path to a position that passes. So the circle is clear after a step because it was
+//! clear before. Rejected: moving first and pushing out of walls afterwards. It picks the wrong
+//! side of a wall at speed, and jitters in corners.
 //!
-//! The sweep says how far a circle moves along a straight path before it touches something.
-//! Its centre traverses the grid from cell to cell, so that the longest path costs at most the
-//! columns and rows of the map. In each open cell the problem is small. A solid neighbour beside
-//! the cell is a wall, moved inwards by the radius. A solid neighbour across a corner is a quarter
-//! disc around that corner, unless a wall beside it covers the disc. Rejected: to round every
-//! solid cell by itself. Each joint of a straight wall would have a quarter disc, at which rounding errors
+//! The sweep computes how far a circle moves along a straight path before it touches something. Its
+//! centre traverses the grid from cell to cell, so the longest path costs at most the columns and
+//! rows of the map. Within one open cell the problem is small. A solid neighbour beside the cell is
+//! a wall, moved inwards by the radius. A solid neighbour across a corner is a quarter disc around
+//! that corner, unless a wall beside it covers the disc. Rejected: rounding every solid cell
+//! separately. Each joint of a straight wall would have a quarter disc, at which rounding errors
 //! could stop the player.
 //!
-//! A shape is a disc around a pillar, or a line with round ends.
-//! Along a line, the centre stays [`SKIN`] farther away than the radius. A position at exactly that
-//! distance from a slanted line cannot be represented in doubles, and a player who slides along it
-//! would be stopped by rounding in every step.
+//! A shape is a disc around a pillar, or a line with round ends. The centre stays farther away from
+//! a line than the radius, by [`SKIN`]. A position at exactly the radius from a slanted line cannot
+//! be represented in doubles. Rounding would stop a player who slides along such a line in every
+//! step.
 //!
-//! A [`Place`] is the world as it blocks somebody, by the height of the feet and of the body.
-//! A cell has gaps, between a floor and a ceiling or above a roof. A player is clear of the cell if
-//! one gap contains the whole body. So for feet at one height the world is two-dimensional: some
-//! cells block and the others do not, and the sweep needs nothing else.
+//! A [`Place`] presents the world as obstacles for one body, given the height of its feet and its
+//! own height. A cell has gaps, between a floor and a ceiling or above a roof. A player is clear of
+//! the cell if one gap contains the whole body. For feet at one height, the world is therefore
+//! two-dimensional: some cells block, the others do not, and the sweep needs nothing else.
 //!
-//! A thing that blocks fills its cell up to its height: a player can jump onto it or over it.
-//! Nobody walks up onto one, however low it is; use a floor for that. Rejected: a box as wide as
-//! the picture. A map says for each cell whether it is free, and the author sees that in the grid.
+//! A thing that blocks fills its cell up to its height. A player can jump onto it or over it, but
+//! cannot walk up onto it, however low it is. Maps use a floor for that. Rejected: a box as wide as
+//! the picture. A map defines for each cell whether it is free, and the author sees that in the
+//! grid.
 
 use std::array::IntoIter;
 use std::iter::{self, Flatten};
@@ -38,19 +39,20 @@ use serde::{Deserialize, Serialize};
 use super::fall::Room;
 use crate::world::{Cell, Gap, Line, Outline, Tile, TileKind, World};
 
-/// The number of walls that a body may touch in one step. A corner has two; a body that touches
-/// more is stuck between them, and stops.
+/// The maximum number of walls that a body may touch in one step. A corner has two. A body that
+/// touches more is stuck between them, and stops.
 const MOST_CONTACTS: usize = 4;
-/// How deep a path enters a corner's disc, relative to the radius, before it counts as a contact. A
-/// player who slides around a corner leaves it along the tangent, exact to about 1e-16.
+/// The depth, relative to the radius, to which a path may enter a corner's disc before it counts as
+/// a contact. A player who slides around a corner leaves it along the tangent, exact to about
+/// 1e-16.
 const GRAZE: f64 = 1e-14;
-/// How much farther than its radius a circle stays away from a line, in cells.
+/// The extra distance between a circle and a line, beyond the radius, in cells.
 const SKIN: f64 = 1e-9;
-/// A path that approaches a line by less than this for each cell is parallel to it.
+/// A path that approaches a line by less than this per cell counts as parallel to it.
 const PARALLEL: f64 = 1e-12;
 
-/// The radius of a circle that can stand in the middle of any open cell: above 0 and at most half a
-/// cell, so that only the eight cells around its own are in reach.
+/// The radius of a circle that can stand in the middle of any open cell. It is above 0 and at most
+/// half a cell, so that only the eight cells around its own are in reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Radius(f64);
 
@@ -66,24 +68,24 @@ impl Radius {
     }
 }
 
-/// Anything that can block a circle.
+/// The obstacles for a circle.
 pub(crate) trait Obstacles {
-    /// Whether a cell is solid. Cells outside the map are: nobody leaves the map.
+    /// Whether a cell is solid. Cells outside the map are solid, so nobody leaves the map.
     fn blocks(&self, column: i64, row: i64) -> bool;
 
-    /// The shape in a cell that does not block, if there is one.
+    /// The shape in a cell that does not block, if any.
     fn outline(&self, cell: Cell) -> Option<Outline> {
         _ = cell;
         None
     }
 
-    /// The middles of other circles of the same radius that block.
+    /// The centres of other circles of the same radius that block.
     fn circles(&self) -> &[DVec2] {
         &[]
     }
 
-    /// Whether a cell touched by a circle around `center` does not block any more, because it gives
-    /// way or because the circle has been lifted onto it.
+    /// Whether a cell that a circle around `center` touches no longer blocks. Either the cell gives
+    /// way, or the circle has been lifted onto it.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
         _ = (column, row, center, radius);
         false
@@ -97,8 +99,8 @@ pub(crate) struct Body {
     pub(crate) velocity: DVec2,
 }
 
-/// Moves a body by `displacement`, of any length, and along what blocks it. The body loses the part
-/// of its velocity that points into what it touches.
+/// Moves a body by `displacement`, of any length, and slides it along obstacles. The body loses the
+/// part of its velocity that points into an obstacle.
 pub(crate) fn slide<O: Obstacles>(
     obstacles: &mut O,
     body: Body,
@@ -129,8 +131,8 @@ pub(crate) fn slide<O: Obstacles>(
     Body { position, velocity: DVec2::ZERO }
 }
 
-/// Moves a circle by `displacement` up to the first contact. Returns its position, and whether there
-/// was a contact.
+/// Moves a circle by `displacement`, or up to the first contact. Returns its position and whether
+/// there was a contact.
 pub(crate) fn fly<O: Obstacles>(
     obstacles: &O,
     position: DVec2,
@@ -144,12 +146,12 @@ pub(crate) fn fly<O: Obstacles>(
     }
 }
 
-/// `vector` without its part against `normal`, a unit vector.
+/// `vector` without its component against `normal`, a unit vector.
 fn without_inward(vector: DVec2, normal: DVec2) -> DVec2 {
     vector - normal * vector.dot(normal).min(0.0)
 }
 
-/// Whether a circle around `center` overlaps nothing that blocks; it may touch. Cells are closed
+/// Whether a circle around `center` overlaps no obstacle. It may touch one. Cells are closed
 /// squares.
 pub(crate) fn is_clear<O: Obstacles>(obstacles: &O, center: DVec2, radius: Radius) -> bool {
     let least = 2.0 * radius.0;
@@ -177,7 +179,8 @@ fn overlapped(center: DVec2, radius: Radius) -> impl Iterator<Item = (i64, i64)>
         .filter(move |&(column, row)| !is_clear_of(center, column, row, radius))
 }
 
-/// Whether a circle around `center` overlaps `cell`, solid or not. Touching is not overlapping.
+/// Whether a circle around `center` overlaps `cell`, solid or not. Touching does not count as
+/// overlapping.
 pub(crate) fn overlaps(center: DVec2, cell: Cell, radius: Radius) -> bool {
     !is_clear_of(center, i64::from(cell.column), i64::from(cell.row), radius)
 }
@@ -192,7 +195,7 @@ fn square_distance(point: DVec2, column: i64, row: i64) -> f64 {
     (low - point).max(point - (low + DVec2::ONE)).max(DVec2::ZERO).length_squared()
 }
 
-/// The cell at a column and a row; `None` where one of them is negative.
+/// The cell at a column and a row; `None` if either is negative.
 fn cell_on_map(column: i64, row: i64) -> Option<Cell> {
     Some(Cell { column: u32::try_from(column).ok()?, row: u32::try_from(row).ok()? })
 }
@@ -211,12 +214,13 @@ pub(crate) struct Stature {
 impl Stature {
     /// Whether `gap` contains the body.
     fn fits(self, gap: Gap) -> bool {
-        // The same difference as in `room`, so that a player whose head touches is clear.
+        // The same difference as in `room`, so that a player whose head touches the ceiling is
+        // clear.
         gap.bottom <= self.feet && self.feet <= gap.top - self.height
     }
 }
 
-/// The world for a player of some stature.
+/// The world as obstacles for a body of one stature.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub(crate) world: &'a World,
@@ -225,7 +229,7 @@ pub(crate) struct Place<'a> {
     pub(crate) step: f64,
     /// Whether the world has shapes.
     pub(crate) has_shapes: bool,
-    /// The positions of players in the way, who are columns without an upper end.
+    /// The positions of players in the way. Each is a column without an upper end.
     pub(crate) others: &'a [DVec2],
 }
 
@@ -240,7 +244,7 @@ impl Obstacles for Place<'_> {
         }
         let tile = self.tile(i64::from(cell.column), i64::from(cell.row))?;
         match tile.kind {
-            // It reaches up to the ceiling at most.
+            // A shape reaches at most to the ceiling.
             TileKind::Shape(shape) if self.stature.feet < tile.top_of_what_stands() => {
                 Some(shape.outline)
             }
@@ -252,7 +256,7 @@ impl Obstacles for Place<'_> {
         self.others
     }
 
-    /// Steps up, if there is room.
+    /// Lifts the body onto a step, if there is room.
     fn gives_way(&mut self, column: i64, row: i64, center: DVec2, radius: Radius) -> bool {
         let at = |feet| Self { stature: Stature { feet, ..self.stature }, ..*self };
         let mut steps = self.steps_up(column, row).map(at);
@@ -281,7 +285,7 @@ impl Place<'_> {
         Some(self.world.tile(id))
     }
 
-    /// The range of heights at which a thing blocks a cell of `tile`, if one does.
+    /// The range of heights at which a thing blocks a cell of `tile`, if any.
     fn thing_in_the_way(&self, column: i64, row: i64, tile: Tile) -> Option<Gap> {
         if !self.world.grid().is_occupied(column, row) {
             return None;
@@ -292,8 +296,8 @@ impl Place<'_> {
         Some(Gap { bottom: base, top: base + sprite.height.cells() })
     }
 
-    /// The heights in a cell that are one step up: its floors and the top of its shape. Things are
-    /// no steps.
+    /// The heights in a cell that are one step up: its floors and the top of its shape. Things do
+    /// not count as steps.
     fn steps_up(&self, column: i64, row: i64) -> impl Iterator<Item = f64> + use<> {
         let Stature { feet, .. } = self.stature;
         let most = feet + self.step;
@@ -304,13 +308,13 @@ impl Place<'_> {
         floors.chain(tops).filter(move |&height| height > feet && height <= most)
     }
 
-    /// Whether the player has room around `center`.
+    /// Whether the body has room around `center`.
     pub(crate) fn is_clear(&self, center: DVec2, radius: Radius) -> bool {
         is_clear(self, center, radius)
     }
 
-    /// The height to which floors that have risen around the feet lift a body whose circle is around `center`, by
-    /// a step at most; `None` if there are no such floors, or no room.
+    /// The height to which floors that have risen around the feet lift a body whose circle is
+    /// around `center`, by at most a step. `None` if there are no such floors, or no room.
     pub(crate) fn lifted(&self, center: DVec2, radius: Radius) -> Option<f64> {
         let Stature { feet, .. } = self.stature;
         let tiles = overlapped(center, radius).filter_map(|(column, row)| self.tile(column, row));
@@ -321,7 +325,7 @@ impl Place<'_> {
         lifted.is_clear(center, radius).then_some(feet)
     }
 
-    /// The lowest and the highest position of the feet of a player whose circle around `center` is
+    /// The lowest and the highest height of the feet of a player whose circle around `center` is
     /// clear.
     pub(crate) fn room(&self, center: DVec2, radius: Radius) -> Room {
         let gaps = overlapped(center, radius)
@@ -333,8 +337,8 @@ impl Place<'_> {
         })
     }
 
-    /// The gap of a cell that contains the body of a player whose circle is around `center`: only
-    /// its part above the shape, if the circle overlaps that.
+    /// The gap of a cell that contains the body of a player whose circle is around `center`. If the
+    /// circle overlaps a shape, only the part of the gap above the shape.
     fn gap_above_shapes(
         &self,
         column: i64,
@@ -360,7 +364,7 @@ impl Place<'_> {
     }
 }
 
-/// The gaps of `tile` for a player: a door, glass or a mask fills a gap up to its top.
+/// The gaps of `tile` for a player. A door, glass or a mask fills a gap up to its top.
 fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
     let filled = match tile.kind {
         TileKind::Open
@@ -378,7 +382,7 @@ fn gaps(tile: Tile) -> impl Iterator<Item = Gap> {
     })
 }
 
-/// The parts of a gap below and above what fills a part of it.
+/// The parts of `gap` below and above `filled`.
 fn around(gap: Gap, filled: Gap) -> Flatten<IntoIter<Option<Gap>, 2>> {
     let below = Gap { top: gap.top.min(filled.bottom), ..gap };
     let above = Gap { bottom: gap.bottom.max(filled.top), ..gap };
@@ -396,7 +400,7 @@ struct Path {
 }
 
 impl Path {
-    /// The path from a position by a displacement; `None` if that is zero.
+    /// The path from a position by a displacement; `None` if the displacement is zero.
     fn new(from: DVec2, displacement: DVec2) -> Option<Self> {
         // Unlike the root of a sum of squares, this neither overflows nor underflows.
         let length = libm::hypot(displacement.x, displacement.y);
@@ -415,9 +419,9 @@ impl Path {
         self.from + self.direction * distance
     }
 
-    /// The position at `distance` along the path, or one shortly before it if a circle is not clear
-    /// there. The path begins at a clear position, and is free of obstacles up to `distance` except
-    /// for rounding.
+    /// The position at `distance` along the path, or a position shortly before it if a circle is
+    /// not clear there. The path begins at a clear position and, except for rounding, has no
+    /// obstacle up to `distance`.
     fn last_clear<O: Obstacles>(self, obstacles: &O, distance: f64, radius: Radius) -> DVec2 {
         let retreats = iter::successors(Some(f64::EPSILON), |retreat| Some(2.0 * retreat));
         iter::once(distance)
@@ -436,13 +440,13 @@ struct Contact {
     position: DVec2,
     /// The unit vector from the obstacle to the centre.
     normal: DVec2,
-    /// The rest of the displacement.
+    /// The remaining displacement.
     remaining: DVec2,
     /// The column and the row of the obstacle; `None` for another circle.
     cell: Option<(i64, i64)>,
 }
 
-/// The first contact of a circle on `path`, if there is one.
+/// The first contact of a circle on `path`, if any.
 fn first_contact<O: Obstacles>(obstacles: &O, path: Path, radius: Radius) -> Option<Contact> {
     let (mut column, mut row) = cell_of(path.from);
     loop {
@@ -466,7 +470,7 @@ fn first_contact<O: Obstacles>(obstacles: &O, path: Path, radius: Radius) -> Opt
     }
 }
 
-/// An open cell around the centre of a circle.
+/// The open cell that contains the centre of a circle.
 struct OpenCell<'a, O> {
     obstacles: &'a O,
     column: i64,
@@ -499,13 +503,13 @@ enum Obstacle {
     Shape { touch: TouchKind, cell: (i64, i64) },
 }
 
-/// The side of a room that a path approaches along one axis.
+/// The side of an open cell that a path approaches along one axis.
 struct Side {
-    /// The cell behind it, as an offset of columns and rows.
+    /// The cell behind the side, as an offset of columns and rows.
     neighbor: (i64, i64),
     /// Whether that cell is solid.
     is_wall: bool,
-    /// How far the centre may go along the axis in this room.
+    /// The coordinate that the centre may reach along the axis in this cell.
     line: f64,
     /// The distance along the path.
     distance: f64,
@@ -516,10 +520,10 @@ impl<O: Obstacles> OpenCell<'_, O> {
         self.obstacles.blocks(self.column + columns, self.row + rows)
     }
 
-    /// The first of: either side ahead, any corner, shape or circle. `None` for a path without a
-    /// direction.
+    /// The first event among both sides ahead and all corners, shapes and circles. `None` for a
+    /// path without a direction.
     fn next_event(&self, path: Path) -> Option<Event> {
-        // Of two equal events either will do: the other follows in the next room, or on the slide.
+        // Of two equal events, either will do: the other follows in the next cell, or on the slide.
         let sides = [self.event_along_y(path), self.event_along_x(path)];
         let events = sides.into_iter().flatten();
         let events = events.chain(self.corner_events(path)).chain(self.shape_events(path));
@@ -539,8 +543,8 @@ impl<O: Obstacles> OpenCell<'_, O> {
         Some(side.event(position))
     }
 
-    /// The side that a path approaches along `axis`, on which this room is the cell `index`; `None`
-    /// if the path is perpendicular to the axis.
+    /// The side that a path approaches along `axis`, on which this cell has the index `index`.
+    /// `None` if the path is perpendicular to the axis.
     fn side(&self, index: i64, from: f64, direction: f64, axis: (i64, i64)) -> Option<Side> {
         if direction == 0.0 {
             return None;
@@ -589,7 +593,7 @@ impl<O: Obstacles> OpenCell<'_, O> {
 }
 
 impl Side {
-    /// The event at this side, for a centre that is then at `position`.
+    /// The event at this side, when the centre is at `position`.
     fn event(&self, position: DVec2) -> Event {
         let (columns, rows) = self.neighbor;
         let kind = if self.is_wall {
@@ -615,7 +619,7 @@ fn distance_to_disc(path: Path, center: DVec2, radius: f64) -> Option<f64> {
 }
 
 impl Obstacle {
-    /// The obstacle's cell, as an offset of columns and rows from that of the centre.
+    /// The obstacle's cell, as an offset of columns and rows from the cell of the centre.
     fn cell(&self) -> Option<(i64, i64)> {
         match *self {
             Self::Wall { normal, .. } => Some((-normal.x as i64, -normal.y as i64)),
@@ -624,8 +628,8 @@ impl Obstacle {
         }
     }
 
-    /// The position of a circle that touches this at `distance` on its path, and the normal of the
-    /// contact.
+    /// The position of a circle that touches this obstacle at `distance` on its path, and the
+    /// normal of the contact.
     fn touched<O: Obstacles>(
         &self,
         obstacles: &O,
@@ -661,19 +665,19 @@ impl Obstacle {
 struct Touch {
     /// The distance along the path.
     distance: f64,
-    /// The part of the shape nearest to the circle's centre then.
+    /// The part of the shape that is nearest to the circle's centre at the contact.
     kind: TouchKind,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum TouchKind {
-    /// A round part around its centre: a pillar, or an end of a line.
+    /// A round part around this centre: a pillar, or an end of a line.
     Round(DVec2),
-    /// The side of a line, seen from a `position`; `normal` points there.
+    /// The side of a line. The circle's centre is at `position`, and `normal` points to it.
     Flat { position: DVec2, normal: DVec2 },
 }
 
-/// Whether a circle around `center` does not overlap an outline in `cell`; it may touch.
+/// Whether a circle around `center` does not overlap an outline in `cell`. It may touch it.
 fn is_clear_of_outline(
     outline: Outline,
     cell: Cell,
@@ -720,7 +724,7 @@ fn first_touch_of_side(line: Line, start: DVec2, path: Path, radius: f64) -> Opt
     let distance = (away / approach).max(0.0);
     let point = path.at(distance);
     let along = (point - start).dot(stretch) / length;
-    // Off by rounding, or because the path began inside the skin.
+    // The centre is off by rounding, or because the path began inside the skin.
     let position = point + normal * (radius + SKIN - (point - start).dot(normal));
     let kind = TouchKind::Flat { position, normal };
     (0.0..=length).contains(&along).then_some(Touch { distance, kind })

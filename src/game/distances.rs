@@ -1,13 +1,13 @@
-//! Distances over the cells of a grid from one cell, found in the order of distance.
+//! Distances over the cells of a grid from one cell, in order of distance.
 //!
-//! A straight step to a neighbour costs [`STRAIGHT`] and a diagonal one [`DIAGONAL`], both in half
-//! cells: at most 6 % off the true length of a diagonal. Distances are whole numbers, so that cells
-//! are sorted into one bucket for each distance (R. B. Dial, "Algorithm 360: Shortest-Path Forest
-//! with Topological Ordering", 1969). The search stops after any number of cells and continues
-//! later. Rejected: a binary heap, which costs a logarithm for each cell, and gives the same order.
+//! A straight step to a neighbour costs [`STRAIGHT`] and a diagonal step [`DIAGONAL`], both in half
+//! cells: at most 6 % off the true length of a diagonal. Distances are whole numbers, so cells are
+//! sorted into one bucket for each distance (R. B. Dial, "Algorithm 360: Shortest-Path Forest with
+//! Topological Ordering", 1969). The search can stop after any number of cells and continue later.
+//! Rejected: a binary heap. It costs a logarithm for each cell, and produces the same order.
 //!
-//! Distances carry the number of the search that has found them, so that a new search need not
-//! clear those of the last one.
+//! Each distance is stored with the number of the search that found it, so a new search need not
+//! clear the distances of the previous one.
 
 use std::array;
 use std::iter::successors;
@@ -26,40 +26,40 @@ const MOST_COST: u16 = 15;
 
 /// One bucket for each distance that may still be open.
 const BUCKETS: usize = MOST_COST as usize + 1;
-/// The columns and rows of a search around its start: those farther away are not searched.
+/// The number of columns and rows that a search covers on each side of its start.
 const REACH: u32 = 160;
 
-/// The columns and rows from a cell to its neighbours, clockwise from the north: straight ones at
-/// even places.
+/// The offsets in columns and rows from a cell to its neighbours, clockwise from the north.
+/// Straight neighbours have even indices.
 const NEIGHBORS: [(i32, i32); 8] =
     [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
 
 /// The costs of steps in a search.
 pub(crate) trait Costs {
-    /// Facts shared by all steps found from one cell.
+    /// Data shared by all steps found from one cell.
     type Origin;
 
-    /// The facts shared by the steps found from `cell`.
+    /// The data shared by the steps found from `cell`.
     fn origin(&self, cell: Cell) -> Self::Origin;
 
     /// The cost of a straight step between neighbours, found from `from` to `to`, at most
-    /// [`MOST_COST`]; `None` if there is no way.
+    /// [`MOST_COST`]; `None` if the step is impossible.
     fn straight(&self, from: &Self::Origin, to: Cell) -> Option<u16>;
 
-    /// Whether there is a diagonal step between `from` and `to`, past two cells to which there are
-    /// straight steps from `from` or are not.
+    /// Whether there is a diagonal step between `from` and `to`. `beside` tells for each of the two
+    /// cells that it passes whether a straight step leads there from `from`.
     fn has_diagonal(&self, from: &Self::Origin, to: Cell, beside: [bool; 2]) -> bool;
 }
 
-/// A search. Two are equal that have found the same and go on in the same way, whatever is left in them of
-/// the searches before.
+/// A search. Two searches are equal if they have found the same distances and continue in the same
+/// way. Data left over from previous searches does not count.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(try_from = "StoredDistances")]
 pub(crate) struct Distances {
     /// The north-west cell, and the columns and rows.
     first: (u32, u32),
     size: (u32, u32),
-    /// The number of the search in the upper half, the distance in the lower.
+    /// The number of the search in the upper half, the distance in the lower half.
     cells: Vec<u32>,
     search: u16,
     buckets: Buckets<BUCKETS>,
@@ -68,7 +68,7 @@ pub(crate) struct Distances {
 }
 
 impl Distances {
-    /// Begins a search from `start`, in a map with that many columns and rows.
+    /// Begins a search from `start`, in a map with `map` columns and rows.
     pub(crate) fn begin(&mut self, start: Cell, map: (u32, u32)) {
         (self.first, self.size) = window(start, map);
         let count = self.size.0 as usize * self.size.1 as usize;
@@ -83,12 +83,12 @@ impl Distances {
         self.offer(start, 0);
     }
 
-    /// Whether it searches around `start`, in a map with that many columns and rows.
+    /// Whether the search is around `start`, in a map with `map` columns and rows.
     pub(crate) fn is_around(&self, start: Cell, map: (u32, u32)) -> bool {
         (self.first, self.size) == window(start, map)
     }
 
-    /// Whether all cells that can be reached have been.
+    /// Whether the search has found all reachable cells.
     pub(crate) fn is_over(&self) -> bool {
         self.buckets.is_empty()
     }
@@ -103,7 +103,7 @@ impl Distances {
         self.known(cell).filter(|&distance| distance < self.radius())
     }
 
-    /// Continues the search by the next cell. Returns whether there was one.
+    /// Continues the search by one cell. Returns whether there was one.
     pub(crate) fn advance(&mut self, costs: &impl Costs) -> bool {
         while !self.buckets.is_empty() {
             let Some(cell) = self.buckets.pop(usize::from(self.distance) % BUCKETS) else {
@@ -153,7 +153,7 @@ impl Distances {
         self.known_at(self.place(cell)?)
     }
 
-    /// The distance of the cell at a place of the list, if it has been found.
+    /// The distance of the cell at an index of the list, if it has been found.
     fn known_at(&self, place: usize) -> Option<u16> {
         self.distance_in(self.cells[place])
     }
@@ -187,16 +187,17 @@ impl PartialEq for Distances {
     }
 }
 
-/// A search as it is stored.
+/// A search in stored form.
 #[derive(Deserialize)]
 struct StoredDistances {
     first: (u32, u32),
     size: (u32, u32),
     distance: u16,
-    /// Row by row, twice the number of neighbouring cells that are not known, or twice the difference to the last
-    /// known distance, mapped to 0, −1, 1, −2, …, plus 1.
+    /// Run lengths and differences, row by row. An even number is twice the count of adjacent cells
+    /// without a distance. An odd number is twice the difference to the last known distance, plus
+    /// 1, with the difference mapped to 0, −1, 1, −2, ….
     changes: Vec<u32>,
-    /// The cells in each bucket, from the one that is taken out first.
+    /// The cells in each bucket, in the order in which they are taken out.
     waiting: [Vec<Cell>; BUCKETS],
 }
 
@@ -261,7 +262,7 @@ impl TryFrom<StoredDistances> for Distances {
     }
 }
 
-/// Values that are written as a list.
+/// Values that are serialized as a list.
 struct List<I>(I);
 
 impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
@@ -272,7 +273,8 @@ impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
     }
 }
 
-/// The first cell of a search from `start` in a map with that many columns and rows, and its own columns and rows.
+/// The first cell of a search from `start` in a map with these numbers of columns and rows, and the
+/// columns and rows that the search covers.
 fn window(start: Cell, (columns, rows): (u32, u32)) -> ((u32, u32), (u32, u32)) {
     let along = |place: u32, count: u32| {
         let first = place.saturating_sub(REACH);
@@ -283,24 +285,24 @@ fn window(start: Cell, (columns, rows): (u32, u32)) -> ((u32, u32), (u32, u32)) 
     ((left, top), (width, height))
 }
 
-/// The neighbour of `cell` at that place of [`NEIGHBORS`]; `None` where a coordinate is negative.
+/// The neighbour of `cell` at that index of [`NEIGHBORS`]; `None` if a coordinate is negative.
 pub(crate) fn neighbor(cell: Cell, side: usize) -> Option<Cell> {
     let (columns, rows) = NEIGHBORS[side];
     let column = cell.column.checked_add_signed(columns)?;
     Some(Cell { column, row: cell.row.checked_add_signed(rows)? })
 }
 
-/// The cells for which a search reserves memory when it first begins.
+/// The number of cells for which a search reserves memory when it first begins.
 const RESERVED: usize = 512;
 /// The end of a list.
 const NONE: u32 = u32::MAX;
 
-/// That many buckets of cells: in each, the last cell that was put in is the first to be taken out. Those with
-/// the same cells in the same order are equal.
+/// `COUNT` buckets of cells. Each bucket is a stack: the last cell put in is the first taken out.
+/// Buckets are equal if they contain the same cells in the same order.
 ///
-/// All buckets are linked lists in one vector, which grows to the most cells that ever waited at
-/// once. Rejected: a vector for each bucket. Each would grow for itself, and guards
-/// who had walked for a minute still allocated memory.
+/// All buckets are linked lists in one vector, which grows to the largest number of cells that ever
+/// waited at once. Rejected: a vector for each bucket. Each would grow separately, and guards who
+/// had walked for a minute still allocated memory.
 #[derive(Clone, Debug)]
 struct Buckets<const COUNT: usize> {
     entries: Vec<Entry>,
@@ -315,12 +317,12 @@ struct Buckets<const COUNT: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     cell: Cell,
-    /// The entry below it in its bucket.
+    /// The entry below this one in its bucket.
     below: u32,
 }
 
 impl<const COUNT: usize> Buckets<COUNT> {
-    /// Takes all cells out.
+    /// Removes all cells.
     fn clear(&mut self) {
         self.entries.clear();
         self.entries.reserve(RESERVED);
@@ -332,7 +334,7 @@ impl<const COUNT: usize> Buckets<COUNT> {
         self.count == 0
     }
 
-    /// The cells in a bucket, from the one that is taken out first.
+    /// The cells in a bucket, in the order in which they are taken out.
     fn cells(&self, bucket: usize) -> impl Iterator<Item = Cell> + Clone {
         let entry = |place: u32| self.entries.get(place as usize);
         let entries = successors(entry(self.tops[bucket]), move |above| entry(above.below));
@@ -387,7 +389,7 @@ mod tests {
 
     const SIDE: u32 = 9;
 
-    /// Cells that are open, all at the same cost.
+    /// A grid in which some cells are open, all at the same cost.
     struct Open(Vec<bool>);
 
     impl Open {
@@ -412,7 +414,7 @@ mod tests {
         }
     }
 
-    /// The distances by relaxing all cells until nothing changes.
+    /// The distances, computed by relaxing all cells until nothing changes.
     fn by_relaxation(open: &Open, start: Cell) -> Vec<Option<u16>> {
         let cells = || (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| Cell { column, row }));
         let place = |cell: Cell| (cell.row * SIDE + cell.column) as usize;

@@ -1,8 +1,8 @@
 //! Doors: they open, wait and close.
 //!
-//! A door opens when the player wants to open it or walks into it, within [`REACH`]. It takes
-//! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. A
-//! closing door that is opened turns back. A door with a switch stays open while the switch is on. The
+//! A door opens when the player is within [`REACH`] and wants to open it or walks into it. It takes
+//! [`TRAVEL`] steps to open, stays open for [`STAY`] steps, and closes in [`TRAVEL`] steps. If a
+//! closing door is opened, it reverses. A door with a switch stays open while the switch is on. The
 //! position is computed from the number of steps, not from the last position.
 //!
 //! Nobody is ever inside a door: its cell is solid unless the door is fully open, and the door does
@@ -17,11 +17,11 @@ use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 use crate::world::{Cell, Door, Opening, TileKind, World};
 
-/// Steps from closed to open: 0.6 seconds.
+/// The number of steps from closed to open: 0.6 seconds.
 const TRAVEL: u32 = 36;
-/// Steps that a door stays open: 4 seconds.
+/// The number of steps for which a door stays open: 4 seconds.
 const STAY: u32 = 240;
-/// How far a door's cell may be from the player who opens it, in cells.
+/// The largest distance between a door's cell and the player who opens it, in cells.
 const REACH: f64 = 0.75;
 
 /// The doors that are not closed, in the order in which they were opened.
@@ -40,11 +40,11 @@ struct MovingDoor {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
-    /// The number of steps from closed.
+    /// The number of steps since the door was closed.
     Opening(u32),
-    /// The number of steps left.
+    /// The number of remaining steps.
     Open(u32),
-    /// The number of steps from closed.
+    /// The number of steps until the door is closed.
     Closing(u32),
 }
 
@@ -61,7 +61,7 @@ impl Doors {
         }
     }
 
-    /// Opens the door in `cell` for as long as a switch is on, or lets it close.
+    /// Opens the door in `cell` for as long as its switch is on, or lets it close.
     pub(crate) fn hold(&mut self, cell: Cell, is_on: bool) {
         if is_on {
             self.open(cell);
@@ -85,8 +85,8 @@ impl Doors {
         self.moving.len()
     }
 
-    /// Advances the doors of `world` by one step; `is_occupied` says which cells a player touches.
-    /// Returns whether any door has moved.
+    /// Advances the doors of `world` by one step. `is_occupied` returns true for a cell that a
+    /// player or a guard touches. Returns whether any door has moved.
     pub(crate) fn step(&mut self, world: &mut World, is_occupied: impl Fn(Cell) -> bool) -> bool {
         let mut has_moved = false;
         self.moving.retain_mut(|door| {
@@ -102,8 +102,8 @@ impl Doors {
         has_moved
     }
 
-    /// Opens the doors of `world` as far as they were open, after the window has moved by `shift`
-    /// and shows them closed. Doors outside it are closed.
+    /// Restores the openings of the doors in `world` after the window has moved by `shift` and
+    /// shows all doors closed. Doors outside the window are closed.
     pub(crate) fn shift(&mut self, world: &mut World, shift: Shift) {
         self.moving.retain_mut(|door| match shift.cell(door.cell) {
             Some(cell) => {
@@ -115,12 +115,12 @@ impl Doors {
         });
     }
 
-    /// Whether no door moves until it is opened or a switch lets it go.
+    /// Returns true if no door moves until it is opened or its switch releases it.
     pub(crate) fn are_at_rest(&self) -> bool {
         self.moving.iter().all(MovingDoor::is_kept_open)
     }
 
-    /// Opens the doors of `world`, in which all are closed, as far as they are open.
+    /// Applies the openings of these doors to `world`, in which all doors are closed.
     ///
     /// # Errors
     /// If they are not doors of `world`.
@@ -143,12 +143,12 @@ impl MovingDoor {
         Self { cell, phase: Phase::Opening(0), is_held: false }
     }
 
-    /// Whether a switch keeps it open, so that it does not wait.
+    /// Returns true while a switch keeps the door open, so that its time does not run.
     fn is_kept_open(&self) -> bool {
         self.is_held && matches!(self.phase, Phase::Open(_))
     }
 
-    /// Advances the door by one step, and returns whether it is not closed yet.
+    /// Advances the door by one step. Returns false once it is closed.
     fn step(&mut self, is_occupied: bool) -> bool {
         if self.is_kept_open() {
             return true;
@@ -180,8 +180,8 @@ fn eased(part: f64) -> f64 {
     part * part * (3.0 - 2.0 * part)
 }
 
-/// The door in front of a player at `position` who looks or walks along `direction`, a unit vector;
-/// `None` if none is within reach.
+/// The door in front of a player at `position` who looks or walks along `direction`, a unit vector.
+/// `None` if no door is within reach.
 pub(crate) fn door_ahead(world: &World, position: DVec2, direction: DVec2) -> Option<(Cell, Door)> {
     let ray = Ray::new(position, direction).ok()?;
     let cell = Walk::new(world.grid(), &ray).first_solid()?;

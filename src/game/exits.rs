@@ -1,16 +1,16 @@
-//! Whether the player can reach an exit.
+//! The check that the player can reach an exit.
 //!
-//! The search overestimates what the player can reach, so that it never reports a reachable exit as
-//! out of reach: the player runs, jumps and flies as far as speed and gravity allow, through every
-//! gap high enough to duck into, past every shape, and through every door whose key they have
-//! found. A flight is followed only from cells next to a lower floor; the neighbours of other cells
-//! can fly as far.
+//! The search overestimates the player's reach, so it never reports a reachable exit as out of
+//! reach. In the search, the player runs, jumps and flies as far as speed and gravity allow. They
+//! pass through every gap that is high enough to duck in, past every shape, and through every door
+//! whose key they have found. The search follows a flight only from cells next to a lower floor,
+//! because the neighbours of other cells can fly as far.
 //!
-//! Secret walls are open. Tiles that a switch moves are at both ends, and its doors open, once a
-//! lever or a plate of it is reached; a plate counts as reached where a guard may step on it. An
-//! exit that asks for treasure needs as much of it in reach.
+//! Secret walls are open. Once a lever or a plate of a switch is reached, the tiles that it moves
+//! are at both ends, and its doors are open. A plate also counts as reached if a guard may step on
+//! it. If an exit requires treasure, as much treasure must be in reach.
 //!
-//! Rejected: random play. Not finding a way proves little.
+//! Rejected: random play. If it finds no path, that proves little.
 
 use std::collections::BTreeSet;
 
@@ -42,15 +42,15 @@ pub fn is_exit_out_of_reach(world: &World) -> bool {
 struct Reach<'a> {
     world: &'a World,
     openers: Openers,
-    /// The gaps of each tile.
+    /// The ways through each tile.
     of_tiles: Vec<Ways>,
-    /// For each cell, the floors that have been reached, one bit for each.
+    /// For each cell, the floors that have been reached, as one bit each.
     stood: Vec<u8>,
-    /// For each cell, the last flight that has passed it.
+    /// For each cell, the number of the last flight that has passed it.
     passed: Vec<u32>,
     flights: u32,
     waiting: Vec<Place>,
-    /// The cells from which the flight goes on.
+    /// The cells from which the flight continues.
     ahead: Vec<Cell>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Searches everything; returns whether an exit was found, and the treasure that it asks for.
+    /// Searches everything. Returns true if an exit was found, and as much treasure as it requires.
     fn an_exit_that_opens(mut self) -> bool {
         loop {
             let before = self.openers.clone();
@@ -95,7 +95,7 @@ impl<'a> Reach<'a> {
             if self.has_reached_an_exit_that_opens() {
                 return true;
             }
-            // A door that opens now may lead on from anywhere.
+            // A door that opens now may lead on from any cell.
             if self.openers == before {
                 return false;
             }
@@ -120,7 +120,7 @@ impl<'a> Reach<'a> {
         has_exit && treasure >= u64::from(self.world.treasure_needed())
     }
 
-    /// Visits the cells beside a position, and those that a flight from it reaches.
+    /// Visits the cells beside a position, and the cells that a flight from it reaches.
     fn go_on(&mut self, from: Place) {
         self.flights += 1;
         self.pass(from.cell);
@@ -146,7 +146,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Reaches all floors of `cell` up to a height; returns whether there are any.
+    /// Reaches all floors of `cell` up to a height. Returns whether there are any.
     fn land(&mut self, cell: Cell, highest: f64) -> bool {
         let Some(index) = self.index(cell) else { return false };
         let gaps = self.gaps(cell);
@@ -177,7 +177,7 @@ impl<'a> Reach<'a> {
         is_on_map.then(|| cell.row as usize * width as usize + cell.column as usize)
     }
 
-    /// The gaps of a cell that are high enough to duck in.
+    /// The ways through a cell that are high enough to duck in.
     fn gaps(&self, cell: Cell) -> Ways {
         let Some(id) = self.world.grid().tile_in(cell) else {
             return Ways::default();
@@ -199,7 +199,7 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// How high the feet may be when a player who leaves a position first touches `cell`.
+/// The greatest height of the feet when a player who leaves a position first touches `cell`.
 fn highest(from: Place, cell: Cell) -> f64 {
     let apart = |one: u32, other: u32| f64::from(one.abs_diff(other).saturating_sub(1));
     let columns = apart(from.cell.column, cell.column);
@@ -246,7 +246,7 @@ impl Openers {
         }
     }
 
-    /// Whether what `driver` moves may be anywhere on its way.
+    /// Whether a tile that `driver` moves may be anywhere between its ends.
     fn can_move(&self, driver: Driver) -> bool {
         match driver {
             Driver::Switch(switch) => self.switches.contains(&switch),
@@ -255,7 +255,7 @@ impl Openers {
     }
 }
 
-/// The switches of plates, if there are guards who may step on them.
+/// The switches of all plates, if the world has guards who may step on them.
 fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
     let plate = |tile: &Tile| match tile.effect {
         Some(TileEffect::Plate(switch)) => Some(switch),
@@ -265,19 +265,20 @@ fn pressed_by_guards(world: &World) -> BTreeSet<SwitchId> {
     sort::gathered(world.tiles().iter().filter(|_| has_guards).filter_map(plate))
 }
 
-/// A gap of a cell, and the lowest height from which the player gets into it: its bottom, or where
-/// a floor begins that carries the player up to it.
+/// A gap of a cell, and the lowest height from which the player can enter it. That is the bottom of
+/// the gap, or the height at which a floor begins to carry the player up to it.
 #[derive(Clone, Copy)]
 struct Way {
     gap: Gap,
     least: f64,
 }
 
-/// The ways through a cell. A tile has two gaps, each at two ends where it moves. A shape may
-/// divide one and leave a way beside it, and a thing may divide one more.
+/// The ways through a cell. A tile has two gaps, and a moving tile has each of them at two ends. A
+/// shape may divide one gap and leave a way beside it, and a thing may divide one more.
 type Ways = [Option<Way>; 8];
 
-/// The ways through each tile; through those that move, at all heights or at both ends.
+/// The ways through each tile. Moving tiles are at both ends or, if they carry the player, at all
+/// heights.
 fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
     let tiles = world.tiles().iter();
     let mut of_tiles: Vec<Ways> = tiles.map(|tile| high_enough(open_in(tile, openers))).collect();
@@ -285,7 +286,7 @@ fn of_tiles(world: &World, openers: &Openers) -> Vec<Ways> {
         let mut states = moving.states.iter().map(|&state| world.tile(state));
         of_tiles[usize::from(moving.states[0].0)] = match moving.driver {
             Driver::Switch(_) => along(states),
-            // They carry nobody up.
+            // These tiles carry nobody up.
             Driver::Hand | Driver::Weight => {
                 let ends = [states.next(), states.next_back()];
                 let gaps = ends.iter().flatten().flat_map(|tile| open_in(tile, openers));
@@ -336,7 +337,7 @@ fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
             without(&gaps, standing)
         }
         TileKind::Mask(_) | TileKind::Glass(_) => without(&gaps, standing),
-        // There may be a way beside it, and its top is a floor.
+        // The player may pass beside a shape, and its top is a floor.
         TileKind::Shape(_) => [without(&gaps, standing), gaps].concat(),
         TileKind::Open
         | TileKind::Door(_)
@@ -346,7 +347,7 @@ fn open_in(tile: &Tile, openers: &Openers) -> Vec<Gap> {
     }
 }
 
-/// The `gaps` that are high enough to duck in.
+/// The ways through the `gaps` that are high enough to duck in.
 fn high_enough(gaps: Vec<Gap>) -> Ways {
     let mut left = Ways::default();
     let high = gaps.into_iter().filter(|gap| gap.height() >= DUCKING);
@@ -355,7 +356,7 @@ fn high_enough(gaps: Vec<Gap>) -> Ways {
     left
 }
 
-/// The parts of gaps below and above what fills a part of them.
+/// The parts of `gaps` below and above `filled`.
 fn without(gaps: &[Gap], filled: Gap) -> Vec<Gap> {
     let left = gaps.iter().flat_map(|&gap| {
         let is_apart = filled.top <= gap.bottom || gap.top <= filled.bottom;

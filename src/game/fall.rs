@@ -1,10 +1,10 @@
 //! Falling and jumping: a parabola between a floor and a ceiling.
 //!
-//! The times of landing, of hitting the ceiling and of the highest point are known in closed form.
-//! A step is solved up to the first of them, and on from there. Therefore the result does not
-//! depend on the length of steps, and nobody falls through a floor. Rejected: to add
-//! `gravity * dt` to the speed. The height of a jump would depend on the step, and a fast fall would have to
-//! be stopped after going too far.
+//! The times of landing, of hitting the ceiling and of the highest point have a closed form. A step
+//! is solved up to the first of them, and continues from there. Therefore the result does not
+//! depend on the length of steps, and nobody falls through a floor. Rejected: adding `gravity * dt`
+//! to the speed. The height of a jump would depend on the step, and a fast fall would have to be
+//! stopped after it has gone too far.
 
 /// Cells per second squared.
 pub(crate) const GRAVITY: f64 = 12.0;
@@ -18,8 +18,8 @@ pub(crate) struct Flight {
     pub(crate) speed: f64,
 }
 
-/// The lowest and the highest position, both included. The ceiling is not below the floor; both are
-/// infinite where there is none.
+/// The lowest and the highest position, both inclusive. The ceiling is not below the floor. Each is
+/// infinite if it does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Room {
     pub(crate) floor: f64,
@@ -27,8 +27,8 @@ pub(crate) struct Room {
 }
 
 impl Flight {
-    /// The flight after `duration` seconds in `room`, where it is now. It ends on the floor, and
-    /// begins to fall at the ceiling.
+    /// The flight after `duration` seconds in `room`, which contains it now. The flight ends on the
+    /// floor, and begins to fall at the ceiling.
     pub(crate) fn after(self, duration: f64, room: Room) -> Self {
         match self.time_to_ceiling(room.ceiling) {
             Some(time) if time < duration => {
@@ -39,7 +39,7 @@ impl Flight {
         }
     }
 
-    /// The time until it meets a ceiling on the way up, in seconds.
+    /// The time until the body hits a ceiling on the way up, in seconds.
     fn time_to_ceiling(self, ceiling: f64) -> Option<f64> {
         let way = ceiling - self.height;
         let left = self.speed * self.speed - 2.0 * GRAVITY * way;
@@ -56,11 +56,11 @@ impl Flight {
         Self { height: height.clamp(room.floor, room.ceiling), speed }
     }
 
-    /// The time until it lands, in seconds.
+    /// The time until the body lands, in seconds.
     fn time_to_floor(self, floor: f64) -> f64 {
         let way = self.height - floor;
         let at_floor = (self.speed * self.speed + 2.0 * GRAVITY * way).sqrt();
-        // Of the two forms of the solution, this one adds terms of the same sign.
+        // The solution has two forms. Each branch uses the form that adds terms of the same sign.
         if self.speed > 0.0 {
             (self.speed + at_floor) / GRAVITY
         } else if way > 0.0 {
@@ -96,7 +96,7 @@ mod tests {
             let flight = Flight { height, speed };
             let twice = flight.after(first, room).after(second, room);
             let once = flight.after(first + second, room);
-            // The speed at the ceiling says little about the time there.
+            // The speed at the ceiling says little about the time of the hit.
             prop_assert!((twice.height - once.height).abs() < 1e-6, "{twice:?}, {once:?}");
             let is_landing = twice.height < 1e-6;
             prop_assert!(is_landing || (twice.speed - once.speed).abs() < 1e-6);

@@ -1,9 +1,9 @@
 //! Flying through a scene of bodies: the player floats, and enters no body.
 //!
-//! All bodies are convex. Each is therefore behind a plane through its point nearest to the player,
-//! and a path on the near side of all these planes enters none of them. The path is clipped to
-//! these half-spaces, which makes the player slide along bodies. Rejected: to move first
-//! and push out afterwards, which between two bodies ends inside one of them.
+//! All bodies are convex. Therefore each body is behind a plane through its point nearest to the
+//! player, and a path on the near side of all these planes enters no body. The path is clipped to
+//! these half-spaces, which makes the player slide along bodies. Rejected: moving first and pushing
+//! out afterwards. Between two bodies, the player would end inside one of them.
 
 use glam::{DVec2, DVec3};
 
@@ -14,11 +14,12 @@ use crate::numeric::damped_motion::{DampedMotion, approach};
 use crate::space::{Camera, EYE_CLEARANCE, Elevation, Scene};
 use crate::world::{FieldOfView, Heading};
 
-/// How fast the eye is raised or lowered, in radians per second.
+/// The speed at which the elevation changes, in radians per second.
 const RAISE: f64 = 0.8;
-/// The same while aiming.
+/// The speed while aiming.
 const AIM_UPWARDS: f64 = 0.2;
-/// The most clips of one path: between two planes, each clip removes a part.
+/// The maximum number of passes that clip one path. Between two planes, each pass removes another
+/// part.
 const CUTS: usize = 8;
 
 /// A scene, a player in it, and the time since the start.
@@ -42,7 +43,7 @@ struct Player {
 }
 
 impl Flight {
-    /// A flight at its start: the player is still, at the scene's start.
+    /// A flight at its start. The player is still, at the scene's start.
     pub fn new(scene: Scene) -> Self {
         let start = scene.start;
         let player = Player {
@@ -56,7 +57,7 @@ impl Flight {
         Self { scene, player, steps: 0 }
     }
 
-    /// A flight in another scene that continues this one: the player is still, at the same position
+    /// A flight in another scene that continues this one. The player is still, at the same position
     /// with the same view. If there is no room, the player is at the scene's start.
     #[must_use]
     pub fn begun_again_in(&self, scene: Scene) -> Self {
@@ -78,7 +79,7 @@ impl Flight {
     /// The player's camera.
     pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
         let Player { position, heading, elevation, .. } = self.player;
-        // The player is never where no camera can be.
+        // Every position of the player is valid for a camera.
         Camera::new(position, heading, field_of_view)
             .unwrap_or_else(|| self.scene.start_camera(field_of_view))
             .with_elevation(elevation)
@@ -95,7 +96,7 @@ impl Flight {
     }
 
     /// Advances the flight by one step of [`STEP`] seconds with these intents. Jumping and opening
-    /// rise, ducking sinks.
+    /// make the player rise, ducking makes them sink.
     pub fn step(&mut self, intents: Intents) {
         self.player = self.player.stepped(&self.scene, intents);
         self.wait(1);
@@ -154,13 +155,13 @@ impl Player {
         }
     }
 
-    /// `way` and `velocity` without their parts into bodies.
+    /// `way` and `velocity` without the parts that lead into bodies.
     fn cut_down(self, scene: &Scene, mut way: DVec3, mut velocity: DVec3) -> (DVec3, DVec3) {
         for _ in 0..CUTS {
             let before = way;
             for body in &scene.bodies {
                 let (clearance, outwards) = body.shape.signed_distance(self.position);
-                // The rest of it, so that rounding leads no further.
+                // The remaining room, so that rounding leads no further.
                 let room = (clearance - EYE_CLEARANCE - SLACK).max(0.0);
                 let too_far = -outwards.dot(way) - room;
                 if too_far > 0.0 {
@@ -176,7 +177,7 @@ impl Player {
     }
 }
 
-/// How much farther from bodies than necessary the player stops, in cells.
+/// The extra distance from bodies at which the player stops, in cells.
 const SLACK: f64 = 1e-9;
 
 /// Whether the player can be at `position`.
@@ -255,7 +256,7 @@ mod tests {
         }
     }
 
-    /// On which side of the planes a position is.
+    /// For each plane, the side on which a position is.
     fn flight_sides(scene: &Scene, at: DVec3) -> Vec<bool> {
         let planes = scene.bodies.iter().filter_map(|body| match body.shape {
             Shape::Plane(plane) => Some(plane.normal().dot(at - plane.point()) > 0.0),

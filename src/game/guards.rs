@@ -1,11 +1,11 @@
 //! Guards: they stand, patrol, notice, search, chase, strike, give up and fall.
 //!
-//! A step of all guards depends only on the world, on what can be perceived of the players, and on the
-//! sounds of the step. Guards share their knowledge of ways, and call each other by sounds that spread
-//! like any other.
+//! A step of all guards depends only on the world, on the perceptible state of the players, and on
+//! the sounds of the step. Guards share their path searches, and call each other by sounds that
+//! spread like any other.
 //!
-//! Guards far from all players take [`FAR_STRIDE`] steps at once. Rejected: to simulate only guards in
-//! view. A patrol would stop whenever the player looks away.
+//! Guards far from all players take [`FAR_STRIDE`] steps at once. Rejected: simulating only the
+//! guards in view. A patrol would stop whenever the player looks away.
 
 mod behavior;
 mod context;
@@ -40,18 +40,18 @@ use ways::{Terrain, Ways};
 pub(crate) use context::{Act, Target};
 pub use guard::{Alarm, GuardView, Mood};
 
-/// Guards on duty at this distance from all players, in cells, take several steps at once.
+/// Guards on duty who are at least this far from all players, in cells, take several steps at once.
 const FAR: f64 = 26.0;
 const FAR_STRIDE: u16 = 8;
-/// The steps from one look for fallen guards to the next.
+/// The number of steps from one check for fallen guards to the next.
 const FALLEN_EACH: u64 = 30;
-/// The number of cells over which sounds spread to guards in one step. Guards do not hear the sounds
-/// that come after them in the same step.
+/// The number of cells over which sounds spread to guards in one step. Once it is reached, guards
+/// do not hear the remaining sounds of that step.
 const MOST_AIR_CELLS: usize = 16_384;
 
-/// How far a fall is heard, in cells.
+/// The distance at which a fall is heard, in cells.
 const FALL: u8 = 6;
-/// How near to the middle of a guard a projectile hits, in cells.
+/// A projectile hits a guard if it passes within this distance of their centre, in cells.
 const HIT: f64 = 0.35;
 /// All guards of a level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ pub(crate) struct Guards {
     list: Vec<Guard>,
     #[serde(skip)]
     awake: Awake,
-    /// By the order of [`GuardKind::ALL`].
+    /// Indexed by the order of [`GuardKind::ALL`].
     #[serde(skip)]
     sprites: [Option<SpriteId>; GuardKind::ALL.len()],
     #[serde(skip)]
@@ -72,14 +72,14 @@ pub(crate) struct Guards {
     trails: Vec<Trail>,
     #[serde(skip)]
     others: Scratch<Vec<Other>>,
-    /// The cells over which sounds have spread in this step.
+    /// The number of cells over which sounds have spread in this step.
     #[serde(skip)]
     air_cells: Scratch<usize>,
-    /// The guards, sounds and cells that the last step has looked at.
+    /// The number of guards, sounds and cells that the last step examined.
     #[serde(skip)]
     work: Scratch<u64>,
     acts: Vec<Act>,
-    /// The sounds that guards have made in the last step.
+    /// The sounds that guards made in the last step.
     spoken: Vec<Sound>,
     /// Empty between steps.
     #[serde(skip)]
@@ -89,24 +89,24 @@ pub(crate) struct Guards {
     has_changed: bool,
 }
 
-/// The guards who are awake. Only they are looked at in a step, so that those who sleep cost nothing
-/// until a sound or a push wakes them. Those who sleep on a floor that has moved count as
-/// awake, since they may fall.
+/// The guards who are awake. A step examines only these guards, so a sleeping guard costs nothing
+/// until a sound or a push wakes them. A guard who sleeps on a floor that has moved counts as
+/// awake, because they may fall.
 ///
-/// Guards who have woken never sleep again. The list is therefore found anew where somebody wakes or
-/// the level changes, and not in each step.
+/// A guard who has woken never sleeps again. Therefore the list is rebuilt only when a guard wakes
+/// or the level changes, not in each step.
 #[derive(Clone, Debug, PartialEq, Default)]
 struct Awake {
-    /// The guards who do not sleep, from the lowest index to the highest.
+    /// The indices of the guards who do not sleep, in ascending order.
     indices: Vec<usize>,
-    /// Whether there are hounds, awake or asleep.
+    /// Whether the level has hounds, awake or asleep.
     has_hounds: bool,
-    /// The number of guards who have a sprite.
+    /// The number of guards that have a sprite.
     figures: usize,
 }
 
 impl Guards {
-    /// The guards of `world` that are there under these rules. Their sprites are added to `world`.
+    /// The guards that `world` has under these rules. Their sprites are added to `world`.
     pub(crate) fn new(world: &mut World, rules: Rules) -> Self {
         let posts = world.guards().iter().zip(0..);
         let posts = posts.filter(|(post, _)| post.from <= rules.difficulty);
@@ -140,13 +140,14 @@ impl Guards {
         guards
     }
 
-    /// Whether a guard who is awake could see `point`, however dark it is there, once they look that way.
+    /// Returns true if a guard who is awake could see `point` by looking that way, however dark it
+    /// is there.
     pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
         self.list.iter().any(|guard| guard.may_see(world, point))
     }
 
-    /// Advances all guards by one step. Each target is the player with that index; `sounds` are
-    /// those that others than guards have made in this step.
+    /// Advances all guards by one step. The index of a target is the index of its player. `sounds`
+    /// are the sounds of this step that no guard made.
     pub(crate) fn step(
         &mut self,
         world: &World,
@@ -208,7 +209,7 @@ impl Guards {
     fn stride(&self, world: &World, targets: &[Target], index: usize) -> u16 {
         let guard = &self.list[index];
         match guard.state {
-            // A floor may have moved under them.
+            // A floor may have moved under the guard.
             State::Asleep if guard.stagger == 0 => u16::from(!guard.mover.is_at_rest(world)),
             State::OnDuty | State::Returning => {
                 let position = guard.mover.position();
@@ -237,7 +238,7 @@ impl Guards {
             let guard = &self.list[index];
             let earshot = guard.earshot(sound, self.rules.difficulty);
             let way = guard.mover.position().distance(sound.cell.center());
-            // No way is shorter than the straight line; two cells more for rounding.
+            // No path is shorter than the straight line. Two cells are added for rounding.
             if earshot == 0 || way * 2.0 > f64::from(earshot) + 4.0 {
                 continue;
             }
@@ -284,7 +285,7 @@ impl Guards {
         (&mut self.list[index], context)
     }
 
-    /// Records the trails of players, if anybody smells them.
+    /// Records the trails of players if there are hounds to smell them.
     fn record_trails(&mut self, world: &World, targets: &[Target]) {
         if self.awake.has_hounds {
             self.trails.resize_with(targets.len(), Trail::default);
@@ -303,7 +304,7 @@ impl Guards {
         self.alarm = alarm;
     }
 
-    /// Refuses a state in which a step could fail.
+    /// Returns an error if a step could fail in this state.
     pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
         let map = (world.grid().width(), world.grid().height());
         self.ways.check(map)?;
@@ -314,7 +315,7 @@ impl Guards {
 }
 
 impl Guards {
-    /// Finds the guards who are awake.
+    /// Rebuilds the list of guards who are awake.
     fn find_awake(&mut self) {
         let guards = self.list.iter().enumerate();
         let awake = guards.filter(|(_, guard)| !guard.is_asleep() || guard.is_unsettled);
@@ -330,7 +331,7 @@ impl Guards {
         self.awake.indices.iter().map(|&index| &self.list[index])
     }
 
-    /// Records where all guards are. Those who sleep have not moved since the last step.
+    /// Records the positions of all guards. Guards who sleep have not moved since the last step.
     fn look_at_others(&mut self) {
         if self.others.len() != self.list.len() {
             self.others.clear();
@@ -345,19 +346,19 @@ impl Guards {
 
 /// Queries and effects for the rest of the game.
 impl Guards {
-    /// Whether there are none.
+    /// Whether the level has no guards.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// The act of the last step at this place in the order of acts.
+    /// The act at this index in the order of the last step's acts.
     pub(crate) fn act(&self, index: usize) -> Option<Act> {
         self.acts.get(index).copied()
     }
 
-    /// Whether no guard does anything until they perceive something: all sleep.
+    /// Returns true if all guards sleep, so that none acts before they perceive something.
     pub(crate) fn are_at_rest(&self) -> bool {
-        // Only a step fills what guards remember of each other and of the players.
+        // The first step fills the guards' records of each other and of the players.
         let has_begun = self.steps > 0 || self.list.is_empty();
         has_begun
             && !self.has_changed
@@ -366,7 +367,7 @@ impl Guards {
             && self.awake().all(Guard::is_asleep)
     }
 
-    /// Advances the clocks by `steps` in which all guards are at rest.
+    /// Advances the clocks by `steps` steps in which all guards are at rest.
     pub(crate) fn wait(&mut self, steps: u64) {
         if self.list.is_empty() {
             return;
@@ -377,7 +378,7 @@ impl Guards {
         self.trails.iter_mut().for_each(|trail| trail.wait(before, self.steps));
     }
 
-    /// Whether anything that a picture shows of guards has changed in the last step.
+    /// Whether the last step changed anything about guards that a frame shows.
     pub(crate) fn has_changed(&self) -> bool {
         self.has_changed
     }
@@ -387,7 +388,7 @@ impl Guards {
         self.list.iter().map(Guard::view)
     }
 
-    /// The guards as a picture shows them.
+    /// The guards as figures.
     pub(crate) fn figures(&self) -> impl Iterator<Item = Figure> + '_ {
         self.list.iter().filter_map(|guard| {
             let sprite = self.sprites[guard.kind as usize]?;
@@ -410,12 +411,13 @@ impl Guards {
         up.map(move |guard| (guard.mover.cell(), Lamp { light, reach: Reach::default() }))
     }
 
-    /// How much the guards know.
+    /// The highest alarm of any guard.
     pub(crate) fn alarm(&self) -> Alarm {
         self.alarm
     }
 
-    /// Whether the guard `index` neither follows nor looks for a player, and is not down.
+    /// Returns true if the guard `index` neither follows nor searches for a player, and is not
+    /// down.
     pub(crate) fn is_unaware(&self, index: usize) -> bool {
         self.list.get(index).is_some_and(|guard| {
             let mood = guard.state.mood();
@@ -423,7 +425,8 @@ impl Guards {
         })
     }
 
-    /// Whether `from` is behind the guard `index`: more than 90° off the direction of their look.
+    /// Returns true if `from` is behind the guard `index`: more than 90° from the direction in
+    /// which they look.
     pub(crate) fn is_behind(&self, index: usize, from: DVec2) -> bool {
         let guard = self.list.get(index);
         guard.is_some_and(|it| it.mover.facing.dot(from - it.mover.position()) < 0.0)
@@ -434,7 +437,7 @@ impl Guards {
         self.list.len()
     }
 
-    /// The guards, sounds and cells that the last step looked at.
+    /// The number of guards, sounds and cells that the last step examined.
     pub(crate) fn work(&self) -> u64 {
         *self.work
     }
@@ -444,18 +447,20 @@ impl Guards {
         self.list.iter().map(|guard| guard.mover.cell())
     }
 
-    /// Whether any guard would overlap `cell` if it were solid: a door does not close on them.
+    /// Returns true if any guard would overlap `cell` if it were solid. A door does not close on
+    /// them.
     pub(crate) fn touches(&self, cell: Cell) -> bool {
         self.list.iter().any(|guard| overlaps(guard.mover.position(), cell, RADIUS))
     }
 
-    /// Whether any guard stands in `cell`: plates and floors that crumble feel it.
+    /// Returns true if any guard stands in `cell`. Their weight acts on plates and on floors that
+    /// crumble.
     pub(crate) fn weighs_on(&self, cell: Cell) -> bool {
         self.list.iter().any(|guard| guard.mover.cell() == cell && guard.mover.is_on_floor())
     }
 
-    /// The positions of the guards who are awake and on their feet, nearer than `distance` to
-    /// `position`, and with a part of their body between the heights `feet` and `head`.
+    /// The positions of the guards who are awake and on their feet, are nearer than `distance` to
+    /// `position`, and have part of their body between the heights `feet` and `head`.
     pub(crate) fn touching(
         &self,
         position: DVec2,
@@ -469,9 +474,9 @@ impl Guards {
         positions.filter(move |at| at.distance_squared(position) < distance * distance)
     }
 
-    /// The nearest guard who is not down, whose middle is at most `reach` from `position` and at
-    /// most the angle with the cosine `least_cosine` off `direction`, a unit vector. Nothing is
-    /// between the two at the height of the middle of the guard.
+    /// The nearest guard who is not down, has their centre within `reach` of `position`, and is
+    /// within the angle of cosine `least_cosine` of `direction`, a unit vector. Nothing may be
+    /// between the two at the height of the guard's middle.
     pub(crate) fn guard_near(
         &self,
         world: &World,
@@ -488,8 +493,8 @@ impl Guards {
         Some(near.min_by(|one, other| one.0.total_cmp(&other.0))?.2)
     }
 
-    /// The middle of the body of the nearest guard in sight of an eye, at most the angle with the
-    /// cosine `least_cosine` off `direction`, a unit vector: the position and the height.
+    /// The middle of the body of the nearest guard visible from `eye`, as a position and a height.
+    /// The guard is within the angle of cosine `least_cosine` of `direction`, a unit vector.
     pub(crate) fn aim(
         &self,
         world: &World,
@@ -506,7 +511,7 @@ impl Guards {
         Some((position, height))
     }
 
-    /// The guards who are not down in a cone, with their distances and indices.
+    /// The guards in a cone who are not down, with their distances and indices.
     fn ahead(
         &self,
         position: DVec2,
@@ -522,8 +527,8 @@ impl Guards {
         })
     }
 
-    /// The guard whom a projectile hits that moves from `from` to `to`, the nearest to `from`; both
-    /// have a position and a height.
+    /// The first guard hit by a projectile that moves from `from` to `to`. Both are a position and
+    /// a height.
     pub(crate) fn hit_between(&self, from: (DVec2, f64), to: (DVec2, f64)) -> Option<usize> {
         let way = to.0 - from.0;
         let length_squared = way.length_squared();
@@ -540,7 +545,7 @@ impl Guards {
         Some(hits.min_by(|one, other| one.0.total_cmp(&other.0))?.1)
     }
 
-    /// Lays the guard `index` on the floor for that many steps.
+    /// Lays the guard `index` on the floor for `steps` steps.
     pub(crate) fn stun(&mut self, index: usize, steps: u16) {
         let Some(guard) = self.list.get_mut(index) else { return };
         guard.stun(steps);
@@ -549,8 +554,8 @@ impl Guards {
         self.spoken.push(Sound { kind: SoundKind::Fall, cell, reach: FALL, by });
     }
 
-    /// Pushes the guard `index` along `direction`, a unit vector: they stagger for half a second,
-    /// and lose the blow that they were raising.
+    /// Pushes the guard `index` along `direction`, a unit vector. The guard staggers for half a
+    /// second, and an attack in progress is cancelled.
     pub(crate) fn push(&mut self, index: usize, direction: DVec2) {
         if let Some(guard) = self.list.get_mut(index) {
             guard.push(direction);
@@ -558,7 +563,7 @@ impl Guards {
         }
     }
 
-    /// Whether a guard has no room after the floor of `cell` has moved.
+    /// Returns true if a guard has no room after the floor of `cell` has moved.
     pub(crate) fn are_crushed(&self, world: &World, cell: Cell, carries: bool) -> bool {
         self.list.iter().any(|guard| {
             let ground = Ground { world, terrain: &self.terrain, gait: guard.gait() };
@@ -567,8 +572,8 @@ impl Guards {
         })
     }
 
-    /// Records that the floor of `cell` has just moved. If it carries, the guards who stand on it stay
-    /// on it.
+    /// Records that the floor of `cell` has just moved. If `carries` is true, guards who stand on
+    /// the floor stay on it.
     pub(crate) fn floor_moved(&mut self, world: &World, cell: Cell, carries: bool) {
         let mut has_unsettled = false;
         for guard in &mut self.list {
@@ -584,7 +589,7 @@ impl Guards {
         }
     }
 
-    /// Forgets the player with that index, who has left.
+    /// Forgets the player with this index, who has left.
     pub(crate) fn forget_player(&mut self, index: usize) {
         for guard in &mut self.list {
             guard.quarry = guard.quarry.filter(|quarry| quarry.target != index);
@@ -594,8 +599,8 @@ impl Guards {
         }
     }
 
-    /// Moves all guards with the window of a generated level. Those outside it are gone, and those
-    /// of parts that have come into it are there.
+    /// Moves all guards with the window of a generated level. Guards outside the window are
+    /// removed, and guards of the parts that have come into it are added.
     pub(crate) fn shift(&mut self, world: &World, shift: Shift) {
         self.list.retain_mut(|guard| guard.shift(shift));
         let is_new = |cell: Cell| shift.is_new(cell);

@@ -1,13 +1,13 @@
-//! Hazards: falls, cold water and spikes, and what happens to a player who is hurt.
+//! Hazards: falls, cold water and spikes, and their effects on a player.
 //!
-//! - A fall of more than [`SAFE_FALL`] cells takes a point for each further cell or part of one,
-//!   except in the easiest game.
-//! - Water slows, splashes and puts out the lamp. It takes a point each [`COLD`] steps, from the
-//!   second time on.
-//! - Spikes are heard half a second before they come out, and hurt once for each time.
-//! - A blow from outside the view does not kill before it has [warned](super::health). The view
-//!   has the default field of view, whatever the player has chosen: a game does not depend on how it
-//!   is shown.
+//! - A fall of more than [`SAFE_FALL`] cells takes a point for each further cell or part of a cell,
+//!   except on the easiest difficulty.
+//! - Water slows the player, splashes and puts out the lamp. It takes a point every [`COLD`] steps,
+//!   but none after the first [`COLD`] steps.
+//! - Spikes are heard half a second before they come out, and hurt once for each thrust.
+//! - A blow from outside the view does not kill without a [warning](super::health). The view is the
+//!   default field of view, whatever the player has chosen, because a game does not depend on how
+//!   it is shown.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -23,15 +23,15 @@ use crate::world::{Cell, Difficulty, Heading, Rhythm, ThingKind, TileEffect, Wor
 
 /// The highest fall that does not hurt, in cells.
 const SAFE_FALL: f64 = 2.2;
-/// The steps in which water takes a point: 4 seconds.
+/// The number of steps in which water takes a point: 4 seconds.
 const COLD: u32 = 240;
-/// The points that spikes take.
+/// The number of points that spikes take.
 const SPIKES: u8 = 2;
 /// The cosine of the angle from the middle of the view to its edge, 33°.
 const VIEW: f64 = 0.838_670_567_945_424;
 
 impl Game {
-    /// The effects of the floor on the player in this step, which began at `before`.
+    /// Applies the hazards of the floor to the player in this step, which began at `before`.
     pub(crate) fn meet_hazards(&mut self, before: &Motion) {
         self.fall();
         if self.is_mission {
@@ -40,7 +40,7 @@ impl Game {
         }
     }
 
-    /// The landing after a fall.
+    /// Tracks a fall, and applies the landing.
     fn fall(&mut self) {
         let motion = self.player.motion;
         if !motion.stands(&self.world) {
@@ -96,7 +96,7 @@ impl Game {
         }
     }
 
-    /// The guard `by` hits the player from `from`.
+    /// Applies a hit on the player by the guard `by`, who attacks from `from`.
     pub(crate) fn hurt_by_guard(&mut self, by: usize, from: DVec2, points: u8) {
         let kind = self.guards.views().nth(by).map(|guard| guard.kind);
         if let Some(kind) = kind {
@@ -104,7 +104,7 @@ impl Game {
         }
     }
 
-    /// A bolt hits the player that the guard `by` has shot at `from`.
+    /// Applies a hit by a bolt that the guard `by` has shot from `from`.
     pub(crate) fn hurt_by_bolt(&mut self, by: usize, from: DVec2, points: u8) {
         self.hurt_from(by, from, points, Cause::Bolt);
     }
@@ -147,10 +147,11 @@ fn is_cold_after(steps: u32) -> bool {
     steps >= 2 * COLD && steps.is_multiple_of(COLD)
 }
 
-/// The steps for which they rise, which warns, and for which they are out.
+/// The number of steps for which spikes rise, which serves as a warning, and for which they are
+/// out.
 const WARNING: u64 = 30;
 const OUT: u64 = 24;
-/// How high they come out, in cells.
+/// The height of spikes that are out, in cells.
 const SPIKES_HEIGHT: f64 = 0.4;
 
 /// All spikes of a level.
@@ -170,7 +171,7 @@ impl OfLevel for Spikes {
 struct Spike {
     cell: Cell,
     rhythm: Rhythm,
-    /// The phase that they show.
+    /// The phase that the spikes show.
     phase: Phase,
 }
 
@@ -212,8 +213,8 @@ impl Spikes {
         self.each.len()
     }
 
-    /// Shows the spikes as they are in the step `now`, and adds a sound for those that begin to rise.
-    /// Returns whether any has changed.
+    /// Shows the spikes as they are in the step `now`, and adds a sound for spikes that begin to
+    /// rise. Returns whether any has changed.
     pub(crate) fn show(&mut self, world: &mut World, now: u64, sounds: &mut Vec<Sound>) -> bool {
         let mut has_changed = false;
         for spike in &mut self.each {
@@ -228,8 +229,8 @@ impl Spikes {
         has_changed
     }
 
-    /// The step in which the spikes in `cell` came out that are out in the step `now`; `None` if
-    /// there are none.
+    /// The step in which the current thrust of the spikes in `cell` began; `None` if no spikes are
+    /// out in the step `now`.
     fn thrust_in(&self, cell: Cell, now: u64) -> Option<u64> {
         let spike = self.each.iter().find(|spike| spike.cell == cell)?;
         (spike.rhythm.phase(now) == Phase::Out).then(|| now - spike.rhythm.age(now))
@@ -237,7 +238,7 @@ impl Spikes {
 }
 
 impl Spike {
-    /// The sound that they make before they come out.
+    /// The sound before the spikes come out.
     fn warning(&self) -> Sound {
         let (kind, by) = (SoundKind::Spikes, Source::Object);
         Sound { kind, cell: self.cell, reach: reach::SPIKES, by }
@@ -255,7 +256,7 @@ impl Spike {
 }
 
 impl Rhythm {
-    /// The steps since they last came out, had they always done so.
+    /// The number of steps since the spikes last came out, as if they had always done so.
     fn age(self, now: u64) -> u64 {
         let (period, delay) = (u64::from(self.period), u64::from(self.delay));
         (now + period - delay % period) % period

@@ -1,65 +1,65 @@
-//! Health: what hurts takes points, and a player without points is dead.
+//! Health: anything that hurts takes points, and a player without points is dead.
 //!
-//! A guard whom the player does not see warns before they kill:
+//! A guard outside the player's view warns before they kill:
 //!
-//! - A blow from outside the view that would kill leaves one point, and warns of the guard who struck.
-//! - For [`GRACE`] steps after the warning, further such blows of that guard leave the point, too.
-//!   After them, they kill.
+//! - If a blow from outside the view would kill, it leaves one point and warns of the guard.
+//! - For [`GRACE`] steps after the warning, further such blows by that guard also leave the point.
+//!   After that, they kill.
 //! - A guard whose last such blow was [`FORGOTTEN`] steps ago warns again.
 //!
-//! Each guard warns for themselves. One warning for all was refused: the second of two guards would
-//! kill a player whom they had not struck before. Sparing the player each time was refused, too: a
-//! player who faced a wall could not be killed.
+//! Each guard gives a separate warning. Rejected: one warning for all guards. The second of two
+//! guards would kill a player that they had not struck before. Rejected: sparing the player each
+//! time. A player who faces a wall could not be killed.
 
 use serde::{Deserialize, Serialize};
 
 use super::stored::{Unrestorable, check};
 use crate::world::{GuardKind, Heading};
 
-/// How many points of health a player has.
+/// A player's points of health.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Health {
-    /// The points left, at most [`Health::most`].
+    /// The current points, at most [`Health::most`].
     pub points: u8,
     /// The points of an unhurt player.
     pub most: u8,
 }
 
-/// What the edge of the picture shows for a moment.
+/// A flash at the edge of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flash {
-    /// Why it is shown.
+    /// The reason for the flash.
     pub kind: FlashKind,
-    /// The steps for which it is still shown, at least one.
+    /// The remaining steps, at least one.
     pub left: u16,
 }
 
-/// Why the edge of the picture flashes.
+/// The reason for a flash.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FlashKind {
-    /// The player has been hurt, from that direction on the map; `None` for what has no direction,
-    /// such as a fall.
+    /// The player was hurt.
     Hurt {
-        /// The direction from the player to what hurt them.
+        /// The direction on the map from the player to the cause. `None` if the harm has no
+        /// direction, for example a fall.
         bearing: Option<Heading>,
     },
-    /// The player has found something.
+    /// The player picked something up.
     Gain,
 }
 
-/// What takes health.
+/// A loss of health.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Harm {
     pub(crate) points: u8,
-    /// The direction from the player to what hurts them.
+    /// The direction from the player to the cause.
     pub(crate) bearing: Option<Heading>,
-    /// Whether it leaves the last point, because the player could not see it.
+    /// `true` if the last point is left, because the player could not see the attack.
     pub(crate) spares: bool,
-    /// What a message says if it kills.
+    /// The cause of death in the message, if this kills.
     pub(crate) cause: Cause,
 }
 
-/// What can kill a player.
+/// A cause of death.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub(crate) enum Cause {
     Guard(GuardKind),
@@ -69,7 +69,7 @@ pub(crate) enum Cause {
     Fall,
 }
 
-/// The duration of a flash in steps.
+/// The durations of flashes, in steps.
 const HURT_STEPS: u16 = 24;
 const GAIN_STEPS: u16 = 12;
 
@@ -88,17 +88,17 @@ impl Health {
         Self { points: self.points.saturating_sub(harm.points).max(least), ..self }
     }
 
-    /// The health with that many points more, up to those of an unhurt player.
+    /// The health after a gain of `points`, up to the maximum.
     pub(crate) fn healed(self, points: u8) -> Self {
         Self { points: self.points.saturating_add(points).min(self.most), ..self }
     }
 
-    /// The health of a player who goes on after death: at least half.
+    /// The health of a player who continues after death: at least half of the maximum.
     pub(crate) fn revived(self) -> Self {
         Self { points: self.points.max(self.most / 2), ..self }
     }
 
-    /// Whether a player can have it.
+    /// Whether a player can have this health.
     pub(crate) fn is_possible(self) -> bool {
         self.points <= self.most && self.most == Self::MOST
     }
@@ -110,7 +110,7 @@ impl Health {
 }
 
 impl Default for Health {
-    /// That of an unhurt player.
+    /// Full health.
     fn default() -> Self {
         Self { points: Self::MOST, most: Self::MOST }
     }
@@ -120,7 +120,7 @@ impl Flash {
     /// The steps over which a flash fades at its end.
     pub(crate) const FADE: u16 = 12;
 
-    /// The share of its full strength, from 0 to 1.
+    /// The flash's strength, as a fraction of its full strength from 0 to 1.
     #[cfg(feature = "terminal")]
     pub(crate) fn strength(self) -> f64 {
         f64::from(self.left.min(Self::FADE)) / f64::from(Self::FADE)
@@ -131,22 +131,22 @@ impl Flash {
         Self { kind: FlashKind::Hurt { bearing: harm.bearing }, left: HURT_STEPS }
     }
 
-    /// A flash for a blow after which `grace` steps of grace are left.
+    /// A flash for a blow that leaves `grace` steps of grace.
     pub(crate) fn warning(harm: &Harm, grace: u16) -> Self {
         Self { left: grace.max(HURT_STEPS), ..Self::hurt(harm) }
     }
 
-    /// A flash for a blow of another player, which takes no health.
+    /// A flash for another player's blow, which takes no health.
     pub(crate) fn struck(bearing: Option<Heading>) -> Self {
         Self { kind: FlashKind::Hurt { bearing }, left: HURT_STEPS }
     }
 
-    /// A flash for a find.
+    /// A flash for a pickup.
     pub(crate) fn gain() -> Self {
         Self { kind: FlashKind::Gain, left: GAIN_STEPS }
     }
 
-    /// The flash after `steps`; `None` if it has ended.
+    /// The flash after `steps` steps. `None` if it has ended.
     pub(crate) fn after(self, steps: u16) -> Option<Self> {
         let left = self.left.saturating_sub(steps);
         (left > 0).then_some(Self { left, ..self })
@@ -154,7 +154,7 @@ impl Flash {
 }
 
 impl Cause {
-    /// The cause as a part of a sentence: "killed by …".
+    /// The cause as part of a sentence: "killed by …".
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Guard(GuardKind::Warden) => "a warden",
@@ -170,30 +170,31 @@ impl Cause {
     }
 }
 
-/// The steps after a warning in which the guard does not kill: 3 seconds.
+/// The number of steps after a warning during which the guard does not kill: 3 seconds.
 pub(crate) const GRACE: u16 = 180;
-/// The steps after a blow in which the guard is remembered: 10 seconds.
+/// The number of steps after a blow during which the guard is remembered: 10 seconds.
 const FORGOTTEN: u64 = 600;
 
-/// The guards of whom a player has been warned.
+/// The guards that a player has been warned of.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Warnings {
     list: Vec<Warning>,
 }
 
-/// A guard of whom a player has been warned.
+/// A guard that a player has been warned of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Warning {
     /// The index of the guard.
     guard: usize,
-    /// The step of the blow that warned, and that of the last blow which left the point.
+    /// The step of the blow that gave the warning, and the step of the last blow that left the
+    /// point.
     since: u64,
     last: u64,
 }
 
 impl Warnings {
-    /// Records a blow of `guard` in the step `now` that would kill from outside the view. Returns the
-    /// steps of grace that are left; `None` if it kills.
+    /// Records a blow by `guard` in the step `now` that would kill from outside the view. Returns
+    /// the remaining steps of grace, or `None` if the blow kills.
     pub(crate) fn spare(&mut self, guard: usize, now: u64) -> Option<u16> {
         self.list.retain(|warning| now.saturating_sub(warning.last) < FORGOTTEN);
         let known = self.list.iter_mut().find(|warning| warning.guard == guard);
@@ -207,7 +208,7 @@ impl Warnings {
         Some(left)
     }
 
-    /// Refuses warnings after the step `now`.
+    /// Returns an error if a warning is later than the step `now`.
     pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         check(self.list.iter().all(|it| it.since <= it.last && it.last <= now), "a warning")
     }

@@ -1,11 +1,11 @@
-//! Intents: what the player wants, independent of keys. The bindings of keys, and how long a key
-//! counts as held, are decided elsewhere.
+//! Intents: the actions that the player wants, independent of keys. Other modules decide the key
+//! bindings and how long a key counts as held.
 //!
-//! A [`Look`] turns and tilts by an angle rather than for a time, as a pointer does.
-//! Angles are whole hundredths of a degree, so that a script stores them without loss and replays
-//! them bit for bit. They take effect at once, because a pointer's motion is smooth already.
-//! Converting an angle into a time of turning was refused: a step turns by 2.3°, which is coarser
-//! than a hand can aim.
+//! A [`Look`] turns and tilts by an angle, as a pointer does, instead of for a time. Angles are
+//! whole hundredths of a degree, so a script stores them without loss and replays them bit for bit.
+//! They take effect at once, because the motion of a pointer is already smooth. Rejected:
+//! converting an angle into a time of turning. A step turns by 2.3°, which is coarser than a hand
+//! can aim.
 
 use std::fmt;
 
@@ -38,9 +38,9 @@ pub enum Intent {
     LookDown,
     /// Look straight ahead.
     LookAhead,
-    /// Jump; in front of a door that is not open, open it instead.
+    /// Jump. In front of a door that is not open, open the door instead.
     Jump,
-    /// Duck while this is wanted.
+    /// Duck for as long as this is held.
     Duck,
     /// Turn anticlockwise by exactly 5 degrees, once.
     FineLeft,
@@ -56,9 +56,9 @@ pub enum Intent {
     Shoot,
     /// Throw a flask of smoke, once.
     Smoke,
-    /// Light the lamp, or put it out, once.
+    /// Light the lamp or put it out, once.
     Lamp,
-    /// Go on from the last checkpoint, after death.
+    /// Continue from the last checkpoint after death.
     Retry,
 }
 
@@ -90,24 +90,24 @@ impl Intent {
         Self::Retry,
     ];
 
-    /// Whether each press does something once, however long it lasts.
+    /// Returns true if each press acts once, however long it lasts.
     pub fn acts_once(self) -> bool {
         ONCE & bit(self) != 0
     }
 
-    /// Whether it walks or strafes.
+    /// Whether the intent walks or strafes.
     pub fn walks(self) -> bool {
         use Intent::{Back, Forward, StrafeLeft, StrafeRight};
         matches!(self, Forward | Back | StrafeLeft | StrafeRight)
     }
 
-    /// Whether it turns or tilts the camera for as long as it is wanted.
+    /// Whether the intent turns or tilts the camera for as long as it is held.
     pub fn turns(self) -> bool {
         use Intent::{LookDown, LookUp, TurnLeft, TurnRight};
         matches!(self, TurnLeft | TurnRight | LookUp | LookDown)
     }
 
-    /// Whether the two exclude each other.
+    /// Whether the two intents cancel each other.
     pub fn opposes(self, other: Self) -> bool {
         use Intent::{Back, Forward, LookDown, LookUp, StrafeLeft, StrafeRight};
         use Intent::{TurnLeft, TurnRight};
@@ -116,7 +116,7 @@ impl Intent {
         pairs.contains(&(self, other)) || pairs.contains(&(other, self))
     }
 
-    /// The name in files.
+    /// The name in scripts.
     pub fn name(self) -> &'static str {
         match self {
             Self::Forward => "forward",
@@ -192,7 +192,7 @@ impl Intents {
         self.look
     }
 
-    /// Whether the player wants nothing.
+    /// Whether the set is empty and the angles are 0.
     pub fn is_empty(self) -> bool {
         self == Self::new()
     }
@@ -212,7 +212,7 @@ impl Intents {
         Self { bits: self.bits & !others.bits, look: Look::NONE }
     }
 
-    /// 1 if only `toward` is wanted, −1 if only `against` is, 0 otherwise.
+    /// 1 if only `toward` is in the set, −1 if only `against` is, 0 otherwise.
     pub(crate) fn balance(self, toward: Intent, against: Intent) -> f64 {
         f64::from(i8::from(self.contains(toward)) - i8::from(self.contains(against)))
     }
@@ -266,11 +266,12 @@ impl fmt::Debug for Intents {
 pub struct Look {
     /// Clockwise as seen from above, in hundredths of a degree.
     pub turn: i16,
-    /// Upwards, in hundredths of a degree: the horizon in a grid, the eye in a scene of bodies.
+    /// Upwards, in hundredths of a degree. Moves the horizon in a grid, and raises the eye's
+    /// direction in a scene of bodies.
     pub tilt: i16,
 }
 
-/// The names of both in files.
+/// The names of the two angles in scripts.
 pub(crate) const TURN: &str = "turn";
 pub(crate) const TILT: &str = "tilt";
 
@@ -278,7 +279,7 @@ impl Look {
     /// No turn and no tilt.
     pub const NONE: Self = Self { turn: 0, tilt: 0 };
 
-    /// Units in a degree.
+    /// The number of units in a degree.
     pub const PER_DEGREE: i16 = 100;
 
     /// Clockwise, in radians.
@@ -291,7 +292,7 @@ impl Look {
         radians(self.tilt)
     }
 
-    /// The words of a script for it: none, one or two.
+    /// The words for the angles in a script: none, one or two.
     pub(crate) fn words(self) -> impl Iterator<Item = String> {
         let amounts = [(TURN, self.turn), (TILT, self.tilt)];
         let amounts = amounts.into_iter().filter(|&(_, amount)| amount != 0);
@@ -303,7 +304,7 @@ fn radians(hundredths: i16) -> f64 {
     (f64::from(hundredths) / f64::from(Look::PER_DEGREE)).to_radians()
 }
 
-/// Hundredths of a degree, written in degrees with the necessary digits.
+/// Hundredths of a degree, formatted in degrees with as many digits as necessary.
 struct Degrees(i16);
 
 impl fmt::Display for Degrees {
@@ -312,8 +313,8 @@ impl fmt::Display for Degrees {
     }
 }
 
-/// The hundredths of a degree that `text` gives in degrees; `None` if it is not a number, is not a
-/// whole number of hundredths, is 0 or is too large.
+/// Parses `text`, an angle in degrees, into hundredths of a degree. `None` if it is not a number,
+/// not a whole number of hundredths, 0, or too large.
 pub(crate) fn hundredths(text: &str) -> Option<i16> {
     let degrees: f64 = text.parse().ok()?;
     let hundredths = (degrees * f64::from(Look::PER_DEGREE)).round();

@@ -1,7 +1,7 @@
 //! Keys and doors: opening the door in front of the player.
 //!
-//! A locked door opens for a player who has its key; otherwise a message names the key. A door with
-//! a switch opens with that only.
+//! A locked door opens for a player who has its key. Otherwise a message names the key. A door with
+//! a switch opens only by its switch.
 
 use super::Game;
 use super::doors::door_ahead;
@@ -12,7 +12,8 @@ use super::sound::SoundKind;
 use crate::world::{Cell, Door};
 
 impl Game {
-    /// The intents, with a jump in front of a door, a lever or the like replaced by opening it.
+    /// The intents, with [`Intent::Open`] in place of a jump if the player faces a door or a
+    /// handle.
     pub(crate) fn at_a_door(&self, mut intents: Intents) -> Intents {
         let motion = &self.player.motion;
         let looking = motion.heading().direction();
@@ -69,7 +70,7 @@ impl Game {
         }
     }
 
-    /// Shows a message, unless it is shown already.
+    /// Shows a message, unless it is already shown.
     pub(crate) fn say(&mut self, text: String) {
         if self.player.notice.text() != Some(&text) {
             self.player.notice = Notice::new(text);
@@ -77,7 +78,7 @@ impl Game {
         }
     }
 
-    /// The message of a door that does not open.
+    /// The message for a door that does not open.
     fn refusal(&self, door: Door) -> String {
         if door.switch.is_some() {
             return "This door opens elsewhere.".to_owned();

@@ -1,14 +1,15 @@
 //! Mechanisms: switches, and the tiles and doors that they drive.
 //!
-//! A switch is on while its levers are turned on or somebody stands on one of its plates. Its tiles
-//! move to their ends while it is on and back while it is off, a cell a second, and its doors open
-//! and close with it.
+//! A switch is on while its levers are on or somebody stands on one of its plates. While it is on,
+//! its tiles move to their ends, at one cell per second, and its doors are open. While it is off,
+//! the tiles move back and the doors close.
 //!
-//! Nothing that moves crushes anybody: a floor lifts those who stand on it and stops where they have
-//! no room, and a wall does not rise while somebody touches its cell.
+//! Nothing that moves crushes anybody. A floor lifts everybody who stands on it and stops if they
+//! have no room. A wall does not rise while somebody touches its cell.
 //!
-//! A step looks only at the plates that are down, at the cells that somebody stands in, and at the
-//! cells that move. Which these are is kept from step to step. A map may have a million others.
+//! A step examines only the plates that are down, the occupied cells, and the cells that move. The
+//! indices of these plates and cells are kept from step to step, because a map may have a million
+//! others.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -31,28 +32,28 @@ use crate::world::{
 /// The state of all mechanisms of a level.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Mechanisms {
-    /// For each switch.
+    /// One entry for each switch.
     switches: Vec<Switch>,
     /// All plates, row by row.
     plates: Vec<Plate>,
-    /// The plates that are down, from the lowest index to the highest.
+    /// The indices of the plates that are down, in ascending order.
     #[serde(skip)]
     down: Vec<usize>,
     /// The cells of moving tiles, row by row.
     moving: Vec<MovingCell>,
-    /// Those of them that do not rest, from the lowest index to the highest.
+    /// The indices of the moving cells that are not at rest, in ascending order.
     #[serde(skip)]
     active: Vec<usize>,
-    /// For each moving tile, its first cell.
+    /// The first cell of each moving tile.
     #[serde(skip)]
     first_cells: Vec<Option<Cell>>,
     /// The doors that switches open.
     #[serde(skip)]
     doors: Vec<(Cell, SwitchId)>,
-    /// Whether there are levers, flames or secret walls.
+    /// Whether the level has levers, flames or secret walls.
     #[serde(skip)]
     has_handles: bool,
-    /// Whether there are floors that crumble.
+    /// Whether the level has floors that crumble.
     #[serde(skip)]
     has_crumbling: bool,
     #[serde(skip)]
@@ -61,14 +62,14 @@ pub(crate) struct Mechanisms {
 
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 struct Switch {
-    /// Whether its levers are turned on.
+    /// Whether its levers are on.
     is_turned: bool,
-    /// Whether its doors and tiles have been told that it is on.
+    /// The state that its doors and tiles have been set to.
     is_on: bool,
     /// The number of its plates that are down.
     #[serde(skip)]
     plates_down: u32,
-    /// The moving cells that it drives, by their indices.
+    /// The indices of the moving cells that it drives.
     #[serde(skip)]
     cells: Vec<usize>,
 }
@@ -104,10 +105,10 @@ impl OfLevel for Plate {
 }
 
 impl Mechanisms {
-    /// Shows moving tiles in `world`, where they rest, as they are.
+    /// Applies the moving tiles to `world`, in which they are at rest.
     ///
     /// # Errors
-    /// If one is beyond its last state.
+    /// If a tile is beyond its last state.
     pub(crate) fn show(&mut self, world: &mut World) -> Result<(), Unrestorable> {
         for moving in &self.moving {
             check(moving.is_possible(world), "a moving tile")?;
@@ -166,8 +167,8 @@ impl Mechanisms {
         self.moving.push(MovingCell::new(cell, tile));
     }
 
-    /// Derives the facts kept from step to step again: which plates are down, which cells do not rest, and
-    /// which secrets have been found.
+    /// Recomputes the data derived from the state: the plates that are down, the cells that are not
+    /// at rest, and the secrets that have been found.
     fn recollect(&mut self, world: &World) {
         let plates = self.plates.iter().enumerate().filter(|(_, plate)| plate.is_down);
         self.down = plates.map(|(index, _)| index).collect();
@@ -181,24 +182,24 @@ impl Mechanisms {
         self.secrets.found = secrets.filter(|cell| cell.is_driven).count() as u32;
     }
 
-    /// Whether there is anything to open beside doors.
+    /// Whether the level has anything to open other than doors.
     pub(crate) fn has_handles(&self) -> bool {
         self.has_handles
     }
 
-    /// Turns the levers of `switch`, and returns whether they are on now.
+    /// Toggles the levers of `switch`. Returns whether they are on now.
     pub(crate) fn turn(&mut self, switch: SwitchId) -> bool {
         let Some(state) = self.switches.get_mut(usize::from(switch.0)) else { return false };
         state.is_turned = !state.is_turned;
         state.is_turned
     }
 
-    /// The number of secret walls, and of those found.
+    /// The number of secret walls found, and their total number.
     pub(crate) fn secrets(&self) -> Share {
         self.secrets
     }
 
-    /// Opens the secret wall that is the moving cell with that index.
+    /// Opens the secret wall whose moving cell has this index.
     fn open_secret(&mut self, index: usize) {
         self.secrets.found += u32::from(!self.moving[index].is_driven);
         self.moving[index].is_driven = true;
@@ -217,7 +218,7 @@ impl Mechanisms {
         self.plates.binary_search_by_key(&by_row(cell), |plate| by_row(plate.cell)).ok()
     }
 
-    /// Whether a moving cell does not rest, if nobody steps on it.
+    /// Whether a moving cell is not at rest, provided that nobody steps on it.
     fn is_in_motion(&self, index: usize, world: &World) -> bool {
         let cell = self.moving[index];
         cell.step(world, self.is_driven(cell, world)).is_some()
@@ -251,7 +252,7 @@ impl Game {
         self.move_tiles();
     }
 
-    /// Whether a step would change any mechanism but a door.
+    /// Whether a step would change any mechanism except doors.
     pub(crate) fn mechanisms_move(&self) -> bool {
         self.changing_plates().next().is_some()
             || self.mechanisms.switches().any(|switch| {
@@ -261,13 +262,14 @@ impl Game {
             || self.movable_cells().any(|index| self.would_move(self.mechanisms.moving[index]))
     }
 
-    /// The cells of the players who play and of all guards.
+    /// The cells of the active players and of all guards.
     fn cells_of_all(&self) -> impl Iterator<Item = Cell> {
         let players = self.playing().map(|(_, player)| player.motion.cell());
         players.chain(self.guards.cells())
     }
 
-    /// The indices of the plates that go down or up in this step, in no order, some more than once.
+    /// The indices of the plates that go down or up in this step. They are unordered, and some
+    /// occur more than once.
     fn changing_plates(&self) -> impl Iterator<Item = usize> {
         let Mechanisms { plates, down, .. } = &self.mechanisms;
         let leaves = |index: &usize| !self.weighs_on(plates[*index].cell);
@@ -278,8 +280,8 @@ impl Game {
         down.iter().copied().filter(leaves).chain(underfoot.filter(goes_down))
     }
 
-    /// The indices of the moving cells that do not rest or that may crumble under somebody, in no
-    /// order, some more than once.
+    /// The indices of the moving cells that are not at rest or that may crumble under somebody.
+    /// They are unordered, and some occur more than once.
     fn movable_cells(&self) -> impl Iterator<Item = usize> {
         let mechanisms = &self.mechanisms;
         let crumbles =
@@ -296,7 +298,7 @@ impl Game {
         self.playing().any(|(_, player)| stands(&player.motion)) || self.guards.weighs_on(cell)
     }
 
-    /// Whether somebody would be in a wall in `cell`.
+    /// Whether somebody would overlap a wall in `cell`.
     pub(crate) fn is_in_the_way(&self, cell: Cell) -> bool {
         self.playing().any(|(_, it)| it.motion.touches(cell)) || self.guards.touches(cell)
     }
@@ -323,7 +325,7 @@ impl Game {
         }
     }
 
-    /// Lets doors and tiles follow the switches that have changed.
+    /// Makes doors and tiles follow the switches that have changed.
     fn throw_switches(&mut self) {
         for switch in self.mechanisms.switches() {
             let is_on = self.mechanisms.is_on(switch);
@@ -365,7 +367,7 @@ impl Game {
         }
         let Self { mechanisms, world, .. } = self;
         if self.revision != revision {
-            // What has moved may have made room.
+            // The movement may have made room.
             for &index in &movable {
                 mechanisms.moving[index].is_blocked = false;
             }
@@ -374,7 +376,7 @@ impl Game {
         mechanisms.active = movable;
     }
 
-    /// The next step of a moving cell, if nothing keeps it from moving.
+    /// The next step of a moving cell; `None` if the cell is at rest.
     fn next_step(&self, cell: MovingCell) -> Option<Step> {
         let is_stepped_on =
             || cell.driver(&self.world) == Driver::Weight && self.weighs_on(cell.cell);
@@ -382,13 +384,14 @@ impl Game {
         cell.step(&self.world, is_driven)
     }
 
-    /// Whether a step would change a moving cell, where nobody has moved since the last one.
+    /// Whether a step would change a moving cell, provided that nobody has moved since the last
+    /// step.
     fn would_move(&self, cell: MovingCell) -> bool {
         self.next_step(cell).is_some_and(|step| step.state.is_none() || !cell.is_blocked)
     }
 
-    /// The cell after `step`, with all who stand on it; the cell as it was, but blocked, if somebody
-    /// is in the way.
+    /// The cell after `step`, which also moves everybody who stands on it. If somebody is in the
+    /// way, the cell before `step`, marked as blocked.
     fn moved(&mut self, cell: MovingCell, step: Step) -> MovingCell {
         let Some(state) = step.state else { return step.after };
         let before = cell.shown(&self.world);
@@ -416,7 +419,8 @@ impl Game {
         step.after
     }
 
-    /// Says that a cell stops, once, to a player who is in the way.
+    /// Tells the players who are in the way that a cell has stopped. Each stop is announced only
+    /// once.
     fn tell_who_blocks(&mut self, cell: MovingCell) {
         if !cell.is_blocked {
             self.for_each_player(|game| {
@@ -427,7 +431,7 @@ impl Game {
         }
     }
 
-    /// A floor that crumbles cracks, and then breaks.
+    /// Makes the sounds of a floor that cracks and then breaks.
     fn hear_crumbling(&mut self, cell: MovingCell, step: Step) {
         if cell.driver(&self.world) == Driver::Weight {
             if !cell.is_driven {
@@ -438,8 +442,8 @@ impl Game {
         }
     }
 
-    /// Whether somebody has no room in the world, in which `cell` has just become `state` and `carries` those
-    /// who stand on it.
+    /// Whether somebody has no room in the world after `cell` has changed to `state`. If `carries`
+    /// is true, the floor carries everybody who stands on it.
     fn is_crushing(&self, cell: MovingCell, state: TileId, carries: bool) -> bool {
         let world = &self.world;
         let tile = world.tile(state);
@@ -455,12 +459,12 @@ impl Game {
     }
 }
 
-/// Row by row from the north, and within a row from the west.
+/// The sort key for the order row by row from the north, and within a row from the west.
 fn by_row(cell: Cell) -> (u32, u32) {
     (cell.row, cell.column)
 }
 
-/// Each of `indices` once, from the lowest to the highest.
+/// The `indices` in ascending order, without duplicates.
 fn in_order(indices: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut indices: Vec<usize> = indices.collect();
     sort::by_key(&mut indices, |&index| index);
@@ -468,7 +472,8 @@ fn in_order(indices: impl Iterator<Item = usize>) -> Vec<usize> {
     indices
 }
 
-/// The steps before a floor falls on which somebody has stepped, and those in which it falls.
+/// The number of steps for which a floor cracks after somebody has stepped on it, and the number
+/// for which it falls.
 const CRACKS: u16 = 30;
 const FALLS: u16 = 20;
 
@@ -480,13 +485,13 @@ struct MovingCell {
     /// The index of its moving tile.
     #[serde(skip)]
     tile: u16,
-    /// The steps from the first state, without those in which it cracks.
+    /// The number of steps from the first state, without the steps in which it cracks.
     progress: u16,
-    /// The steps for which it has cracked.
+    /// The number of steps for which it has cracked.
     cracks: u16,
     /// Whether a hand or a weight has set it in motion.
     is_driven: bool,
-    /// Whether somebody was in the way of its last step, and no tile has moved since.
+    /// Whether somebody was in the way of its last step. Reset when any tile moves.
     is_blocked: bool,
 }
 
@@ -494,7 +499,7 @@ struct MovingCell {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     after: MovingCell,
-    /// The tile that it shows then, if that changes.
+    /// The new tile, if the cell changes its tile.
     state: Option<TileId>,
 }
 
@@ -505,7 +510,7 @@ impl OfLevel for MovingCell {
 }
 
 impl MovingCell {
-    /// A cell at rest of the moving tile `tile`.
+    /// A cell of the moving tile `tile`, at rest.
     fn new(cell: Cell, tile: usize) -> Self {
         Self {
             cell,
@@ -525,28 +530,29 @@ impl MovingCell {
         self.moving_tile(world).driver
     }
 
-    /// The same cell, after a step in which somebody was in the way.
+    /// The same cell, marked as blocked.
     #[must_use]
     fn blocked(self) -> Self {
         Self { is_blocked: true, ..self }
     }
 
-    /// The tile that it shows.
+    /// The tile that the cell shows.
     fn shown(&self, world: &World) -> TileId {
         let moving = self.moving_tile(world);
         let last = moving.states.len().saturating_sub(1);
         let index = usize::from(self.progress) * last / usize::from(steps(moving, world));
-        // A floor that cracks shows it by sinking a little.
+        // A floor that cracks sinks a little.
         let index = index.max(usize::from(self.cracks > 0)).min(last);
         moving.states[index]
     }
 
-    /// Whether it shows its last state.
+    /// Whether the cell has reached its last state.
     fn is_at_the_end(&self, world: &World) -> bool {
         self.progress >= steps(self.moving_tile(world), world)
     }
 
-    /// Its next step, towards the end if it `is_driven` and back otherwise; `None` if it rests.
+    /// The next step, towards the end if `is_driven` is true and back otherwise. `None` if the cell
+    /// is at rest.
     fn step(self, world: &World, is_driven: bool) -> Option<Step> {
         let moving = self.moving_tile(world);
         let mut after = Self { is_blocked: false, ..self };
@@ -562,7 +568,7 @@ impl MovingCell {
         (after != self).then_some(Step { after, state })
     }
 
-    /// Whether it has not gone beyond its last state.
+    /// Whether the progress is within the states.
     fn is_possible(&self, world: &World) -> bool {
         self.cracks <= CRACKS && self.progress <= steps(self.moving_tile(world), world)
     }
@@ -572,7 +578,7 @@ impl MovingCell {
     }
 }
 
-/// The steps from the first state to the last; at least one.
+/// The number of steps from the first state to the last; at least one.
 fn steps(moving: &MovingTile, world: &World) -> u16 {
     if moving.driver == Driver::Weight {
         return FALLS;
@@ -582,19 +588,20 @@ fn steps(moving: &MovingTile, world: &World) -> u16 {
     (way * f64::from(STEPS_PER_SECOND)).round().clamp(1.0, u16::MAX.into()) as u16
 }
 
-/// How far a handle's cell may be from the player who opens it, in cells.
+/// The largest distance between a handle's cell and the player who opens it, in cells.
 const REACH: f64 = 0.9;
-/// The cosine of the angle to both sides of the view in which a lever or a flame is: 50°.
+/// The cosine of the angle to either side of the view within which a lever or a flame can be used:
+/// 50°.
 const COSINE: f64 = 0.642_787_609_686_539_3;
-/// Nearer than this the direction does not matter.
+/// At smaller distances, the direction does not matter, in cells.
 const NEAR: f64 = 0.4;
 
-/// Something that the player can open, beside doors.
+/// A thing other than a door that the player can open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Handle {
     Lever(Cell, SwitchId),
     Flame(Cell),
-    /// The secret wall that is the moving cell with that index.
+    /// The secret wall whose moving cell has this index.
     Secret(usize),
 }
 
@@ -607,7 +614,7 @@ impl Game {
         self.thing_to_open().or_else(|| self.secret_ahead())
     }
 
-    /// Turns a lever, puts a flame out or lights it, or opens a secret wall.
+    /// Toggles a lever or a flame, or opens a secret wall.
     pub(crate) fn use_handle(&mut self, handle: Handle) {
         self.revision += 1;
         match handle {
@@ -642,7 +649,7 @@ impl Game {
         things.filter(|thing| thing.kind == ThingKind::Flame).any(|thing| thing.frame.is_none())
     }
 
-    /// The nearest lever or flame in front of the player or at their place.
+    /// The nearest lever or flame, in front of the player or at their position.
     fn thing_to_open(&self) -> Option<Handle> {
         let Cell { column, row } = self.player.motion.cell();
         let near = |place: u32| place.saturating_sub(1)..=place.saturating_add(1);
@@ -677,14 +684,14 @@ impl Game {
         is_ahead && to_cell(position, cell) <= REACH && self.is_clear(position, way)
     }
 
-    /// Whether nothing solid is on a way.
+    /// Whether nothing solid is between `position` and `position + way`.
     fn is_clear(&self, position: DVec2, way: DVec2) -> bool {
         let Ok(ray) = Ray::new(position, way) else { return true };
         let solid = Walk::new(self.world.grid(), &ray).first_solid();
         solid.is_none_or(|solid| to_cell(position, solid.cell) >= way.length())
     }
 
-    /// The secret wall that the player looks at, if it has not been opened.
+    /// The secret wall that the player looks at, if it is still closed.
     fn secret_ahead(&self) -> Option<Handle> {
         let motion = &self.player.motion;
         let ray = Ray::new(motion.position(), motion.heading().direction()).ok()?;

@@ -1,18 +1,21 @@
-//! Games for several: who is in them, and the rules among them.
+//! Multiplayer games: their players, and the rules between players.
 //!
-//! A player has a slot for as long as they are in the game. A step moves the players in the order of
-//! their slots, and then everything else once, as often as a step of a game for one does. So a game
-//! for several with one player in it is the game for one, bit for bit, up to that player's death.
+//! A player occupies a slot for as long as they are in the game. A step moves the players in the
+//! order of their slots, and then everything else once, exactly as in a step of a single-player
+//! game. Therefore a multiplayer game with one player equals the single-player game, bit for bit,
+//! until that player dies.
 //!
-//! - Time passes while anybody in the game is alive and has not reached the exit.
-//! - A dead player goes on from their own last checkpoint, alone: the level stays as it is. Restoring
-//!   the level, as a game for one does, was refused: it would undo what the others have done.
-//! - Treasure counts for all. Keys belong to their finders; those of a player who leaves, reaches
-//!   the exit or is dead for good lie where they were found.
-//! - What a player does to others is judged by the positions in the step that the player saw, at
-//!   most [`MOST_LAG`](super::MOST_LAG) steps ago. Judging by the present positions was refused: players would have to
-//!   aim ahead of everybody by as much as their connection is slow.
-//! - Bodies that collide are columns without an upper end: nobody jumps onto a head.
+//! - Time passes while any player is alive and has not reached the exit.
+//! - A dead player continues alone from their own last checkpoint, and the level stays as it is.
+//!   Rejected: restoring the level, as a single-player game does. It would undo the actions of the
+//!   other players.
+//! - Treasure counts for all players. A key belongs to the player who found it. When a player
+//!   leaves, reaches the exit or is dead for good, their keys return to the cells where they were
+//!   found.
+//! - A player's action against others is judged by the positions in the step that the player saw,
+//!   at most [`MOST_LAG`](super::MOST_LAG) steps ago. Rejected: judging by the present positions.
+//!   Players would have to aim ahead by the delay of their connection.
+//! - Bodies that collide are columns without an upper end, so nobody can jump onto a head.
 
 mod entry;
 mod strike;
@@ -32,10 +35,10 @@ use crate::world::sprite::builtin::{self, PlayerColor, PlayerFrame};
 use crate::world::{Cell, Figure, SpriteId, Thing, ThingKind, World};
 use strike::Track;
 
-/// The distance in which a figure changes its foot, in cells.
+/// The distance after which a figure changes its foot, in cells.
 const STRIDE: f64 = 0.45;
 
-/// What guards perceive where nobody is.
+/// The target for a slot without a player.
 const NOBODY: Target = Target {
     position: DVec2::ZERO,
     feet: 0.0,
@@ -45,28 +48,29 @@ const NOBODY: Target = Target {
     is_alive: false,
 };
 
-/// The players of a game for several.
+/// The players of a multiplayer game.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Members {
     #[serde(skip)]
     rules: MultiplayerRules,
-    /// The last slot is taken, if there is any.
+    /// The last slot, if any, is occupied.
     #[serde(deserialize_with = "at_most::<MOST_PLAYERS, _, _>")]
     slots: Vec<Option<Member>>,
-    /// The slot of the player whose turn it is; that player is [`Game::player`] meanwhile.
+    /// The slot of the current player, whose turn it is. During the turn, that player is in
+    /// [`Game::player`].
     #[serde(skip)]
     turn: Option<usize>,
-    /// The worth of the treasure of those who have left.
+    /// The value of the treasure found by players who have left.
     treasure_of_the_gone: u32,
-    /// Where the keys lay at the start.
+    /// The keys at their initial positions.
     #[serde(skip)]
     keys: Vec<Thing>,
-    /// By colour.
+    /// Indexed by colour.
     #[serde(skip)]
     sprites: [Option<SpriteId>; PlayerColor::ALL.len()],
-    /// The blows of the last step: who has struck whom.
+    /// The blows of the last step, each as the slots of the attacker and the victim.
     blows: Vec<(usize, usize)>,
-    /// The memory for what guards perceive, for the positions of those in the way, and for figures.
+    /// Reused memory for targets, for the positions of players in the way, and for figures.
     #[serde(skip)]
     pub(crate) targets: Scratch<Vec<Target>>,
     #[serde(skip)]
@@ -75,26 +79,26 @@ pub(crate) struct Members {
     figures: Vec<Figure>,
 }
 
-/// A player, and what concerns them among others.
+/// A player and their multiplayer state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Member {
     player: Player,
     color: PlayerColor,
-    /// Whether the player is alive and has not reached the exit; it changes between steps.
+    /// Whether the player is alive and has not reached the exit. Changes only between steps.
     is_playing: bool,
     has_won: bool,
-    /// What the player wants in this step, and the step that they saw.
+    /// The player's intents in this step, and the step that the player saw.
     intents: Intents,
     seen: u64,
-    /// The step in which they joined, and the one in which they died or reached the exit.
+    /// The step in which the player joined, and the step in which they died or reached the exit.
     joined: u64,
     ended: Option<u64>,
     /// The last checkpoint; `None` for the start.
     checkpoint: Option<Cell>,
-    /// The steps for which they lie on the floor, and until they can be struck again.
+    /// The number of steps until the player stands up, and until they can be struck again.
     stunned: u16,
     spared: u16,
-    /// The steps for which the figure strikes, and how far it has walked, in cells.
+    /// The remaining steps for which the figure strikes, and the distance it has walked, in cells.
     swing: u16,
     walked: f64,
     track: Track,
@@ -108,7 +112,7 @@ impl Member {
 
     fn figure(&self, world: &World, sprite: SpriteId) -> Figure {
         let motion = &self.player.motion;
-        // What has moved since their death does not carry the dead.
+        // Floors that have moved since the death do not carry the dead.
         let base = if self.is_playing { motion.feet() } else { world.floor_at(motion.cell()) };
         let (position, heading) = (motion.position(), motion.heading());
         Figure { sprite, position, base, heading, frame: self.frame().index(), opacity: u8::MAX }
@@ -145,7 +149,7 @@ impl Members {
         slots.filter_map(|(index, slot)| Some((index, slot.as_mut()?)))
     }
 
-    /// The last checkpoint of the player whose turn it is.
+    /// The last checkpoint of the current player.
     pub(crate) fn checkpoint(&self) -> Option<Cell> {
         self.member(self.turn?)?.checkpoint
     }
@@ -157,12 +161,12 @@ impl Members {
         }
     }
 
-    /// Whether anybody goes on from the checkpoint in `cell`.
+    /// Whether any player's last checkpoint is in `cell`.
     pub(crate) fn has_checkpoint(&self, cell: Cell) -> bool {
         self.each().any(|(_, member)| member.checkpoint == Some(cell))
     }
 
-    /// Refuses a state in which a step after the step `now` could fail.
+    /// Returns an error if a step after the step `now` could fail in this state.
     pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         check(self.slots.last().is_none_or(Option::is_some), "a player")?;
         self.each().try_for_each(|(_, member)| {
@@ -177,12 +181,12 @@ impl Members {
         free.or(Some(self.slots.len())).filter(|&index| index < MOST_PLAYERS)
     }
 
-    /// The positions of those who are in the way of the player in turn.
+    /// The positions of the players who are in the way of the current player.
     pub(crate) fn in_the_way(&self) -> &[DVec2] {
         &self.in_the_way
     }
 
-    /// Makes the figures of the players. Returns whether they have changed.
+    /// Updates the figures of the players. Returns whether they have changed.
     pub(crate) fn pose(&mut self, world: &World) -> bool {
         let mut figures = std::mem::take(&mut self.figures);
         let mut count = 0;
@@ -220,11 +224,11 @@ impl OfLevel for Members {
 }
 
 impl Game {
-    /// A game for several at its start, with nobody in it.
+    /// A multiplayer game at its start, without players.
     pub fn for_players(world: World, rules: Rules, multiplayer: MultiplayerRules) -> Self {
         let is_key = |kind| matches!(kind, ThingKind::Key(_));
         let keys = world.things().iter().filter(|thing| is_key(thing.kind)).copied().collect();
-        // The sprites of guards come first, as in a game for one.
+        // The sprites of guards come first, as in a single-player game.
         let mut game = Self::with_rules(world, rules);
         let sprites = PlayerColor::ALL
             .map(|color| builtin::player(color).map(|sprite| game.world.add_sprite(sprite)));
@@ -244,13 +248,13 @@ impl Game {
         game
     }
 
-    /// The rules among the players; `None` in a game for one.
+    /// The rules between players; `None` in a single-player game.
     pub fn multiplayer_rules(&self) -> Option<MultiplayerRules> {
         self.members.as_ref().map(|members| members.rules)
     }
 
-    /// Lets a player join, at the start or the nearest free place. `None` if no slot or no place is
-    /// free, and in a game for one.
+    /// Adds a player at the start or the nearest free position. Returns `None` if no slot or
+    /// position is free, or in a single-player game.
     pub fn join(&mut self, color: PlayerColor) -> Option<PlayerId> {
         let index = self.members.as_ref()?.free_slot()?;
         let motion = self.free_place(self.world.start().cell)?;
@@ -281,7 +285,8 @@ impl Game {
         PlayerId::new(index)
     }
 
-    /// Lets a player leave. Their keys lie where they were found, and their treasure still counts.
+    /// Removes a player. Their keys return to where they were found, and their treasure still
+    /// counts.
     pub fn leave(&mut self, player: PlayerId) {
         let index = player.index();
         self.put_keys_back(index);
@@ -297,9 +302,9 @@ impl Game {
         self.show();
     }
 
-    /// Advances the game by one step of [`STEP`](crate::game::STEP) seconds, in which each player
-    /// wants what their input says, and those without one want nothing. Of several inputs of one
-    /// player, the last counts. In a game for one, that is the input of the [first
+    /// Advances the game by one step of [`STEP`](crate::game::STEP) seconds. Each player has the
+    /// intents of their input. A player without an input has no intents. If a player has several
+    /// inputs, the last one counts. A single-player game takes the input of the [first
     /// slot](PlayerId::FIRST).
     pub fn step_all(&mut self, inputs: &[Input]) {
         if self.members.is_none() {
@@ -332,7 +337,7 @@ impl Game {
         self.show();
     }
 
-    /// Gives each player who plays their turn, with their intents, which `act` may change.
+    /// Gives each active player their turn, with their intents, which `act` may change.
     fn each_turn(&mut self, act: impl Fn(&mut Self, Intents) -> Intents) {
         for index in 0..self.slot_count() {
             let member = self.members.as_ref().and_then(|members| members.member(index));
@@ -365,7 +370,7 @@ impl Game {
         }
     }
 
-    /// Lets dead players go on who want to, and finds out who plays.
+    /// Revives the dead players who want to retry, and determines who plays in this step.
     fn revive(&mut self) {
         let respawns = self.multiplayer_rules().is_some_and(|rules| rules.respawns);
         for index in 0..self.slot_count() {
@@ -389,7 +394,7 @@ impl Game {
         }
     }
 
-    /// Advances the clocks of figures, and of those who watch.
+    /// Advances the clocks of figures, and the clocks of players who only watch.
     fn pass_time_of_members(&mut self) {
         let Some(members) = self.members.as_deref_mut() else { return };
         for (_, member) in members.each_mut() {
@@ -410,7 +415,7 @@ impl Game {
         }
     }
 
-    /// Notes where a player is, and whether they have just died or reached the exit.
+    /// Records the position of a player, and whether they have just died or reached the exit.
     fn settle(&mut self, index: usize) {
         let now = self.steps;
         let has_reached_exit = self.in_turn(index, |game| game.is_finished());
@@ -434,12 +439,12 @@ impl Game {
         }
     }
 
-    /// The index of the player whose turn it is.
+    /// The index of the current player.
     pub(crate) fn turn(&self) -> usize {
         self.members.as_ref().and_then(|members| members.turn).unwrap_or_default()
     }
 
-    /// Lets the player in a slot have their turn while `act` runs; does nothing if nobody is there.
+    /// Runs `act` as a turn of the player in a slot. Does nothing if the slot is empty.
     pub(crate) fn in_turn<T>(
         &mut self,
         index: usize,
@@ -460,7 +465,7 @@ impl Game {
         Some(done)
     }
 
-    /// Lets each player who plays have their turn while `act` runs.
+    /// Runs `act` as a turn of each active player.
     pub(crate) fn for_each_player(&mut self, act: impl Fn(&mut Self)) {
         let count = self.members.as_ref().map_or(1, |members| members.slots.len());
         for index in 0..count {
@@ -471,7 +476,7 @@ impl Game {
         }
     }
 
-    /// Exchanges the player who has the turn with the one in a slot. Returns whether there is one.
+    /// Swaps the current player with the player in a slot. Returns false if the slot is empty.
     fn swap_turn(&mut self, index: usize) -> bool {
         let Self { members, player, .. } = self;
         let Some(members) = members.as_deref_mut() else { return false };
@@ -481,28 +486,28 @@ impl Game {
         true
     }
 
-    /// The players who are alive and have not reached the exit, with their indices, as they were
-    /// when the step began.
+    /// The players who were alive and had not reached the exit when the step began, with their
+    /// indices.
     pub(crate) fn playing(&self) -> impl Iterator<Item = (usize, &Player)> {
         playing(&self.player, self.members.as_deref())
     }
 
-    /// Whether nobody is alive in a game for several, or has yet to reach the exit: time does not
-    /// pass in it.
+    /// Returns true if a multiplayer game has no player who is alive and has not reached the exit.
+    /// Time does not pass in such a game.
     pub fn is_deserted(&self) -> bool {
         let stands =
             |(_, member): (usize, &Member)| !member.has_won && member.player.killed_by.is_none();
         self.members.as_ref().is_some_and(|members| !members.each().any(stands))
     }
 
-    /// The member whose turn it is.
+    /// The member entry of the current player.
     pub(crate) fn member_in_turn(&mut self) -> Option<&mut Member> {
         let members = self.members.as_deref_mut()?;
         let turn = members.turn?;
         members.member_mut(turn)
     }
 
-    /// The worth of the treasure that has been found, by all players together.
+    /// The total value of the treasure found by all players.
     pub(crate) fn treasure_found(&self) -> u32 {
         let Some(members) = self.members.as_deref() else { return self.player.treasure };
         let found = members.each().map(|(index, member)| {
@@ -512,7 +517,7 @@ impl Game {
         found.fold(members.treasure_of_the_gone, u32::saturating_add)
     }
 
-    /// Puts the keys of a player back where they were found.
+    /// Puts a player's keys back where they were found.
     pub(crate) fn put_keys_back(&mut self, index: usize) {
         let Self { members, world, .. } = self;
         let Some(members) = members.as_deref_mut() else { return };
@@ -534,7 +539,7 @@ impl Game {
         self.revision += 1;
     }
 
-    /// Finds out what guards perceive of the players of a game for several, by slot.
+    /// Updates the perceptible state of the players of a multiplayer game, by slot.
     pub(crate) fn find_targets(&mut self) {
         let Some(members) = &mut self.members else { return };
         let mut targets = std::mem::take(&mut members.targets);
@@ -548,7 +553,7 @@ impl Game {
         }
     }
 
-    /// Finds out who is in the way of the player in turn.
+    /// Finds the players who are in the way of the current player.
     pub(crate) fn find_those_in_the_way(&mut self) {
         let Some(members) = &mut self.members else { return };
         if !members.rules.collides {
@@ -564,7 +569,7 @@ impl Game {
         }
     }
 
-    /// The frame of a figure of the player of a game for one, who has walked so many cells.
+    /// The sprite frame for the player of a single-player game after `walked` cells.
     pub fn frame_of_figure(&self, walked: f64) -> u8 {
         let frame = match self.player.killed_by {
             Some(_) => PlayerFrame::Down,
@@ -573,13 +578,13 @@ impl Game {
         frame.index()
     }
 
-    /// The sprite of the players of that colour; `None` in a game for one.
+    /// The sprite of players with that colour; `None` in a single-player game.
     pub fn sprite_of_players(&self, color: PlayerColor) -> Option<SpriteId> {
         self.members.as_ref()?.sprites[color as usize]
     }
 }
 
-/// [`Game::playing`], of the parts of a game.
+/// [`Game::playing`], from the parts of a game.
 pub(crate) fn playing<'a>(
     player: &'a Player,
     members: Option<&'a Members>,
@@ -593,7 +598,7 @@ pub(crate) fn playing<'a>(
     alone.into_iter().chain(several)
 }
 
-/// The same, between turns, for what moves them.
+/// The mutable form of [`playing`]. It must be called between turns.
 pub(crate) fn playing_mut<'a>(
     player: &'a mut Player,
     members: Option<&'a mut Members>,
@@ -604,7 +609,7 @@ pub(crate) fn playing_mut<'a>(
     alone.into_iter().chain(several.map(|(index, member)| (index, &mut member.player)))
 }
 
-/// The frame of somebody who stands or walks, and has walked so many cells.
+/// The frame of a player who stands or walks, after `walked` cells.
 fn walking_frame(motion: &Motion, walked: f64) -> PlayerFrame {
     match (walked / STRIDE) as u64 % 4 {
         _ if motion.is_ducking() => PlayerFrame::Duck,

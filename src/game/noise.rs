@@ -1,7 +1,8 @@
 //! Noise: the sounds that players make by moving.
 //!
-//! Walking is heard close by, and by listeners only; running from afar. Ducking makes a walk silent, at half the
-//! speed. Each step is a sound of its own, because guards notice events. Rejected: a steady sound.
+//! Only listeners hear walking, and only nearby. Running is heard from afar. Ducking makes a walk
+//! silent, at half the speed. Each footstep is a separate sound, because guards notice events.
+//! Rejected: a continuous sound.
 
 use super::Game;
 use super::intent::{Intent, Intents};
@@ -9,7 +10,7 @@ use super::player::Motion;
 use super::sound::{Sound, SoundKind, Source};
 use crate::world::{Cell, TileEffect};
 
-/// How far sounds reach over open cells, in cells.
+/// The reach of sounds over open cells, in cells.
 pub(crate) mod reach {
     pub(crate) const WALKING: u8 = 3;
     pub(crate) const RUNNING: u8 = 7;
@@ -23,33 +24,33 @@ pub(crate) mod reach {
     pub(crate) const CRASH: u8 = 6;
     pub(crate) const BLOW: u8 = 3;
     pub(crate) const SWING: u8 = 2;
-    /// Of a landing from the least height that is heard, and what each further cell adds.
+    /// The reach of a landing from the lowest audible fall, and the increase for each further cell.
     pub(crate) const LANDING: u8 = 4;
     pub(crate) const LANDING_BY_CELL: u8 = 3;
     pub(crate) const LANDING_MOST: u8 = 12;
 }
 
-/// The lowest fall whose landing is heard, in cells.
+/// The lowest fall with an audible landing, in cells.
 const LEAST_FALL: f64 = 0.5;
-/// The distance between two audible steps, in cells.
+/// The distance between two audible footsteps, in cells.
 const WALKING_STRIDE: f64 = 0.8;
 const RUNNING_STRIDE: f64 = 1.2;
-/// The part of the usual speed when ducking, and in water.
+/// The fraction of the usual speed while ducking, and in water.
 const SLOW: f64 = 0.5;
 
 impl Game {
-    /// The player makes a sound.
+    /// Makes a sound at the player's position.
     pub(crate) fn sound(&mut self, kind: SoundKind, reach: u8) {
         let (cell, by) = (self.player.motion.cell(), Source::Player(self.turn()));
         self.sounds.push(Sound { kind, cell, reach, by });
     }
 
-    /// Something in `cell` makes a sound.
+    /// Makes a sound in `cell` that no player makes.
     pub(crate) fn sound_in(&mut self, cell: Cell, kind: SoundKind, reach: u8) {
         self.sounds.push(Sound { kind, cell, reach, by: Source::Object });
     }
 
-    /// The part of the usual speed at which the player walks.
+    /// The fraction of the usual speed at which the player walks.
     pub(crate) fn pace(&self) -> f64 {
         if !self.is_mission {
             return 1.0;
@@ -67,7 +68,7 @@ impl Game {
             && motion.feet() <= self.world.floor_at(motion.cell())
     }
 
-    /// The sounds of the player's motion in this step, which began at `before`.
+    /// Makes the sounds of the player's motion in this step, which began at `before`.
     pub(crate) fn hear_steps(&mut self, before: &Motion, intents: Intents) {
         let motion = self.player.motion;
         if motion == *before || !motion.stands(&self.world) {
@@ -88,7 +89,7 @@ impl Game {
         }
     }
 
-    /// The sound of a landing after a fall of that many cells.
+    /// Makes the sound of a landing after a fall of `cells` cells.
     pub(crate) fn hear_landing(&mut self, cells: f64) {
         if cells >= LEAST_FALL && !self.is_in_water() {
             let more = (cells - LEAST_FALL) * f64::from(reach::LANDING_BY_CELL);

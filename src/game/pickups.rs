@@ -1,5 +1,5 @@
-//! Finds: treasure, healing, supplies and keys, which the player takes by reaching them, and notes,
-//! which stay.
+//! Pickups: treasure, healing, supplies and keys, which the player takes by reaching them. Notes
+//! can be read but stay where they are.
 
 use super::Game;
 use super::guards::Alarm;
@@ -7,7 +7,7 @@ use super::health::Flash;
 use super::player::{Player, Supplies};
 use crate::world::{Cell, Difficulty, Supply, ThingKind};
 
-/// The least worth of a cup and of a crown.
+/// The minimum value of a cup and of a crown.
 const CUP: u16 = 25;
 const CROWN: u16 = 100;
 
@@ -24,7 +24,7 @@ impl Game {
         })
     }
 
-    /// What the player has reached and would take.
+    /// The kind of thing that the player has reached and would take.
     pub(crate) fn find(&self) -> Option<ThingKind> {
         if self.world.things().is_empty() {
             return None;
@@ -37,7 +37,7 @@ impl Game {
         })
     }
 
-    /// Takes what the player has reached: one thing in a step.
+    /// Takes one thing that the player has reached. At most one thing is taken in each step.
     pub(crate) fn take_finds(&mut self) {
         let Some(kind) = self.find() else { return };
         match kind {
@@ -68,7 +68,7 @@ impl Game {
         self.world.take_things(self.player.motion.cell(), |it| it == kind);
     }
 
-    /// Says what keeps a player who comes from `before` from taking something or leaving.
+    /// Tells a player who has come from `before` why they cannot take something or leave.
     pub(crate) fn refuse(&mut self, before: Cell) {
         if self.player.motion.cell() == before || !self.is_mission {
             return;
@@ -95,12 +95,12 @@ impl Game {
         }
     }
 
-    /// The treasure without which the exit stays closed.
+    /// The value of the treasure that is missing before the exit opens.
     pub(crate) fn treasure_missing(&self) -> u32 {
         self.world.treasure_needed().saturating_sub(self.treasure_found())
     }
 
-    /// Whether the exits are closed because guards follow somebody: so it is in the hardest game.
+    /// Whether the exits are closed because guards follow a player. Only on the hardest difficulty.
     pub(crate) fn alarm_closes_exits(&self) -> bool {
         self.rules.difficulty == Difficulty::Hard && self.guards.alarm() == Alarm::Raised
     }

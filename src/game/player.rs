@@ -1,4 +1,4 @@
-//! A player: everything in the game that belongs to one of them, so that a game may have several.
+//! A player: all state that belongs to one player, so that a game can have several.
 
 mod motion;
 
@@ -15,7 +15,7 @@ use super::stored::{Unrestorable, check};
 use super::tally::Counts;
 use crate::world::{KeyId, Supply, World};
 
-/// More than a player ever counts: it grows for years before it overflows.
+/// An upper bound on a player's counts. A count needs years to grow from here to an overflow.
 const MOST_COUNT: u32 = u32::MAX / 2;
 
 /// A player.
@@ -25,26 +25,26 @@ pub(crate) struct Player {
     pub(crate) health: Health,
     pub(crate) supplies: Supplies,
     pub(crate) keys: BTreeSet<KeyId>,
-    /// The worth of the treasure found.
+    /// The total value of the treasure found.
     pub(crate) treasure: u32,
     pub(crate) has_light: bool,
-    /// The steps until the player can strike again.
+    /// The number of steps until the player can strike again.
     pub(crate) strike_wait: u16,
     /// The intents of the last step that act once for each press.
     pub(crate) pressed: Intents,
-    /// The height from which the player falls: the highest since they last stood.
+    /// The height from which the player falls: the greatest height since they last stood.
     pub(crate) fell_from: f64,
-    /// How far the player has walked since the last audible step, in cells.
+    /// The distance walked since the last audible footstep, in cells.
     pub(crate) stride: f64,
-    /// The number of steps in cold water, without a break.
+    /// The number of consecutive steps in cold water.
     pub(crate) in_water: u32,
-    /// The last thrust of spikes that hurt the player, by the step in which it began.
+    /// The last thrust of spikes that hurt the player, identified by the step in which it began.
     pub(crate) last_thrust: Option<u64>,
     pub(crate) warnings: Warnings,
     pub(crate) hearing: Hearing,
     pub(crate) flash: Option<Flash>,
     pub(crate) notice: Notice,
-    /// What has killed the player, if something has.
+    /// The cause of death, if the player is dead.
     pub(crate) killed_by: Option<Cause>,
     pub(crate) counts: Counts,
 }
@@ -75,7 +75,7 @@ impl Player {
         }
     }
 
-    /// Refuses a state in which a step after the step `now` could fail.
+    /// Returns an error if a step after the step `now` could fail in this state.
     pub(crate) fn check(&self, world: &World, now: u64) -> Result<(), Unrestorable> {
         let has_key = |key: &KeyId| usize::from(key.0) < world.key_count();
         check(self.keys.iter().all(has_key), "a key")?;
@@ -89,24 +89,24 @@ impl Player {
         self.hearing.check(world)
     }
 
-    /// The same player at another place.
+    /// The same player at another position.
     #[must_use]
     pub(crate) fn at(self, motion: Motion) -> Self {
         Self { motion, fell_from: motion.feet(), ..self }
     }
 
-    /// Those of `presses` that begin in this step.
+    /// The part of `presses` that begins in this step.
     pub(crate) fn fresh(&self, presses: Intents) -> Intents {
         presses.without(self.pressed)
     }
 
-    /// Whether the player sees a message or a flash, or hears a sound.
+    /// Returns true if the player sees a message or a flash, or hears a sound.
     pub(crate) fn is_shown_anything(&self) -> bool {
         self.notice.text().is_some() || self.flash.is_some() || !self.hearing.heard().is_empty()
     }
 
-    /// Advances the player's clocks by `steps`, except those of what they hear. Returns whether a
-    /// message ended, or a flash faded.
+    /// Advances the player's clocks by `steps` steps, except the clocks of their hearing. Returns
+    /// whether a message ended or a flash faded.
     pub(crate) fn wait(&mut self, steps: u64) -> bool {
         let short = u16::try_from(steps).unwrap_or(u16::MAX);
         self.strike_wait = self.strike_wait.saturating_sub(short);
@@ -125,13 +125,13 @@ const DURATION: u64 = 180;
 pub(crate) struct Supplies([u8; Supply::ALL.len()]);
 
 impl Supplies {
-    /// The most of each that a player carries.
+    /// The maximum of each tool.
     pub(crate) const MOST: u8 = 9;
 
-    /// Those of a player at the start.
+    /// The tools of a player at the start.
     pub(crate) const AT_START: Self = Self([3, 0, 0]);
 
-    /// Whether a player can carry them.
+    /// Whether a player can carry these tools.
     pub(crate) fn are_possible(self) -> bool {
         self.0.iter().all(|&count| count <= Self::MOST)
     }
@@ -141,20 +141,20 @@ impl Supplies {
         self.0[supply as usize]
     }
 
-    /// Adds `more` of `supply`, as many as the player can carry.
+    /// Adds `more` of `supply`, up to the maximum.
     pub(crate) fn add(&mut self, supply: Supply, more: u8) {
         let count = &mut self.0[supply as usize];
         *count = count.saturating_add(more).min(Self::MOST);
     }
 
-    /// The larger number of each.
+    /// The larger of the two numbers for each tool.
     #[must_use]
     pub(crate) fn or_more(mut self, other: Self) -> Self {
         self.0.iter_mut().zip(other.0).for_each(|(count, other)| *count = other.max(*count));
         self
     }
 
-    /// Takes one of `supply`; returns whether there was one.
+    /// Takes one of `supply`. Returns whether there was one.
     pub(crate) fn take(&mut self, supply: Supply) -> bool {
         let count = &mut self.0[supply as usize];
         let has_one = *count > 0;
@@ -163,7 +163,7 @@ impl Supplies {
     }
 }
 
-/// A message that is shown for some more steps.
+/// A message that is shown for a limited number of steps.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Notice {
     text: String,
@@ -171,7 +171,7 @@ pub(crate) struct Notice {
 }
 
 impl Notice {
-    /// Shows `text` from now on.
+    /// A message that is shown from now on.
     pub(crate) fn new(text: String) -> Self {
         Self { text, steps_left: DURATION }
     }
@@ -181,7 +181,7 @@ impl Notice {
         (self.steps_left > 0).then_some(&self.text)
     }
 
-    /// Advances by `steps` steps, and returns whether the message ended.
+    /// Advances by `steps` steps. Returns whether the message ended.
     pub(crate) fn wait(&mut self, steps: u64) -> bool {
         let was_said = self.steps_left > 0;
         self.steps_left = self.steps_left.saturating_sub(steps);

@@ -1,4 +1,4 @@
-//! What can be known about a game from outside.
+//! Queries about a game from outside.
 
 use super::guards::{Alarm, GuardView};
 use super::health::{Flash, Health};
@@ -8,14 +8,14 @@ use super::{Game, Rules, STEP};
 use crate::generate::Site;
 use crate::world::{Camera, Cell, FieldOfView, Supply, Thing, ThingKind, World};
 
-/// How a game stands.
+/// The outcome of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outcome {
-    /// It goes on.
+    /// The game goes on.
     Playing,
     /// The player is dead, and may [retry](super::Intent::Retry).
     Dead {
-        /// What killed the player, as a part of a sentence: "a hound".
+        /// The cause of death, as part of a sentence: "a hound".
         cause: &'static str,
     },
     /// The player has reached the exit.
@@ -23,12 +23,12 @@ pub enum Outcome {
 }
 
 impl Game {
-    /// The cell of a generated level that the player is in; `None` on a map.
+    /// The player's cell in a generated level; `None` on a map.
     pub fn site(&self) -> Option<Site> {
         Some(self.window.as_ref()?.site(self.player.motion.cell()))
     }
 
-    /// The cell of a generated level that is the world's north-west cell; `None` on a map.
+    /// The cell of a generated level at the world's north-west corner; `None` on a map.
     pub fn corner(&self) -> Option<Site> {
         Some(self.window.as_ref()?.site(Cell { column: 0, row: 0 }))
     }
@@ -39,8 +39,8 @@ impl Game {
         is_far || self.world.has_exit()
     }
 
-    /// The world in its present state: with its doors and mechanisms as they are, without what was
-    /// taken, and with guards and missiles as [figures](World::figures).
+    /// The world in its present state: with the current doors and mechanisms, without the things
+    /// that were taken, and with guards and missiles as [figures](World::figures).
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -64,7 +64,7 @@ impl Game {
         !self.player.motion.stands(&self.world)
     }
 
-    /// What the game depends on beside its level and the intents.
+    /// The rules of the game.
     pub fn rules(&self) -> Rules {
         self.rules
     }
@@ -74,8 +74,9 @@ impl Game {
         self.steps
     }
 
-    /// The number of cells, doors, spikes, guards and sounds that the last step looked at, each pair of
-    /// them counted that it compared: a measure of the time that it took, the same on every machine.
+    /// The number of cells, doors, spikes, guards and sounds that the last step examined. A
+    /// comparison of two of them counts once for each pair. This number measures the run time of
+    /// the step and is the same on every machine.
     #[doc(hidden)]
     pub fn work(&self) -> u64 {
         *self.work + self.guards.work()
@@ -86,7 +87,8 @@ impl Game {
         self.steps as f64 * STEP
     }
 
-    /// A message to the player, such as why a door does not open. It lasts for a few seconds.
+    /// The current message to the player, for example why a door does not open. A message lasts for
+    /// a few seconds.
     pub fn message(&self) -> Option<&str> {
         self.player.notice.text()
     }
@@ -96,8 +98,8 @@ impl Game {
         self.player.keys.iter().map(|&key| self.world.key_name(key))
     }
 
-    /// Whether there is more in the level than walls, doors, keys and exits, so that the player may
-    /// be hurt and has tools.
+    /// Whether the level contains more than walls, doors, keys and exits. In such a level, the
+    /// player can be hurt and has tools.
     pub fn is_mission(&self) -> bool {
         self.is_mission
     }
@@ -107,7 +109,7 @@ impl Game {
         self.player.health
     }
 
-    /// The number of a tool that the player carries; at most 9.
+    /// The number of a tool that the player carries, at most 9.
     pub fn supplies(&self, supply: Supply) -> u8 {
         self.player.supplies.count(supply)
     }
@@ -117,12 +119,12 @@ impl Game {
         self.player.has_light
     }
 
-    /// How well guards see the player where they are: from 0 for not at all to 255.
+    /// The player's visibility to guards at their position, from 0 for invisible to 255.
     pub fn visibility(&self) -> u8 {
         self.target().visibility
     }
 
-    /// How much the guards know.
+    /// The state of alarm of the guards.
     pub fn alarm(&self) -> Alarm {
         self.guards.alarm()
     }
@@ -132,29 +134,29 @@ impl Game {
         self.guards.views()
     }
 
-    /// What the player has heard in the last steps, the newest last.
+    /// The recent sounds that the player has heard, newest last.
     pub fn heard(&self) -> &[Heard] {
         self.player.hearing.heard()
     }
 
-    /// What the edge of the picture shows now.
+    /// The current flash at the edge of the screen.
     pub fn flash(&self) -> Option<Flash> {
         self.player.flash
     }
 
-    /// A number that grows with every visible change other than the camera: a door moves, a key is
-    /// taken, a guard moves, the message changes.
+    /// A number that increases with every visible change except changes of the camera. Examples: a
+    /// door moves, a key is taken, a guard moves, the message changes.
     pub fn revision(&self) -> u64 {
         self.revision + self.figure_revision
     }
 
-    /// A number that grows with every such change but those of [figures](Game::figures).
+    /// A number that increases with every such change except changes of [figures](Game::figures).
     #[cfg(feature = "terminal")]
     pub(crate) fn revision_without_figures(&self) -> u64 {
         self.revision
     }
 
-    /// How the game stands.
+    /// The outcome of the game.
     pub fn outcome(&self) -> Outcome {
         match self.player.killed_by {
             Some(cause) => Outcome::Dead { cause: cause.name() },
@@ -163,8 +165,9 @@ impl Game {
         }
     }
 
-    /// Whether the player has reached the exit, with as much treasure as it asks for, and in the hardest
-    /// game while no alarm is raised. Nothing moves after that, and the clock stops.
+    /// Whether the player has reached the exit with the treasure that it requires. On the hardest
+    /// difficulty, the alarm must not be raised. Once this is true, nothing moves and the clock
+    /// stops.
     pub fn is_finished(&self) -> bool {
         !self.is_dead()
             && self.things_reached().any(|thing| thing.kind == ThingKind::Exit)
@@ -176,8 +179,7 @@ impl Game {
         self.player.killed_by.is_some()
     }
 
-    /// The things in the player's cell that are neither above the player's head nor below their
-    /// feet.
+    /// The things in the player's cell that overlap the height of their body.
     pub(crate) fn things_reached(&self) -> impl Iterator<Item = &Thing> {
         self.things_reached_by(&self.player)
     }

@@ -1,20 +1,20 @@
-//! Rest: steps in which nothing changes but clocks.
+//! Rest: steps in which only clocks change.
 //!
-//! A program that shows a game sleeps while it rests, and then advances the clocks at once. The
-//! two ways give the same game, bit for bit.
+//! A program that shows a game can sleep while the game rests and then advance the clocks all at
+//! once. Both ways produce the same game, bit for bit.
 //!
-//! A game for several players rests while nobody plays in it. Rejected: a game that also rests while all of its
-//! players stand still, because one of them nearly always moves.
+//! A multiplayer game rests while nobody plays in it. Rejected: resting also while all of its
+//! players stand still. One of them nearly always moves.
 
 use super::Game;
 use super::intent::Intents;
 
 impl Game {
-    /// Advances the clocks by `steps` steps in which nothing moves. Has the effect of as many calls
-    /// of [`Game::step`] if the game [is at rest](Game::is_at_rest).
+    /// Advances the clocks by `steps` steps in which nothing moves. If the game [is at
+    /// rest](Game::is_at_rest), this has the same effect as `steps` calls of [`Game::step`].
     pub fn wait(&mut self, steps: u64) {
         if self.members.is_some() {
-            // Every further step without players is equal to the first.
+            // Without players, every further step has the same result as the first.
             if steps > 0 {
                 self.step_all(&[]);
             }
@@ -30,9 +30,9 @@ impl Game {
         }
     }
 
-    /// Whether any number of steps with these intents would change nothing but the clock: the
-    /// player stands still or pushes against a wall, all doors are closed, nobody else moves, and
-    /// there is no message.
+    /// Returns true if steps with these intents would change only the clock, however many there
+    /// are. The player stands still or pushes against a wall, all doors are closed, nobody else
+    /// moves, and no message is shown.
     pub fn is_at_rest(&self, intents: Intents) -> bool {
         if self.members.is_some() {
             return self.is_deserted();
@@ -43,8 +43,9 @@ impl Game {
         self.is_finished() || !self.would_change(intents)
     }
 
-    /// Whether a step with these intents would change anything but clocks. Messages, doors that wait, spikes, water and
-    /// guards on the floor count as changes, because they have clocks of their own.
+    /// Returns true if a step with these intents would change anything but clocks. Messages, doors
+    /// that wait, spikes, water and guards on the floor count as changes, because they have clocks
+    /// of their own.
     fn would_change(&self, intents: Intents) -> bool {
         let intents = self.at_a_door(intents);
         let motion = self.player.motion;

@@ -1,4 +1,4 @@
-//! What a game depends on beside its level: its rules, and what its players want.
+//! The inputs of a game other than its level: its rules, and the intents of its players.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,34 +8,34 @@ use crate::world::Difficulty;
 /// The duration of a step, in seconds.
 pub const STEP: f64 = 1.0 / STEPS_PER_SECOND as f64;
 
-/// The steps of a game in a second.
+/// The number of steps in a second.
 pub const STEPS_PER_SECOND: u32 = 60;
 
-/// The most players in a game.
+/// The maximum number of players in a game.
 pub const MOST_PLAYERS: usize = 16;
 
-/// How many steps ago a player may have seen what they act upon: 250 ms.
+/// The maximum age of the step that a player acts upon, in steps: 250 ms.
 pub const MOST_LAG: u64 = 15;
 
-/// The choices that a game begins with. The same level, rules and intents give the same game.
+/// The options of a game at its start. The same level, rules and intents produce the same game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Rules {
-    /// How hard the game is.
+    /// The difficulty.
     pub difficulty: Difficulty,
-    /// The seed of all chance in the game.
+    /// The seed of all random numbers in the game.
     pub seed: u64,
 }
 
-/// A player in a game for several: the number of a slot.
+/// A player of a multiplayer game, identified by the number of their slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "u8")]
 pub struct PlayerId(u8);
 
 impl PlayerId {
-    /// The first slot, which is that of the only player of a game for one.
+    /// The first slot. In a single-player game, the player's slot.
     pub const FIRST: Self = Self(0);
 
-    /// The slot with that index; `None` from [`MOST_PLAYERS`] on.
+    /// The slot with that index; `None` if it is [`MOST_PLAYERS`] or more.
     pub fn new(index: usize) -> Option<Self> {
         (index < MOST_PLAYERS).then_some(Self(index as u8))
     }
@@ -54,29 +54,29 @@ impl TryFrom<u8> for PlayerId {
     }
 }
 
-/// The rules among the players of a game.
+/// The rules between the players of a game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MultiplayerRules {
-    /// Whether players are in each other's way. Otherwise they walk through each other.
+    /// Whether players block each other. Otherwise they walk through each other.
     pub collides: bool,
-    /// Whether a dead player goes on from their last checkpoint when they want to
+    /// Whether a dead player continues from their last checkpoint when they want to
     /// [retry](super::Intent::Retry).
     pub respawns: bool,
-    /// Whom the map of a player shows.
+    /// The other players that a player's map shows.
     pub sees: Sees,
-    /// What a blow does to another player.
+    /// The effect of a blow on another player.
     pub strikes: Strikes,
 }
 
 impl Default for MultiplayerRules {
-    /// Players walk through each other, go on after death, see each other on the map, and cannot
+    /// Players walk through each other, continue after death, see each other on the map, and cannot
     /// strike each other.
     fn default() -> Self {
         Self { collides: false, respawns: true, sees: Sees::All, strikes: Strikes::Nobody }
     }
 }
 
-/// Whom the map of a player shows.
+/// The other players that a player's map shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sees {
     /// No other player.
@@ -87,25 +87,25 @@ pub enum Sees {
     All,
 }
 
-/// What a blow does to another player. It takes no health.
+/// The effect of a blow on another player. It takes no health.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strikes {
-    /// Nothing: blows find guards only.
+    /// None: blows hit only guards.
     Nobody,
-    /// The other one is pushed away.
+    /// The victim is pushed away.
     Push,
-    /// The other one is pushed away, and lies on the floor for 2 seconds. For 2 seconds more, nobody
+    /// The victim is pushed away and lies on the floor for 2 seconds. For 2 more seconds, nobody
     /// can strike them.
     Stun,
 }
 
-/// What one player wants in a step.
+/// The input of one player for a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input {
     /// The player.
     pub player: PlayerId,
-    /// What they want.
+    /// The player's intents.
     pub intents: Intents,
-    /// The number of [steps](super::Game::steps) of the game in the picture that they saw last.
+    /// The number of [steps](super::Game::steps) of the game in the frame that the player saw last.
     pub seen: u64,
 }

@@ -1,9 +1,9 @@
-//! Memory that steps reuse.
+//! Reusable memory for steps.
 
 use std::ops::{Deref, DerefMut};
 
-/// Memory that a step fills before it reads it. It is kept for the next step, so that none allocates.
-/// Games that differ in it are equal.
+/// Memory that a step fills before it reads it. Reusing it avoids an allocation in each step.
+/// Comparisons ignore it: games that differ only in scratch memory are equal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch<T>(T);
 

@@ -1,4 +1,4 @@
-//! Scripts: what a player wants, and for how long, as text.
+//! Scripts: a player's intents and their durations, as text.
 //!
 //! ```text
 //! # Out of the gate, and once around.
@@ -14,15 +14,15 @@
 //! 4 s       turn-left
 //! ```
 //!
-//! A line has a duration, in seconds or steps, and everything that is wanted meanwhile, or `stand`
-//! for nothing. `turn:1.5` and `tilt:-0.25` are the degrees by which the player turns clockwise and
-//! tilts up in each step. A name in brackets begins a section, for reports on parts of a script. A
-//! `#` begins a comment. Lines at the top name the `level`, the `difficulty` and the `seed` of the game.
-//! The program that plays the script chooses what they do not name. The same script in the same map
-//! gives the same states, bit for bit.
+//! A line has a duration, in seconds or steps, and all intents during that time, or `stand` for
+//! none. `turn:1.5` and `tilt:-0.25` are the angles, in degrees, by which the player turns
+//! clockwise and tilts up in each step. A name in brackets begins a section, for reports on parts
+//! of a script. A `#` begins a comment. Lines at the top set the `level`, the `difficulty` and the
+//! `seed` of the game. The program that plays the script chooses the settings that they leave out.
+//! The same script in the same map produces the same states, bit for bit.
 //!
-//! Lists of presses and releases with times were refused: their authors would have to add up times,
-//! and a missing line would hold a key for ever.
+//! Rejected: lists of presses and releases with times. Authors would have to add up times, and a
+//! missing line would hold a key forever.
 
 use std::io::Write;
 use std::ops::Range;
@@ -55,23 +55,23 @@ pub struct Script {
 /// A section of a script, with at least one stretch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Section {
-    /// Empty for what comes before the first name.
+    /// The name. Empty for the stretches before the first named section.
     pub name: String,
     /// The stretches of the section.
     pub stretches: Vec<Stretch>,
 }
 
-/// A time during which the wanted intents do not change.
+/// A period during which the intents do not change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     /// The duration in steps of [`STEP`](super::STEP) seconds, from 1 to [`Stretch::MOST_STEPS`].
     pub steps: u32,
-    /// The wanted intents.
+    /// The intents in each of these steps.
     pub intents: Intents,
 }
 
 impl Script {
-    /// Reads a script, which faults call `name`.
+    /// Reads a script. Faults refer to it as `name`.
     ///
     /// # Errors
     /// All faults of the text.
@@ -87,20 +87,20 @@ impl Script {
         reader.end(name)
     }
 
-    /// As [`parse`](Self::parse), from the content of a file.
+    /// Like [`parse`](Self::parse), but reads the content of a file.
     ///
     /// # Errors
-    /// All faults of the text; or that it is not UTF-8.
+    /// All faults of the text, or the fault that it is not UTF-8.
     pub fn from_bytes(content: Vec<u8>, name: &str) -> Result<Self, Faults> {
         Self::parse(&Faults::text_of(content, name, "script")?, name)
     }
 
-    /// The game that the script belongs to.
+    /// The settings of the game that the script belongs to.
     pub fn header(&self) -> &Header {
         &self.header
     }
 
-    /// The sections in their order; there is at least one, and none is empty.
+    /// The sections in order. There is at least one, and none is empty.
     pub fn sections(&self) -> &[Section] {
         &self.sections
     }
@@ -133,13 +133,13 @@ impl Stretch {
     pub const MOST_STEPS: u32 = 60 * 60 * STEPS_PER_SECOND;
 }
 
-/// Multiples of this many steps are written in seconds with one digit, without loss.
+/// Multiples of this many steps are exact in seconds with one decimal digit.
 const STEPS_PER_TENTH: u32 = STEPS_PER_SECOND / 10;
-/// The word for wanting nothing.
+/// The word for no intents.
 const STAND: &str = "stand";
 
 impl fmt::Display for Script {
-    /// A text that reads as the same script.
+    /// Writes text that parses to an equal script.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.header.fmt(f)?;
         if !self.header.is_empty() && self.sections.first().is_some_and(|it| it.name.is_empty()) {
@@ -158,7 +158,7 @@ impl fmt::Display for Script {
 }
 
 impl fmt::Display for Stretch {
-    /// A line without its end.
+    /// Writes the line without a line break.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let duration = match self.steps {
             1 => "1 step".to_owned(),
@@ -172,14 +172,14 @@ impl fmt::Display for Stretch {
 }
 
 impl Intents {
-    /// The words of a script for the set.
+    /// The words for the set in a script.
     pub fn words(self) -> String {
         let names = self.iter().map(|intent| intent.name().to_owned());
         let wanted: Vec<String> = names.chain(self.look().words()).collect();
         if wanted.is_empty() { STAND.to_owned() } else { wanted.join(" ") }
     }
 
-    /// The set that words of a script name; `None` if they name none.
+    /// The set that the words of a script name; `None` if they do not name a set.
     pub fn from_words(text: &str) -> Option<Self> {
         let header = Header::default();
         let reader = Reader { text, header, sections: Vec::new(), faults: Vec::new() };
@@ -188,7 +188,7 @@ impl Intents {
     }
 }
 
-/// The game that a script belongs to, as far as it says so.
+/// The settings of a game in a script's header. Each is optional.
 ///
 /// ```
 /// use cellcaster::game::Script;
@@ -204,18 +204,19 @@ pub struct Header {
     pub level: Option<LevelName>,
     /// The difficulty.
     pub difficulty: Option<Difficulty>,
-    /// The seed of the game's chance, and of the descent if the level is a floor. The levels of maps are
-    /// played with the seed 0, so that they are the same for all and a route can be learnt.
+    /// The seed of the game's random numbers, and of the descent if the level is a floor. Levels
+    /// from maps are played with the seed 0, so that they are the same for everyone and a route can
+    /// be learnt.
     pub seed: Option<u64>,
 }
 
-/// The name of a level in a header: that of a built-in level, `floor` and a number for a
-/// [descent](crate::generate::descent) from that floor on, or the path of a map file. It is one line without `#`, and has no
-/// blanks at its ends.
+/// The name of a level in a header: the name of a built-in level, `floor` and a number for a
+/// [descent](crate::generate::descent) from that floor on, or the path of a map file. It is one
+/// line without `#`, and has no blanks at its ends.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LevelName(String);
 
-/// The words with which the lines of a header begin.
+/// The first words of the lines of a header.
 const WORDS: [&str; 3] = [LEVEL, DIFFICULTY, SEED];
 const LEVEL: &str = "level";
 const DIFFICULTY: &str = "difficulty";
@@ -224,7 +225,7 @@ const SEED: &str = "seed";
 const FLOOR: &str = "floor ";
 
 impl LevelName {
-    /// The name `name`, if a header can have it.
+    /// The level name `name`; `None` if it is not valid in a header.
     pub fn new(name: &str) -> Option<Self> {
         let is_line = !name.is_empty() && name.trim() == name;
         let is_plain = !name.contains(|c: char| c == '#' || c.is_control());
@@ -241,7 +242,7 @@ impl LevelName {
         &self.0
     }
 
-    /// The number of the floor, if it is one.
+    /// The number of the floor; `None` if the level is not a floor.
     pub fn floor(&self) -> Option<u32> {
         let number = self.0.strip_prefix(FLOOR)?.trim_start().parse().ok();
         number.filter(|&number| number > 0)
@@ -249,7 +250,7 @@ impl LevelName {
 }
 
 impl fmt::Display for Header {
-    /// Writes its lines.
+    /// Writes the header's lines.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(level) = &self.level {
             writeln!(f, "{LEVEL:<10} {}", level.as_str())?;
@@ -270,13 +271,13 @@ impl Header {
         Self { level, difficulty: Some(rules.difficulty), seed: Some(rules.seed) }
     }
 
-    /// The rules, with defaults where it does not say.
+    /// The rules, with defaults for missing values.
     pub fn rules(&self) -> Rules {
         let Rules { difficulty, seed } = Rules::default();
         Rules { difficulty: self.difficulty.unwrap_or(difficulty), seed: self.seed.unwrap_or(seed) }
     }
 
-    /// Whether it says nothing.
+    /// Whether the header has no values.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -286,7 +287,7 @@ impl Header {
         WORDS.contains(&word)
     }
 
-    /// Reads a line that begins with one of the words.
+    /// Reads a line that begins with one of the header's words.
     pub(crate) fn read_line(&mut self, text: &str, line: Range<usize>) -> Result<(), Fault> {
         let Some(first) = words(text, line.clone()).into_iter().next() else { return Ok(()) };
         let word = &text[first.clone()];
@@ -350,12 +351,13 @@ fn example(word: &str) -> String {
 
 /// Writes a script while the game is played.
 ///
-/// A stretch is written when it ends, in one piece, so that the output is a script at any time. The
-/// last stretch is written when the recorder is [finished](Recorder::finish) or dropped.
+/// The recorder writes a stretch in one piece when the stretch ends, so the output is a valid
+/// script at any time. It writes the last stretch when it is [finished](Recorder::finish) or
+/// dropped.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     output: W,
-    /// It is written before the first stretch, so that a game that did not start leaves nothing.
+    /// Written before the first stretch, so that a game that did not start leaves no output.
     header: Option<Header>,
     current: Option<Stretch>,
 }
@@ -372,7 +374,7 @@ impl<W: Write> Recorder<W> {
         Self { output, header, current: None }
     }
 
-    /// Records that the player wants `intents` for `steps` more steps.
+    /// Records `steps` more steps with `intents`.
     ///
     /// # Errors
     /// If `output` fails.
@@ -415,12 +417,12 @@ impl<W: Write> Recorder<W> {
 
 impl<W: Write> Drop for Recorder<W> {
     fn drop(&mut self) {
-        // Callers who need the error have called `finish`.
+        // Callers that need the error have called `finish`.
         _ = self.finish();
     }
 }
 
-/// What has been read so far.
+/// The parts of a script that have been read.
 struct Reader<'t> {
     text: &'t str,
     header: Header,
@@ -451,7 +453,7 @@ impl Reader<'_> {
         match self.stretch(line) {
             Ok(stretch) => self.section().stretches.push(stretch),
             Err(fault) => {
-                // One fault is enough: if this line were correct, the section would not be empty.
+                // One fault is enough. If this line were correct, the section would not be empty.
                 self.faults.push(fault);
             }
         }
@@ -590,7 +592,7 @@ impl Reader<'_> {
     }
 }
 
-/// `intents` with the turn or tilt of `word`, such as `turn:-1.5`.
+/// Adds the turn or tilt of `word`, such as `turn:-1.5`, to `intents`.
 fn looking(intents: Intents, word: &str, place: Range<usize>) -> Result<Intents, Fault> {
     let (name, degrees) = word.split_once(':').unwrap_or((word, ""));
     let mut look = intents.look();

@@ -1,4 +1,4 @@
-//! What a game shows of itself in its world: guards, missiles and smoke as figures, and lamps that
+//! The visible state of a game in its world: guards, missiles and smoke as figures, and lamps that
 //! move.
 
 use super::Game;
@@ -9,7 +9,7 @@ use super::tools::{Missile, MissileKind, Puff};
 use crate::world::sprite::builtin;
 use crate::world::{Figure, Heading, Lamp, Light, Reach, SpriteId, World};
 
-/// The sprites of what flies; each is `None` where nothing can fly.
+/// The sprites of missiles and smoke; each is `None` in a level in which nothing can fly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Sprites {
     pebble: Option<SpriteId>,
@@ -17,12 +17,12 @@ pub(crate) struct Sprites {
     flask: Option<SpriteId>,
     bolt: Option<SpriteId>,
     smoke: Option<SpriteId>,
-    /// Added when it is first shown.
+    /// Added to the world when it is first shown.
     player: Option<SpriteId>,
 }
 
 impl Sprites {
-    /// The sprites, which are added to `world`.
+    /// Adds the sprites to `world`.
     pub(crate) fn added_to(world: &mut World) -> Self {
         let mut add = |name| builtin::named(name).map(|sprite| world.add_sprite(sprite));
         Self {
@@ -35,12 +35,12 @@ impl Sprites {
         }
     }
 
-    /// Whether there is a sprite for a guest.
+    /// Whether the sprite for a guest exists.
     pub(crate) fn has_player(self) -> bool {
         self.player.is_some()
     }
 
-    /// Adds the sprite for a guest to `world`, if it is not there yet.
+    /// Adds the sprite for a guest to `world`, unless it exists already.
     pub(crate) fn add_player(&mut self, world: &mut World) {
         if self.player.is_none() {
             self.player = builtin::named("player").map(|sprite| world.add_sprite(sprite));
@@ -79,14 +79,14 @@ impl Sprites {
 }
 
 impl Game {
-    /// The game, which shows its figures and lamps.
+    /// The game, with its figures and lamps shown.
     #[must_use]
     pub(crate) fn shown(mut self) -> Self {
         self.show();
         self
     }
 
-    /// Shows figures and lamps where they are now.
+    /// Updates the figures and lamps.
     pub(crate) fn show(&mut self) {
         self.show_lamps();
         if self.is_mission || self.members.is_some() {
@@ -94,8 +94,8 @@ impl Game {
         }
     }
 
-    /// Shows the figure of somebody who is not in the game, or nobody, until the next step. The
-    /// figure has the sprite of a player, which no other figure has.
+    /// Shows the figure of a guest, who is not in the game, or no guest, until the next step. The
+    /// figure has the sprite `player`, which no other figure uses.
     #[cfg(feature = "terminal")]
     pub(crate) fn show_guest(&mut self, guest: impl FnOnce(SpriteId) -> Option<Figure>) {
         self.sprites.add_player(&mut self.world);
@@ -105,14 +105,14 @@ impl Game {
         self.world.set_figures(all.into_iter());
     }
 
-    /// The figures of the game itself, without a guest.
+    /// The figures of the game itself, without the guest's.
     #[cfg(feature = "terminal")]
     pub(crate) fn figures(&self) -> impl Iterator<Item = &Figure> {
         let is_guest = |figure: &&Figure| Some(figure.sprite) == self.sprites.player;
         self.world.figures().iter().filter(move |figure| !is_guest(figure))
     }
 
-    /// What guards can perceive of the player.
+    /// The state of the player that guards can perceive.
     pub(crate) fn target(&self) -> Target {
         self.target_at(&self.player)
     }
@@ -148,7 +148,7 @@ impl Game {
         self.figure_revision += 1;
     }
 
-    /// Shows lamps where they are now.
+    /// Updates the moving lamps.
     pub(crate) fn show_lamps(&mut self) {
         let lit = playing(&self.player, self.members.as_deref());
         let lit = lit.filter(|(_, player)| player.has_light);

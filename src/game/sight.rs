@@ -1,12 +1,12 @@
-//! Lines of sight between two points at heights.
+//! Lines of sight between two points at given heights.
 //!
-//! A line is followed through the cells in the exact order in which it enters them. In each cell it
-//! has to stay in the same gap between floors and ceilings. Doors hide as much as their leaf
-//! covers, and shapes what is behind them; glass and masks hide nothing. Smoke hides what is in it
-//! and behind it.
+//! The walk follows a line through the cells in the exact order in which the line enters them. In
+//! each cell the line has to stay in one gap between a floor and a ceiling. A door hides everything
+//! behind its leaf, and a shape everything behind it. Glass and masks hide nothing. Smoke hides
+//! everything inside and behind it.
 //!
-//! Rejected: the rays of the casters. They end at the first solid cell whatever its height, and do not know
-//! where the line ends.
+//! Rejected: the rays of the casters. They end at the first solid cell whatever its height, and do
+//! not know where the line ends.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -21,10 +21,10 @@ pub(crate) struct Point {
     pub(crate) height: f64,
 }
 
-/// Smoke: a disc that nobody sees through.
+/// Smoke: an opaque disc.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cloud {
-    /// The middle, in cells.
+    /// The centre, in cells.
     pub(crate) position: DVec2,
     /// The radius, in cells.
     pub(crate) radius: f64,
@@ -82,7 +82,7 @@ impl Line<'_> {
         }
     }
 
-    /// The same for two points above each other.
+    /// Like `is_free`, for two points above each other.
     fn is_in_one_gap(&self) -> bool {
         let DVec2 { x, y } = self.from.position;
         let tile = self.world.grid().tile(x.floor() as i64, y.floor() as i64);
@@ -99,7 +99,7 @@ impl Line<'_> {
         tile.gaps().find(|gap| gap.holds(one) && gap.holds(other))
     }
 
-    /// Whether the leaf of a door or a shape in the cell covers the line.
+    /// Whether the leaf of a door or a shape in the cell hides the line.
     fn is_hidden_by_what_stands(
         &self,
         walk: &RayWalk,

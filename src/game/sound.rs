@@ -1,9 +1,9 @@
-//! Sounds: where they are made, how far they reach, and who hears them.
+//! Sounds: their sources, their reach, and their listeners.
 //!
-//! A sound spreads over open cells, around corners and through open doors. A closed door weakens
-//! it, and walls stop it. It also passes over low walls and through the holes of
-//! masks; a closed door or glass counts as [`DAMPING`] more half cells. Rejected: a straight line from ear to source.
-//! Sounds would pass through walls, and a guard would know what happens behind one.
+//! A sound spreads over open cells, around corners and through open doors. Walls stop it. It also
+//! passes over low walls and through the holes of masks. A closed door or glass weakens it: each
+//! counts as [`DAMPING`] more half cells. Rejected: a straight line from the ear to the source.
+//! Sounds would pass through walls, and a guard would know what happens behind a wall.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -12,16 +12,16 @@ use super::distances::{Costs, Distances, STRAIGHT};
 use super::stored::{Unrestorable, check};
 use crate::world::{Cell, Heading, Tile, TileKind, World};
 
-/// A sound of one step.
+/// A sound in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sound {
     /// The kind of sound.
     pub kind: SoundKind,
-    /// The cell where it is made.
+    /// The cell in which the sound is made.
     pub cell: Cell,
-    /// How far it is heard over open cells, in cells; at most [`Sound::FARTHEST`].
+    /// The reach over open cells, in cells; at most [`Sound::FARTHEST`].
     pub reach: u8,
-    /// What made it.
+    /// The source of the sound.
     pub by: Source,
 }
 
@@ -30,23 +30,24 @@ impl Sound {
     pub const FARTHEST: u8 = 24;
 }
 
-/// What makes a sound.
+/// The source of a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// The player with that index.
     Player(usize),
     /// The guard with that index.
     Guard(usize),
-    /// Something that nobody does at that moment, such as a thrown pebble that lands.
+    /// An object. No player or guard causes the sound at that moment, for example when a thrown
+    /// pebble lands.
     Object,
 }
 
 /// A kind of sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SoundKind {
-    /// Steps of walking.
+    /// A footstep of somebody who walks.
     Walking,
-    /// Steps of running.
+    /// A footstep of somebody who runs.
     Running,
     /// A landing after a jump or a fall.
     Landing,
@@ -70,9 +71,9 @@ pub enum SoundKind {
     Fall,
     /// A guard who has noticed something: "Hm?"
     Wonder,
-    /// A guard who has lost what they looked for, and goes back.
+    /// A guard who has lost their target and returns to duty.
     GiveUp,
-    /// A guard who has seen the player, and calls the others.
+    /// A guard who has seen the player and calls the others.
     Shout,
     /// The bell of a lantern-bearer.
     Bell,
@@ -92,10 +93,10 @@ pub enum SoundKind {
 const DAMPING: u16 = 12;
 /// Sound passes over walls that are at most this much higher than the floor beside them, in cells.
 const LOW_WALL: f64 = 0.75;
-/// The number of steps after which the field is computed again, since doors may have moved.
+/// The number of steps after which the field is computed again, because doors may have moved.
 const OLD: u64 = 30;
 
-/// How far sounds have to go from one cell to those around it.
+/// The distances of sounds from one cell to the surrounding cells.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct SoundField {
     center: Option<Cell>,
@@ -105,7 +106,7 @@ pub(crate) struct SoundField {
 
 impl SoundField {
     /// Finds the distances of the cells within `reach` around `center`. `now` is the number of the
-    /// step. Returns the number of cells that were not known before.
+    /// step. Returns the number of cells that were newly found.
     pub(crate) fn reach_out(&mut self, world: &World, center: Cell, reach: u16, now: u64) -> usize {
         let grid = world.grid();
         let is_old = now.saturating_sub(self.begun) > OLD;
@@ -121,12 +122,13 @@ impl SoundField {
         found
     }
 
-    /// The distance of `cell` from the centre, in half cells; `None` if that is beyond the reach.
+    /// The distance of `cell` from the centre, in half cells; `None` if the cell is beyond the
+    /// reach.
     pub(crate) fn distance(&self, cell: Cell) -> Option<u16> {
         self.distances.distance(cell)
     }
 
-    /// Whether the search fits a map with that many columns and rows.
+    /// Whether the search fits a map with these numbers of columns and rows.
     pub(crate) fn is_possible(&self, map: (u32, u32)) -> bool {
         self.center.is_none_or(|center| self.distances.is_around(center, map))
     }
@@ -142,7 +144,7 @@ pub(crate) fn half_cells(reach: u8) -> u16 {
     u16::from(reach) * STRAIGHT
 }
 
-/// The way of sound from cell to cell.
+/// The costs of steps for sound.
 struct Air<'a> {
     world: &'a World,
 }
@@ -190,7 +192,7 @@ fn dampens(tile: &Tile) -> bool {
     matches!(tile.kind, TileKind::Door(_) | TileKind::Glass(_))
 }
 
-/// Whether `tile` is no wall, or a low one beside the floor of `other`.
+/// Whether `tile` is not a wall, or is a low wall beside the floor of `other`.
 fn is_low_beside(tile: &Tile, other: &Tile) -> bool {
     let is_wall = matches!(tile.kind, TileKind::Wall(_) | TileKind::Mirror(_));
     !is_wall || tile.heights.floor() - other.heights.floor() <= LOW_WALL
@@ -202,42 +204,42 @@ fn have_common_air(one: &Tile, other: &Tile) -> bool {
         .any(|gap| other.gaps().any(|there| gap.bottom.max(there.bottom) < gap.top.min(there.top)))
 }
 
-/// The steps for which a sound is shown.
+/// The number of steps for which a sound is shown.
 const DURATION: u16 = 45;
-/// The number of sounds that are shown at a time.
+/// The maximum number of sounds shown at once.
 const MOST: usize = 8;
 
 /// A sound as a player hears it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heard {
-    /// The direction on the map from which it comes.
+    /// The direction on the map from which the sound comes.
     pub bearing: Heading,
-    /// How loud it is, from 1 to 3.
+    /// The loudness, from 1 to 3.
     pub strength: u8,
     /// The kind of sound.
     pub kind: SoundKind,
-    /// The steps for which it is still shown.
+    /// The remaining steps for which the sound is shown.
     pub left: u16,
 }
 
-/// The ears of a player: what was heard in the last steps.
+/// The hearing of a player: the sounds of the last steps.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Hearing {
     field: SoundField,
     heard: Vec<Heard>,
-    /// What was heard as each of them.
+    /// The sound for each entry of `heard`.
     sounds: Vec<Sound>,
     steps: u64,
 }
 
 impl Hearing {
-    /// The sounds that were heard in the last steps, the newest last.
+    /// The sounds heard in the last steps, newest last.
     pub(crate) fn heard(&self) -> &[Heard] {
         &self.heard
     }
 
-    /// Advances by one step, in which `sounds` are made; the player `listener`, at `position`,
-    /// hears those of others. Returns whether a sound is heard or fades away.
+    /// Advances by one step, in which `sounds` are made. The player `listener`, at `position`,
+    /// hears the sounds of others. Returns whether a sound is heard or fades away.
     pub(crate) fn step(
         &mut self,
         world: &World,
@@ -259,7 +261,7 @@ impl Hearing {
         has_faded || has_heard
     }
 
-    /// Refuses a state that no sounds lead to.
+    /// Returns an error for a state that no sequence of sounds can produce.
     pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
         let map = (world.grid().width(), world.grid().height());
         check(self.field.is_possible(map), "the search of a sound")?;
@@ -270,12 +272,12 @@ impl Hearing {
         check(is_known && self.heard.iter().all(is_audible), "what a player hears")
     }
 
-    /// Advances the clock by `steps` in which no sound is left to hear.
+    /// Advances the clock by `steps` steps in which no sound is heard or shown.
     pub(crate) fn wait(&mut self, steps: u64) {
         self.steps = self.steps.saturating_add(steps);
     }
 
-    /// Forgets the sounds that are no longer heard in this step.
+    /// Removes the sounds whose time ends in this step.
     fn fade(&mut self) {
         self.heard.iter_mut().for_each(|heard| heard.left -= 1);
         while let Some(index) = self.heard.iter().position(|heard| heard.left == 0) {
@@ -283,12 +285,12 @@ impl Hearing {
         }
     }
 
-    /// Forgets the distances of sounds, as when the whole map has changed.
+    /// Forgets the distances of sounds, for example when the whole map has changed.
     pub(crate) fn forget(&mut self) {
         self.field.forget();
     }
 
-    /// How loud a sound is at `position`, from 1 to 3; `None` if it does not reach there.
+    /// The loudness of a sound at `position`, from 1 to 3; `None` if the sound does not reach it.
     fn strength(&mut self, world: &World, position: DVec2, sound: &Sound) -> Option<u8> {
         let reach = half_cells(sound.reach.min(Sound::FARTHEST));
         let from = sound.cell.center();
@@ -301,8 +303,8 @@ impl Hearing {
         Some(3 - (u32::from(distance) * 3 / (u32::from(reach) + 1)) as u8)
     }
 
-    /// Records a sound. A newer one of the same source and kind replaces an older one, and of those in
-    /// one step the nearest is kept.
+    /// Records a sound. It replaces an older sound of the same source and kind. Of such sounds in
+    /// one step, the nearest is kept.
     fn hear(&mut self, sound: &Sound, position: DVec2, strength: u8) {
         let way = sound.cell.center() - position;
         let degrees = libm::atan2(way.y, way.x).to_degrees();

@@ -1,4 +1,4 @@
-//! Stance: the present height of the player, and of the eye above the feet.
+//! Stance: the current height of the player's body, and of the eye above the feet.
 //!
 //! The eye follows the feet smoothly over steps: it lags by the height of the step and catches up.
 //! The body, which collides with ceilings, moves with the feet.
@@ -15,26 +15,26 @@ const STANDING: f64 = 0.7;
 pub(crate) const DUCKING: f64 = 0.5;
 /// The height of the eye above the feet when ducking, in cells.
 const EYE_DUCKING: f64 = 0.3;
-/// The least room above the eye, in cells.
+/// The minimum room above the eye, in cells.
 const FOREHEAD: f64 = 0.05;
 
-/// How fast the player ducks and rises, per second.
+/// The rate at which the player ducks and stands up, per second.
 const SUPPLENESS: f64 = 14.0;
-/// How fast the eye follows the feet, per second.
+/// The rate at which the eye follows the feet, per second.
 const FOLLOWING: f64 = 14.0;
-/// Less than this is nothing, in cells.
+/// Smaller differences count as zero, in cells.
 const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Stance {
     /// From 0 for standing to 1 for ducking.
     ducking: f64,
-    /// How much higher the eye is than it will be, in cells.
+    /// The height of the eye above its final position, in cells.
     lag: f64,
 }
 
 impl Stance {
-    /// Refuses a body that is neither standing, ducking nor between.
+    /// Returns an error if the body is neither standing, ducking nor in between.
     pub(crate) fn check(self) -> Result<(), Unrestorable> {
         check((0.0..=1.0).contains(&self.ducking), "a stance")
     }
@@ -49,7 +49,8 @@ impl Stance {
         self.ducking > 0.5
     }
 
-    /// The height of the eye above the feet, in cells, below a ceiling at that height above them.
+    /// The height of the eye above the feet, in cells, under a ceiling that is `headroom` above the
+    /// feet.
     pub(crate) fn eye(self, headroom: f64) -> f64 {
         let eye = Camera::STANDING + (EYE_DUCKING - Camera::STANDING) * self.ducking + self.lag;
         eye.min(headroom - FOREHEAD).max(FOREHEAD)
@@ -64,8 +65,8 @@ impl Stance {
         Self { ducking: if is_there { target } else { ducking }, ..self }
     }
 
-    /// The stance after a step in which the feet have risen by `climbed` cells; negative for
-    /// falling.
+    /// The stance after a step in which the feet have risen by `climbed` cells, or fallen if it is
+    /// negative.
     #[must_use]
     pub(crate) fn following(self, climbed: f64) -> Self {
         let lag = approach(self.lag - climbed, 0.0, FOLLOWING, STEP).velocity;

@@ -1,8 +1,9 @@
 //! The whole state of a game as bytes, and back.
 //!
-//! Only what changes is stored. A game at its start, of the same level and rules, gives the rest: the
-//! map, the posts of guards, sprites and textures. What is computed from the stored state is not stored
-//! either: the openings of doors and the states of moving tiles in the grid, and the light of lamps.
+//! Only the state that changes is stored. The rest comes from a game at its start in the same level
+//! with the same rules: the map, the posts of guards, sprites and textures. State computed from the
+//! stored state is not stored either: the openings of doors and the states of moving tiles in the
+//! grid, and the light of lamps.
 
 use std::sync::Arc;
 
@@ -16,12 +17,12 @@ use super::stored::{OfLevel, Reader, Unrestorable, check, checksum, written};
 use crate::rng::hash;
 use crate::world::{Cell, Changes, Thing};
 
-/// What the first line calls a game.
+/// The kind of stored data in the first line.
 const KIND: &str = "game";
 
 impl Game {
-    /// The whole state between two steps as bytes, without what the level gives. `None` in a generated
-    /// level, which is not the same at each start.
+    /// The whole state between two steps as bytes, without the parts that the level provides.
+    /// `None` in a generated level, which differs at each start.
     ///
     /// ```
     /// use cellcaster::game::{Game, Intent};
@@ -38,12 +39,12 @@ impl Game {
         self.window.is_none().then(|| written(KIND, &State(self)))
     }
 
-    /// The game that `bytes` were stored from. This one is at its start, of the same level and
-    /// rules.
+    /// The game that `bytes` were stored from. `self` must be at its start, in the same level with
+    /// the same rules.
     ///
     /// # Errors
-    /// If the bytes are not those of such a game, or are damaged. That they pass does not mean that the
-    /// game was ever played.
+    /// If the bytes do not contain such a game, or are damaged. Accepted bytes do not prove that
+    /// the game was ever played.
     pub fn restored(self, bytes: &[u8]) -> Result<Self, Unrestorable> {
         let grid = self.world.grid();
         let mut input = Reader::new(KIND, bytes, (grid.width(), grid.height()))?;
@@ -51,15 +52,15 @@ impl Game {
         if input.rest().is_empty() { Ok(game) } else { Err(Unrestorable::Longer) }
     }
 
-    /// A number that depends on the whole state: of the world, the player, the guards and all that
-    /// moves. Games in different states very likely have different ones, on every machine.
+    /// A checksum of the whole state: the world, the player, the guards and everything that moves.
+    /// Games in different states very likely have different checksums, on every machine.
     pub fn checksum(&self) -> u64 {
         let rows = self.world.grid().rows();
         let tiles = rows.map(|row| hash(0, row.iter().map(|tile| u64::from(tile.0))));
         hash(checksum(&self.rules_state()) ^ self.level_hash(), tiles)
     }
 
-    /// The part of the state on which rules depend.
+    /// The part of the state that the rules depend on.
     fn rules_state(&self) -> impl Serialize {
         let Self {
             rules: _,
@@ -79,7 +80,7 @@ impl Game {
             steps,
             // Counted in each step.
             work: _,
-            // Not part of the rules, or copies of the past.
+            // Not part of the rules, or copies of past states.
             sprites: _,
             checkpoint: _,
             revision: _,
@@ -89,8 +90,8 @@ impl Game {
         (things, steps, doors, mechanisms, spikes, missiles, smoke, guards, player, members)
     }
 
-    /// Reads a game, of which this is the start, and the game at the checkpoint of its player, if it may
-    /// have one.
+    /// Reads a game on top of its start `self`. If `has_checkpoint` is true, also reads the game at
+    /// the player's checkpoint.
     fn read(mut self, input: &mut Reader, has_checkpoint: bool) -> Result<Self, Unrestorable> {
         let start = (has_checkpoint && self.members.is_none()).then(|| self.clone());
         if input.read::<[u8; 8]>()? != self.level_hash().to_le_bytes() {
@@ -132,7 +133,7 @@ impl Game {
         Ok(self)
     }
 
-    /// Refuses a state in which a step could fail.
+    /// Returns an error if a step could fail in this state.
     fn check(&self) -> Result<(), Unrestorable> {
         self.missiles.check()?;
         self.smoke.check()?;
@@ -141,7 +142,7 @@ impl Game {
         self.members.as_ref().map_or(Ok(()), |members| members.check(&self.world, self.steps))
     }
 
-    /// Shows in the world of the start what has changed in it since.
+    /// Applies the changes since the start to the world, which is still in its initial state.
     fn show_changes(&mut self, things: Vec<Thing>, is_lamplit: bool) -> Result<(), Unrestorable> {
         self.doors.show(&mut self.world)?;
         self.mechanisms.show(&mut self.world)?;
@@ -153,7 +154,8 @@ impl Game {
         Ok(())
     }
 
-    /// A number that differs, almost certainly, between levels, rules and companies.
+    /// A hash of the level, the rules and the multiplayer rules. Different combinations almost
+    /// certainly have different hashes.
     fn level_hash(&self) -> u64 {
         let Rules { difficulty, seed } = self.rules;
         let multiplayer = self.multiplayer_rules().map_or(0, |rules| {
@@ -173,7 +175,7 @@ impl Game {
     }
 }
 
-/// The part of a game that the level does not give.
+/// The part of a game that the level does not provide.
 struct State<'a>(&'a Game);
 
 impl Serialize for State<'_> {
@@ -183,7 +185,7 @@ impl Serialize for State<'_> {
         let Changes { things: _, figures, is_lamplit } = game.world.changes();
         let shown = (game.revision, game.figure_revision, game.sprites.has_player(), is_lamplit);
         let cell = game.checkpoint.cell();
-        // Without a cell it is the start, which is known.
+        // Without a cell, the checkpoint is the start, which is known.
         let saved = game.checkpoint.game().filter(|_| cell.is_some()).map(State);
         (level, shown, figures, game.rules_state(), cell, saved).serialize(to)
     }

@@ -1,15 +1,15 @@
-//! A step: what each player does in their turn, and then what moves by itself: smoke, doors, mechanisms, missiles
-//! and guards.
+//! A step: each player acts in turn, and then everything else moves: smoke, doors, mechanisms,
+//! missiles and guards.
 //!
 //! A guard who is awake pushes away a player who touches them:
 //!
-//! - The push is slower than any walk and leads a little aside, so that a player who walks on gets past,
+//! - The push is slower than any walk and leads a little aside. A player who walks on gets past,
 //!   and nobody is ever held between a guard and a wall.
-//! - It moves the player on level floor only: over no edge, and onto no step.
-//! - Guards do not feel it.
+//! - The push moves the player on level floor only: never over an edge or onto a step.
+//! - The guard is not affected.
 //!
-//! Solid bodies were refused: 20 of the 36 scripts that win pass through a guard, and a guard on duty
-//! in a corridor would close it.
+//! Rejected: solid bodies. 20 of the 36 winning scripts pass through a guard, and a guard on duty
+//! in a corridor would block it.
 
 use glam::DVec2;
 
@@ -21,18 +21,20 @@ use super::rules::{Input, PlayerId};
 use super::tools::Missile;
 use super::{Game, STEP};
 
-/// The distance between the middles of two bodies that touch, in cells.
+/// The distance between the centres of two bodies that touch, in cells.
 const TOUCH: f64 = 2.0 * RADIUS.cells();
-/// The speed of the push in cells per second; that of a player who ducks is half of [`WALK`].
+/// The speed of the push in cells per second. A player who ducks walks at half of [`WALK`].
 const SPEED: f64 = 0.45 * WALK;
-/// The direction of the push, from that of the way out: 30° to the right.
+/// The rotation from the direction away from the guard to the direction of the push: 30° to the
+/// right.
 const ASIDE: DVec2 = DVec2::new(0.866_025_403_784_439, 0.5);
 
 impl Game {
-    /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing moves after
-    /// the exit; after death, nothing but what [`Intent::Retry`] does.
+    /// Advances the game by one step of [`STEP`] seconds with these intents. Nothing changes after
+    /// the player has reached the exit. After death, only [`Intent::Retry`] has an effect.
     ///
-    /// In a game for several these are the intents of the first one, and the others want nothing.
+    /// In a multiplayer game, these are the intents of the player in the first slot, and the other
+    /// players have no intents.
     pub fn step(&mut self, intents: Intents) {
         if self.members.is_some() {
             let seen = self.steps;
@@ -58,8 +60,8 @@ impl Game {
         self.steps = self.steps.saturating_add(1);
     }
 
-    /// Moves the player, with what they meet on their way. Returns the intents, of which a jump in
-    /// front of a door is to open it.
+    /// Moves the player, picks things up and applies hazards. Returns the intents, with
+    /// [`Intent::Open`] in place of a jump in front of a door or a handle.
     pub(crate) fn move_one(&mut self, intents: Intents) -> Intents {
         let intents = self.at_a_door(intents);
         let before = self.player.motion;
@@ -99,8 +101,8 @@ impl Game {
         }
     }
 
-    /// The intents that are recorded from step to step, because each press acts once. A lever turns
-    /// once for each press, too.
+    /// The intents that act once for each press, and therefore are remembered from step to step.
+    /// [`Intent::Open`] is among them if the level has levers or other handles.
     pub(crate) fn presses(&self, intents: Intents) -> Intents {
         let mut presses = intents.once();
         if self.mechanisms.has_handles() && intents.contains(Intent::Open) {
@@ -109,7 +111,7 @@ impl Game {
         presses
     }
 
-    /// Opens the door ahead, and does what the player begins to want.
+    /// Opens the door ahead, and carries out the intents that begin in this step.
     pub(crate) fn act(&mut self, intents: Intents) {
         self.open_doors(intents);
         let presses = self.presses(intents);
@@ -142,7 +144,7 @@ impl Game {
         self.revision += u64::from(has_moved);
     }
 
-    /// Lets the player hear the sounds of this step.
+    /// Makes the player hear the sounds of this step.
     pub(crate) fn hear(&mut self) {
         if self.is_mission {
             let (listener, position) = (self.turn(), self.player.motion.position());
@@ -151,7 +153,7 @@ impl Game {
         }
     }
 
-    /// Moves the window after the player.
+    /// Makes the window follow the player.
     pub(crate) fn move_window(&mut self) {
         let Some(window) = &mut self.window else { return };
         if let Some(shift) = window.follow(&mut self.world, self.player.motion.cell()) {
@@ -193,7 +195,7 @@ impl Game {
         }
     }
 
-    /// Does to the rest of the game what a guard does.
+    /// Applies an act of a guard to the rest of the game.
     fn answer(&mut self, act: Act) {
         match act {
             Act::Hurt { target, by, from, points } => {
@@ -209,7 +211,7 @@ impl Game {
         }
     }
 
-    /// Moves the player away from the guards whom they touch.
+    /// Pushes the player away from the guards that they touch.
     pub(crate) fn give_way(&mut self) {
         let motion = self.player.motion;
         let bodies = self.guards.touching(motion.position(), TOUCH, motion.feet(), motion.head());

@@ -1,19 +1,21 @@
 //! The format of stored games, and checksums, which are hashes of stored bytes.
 //!
-//! The first line says who can read the rest:
+//! The first line identifies the version that can read the rest:
 //!
 //! ```text
 //! cellcaster-game 2 rules 2 version 0.1.0
 //! ```
 //!
-//! The rest is the state as [`postcard`] writes it. The bytes may come from a network, so that [`Reader`], which
-//! reads them, is stricter than the one of `postcard`: it accepts only numbers that a game can add for years, and
-//! only cells on the map. Each type checks what else must hold in it. Whatever the bytes are, reading them ends,
-//! takes memory in proportion to them and to the level, and returns an error or a game in which every index points
-//! at something and every step succeeds. It does not prove that the game was ever played like that.
+//! The rest is the state in the format of [`postcard`]. The bytes may come from a network.
+//! Therefore [`Reader`], which reads them, is stricter than the reader of `postcard`: it accepts
+//! only numbers that a game can add to for years, and only cells on the map. Each type checks its
+//! other invariants. Whatever the bytes are, reading them ends and takes memory in proportion to
+//! them and to the level. It returns an error, or a game in which every index is valid and every
+//! step succeeds. It does not prove that the game was ever played like that.
 //!
-//! Rejected: storing the script so far, since playing it again takes a second for each minute; and `postcard`'s own
-//! reader with a check of each number afterwards, since a new field would be unchecked until somebody notices.
+//! Rejected: storing the script up to now. Replaying it takes a second for each minute. Rejected:
+//! `postcard`'s own reader with a check of each number afterwards. A new field would be unchecked
+//! until somebody notices.
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -31,31 +33,33 @@ use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 use crate::rng::hash;
 use crate::world::World;
 
-/// The version of the rules. It grows with every change after which the same intents may give another
-/// game.
+/// The version of the rules. It is incremented by every change after which the same intents may
+/// produce a different game.
 pub const RULES_VERSION: u32 = 2;
 
 /// The version of the format.
 const FORMAT_VERSION: u32 = 2;
-/// The most bytes that are read.
+/// The maximum number of bytes that are read.
 pub const MOST_BYTES: usize = 1 << 20;
-/// The largest real number that a game has anywhere: above twice the greatest height of a map.
+/// The largest real number in a game: above twice the greatest height of a map.
 const MOST_REAL: f64 = 4e9;
-/// The largest time or count. Numbers below it can be added for millions of years.
+/// The largest time or count. A game can add smaller numbers for millions of years without an
+/// overflow.
 pub const MOST_COUNT: u64 = 1 << 53;
 
 /// An error while reading a stored game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unrestorable {
-    /// The bytes are no stored game, or one of another version of the format, the rules or the crate.
+    /// The bytes are not a stored game, or come from another version of the format, the rules or
+    /// the crate.
     OtherVersion,
-    /// The game is of another level, or of other rules.
+    /// The game belongs to another level or to other rules.
     OtherLevel,
     /// The bytes end too early.
     Cut,
-    /// The bytes go on after the end.
+    /// The bytes continue after the end.
     Longer,
-    /// There are more than the 2²⁰ bytes that are read.
+    /// There are more than the maximum of 2²⁰ bytes.
     TooLong,
     /// This part is out of its range.
     Damaged(&'static str),
@@ -86,26 +90,26 @@ impl serde::de::Error for Unrestorable {
     }
 }
 
-/// The first line of `kind`, and `value`.
+/// The first line for `kind`, followed by `value`.
 ///
 /// # Panics
-/// If a list of `value` does not know its length, which is so for no type of the game.
+/// If a list in `value` does not know its length. No type of the game contains such a list.
 pub fn written(kind: &str, value: &impl Serialize) -> Vec<u8> {
     appended(first_line(kind).into_bytes(), value)
 }
 
-/// `bytes`, and `value`.
+/// `bytes`, followed by `value`.
 ///
 /// # Panics
-/// As [`written`].
+/// See [`written`].
 pub fn appended(bytes: Vec<u8>, value: &impl Serialize) -> Vec<u8> {
     postcard::to_extend(value, bytes).expect("all lists have a length, and memory takes all bytes")
 }
 
-/// The hash of the bytes that are stored of `value`.
+/// The hash of the bytes in which `value` is stored.
 ///
 /// # Panics
-/// As [`written`].
+/// See [`written`].
 pub fn checksum(value: &impl Serialize) -> u64 {
     postcard::serialize_with_flavor(value, Hash::default()).expect("all lists have a length")
 }
@@ -135,15 +139,15 @@ impl Flavor for Hash {
     }
 }
 
-/// The first line of what is stored as `kind`.
+/// The first line of data stored as `kind`.
 pub fn first_line(kind: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("cellcaster-{kind} {FORMAT_VERSION} rules {RULES_VERSION} version {version}\n")
 }
 
-/// A state of which the level gives the fields that serde skips.
+/// A state that takes the fields skipped by serde from the level.
 pub(crate) trait OfLevel: DeserializeOwned {
-    /// The state with those fields of `start`, the state at the start of the same level.
+    /// The state with the skipped fields of `start`, the state at the start of the same level.
     fn of_level(self, start: Self) -> Result<Self, Unrestorable>;
 }
 
@@ -160,10 +164,10 @@ impl<T: OfLevel> OfLevel for Vec<T> {
 pub mod bits {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    /// Writes all 64 bits, whatever number they are.
+    /// Writes all 64 bits of any number.
     ///
     /// # Errors
-    /// As `to`.
+    /// If `to` fails.
     pub fn serialize<S: Serializer>(bits: &u64, to: S) -> Result<S::Ok, S::Error> {
         bits.to_le_bytes().serialize(to)
     }
@@ -171,29 +175,29 @@ pub mod bits {
     /// Reads any 64 bits.
     ///
     /// # Errors
-    /// As `from`.
+    /// If `from` fails.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<u64, D::Error> {
         Deserialize::deserialize(from).map(u64::from_le_bytes)
     }
 }
 
-/// Checks a part of what is restored.
+/// Checks a part of the restored state.
 ///
 /// # Errors
-/// Names `what`, unless it holds.
+/// [`Unrestorable::Damaged`] with `what`, unless `holds` is true.
 pub fn check(holds: bool, what: &'static str) -> Result<(), Unrestorable> {
     if holds { Ok(()) } else { Err(Unrestorable::Damaged(what)) }
 }
 
-/// An error, unless a position is on the map of `world`.
+/// Returns an error unless a position is on the map of `world`.
 pub(crate) fn check_on_map(world: &World, position: DVec2) -> Result<(), Unrestorable> {
     let end = DVec2::new(world.grid().width().into(), world.grid().height().into());
     let is_on_map = position.cmpge(DVec2::ZERO).all() && position.cmplt(end).all();
     check(is_on_map, "a position")
 }
 
-/// Reads a list of at most `MOST` values, for `#[serde(deserialize_with)]`. Values that are much larger than their
-/// bytes need it.
+/// Reads a list of at most `MOST` values, for `#[serde(deserialize_with)]`. Needed for values that
+/// are much larger than their bytes.
 pub(crate) fn at_most<'de, const MOST: usize, T, D>(from: D) -> Result<Vec<T>, D::Error>
 where
     T: Deserialize<'de>,
@@ -223,10 +227,10 @@ where
     from.deserialize_seq(List::<T, MOST>(std::marker::PhantomData))
 }
 
-/// Bytes that are left to read, and the size of the map that they are about.
+/// The remaining bytes to read, and the size of the map that they refer to.
 ///
-/// - A whole number is a variable-length integer: 7 bits in a byte, the lowest first. A signed one is
-///   first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
+/// - A whole number is a variable-length integer: 7 bits in a byte, the lowest first. A signed
+///   number is first mapped to 0, −1, 1, −2, …. No number is above [`MOST_COUNT`].
 /// - A real number is the eight bytes of its bits. It is finite, and at most [`MOST_REAL`].
 /// - A list is its length and its elements, each of at least one byte.
 /// - A [`Cell`](crate::world::Cell) is on the map.
@@ -237,26 +241,26 @@ pub struct Reader<'de> {
 }
 
 impl<'de> Reader<'de> {
-    /// Reads what was stored as `kind`, in which all cells are on a map with that many columns and rows.
+    /// Reads data stored as `kind`, in which all cells are on a map with `size` columns and rows.
     ///
     /// # Errors
-    /// If the bytes are too many, or of another kind or version.
+    /// If there are too many bytes, or if they are of another kind or version.
     pub fn new(kind: &str, bytes: &'de [u8], size: (u32, u32)) -> Result<Self, Unrestorable> {
         let Self { bytes, .. } = Self::of(bytes)?;
         let bytes = bytes.strip_prefix(first_line(kind).as_bytes());
         Ok(Self { bytes: bytes.ok_or(Unrestorable::OtherVersion)?, size })
     }
 
-    /// Reads bytes without a first line, in which there are no cells.
+    /// Reads bytes that have no first line and contain no cells.
     ///
     /// # Errors
-    /// If the bytes are too many.
+    /// If there are too many bytes.
     pub fn of(bytes: &'de [u8]) -> Result<Self, Unrestorable> {
         let is_short = bytes.len() <= MOST_BYTES;
         is_short.then_some(Self { bytes, size: (0, 0) }).ok_or(Unrestorable::TooLong)
     }
 
-    /// The bytes that are left.
+    /// The remaining bytes.
     pub fn rest(&self) -> &'de [u8] {
         self.bytes
     }
@@ -269,7 +273,7 @@ impl<'de> Reader<'de> {
         T::deserialize(self)
     }
 
-    /// Reads a value of which `start`, the one at the start of the level, gives a part.
+    /// Reads a value. Its skipped fields come from `start`, the value at the start of the level.
     pub(crate) fn read_with<T: OfLevel>(&mut self, start: T) -> Result<T, Unrestorable> {
         self.read::<T>()?.of_level(start)
     }
@@ -415,7 +419,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
         visitor.visit_enum(self)
     }
 
-    /// The bytes do not say what they are.
+    /// The format does not describe its types.
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Unrestorable> {
         Err(Unrestorable::Damaged("a value"))
     }
@@ -429,7 +433,7 @@ impl<'de> Deserializer<'de> for &mut Reader<'de> {
     }
 }
 
-/// The elements of a list that are left to read.
+/// The remaining elements of a list.
 struct Elements<'a, 'de> {
     input: &'a mut Reader<'de>,
     left: usize,

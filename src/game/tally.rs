@@ -1,4 +1,4 @@
-//! The tally of a game, and the rank that it is worth.
+//! The tally of a game, and the rank for it.
 
 use std::fmt;
 
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::Game;
 use super::rules::STEPS_PER_SECOND;
 
-/// A part of a whole.
+/// A part of a total.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Share {
     /// The part that has been found.
     pub found: u32,
-    /// All that there is.
+    /// The total.
     pub total: u32,
 }
 
@@ -23,27 +23,27 @@ impl Share {
     }
 }
 
-/// What a player has done in a level.
+/// A player's results in a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// The time in steps.
     pub steps: u64,
-    /// The worth of the treasure.
+    /// The value of the treasure.
     pub treasure: Share,
     /// The number of secret walls.
     pub secrets: Share,
-    /// How often guards have begun to follow the player.
+    /// The number of times that guards have begun to follow the player.
     pub alarms: u32,
-    /// How often the player has died.
+    /// The number of times that the player has died.
     pub deaths: u32,
-    /// How often the player has stunned a guard.
+    /// The number of guards that the player has stunned.
     pub stunned: u32,
 }
 
-/// How well a level was played, from the worst.
+/// A rank for a level, from the worst to the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Rank {
-    /// Reached the exit.
+    /// The player reached the exit.
     Burglar,
     /// Within the par time, or with at most two alarms.
     Thief,
@@ -54,7 +54,7 @@ pub enum Rank {
 }
 
 impl Tally {
-    /// The rank of a game that was won, in a level with that par time in seconds, if it has one.
+    /// The rank for a game that was won, in a level with a par time of `par` seconds, if any.
     pub fn rank(&self, par: Option<u32>) -> Rank {
         let most = |seconds: u32| u64::from(seconds) * u64::from(STEPS_PER_SECOND);
         let is_fast = par.is_some_and(|seconds| self.steps <= most(seconds));
@@ -95,7 +95,7 @@ impl fmt::Display for Rank {
     }
 }
 
-/// What a game counts, whatever is restored.
+/// Counts that a retry does not reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(crate) struct Counts {
     pub(crate) alarms: u32,
@@ -104,19 +104,19 @@ pub(crate) struct Counts {
 }
 
 impl Game {
-    /// The worth of the treasure found, by all players together, and of all in the level.
+    /// The value of the treasure: the part found by all players, and the total in the level.
     pub fn treasure(&self) -> Share {
         let found = self.treasure_found();
         let left = u32::try_from(self.world.treasure()).unwrap_or(u32::MAX);
         Share { found, total: found.saturating_add(left) }
     }
 
-    /// The secret walls found, and all in the level.
+    /// The secret walls: the number found, and the total in the level.
     pub fn secrets(&self) -> Share {
         self.mechanisms.secrets()
     }
 
-    /// What the player has done so far.
+    /// The player's current results.
     pub fn tally(&self) -> Tally {
         let Counts { alarms, deaths, stunned } = self.player.counts;
         let (treasure, secrets) = (self.treasure(), self.secrets());

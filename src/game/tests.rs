@@ -1,4 +1,4 @@
-//! Properties of the game, in small levels.
+//! Properties of the game in small levels.
 
 mod encounters;
 mod finds;
@@ -20,7 +20,7 @@ use crate::world::{
     Start, Thing, ThingKind, Tile, TileKind,
 };
 
-/// A world drawn in characters: `#` is solid, `@` is where the player starts, `E` is an exit.
+/// A world drawn in characters: `#` is solid, `@` is the player's start, `E` is an exit.
 fn world(rows: &[&str], degrees: f64) -> World {
     let cells_that_hold = |wanted: char| {
         rows.iter().zip(0..).flat_map(move |(line, row)| {
@@ -102,7 +102,7 @@ fn to_nearest_wall(grid: &Grid, point: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Intents that are held for a few steps each.
+/// Lists of intents, each with the number of steps for which it is held.
 pub(crate) fn script() -> impl Strategy<Value = Vec<(usize, Vec<Intent>)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=Intent::ALL.len());
     prop::collection::vec((1..60_usize, held), 0..30)
@@ -249,7 +249,7 @@ fn in_a_changed_world_the_player_keeps_their_place_while_there_is_room() {
     assert_eq!(again.camera(view), before);
     assert_eq!(again.elapsed(), 0.0);
 
-    // A wall, an exit, and no map at all at the player's position.
+    // At the player's position: a wall, an exit, and no map at all.
     for rows in [
         ["#######", "#@#####", "#....E#"],
         ["#######", "#@EEE##", "#....E#"],

@@ -1,7 +1,8 @@
 //! Tools: the player strikes, throws pebbles, shoots darts and throws flasks of smoke.
 //!
-//! Each works once for each press. Aiming is no skill: a blow finds the nearest guard in front, a
-//! dart the nearest guard in sight near the middle of the view, and the rest flies straight ahead.
+//! Each press of a key uses a tool once. Aiming takes no skill. A blow hits the nearest guard in
+//! front, a dart the nearest visible guard near the middle of the view. Pebbles and flasks fly
+//! straight ahead.
 
 mod missiles;
 mod smoke;
@@ -15,24 +16,24 @@ use crate::world::{Camera, GuardKind, Supply};
 pub(crate) use missiles::{Landed, Missile, MissileKind, Missiles, Struck};
 pub(crate) use smoke::{Puff, Smoke};
 
-/// How far a blow reaches, in cells, and the cosine of the angle to both sides: 60°.
+/// The reach of a blow, in cells, and the cosine of its angle to either side: 60°.
 const ARM: f64 = 1.0;
 const ARM_COSINE: f64 = 0.5;
-/// The cosine of the angle within which a dart finds a guard: 15°.
+/// The cosine of the angle within which a dart aims at a guard: 15°.
 const AIM_COSINE: f64 = 0.965_925_826_289_068_3;
 
-/// The steps until the next blow: after one that misses, stuns or pushes.
+/// The number of steps until the next blow, after a blow that misses, stuns or pushes.
 const AFTER_MISS: u16 = 20;
 const AFTER_STUN: u16 = 30;
 const AFTER_PUSH: u16 = 90;
 
-/// The steps for which a guard lies on the floor.
+/// The number of steps for which a stunned guard lies on the floor.
 const STUNNED: u16 = 1200;
 const HOUND_STUNNED: u16 = 480;
 const WARDEN_SHOT: u16 = 300;
 
 impl Game {
-    /// Uses the tools that the player begins to want.
+    /// Uses each tool whose intent begins in this step.
     pub(crate) fn use_tools(&mut self, fresh: Intents) {
         if fresh.contains(Intent::Lamp) {
             self.turn_lamp();
@@ -55,7 +56,7 @@ impl Game {
         }
     }
 
-    /// Lights the lamp, or puts it out.
+    /// Lights the lamp or puts it out.
     fn turn_lamp(&mut self) {
         if !self.player.has_light && self.is_in_water() {
             return self.say("Your lamp does not burn in water.".to_owned());
@@ -98,7 +99,7 @@ impl Game {
         }
     }
 
-    /// Counts a guard whom the player has laid on the floor.
+    /// Counts a guard that the player has stunned.
     fn count_stunned(&mut self, kind: Option<GuardKind>) {
         self.player.counts.stunned += 1;
         if let Some(kind) = kind {
@@ -126,7 +127,7 @@ impl Game {
         });
     }
 
-    /// Moves what flies, and lets it do what it does where it ends.
+    /// Moves the missiles and applies the effects of those that have ended.
     pub(crate) fn move_missiles(&mut self) {
         if self.missiles.is_empty() {
             return;
@@ -168,7 +169,7 @@ impl Game {
     }
 }
 
-/// The kind of guard in a sentence.
+/// The kind of guard as it appears in a sentence.
 fn title(kind: GuardKind) -> &'static str {
     if kind == GuardKind::Lantern { "lantern-bearer" } else { kind.name() }
 }

@@ -1,10 +1,10 @@
-//! Turning and looking up and down: for as long as it is wanted, or by an exact angle.
+//! Turning and looking up and down: for as long as a key is held, or by an exact angle.
 //!
-//! An exact turn is a whole number of steps of the same angle, independent of the motion that
-//! begins and ends smoothly. However the two are mixed, their angles add up.
+//! An exact turn is a whole number of steps of the same angle. It is independent of the turning
+//! motion that begins and ends smoothly. However the two are mixed, their angles add up.
 //!
-//! The pitch never returns by itself, since the player may want to walk around something that they
-//! look up at. A key to look ahead returns it fully, even if it is only tapped.
+//! The pitch never returns by itself, because the player may want to walk around something while
+//! looking up at it. The key to look ahead returns it fully, even after a single tap.
 
 use std::f64::consts::PI;
 
@@ -20,9 +20,9 @@ use crate::world::Pitch;
 const TURN: f64 = 2.4;
 /// Radians per second while aiming: 10 steps are 5 degrees.
 const AIM: f64 = PI / 6.0;
-/// How fast a turn begins and ends, per second.
+/// The rate at which a turn begins and ends, per second.
 pub(crate) const FRICTION: f64 = 20.0;
-/// Below this the player does not turn, in radians per second.
+/// Below this speed the player does not turn, in radians per second.
 const STILL: f64 = 1e-4;
 
 /// The number of steps of an exact turn by 5 degrees, and the angle of each.
@@ -31,21 +31,21 @@ const FINE_ANGLE: f64 = PI / 36.0 / FINE_STEPS as f64;
 /// The same for turning around.
 const ABOUT_STEPS: u32 = 30;
 const ABOUT_ANGLE: f64 = PI / ABOUT_STEPS as f64;
-/// The most exact turns that wait.
+/// The maximum number of exact turns that wait.
 const MOST_WAITING: u32 = 72;
 
-/// Each press of these is one turn.
+/// The exact turns: each press makes one turn.
 const EXACT: [Intent; 3] = [Intent::FineLeft, Intent::FineRight, Intent::AboutFace];
 
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Turning {
     /// Radians per second, clockwise.
     speed: f64,
-    /// The steps left of turns by 5 degrees, clockwise.
+    /// The remaining steps of turns by 5 degrees, clockwise.
     fine: i32,
-    /// The steps left of turning around.
+    /// The remaining steps of turning around.
     about: u32,
-    /// The exact turns that were wanted in the last step.
+    /// The exact turns in the intents of the last step.
     wanted: Intents,
 }
 
@@ -61,7 +61,7 @@ impl Turning {
         (turning, displacement + angle)
     }
 
-    /// Refuses more exact turns than may wait.
+    /// Returns an error if more exact turns wait than are allowed.
     pub(crate) fn check(self) -> Result<(), Unrestorable> {
         let is_possible = self.fine.unsigned_abs() <= FINE_STEPS.unsigned_abs() * MOST_WAITING
             && self.about <= ABOUT_STEPS * MOST_WAITING;
@@ -90,12 +90,13 @@ impl Turning {
     }
 }
 
-/// How fast the pitch changes, as a slope per second; and while aiming.
+/// The rate of change of the pitch, as a slope per second, and the rate while aiming.
 const TILT: f64 = 0.8;
 const TILT_AIM: f64 = 0.2;
-/// How fast it returns to straight ahead, per second.
+/// The rate at which the pitch returns to straight ahead, per second.
 const RETURN: f64 = 10.0;
-/// Less than this is nothing, as a slope or a slope per second: it is less than a row of pixels.
+/// Smaller values count as zero, as a slope or a slope per second: they are less than a row of
+/// pixels.
 const LEVEL_STILL: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -138,7 +139,7 @@ mod tests {
     use super::*;
     use crate::game::Look;
 
-    /// The degrees that `steps` steps turn.
+    /// The angle after `steps` steps, in degrees.
     fn degrees(turning: &mut Turning, steps: usize, intents: &[Intent]) -> f64 {
         let intents = intents.iter().copied().collect();
         let mut sum = 0.0;
@@ -161,10 +162,10 @@ mod tests {
             (&[FineRight, AboutFace], 185.0),
         ] {
             let mut turning = Turning::default();
-            // However long it is wanted, it is one turn.
+            // It is one turn, however long the key is held.
             let turned = degrees(&mut turning, 90, wants);
             assert!((turned - expected).abs() < 1e-9, "{wants:?}: {turned}");
-            // Again, and once more before the first is over.
+            // The same turn again, and once more before the first has ended.
             let twice = [&[][..], wants, &[], wants].map(|wants| degrees(&mut turning, 1, wants));
             let twice = twice.iter().sum::<f64>() + degrees(&mut turning, 90, &[]);
             assert!((twice - 2.0 * expected).abs() < 1e-9, "{wants:?}: {twice}");

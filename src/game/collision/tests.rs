@@ -54,7 +54,8 @@ fn grid_and_start() -> impl Strategy<Value = (Grid, Cell)> {
     })
 }
 
-/// From a billionth of a cell to a million cells; every other one along an axis or a diagonal.
+/// Displacements from a billionth of a cell to a million cells. Half of them are along an axis or a
+/// diagonal.
 fn displacement() -> impl Strategy<Value = DVec2> {
     let compass = (0..8).prop_map(|eighths| match eighths {
         0 => DVec2::X,
@@ -75,7 +76,8 @@ fn power_of_ten() -> impl Strategy<Value = f64> {
     (-9.0..6.0).prop_map(|exponent| libm::pow(10.0, exponent))
 }
 
-/// Half of the coordinates are whole quarters, so that paths meet joints and corners exactly.
+/// Half of the coordinates are multiples of a quarter, so that paths meet joints and corners
+/// exactly.
 fn point(x: Range<f64>, y: Range<f64>) -> impl Strategy<Value = DVec2> {
     let coordinate = |range: Range<f64>| {
         let quarters = range.clone().prop_map(|value| (4.0 * value).round() / 4.0);
@@ -101,7 +103,7 @@ fn clearance(grid: &Grid, point: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The cells that can be reached from `start` through sides.
+/// The cells that are connected to `start` through their sides.
 fn reachable(grid: &Grid, start: (i64, i64)) -> Vec<(i64, i64)> {
     let mut found = vec![start];
     let mut next = 0;
@@ -327,7 +329,7 @@ mod shapes {
         prop_oneof![pillar, prop::sample::select(&Line::ALL[..]).prop_map(Outline::Line)]
     }
 
-    /// A room with shapes, and a place in it where a circle is clear.
+    /// A room with shapes, and a position in it at which a circle is clear.
     fn any_room(radius: Radius) -> impl Strategy<Value = (Room, DVec2)> {
         let shapes = prop::collection::vec(
             prop::option::weighted(0.4, any_outline()),
@@ -366,7 +368,7 @@ mod shapes {
                 let after = moved(&room, position, displacement);
                 prop_assert!(is_clear(&room, after, QUARTER), "{after}");
                 if displacement.length() < 0.1 {
-                    // The way there is nearly straight.
+                    // The path there is nearly straight.
                     for part in 0..10 {
                         let point = position.lerp(after, f64::from(part) / 10.0);
                         prop_assert!(room.clearance(point) > 0.2, "through something at {point}");
@@ -405,7 +407,7 @@ mod shapes {
             }
         }
 
-        /// A wall of diagonals has joints, and doubles do not represent positions on its sides.
+        /// A wall of diagonals has joints, and doubles cannot represent positions on its sides.
         #[test]
         fn diagonals_are_slid_along_without_a_catch(
             x in 0.3..1.5,
@@ -416,7 +418,7 @@ mod shapes {
                 room.with(index, index, Outline::Line(Line::FromNorthWest))
             });
             let mut position = DVec2::new(x, 5.0);
-            // To the wall, and then along it with a push into it.
+            // First to the wall, and then along it while pushing into it.
             for _ in 0..(9.0 / stride) as usize {
                 position = moved(&room, position, DVec2::new(0.0, -stride));
             }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::map;
 
-/// Whether the exit of a map of those `tiles` is out of reach.
+/// Whether the exit of a map with these `tiles` is out of reach.
 fn is_out_of_reach(grid: &str, tiles: &str) -> bool {
     let text = format!(
         "ceiling = 'sky'\ngrid = \"\"\"\n{grid}\n\"\"\"\n[tiles]\n'#' = {{ wall = 'brick', height = 3 }}\n\
@@ -12,7 +12,8 @@ fn is_out_of_reach(grid: &str, tiles: &str) -> bool {
     is_exit_out_of_reach(&map::parse_str(&text).unwrap_or_else(|it| panic!("{it}")))
 }
 
-/// As [`is_out_of_reach`], under a roof, with more `things` and keys of the map.
+/// Like [`is_out_of_reach`], but under a roof, with `top` before the grid and with additional
+/// `things`.
 fn is_out_of_reach_inside(top: &str, grid: &str, tiles: &str, things: &str) -> bool {
     let text = format!(
         "{top}\ngrid = \"\"\"\n{grid}\n\"\"\"\n[tiles]\n'#'.wall = 'brick'\n{tiles}\n[things]\n\
@@ -25,7 +26,7 @@ fn is_out_of_reach_inside(top: &str, grid: &str, tiles: &str, things: &str) -> b
 fn what_is_walled_in_is_out_of_reach() {
     assert!(!is_out_of_reach("@..X", ""));
     assert!(is_out_of_reach("@.#X", ""));
-    // There is no way between two corners.
+    // There is no path between the corners of two walls.
     assert!(is_out_of_reach("@#\n#X", ""));
     assert!(!is_out_of_reach("@#\n.X", ""));
     assert!(is_out_of_reach("@gX", "'g'.glass = '#ffffff'"));
@@ -65,7 +66,7 @@ fn who_jumps_gets_so_high_and_so_far() {
 fn secret_walls_are_open() {
     let secret = "'%'.secret = 'brick'";
     assert!(!is_out_of_reach_inside("", "####\n@.%X\n####", secret, ""));
-    // A roof above it is no way for those who start inside.
+    // The roof above the secret wall is not a path for a player who starts inside.
     assert!(is_out_of_reach_inside("", "#####\n@%.#X\n#####", secret, ""));
 }
 
@@ -102,7 +103,7 @@ fn a_lift_carries_to_both_ends() {
     assert!(!lift("@lmhE", "moves_to = 3"));
     assert!(!lift("@lmhE", "floor_height = 3, moves_to = 0"));
     assert!(lift("@lmhE", "moves_to = 2"));
-    // The lever is up there.
+    // The lever is on the upper floor.
     assert!(lift("@.mhLE", "moves_to = 3"));
 }
 

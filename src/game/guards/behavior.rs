@@ -1,7 +1,7 @@
-//! What a guard does in a step: duty, wondering, searching, tracking, chasing and attacking.
+//! The behaviour of a guard in a step: duty, wondering, searching, tracking, chasing and attacking.
 //!
-//! Attacks are a warning, the blow, and a rest. In the last [`LOCKED`] steps of a warning, the guard does not turn
-//! any more: a player who leaves the line is not hit.
+//! An attack consists of a warning, the blow and a rest. In the last [`LOCKED`] steps of the
+//! warning, the guard no longer turns, so a player who leaves the line is not hit.
 
 use glam::DVec2;
 
@@ -12,29 +12,30 @@ use super::walking::Progress;
 use crate::game::sound::{Sound, SoundKind};
 use crate::world::{Cell, Duty, GuardKind};
 
-/// The steps for which a guard stops at a waypoint.
+/// The number of steps for which a guard stops at a waypoint.
 const STOP: u16 = 80;
-/// The farthest cells that are searched, in cells from the place.
+/// The greatest distance of searched cells from the centre of the search, in cells along each axis.
 const SEARCHED: i32 = 4;
-/// How far guards see others who have fallen, in cells.
+/// The distance at which guards see fallen guards, in cells.
 const SEES_FALLEN: f64 = 8.0;
-/// The steps after which a hound gives up at the end of a trail.
+/// The number of steps after which a hound gives up at the end of a trail.
 const LOST: u16 = 150;
-/// The steps after which guards give up who cannot reach a player.
+/// The number of steps after which a guard who cannot reach a player gives up.
 const BAFFLED: u16 = 300;
-/// The steps after which guards search who do not see a player any more.
+/// The number of steps after which a guard who no longer sees a player begins to search.
 const FORGOTTEN: u16 = 600;
-/// The steps for which they overlook a player out of their reach.
+/// The number of steps for which a guard who has given up on an unreachable player ignores players
+/// by sight and smell.
 const OVERLOOKS: u16 = 240;
-/// The distances that guards keep who do not strike, in cells.
+/// The minimum and maximum distance that guards who do not strike keep from the player, in cells.
 const KEEPS: (f64, f64) = (4.0, 9.0);
-/// A lantern-bearer strikes if fewer than so many others are up.
+/// A lantern-bearer strikes if at most this many guards are up, including themselves.
 const FEW: usize = 3;
-/// The steps before a blow in which the guard does not turn.
+/// The number of steps before a blow in which the guard does not turn.
 const LOCKED: u16 = 12;
 /// The duration of a blow in steps.
 const STRIKE: u16 = 10;
-/// An archer who does not see the player for so many steps puts the bow down.
+/// An archer who has not seen the player for this many steps lowers the bow.
 const UNSEEN: u16 = 24;
 /// The cosine of the largest angle at which a blow hits.
 const WIDTH: f64 = 0.5;
@@ -80,7 +81,7 @@ impl Guard {
         }
     }
 
-    /// Turns and walks as they want to.
+    /// Turns and walks as the guard wants to.
     fn move_body(&mut self, context: &mut Context) {
         let steps = context.stride;
         let is_alarmed = self.state.is_alarmed();
@@ -101,7 +102,8 @@ impl Guard {
         self.paces = paces % MOST_PACES;
     }
 
-    /// A guard who looks elsewhere than they walk turns first.
+    /// Reduces the speed of a guard who does not face their direction of movement, so that they
+    /// turn first.
     fn slowed_by_turning(&self, wanted: DVec2) -> DVec2 {
         if self.look.is_some() || self.stagger > 0 || wanted == DVec2::ZERO {
             return wanted;
@@ -111,7 +113,7 @@ impl Guard {
     }
 }
 
-/// Duty: while nothing disturbs them.
+/// Duty: the behaviour of guards who have noticed nothing.
 impl Guard {
     fn do_duty(&mut self, context: &mut Context) {
         if self.pause > 0 {
@@ -188,7 +190,8 @@ impl Guard {
         }
     }
 
-    /// A cell at most `reach` from `around` where guards walk; `None` if a few tries find none.
+    /// A random walkable cell within `reach` of `around`, or `None` if a few tries find no such
+    /// cell.
     fn random_cell(&mut self, context: &Context, around: Cell, reach: i32) -> Option<Cell> {
         let gait = self.gait();
         (0..6).find_map(|_| {
@@ -201,15 +204,15 @@ impl Guard {
         })
     }
 
-    /// Looks to the side of the present glance: from the post's heading there, elsewhere from the
-    /// way.
+    /// Looks to the side of the current glance. At the post, the glance is relative to the post's
+    /// heading, elsewhere to the guard's own heading.
     fn look_aside(&mut self) {
         let is_at_post =
             matches!(self.duty, Duty::Stand | Duty::Sleep) && self.mover.cell() == self.post;
         if is_at_post {
             self.look = Some(self.post_heading.turned(self.glance).direction());
         } else if self.glance != 0.0 && self.pause > 30 {
-            // The glance is spent as the guard turns.
+            // The turn consumes the glance.
             let part = self.glance.clamp(-0.03, 0.03);
             self.look = Some(self.mover.heading.turned(part).direction());
             self.glance -= part;
@@ -217,7 +220,7 @@ impl Guard {
     }
 }
 
-/// Wondering, searching and tracking: guards who have noticed something.
+/// Wondering, searching and tracking: the behaviour of guards who have noticed something.
 impl Guard {
     pub(crate) fn wonder(&mut self, context: &mut Context) {
         let State::Wondering { about, looks, goes, hurries, wakes } = self.state else { return };
@@ -278,9 +281,9 @@ impl Guard {
         }
     }
 
-    /// Follows the marks of a trail, one after the other.
+    /// Follows the marks of a trail one after another.
     pub(crate) fn track(&mut self, context: &mut Context, target: usize, mark: u64, lost: u16) {
-        // The trails of the last players go with them.
+        // When a player with the highest index leaves, their trail is removed.
         let Some(trail) = context.trails.get(target) else { return self.give_up(context) };
         let mark = mark.max(trail.first());
         let Some(cell) = trail.cell(mark) else { return self.stop_tracking(lost, context.stride) };
@@ -316,7 +319,7 @@ impl Guard {
         }
     }
 
-    /// Goes to another guard who has fallen, if this one sees any.
+    /// Goes to a fallen guard if this guard sees one.
     pub(crate) fn look_for_fallen(&mut self, context: &mut Context) {
         let is_busy = match self.state {
             State::OnDuty | State::Returning | State::Searching { .. } => false,
@@ -348,7 +351,7 @@ impl Guard {
     }
 }
 
-/// Chasing: guards who know where a player is.
+/// Chasing: the behaviour of guards who know where a player is.
 impl Guard {
     pub(crate) fn chase(&mut self, context: &mut Context, fright: u16) {
         let quarry = self.quarry.filter(|quarry| context.target(quarry.target).is_some());
@@ -368,7 +371,7 @@ impl Guard {
         }
     }
 
-    /// Walks to where the player is, or was.
+    /// Walks to the position where the player is or was.
     fn close_in(&mut self, context: &mut Context, quarry: Quarry) {
         let Some(cell) = Cell::containing(quarry.position) else { return self.give_up(context) };
         let speed = self.abilities().chase;
@@ -398,7 +401,7 @@ impl Guard {
         }
     }
 
-    /// Looks for a player who is not there any more.
+    /// Searches for a player who is no longer there.
     fn lose(&mut self, context: &mut Context, quarry: Quarry) {
         self.awareness = WONDERS;
         self.baffled = 0;
@@ -414,7 +417,7 @@ impl Guard {
         }
     }
 
-    /// Whether the guard stays at some distance from the player.
+    /// Whether the guard keeps a distance from the player.
     fn keeps_away(&self, context: &Context) -> bool {
         match self.kind {
             GuardKind::Archer => true,
@@ -444,7 +447,7 @@ impl Guard {
         }
     }
 
-    /// Walks along `direction`, or aside where something is in the way.
+    /// Walks along `direction`, or aside if something is in the way.
     fn walk_back(&mut self, context: &mut Context, direction: DVec2, speed: f64) {
         const SLANT: DVec2 = DVec2::new(0.5, 0.866);
         let position = self.mover.position();
@@ -483,7 +486,7 @@ impl Guard {
     }
 }
 
-/// Blows and shots.
+/// Attacking: blows and shots.
 impl Guard {
     fn attack(&mut self, context: &mut Context, phase: Phase, left: u16) {
         let target = self.quarry.and_then(|quarry| context.target(quarry.target).copied());
@@ -508,7 +511,7 @@ impl Guard {
             self.state = State::Chasing { fright: 0 };
             return;
         }
-        // The blind strike where they have heard the player.
+        // A blind guard strikes at the position where they heard the player.
         let place = match self.quarry {
             Some(quarry) if self.kind == GuardKind::Listener => quarry.position,
             _ => target.position,
@@ -552,7 +555,7 @@ impl Guard {
         }
     }
 
-    /// Hits the player, if they are within reach.
+    /// Hits the player if they are within reach. Returns whether the blow hit.
     fn hits(&self, context: &mut Context, target: &Target) -> bool {
         let way = target.position - self.mover.position();
         let distance = way.length();

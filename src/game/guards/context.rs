@@ -1,4 +1,4 @@
-//! What a guard's step reads and writes.
+//! The inputs and outputs of a guard's step.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -25,14 +25,14 @@ pub(crate) struct Context<'a> {
     pub(crate) now: u64,
     /// The index of the guard.
     pub(crate) index: usize,
-    /// The number of steps that are taken at once.
+    /// The number of steps taken at once.
     pub(crate) stride: u16,
     pub(crate) acts: &'a mut Vec<Act>,
-    /// The indices of guards who are woken.
+    /// The indices of the guards that are woken.
     pub(crate) woken: &'a mut Vec<usize>,
 }
 
-/// A guard as other guards know them.
+/// A guard as other guards perceive them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Other {
     pub(crate) position: DVec2,
@@ -40,7 +40,7 @@ pub(crate) struct Other {
     pub(crate) is_down: bool,
 }
 
-/// A player as guards can perceive them.
+/// A player as guards perceive them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Target {
     /// The position, in cells.
@@ -49,16 +49,16 @@ pub(crate) struct Target {
     pub(crate) feet: f64,
     /// The height of the top of the head, in cells.
     pub(crate) head: f64,
-    /// How well the player is lit: from 0 for not at all to 255.
+    /// The player's visibility to guards, from 0 for invisible to 255.
     pub(crate) visibility: u8,
-    /// Whether the player carries a lit lamp, which is seen from afar.
+    /// Whether the player carries a lit lamp, which guards see from afar.
     pub(crate) has_light: bool,
-    /// Whether the player is alive. Guards let the dead be.
+    /// Whether the player is alive. Guards ignore the dead.
     pub(crate) is_alive: bool,
 }
 
 impl Target {
-    /// The cell of the middle.
+    /// The cell that contains the player's centre.
     pub(crate) fn cell(&self) -> Cell {
         Cell::at(self.position)
     }
@@ -72,16 +72,16 @@ impl Target {
 /// An effect of a guard on the rest of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Act {
-    /// Hits the player with index `target`; the blow comes from `from`.
+    /// Hits the player with index `target`. The blow comes from the position `from`.
     Hurt { target: usize, by: usize, from: DVec2, points: u8 },
-    /// Opens the door in a cell. A guard who waits before a door does so in every step.
+    /// Opens the door in a cell. A guard who waits at a door emits this in every step.
     Open(Cell),
     /// Makes a sound.
     Sound(Sound),
-    /// Shoots a bolt from a position and a height along `direction`, a unit vector; it rises by
-    /// `slope` for each cell, and hits for `points`.
+    /// Shoots a bolt from a position and a height along `direction`, a unit vector. The bolt rises
+    /// by `slope` for each cell and takes `points` of health.
     Bolt { by: usize, from: DVec2, height: f64, direction: DVec2, slope: f64, points: u8 },
-    /// Begins to follow a player while nobody did: one more alarm.
+    /// Raises the alarm: a guard begins to follow a player, and no guard did so before.
     Raised,
 }
 

@@ -1,4 +1,4 @@
-//! A guard: the state, what others see of it, and how it changes.
+//! A guard: the state, its public view, and its changes.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -14,32 +14,32 @@ use crate::generate::Shift;
 use crate::rng::{SplitMix64, hash};
 use crate::world::{Cell, Difficulty, Duty, GuardKind, GuardPost, Heading, World};
 
-/// The awareness from which a guard wonders, and from which they are alarmed.
+/// The awareness at which a guard wonders, and the awareness at which they are alarmed.
 pub(crate) const WONDERS: u16 = 300;
 pub(crate) const ALARMED: u16 = 1000;
 
-/// For so many steps, a guard still knows where a player who left their sight has gone.
+/// For this many steps, a guard still knows the position of a player who has left their sight.
 pub(crate) const GUESSES: u16 = 45;
-/// The steps for which a guard stands and shouts before they run.
+/// The number of steps for which a guard stands and shouts before they run.
 const FRIGHT: u16 = 24;
-/// The same for a lantern-bearer, who rings a bell.
+/// The number of steps for which a lantern-bearer rings the bell before they run.
 const RINGING: u16 = 60;
-/// The steps for which a guard looks towards a noise before they go there.
+/// The number of steps for which a guard looks towards a noise before they go there.
 const LOOKS: u16 = 45;
 /// The angle of a glance to the side, in radians.
 const GLANCE: f64 = 0.9;
 
-/// The length of a pace: each one is a frame and a sound, in cells.
+/// The length of a pace, in cells. Each pace changes the sprite's frame and makes a sound.
 pub(crate) const PACE: f64 = 0.55;
-/// The steps for which a guard staggers who is pushed.
+/// The number of steps for which a guard staggers after a push.
 const STAGGER: u16 = 30;
-/// A guard who has not moved for so many steps is stuck.
+/// A guard who has not moved for this many steps is stuck.
 pub(crate) const STUCK: u16 = 40;
-/// The speed of a guard who is pushed, in cells per second.
+/// The speed of a pushed guard, in cells per second.
 const PUSH: f64 = 4.0;
-/// More steps than any guard is baffled.
+/// An upper bound on the number of steps for which a guard is baffled.
 const MOST_BAFFLED: u16 = 1000;
-/// The number of paces after which they are counted from 0 again.
+/// The number of paces after which the count restarts at 0.
 pub(crate) const MOST_PACES: f64 = 1024.0;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,27 +56,27 @@ pub(crate) struct Guard {
     /// From 0 to [`ALARMED`].
     pub(crate) awareness: u16,
     pub(crate) quarry: Option<Quarry>,
-    /// Whether they have been alarmed before, in a game where guards remember it.
+    /// Whether the guard has been alarmed before. Set only on the hardest difficulty.
     pub(crate) is_wary: bool,
-    /// The place in the round of a patrol.
+    /// The index of the next stop of a patrol.
     pub(crate) stop: usize,
-    /// Where a guard who wanders goes.
+    /// The destination of a guard who wanders.
     pub(crate) errand: Option<Cell>,
-    /// The steps for which they stand still on duty, or look around.
+    /// The remaining steps for which the guard stands still on duty or looks around.
     pub(crate) pause: u16,
-    /// The side to which they look, while they look around.
+    /// The angle by which the guard looks aside during a pause, in radians.
     pub(crate) glance: f64,
-    /// The steps until they may strike again, until they stand firmly, and until they may be
-    /// alarmed by sight again.
+    /// The number of steps until the guard may strike again, until they stand firmly, and until
+    /// they may notice players by sight or smell again.
     pub(crate) rest: u16,
     pub(crate) stagger: u16,
     pub(crate) blind: u16,
-    /// The steps for which they have followed a player in vain.
+    /// The number of steps for which the guard has followed a player in vain.
     pub(crate) baffled: u16,
-    /// Whether a floor under them has moved.
+    /// Whether a floor has moved under the guard.
     pub(crate) is_unsettled: bool,
     pub(crate) route: Route,
-    /// The velocity and the look that they want in this step.
+    /// The velocity and the direction of view that the guard wants in this step.
     pub(crate) wanted: DVec2,
     pub(crate) look: Option<DVec2>,
     /// The distance walked, in paces.
@@ -84,12 +84,12 @@ pub(crate) struct Guard {
     pub(crate) random: SplitMix64,
 }
 
-/// What a guard is doing. Times are in steps.
+/// A guard's activity, as the simulation stores it. Times are in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum State {
     Asleep,
     OnDuty,
-    /// Looks towards a place for some time, and then goes there if it `goes`.
+    /// Looks towards a place for a while, and then walks there if `goes` is true.
     Wondering {
         about: DVec2,
         looks: u16,
@@ -103,13 +103,13 @@ pub(crate) enum State {
         next: Option<Cell>,
         left: u16,
     },
-    /// Follows the trail of a player, up to now to the mark with that number.
+    /// Follows a player's trail; `mark` is the number of the current mark.
     Tracking {
         target: usize,
         mark: u64,
         lost: u16,
     },
-    /// Follows a player, after the time of the fright.
+    /// Follows a player once the fright has passed.
     Chasing {
         fright: u16,
     },
@@ -123,53 +123,54 @@ pub(crate) enum State {
     Returning,
 }
 
-/// The parts of a blow.
+/// The phases of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Phase {
     /// The warning.
     Windup,
-    /// The blow; whether it has hit.
+    /// The blow itself. `has_hit` is true once it has hit.
     Strike { has_hit: bool },
-    /// The rest after it.
+    /// The rest after the blow.
     Recovery,
 }
 
-/// A guard's knowledge of the player they look for.
+/// A guard's knowledge of the player that they look for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Quarry {
     /// The index of the player.
     pub(crate) target: usize,
-    /// Where the player was last perceived.
+    /// The position at which the player was last perceived.
     pub(crate) position: DVec2,
-    /// The steps since then.
+    /// The number of steps since then.
     pub(crate) unseen: u16,
 }
 
-/// The way of a guard.
+/// The path of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Route {
     pub(crate) goal: Option<Cell>,
-    /// The point to which they walk at present.
+    /// The point that the guard walks to now.
     pub(crate) point: Option<DVec2>,
-    /// The cell in which the point was found.
+    /// The cell from which the point was found.
     pub(crate) from: Option<Cell>,
-    /// The steps for which it is still used.
+    /// The number of steps for which the point remains in use.
     pub(crate) fresh: u16,
-    /// The steps for which the guard has not moved, and for which they will walk with care.
+    /// The number of steps for which the guard has not moved, and for which they will still walk
+    /// with care.
     pub(crate) still: u16,
     pub(crate) care: u16,
 }
 
-/// What a guard is doing.
+/// A guard's activity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Mood {
     /// Sleeps.
     Asleep,
     /// Stands, patrols or wanders.
     OnDuty,
-    /// Has noticed something, and goes to see.
+    /// Has noticed something and goes to see.
     Wondering,
-    /// Looks for the player in the cells around.
+    /// Searches the surrounding cells for the player.
     Searching,
     /// Follows the player.
     Chasing,
@@ -181,21 +182,21 @@ pub enum Mood {
     Returning,
 }
 
-/// How much the guards of a level know.
+/// The state of alarm of a level's guards.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
 )]
 pub enum Alarm {
-    /// Nobody has noticed anything.
+    /// No guard has noticed anything.
     #[default]
     Calm,
-    /// Somebody wonders or searches.
+    /// A guard wonders or searches.
     Wary,
-    /// Somebody follows the player.
+    /// A guard follows the player.
     Raised,
 }
 
-/// A guard as a map or a test sees it.
+/// A guard as seen from outside the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardView {
     /// The kind of guard.
@@ -206,7 +207,7 @@ pub struct GuardView {
     pub feet: f64,
     /// The direction in which the guard looks.
     pub heading: Heading,
-    /// What the guard is doing.
+    /// The guard's activity.
     pub mood: Mood,
     /// Whether the guard lies on the floor.
     pub is_down: bool,
@@ -249,7 +250,7 @@ impl Guard {
         (self.awareness, self.quarry, self.stagger) = (0, None, 0);
     }
 
-    /// Lets a guard who lies stand up and look around.
+    /// Makes a guard who lies on the floor stand up and look around.
     pub(crate) fn get_up(&mut self) {
         self.state = State::Searching { around: self.mover.cell(), next: None, left: 600 };
         self.pause = 60;
@@ -273,7 +274,7 @@ impl Guard {
         }
     }
 
-    /// Says so, and looks towards a place; then goes there, if it is worth it.
+    /// Makes a sound and looks towards `about`. If `goes` is true, the guard then walks there.
     pub(crate) fn begin_to_wonder(&mut self, context: &mut Context, about: DVec2, goes: bool) {
         let looks = if self.state == State::Asleep { LOOKS * 2 } else { LOOKS };
         self.state = State::Wondering { about, looks, goes, hurries: false, wakes: None };
@@ -285,14 +286,14 @@ impl Guard {
         self.pause_a_while(50, 70);
     }
 
-    /// Goes back to duty, and says so.
+    /// Returns to duty, with a sound.
     pub(crate) fn give_up(&mut self, context: &mut Context) {
         context.sound(SoundKind::GiveUp, self.mover.cell(), 7);
         self.state = State::Returning;
         (self.awareness, self.quarry, self.errand) = (0, None, None);
     }
 
-    /// Calls the others, and begins to chase.
+    /// Calls the other guards and begins to chase.
     pub(crate) fn raise_alarm(&mut self, context: &mut Context) {
         let (kind, reach) = match self.kind {
             GuardKind::Lantern => (SoundKind::Bell, Sound::FARTHEST),
@@ -307,7 +308,8 @@ impl Guard {
         self.state = State::Chasing { fright: if is_ringing { RINGING } else { FRIGHT } };
     }
 
-    /// Stands still for a time between two numbers of steps, and looks to another side.
+    /// Stands still for a random number of steps between `least` and `most`, and looks to a random
+    /// side.
     pub(crate) fn pause_a_while(&mut self, least: u16, most: u16) {
         self.pause = self.random.whole(i32::from(least), i32::from(most)) as u16;
         self.glance = match self.random.below(3) {
@@ -336,17 +338,19 @@ impl Guard {
         Point { position: self.mover.position(), height }
     }
 
-    /// Whether this guard sees the middle of a player, in whatever direction and light.
+    /// Whether this guard has a clear line of sight to the middle of a player, in any direction and
+    /// light.
     pub(crate) fn has_line_to(&self, context: &Context, target: &Target) -> bool {
         self.sees(context, target.position, target.middle())
     }
 
-    /// Whether nothing hides a point from this guard, in whatever direction and light.
+    /// Whether this guard has a clear line of sight to a point, in any direction and light.
     pub(crate) fn sees(&self, context: &Context, position: DVec2, height: f64) -> bool {
         is_in_sight(context.world, context.clouds, self.eye(), Point { position, height })
     }
 
-    /// Whether this guard is awake and could see `point`, however dark it is there, once they look that way.
+    /// Returns true if this guard is awake and could see `point` by looking that way, however dark
+    /// it is there.
     pub(crate) fn may_see(&self, world: &World, point: Point) -> bool {
         let range = self.abilities().sight.map_or(0.0, |sight| sight.range);
         let is_awake = !self.state.is_down() && self.state != State::Asleep;
@@ -361,7 +365,7 @@ impl Guard {
         Point { position: self.mover.position(), height }
     }
 
-    /// Whether the guard does nothing until somebody wakes them.
+    /// Returns true if the guard does nothing until something wakes them.
     pub(crate) fn is_asleep(&self) -> bool {
         self.state == State::Asleep && self.stagger == 0
     }
@@ -397,7 +401,7 @@ impl Guard {
         }
     }
 
-    /// Refuses a state in which a step of `count` guards could fail.
+    /// Returns an error if a step of `count` guards could fail in this state.
     pub(crate) fn check(&self, world: &World, count: usize) -> Result<(), Unrestorable> {
         check_on_map(world, self.mover.position())?;
         if let Some(quarry) = self.quarry {
@@ -421,8 +425,8 @@ impl Guard {
         check(counts, "a count of a guard")
     }
 
-    /// Moves the guard with the window; `false` if they are outside it now. Places outside it
-    /// become the cell of the guard.
+    /// Moves the guard with the window of a generated level. Returns `false` if the guard is
+    /// outside it now. A remembered cell outside the window becomes the guard's own cell.
     pub(crate) fn shift(&mut self, shift: Shift) -> bool {
         let Some(here) = shift.cell(self.mover.cell()) else { return false };
         let cell = |cell: Cell| shift.cell(cell).unwrap_or(here);
@@ -491,7 +495,7 @@ impl State {
 }
 
 impl Mood {
-    /// The alarm of a level in which a guard has this mood, and all others are on duty.
+    /// The alarm of a level in which one guard has this mood and all others are on duty.
     pub(crate) const fn alarm(self) -> Alarm {
         match self {
             Self::Asleep | Self::OnDuty | Self::Down | Self::Returning => Alarm::Calm,

@@ -1,4 +1,4 @@
-//! What kinds of guards can do.
+//! The abilities of each kind of guard.
 
 use crate::world::GuardKind;
 
@@ -7,36 +7,36 @@ use crate::world::GuardKind;
 pub(crate) struct Abilities {
     /// The speed on duty.
     pub(crate) walk: f64,
-    /// The speed of following a player.
+    /// The speed while following a player.
     pub(crate) chase: f64,
     /// The height of the eye above the feet, in cells.
     pub(crate) eye: f64,
-    /// How far they see in full light, in cells; `None` for the blind.
+    /// The range and the angle of the guard's sight; `None` if they are blind.
     pub(crate) sight: Option<Sight>,
-    /// How much farther sounds reach them, in halves.
+    /// A factor on the reach of sounds for this guard, in halves.
     pub(crate) hearing: u16,
     /// Whether they open doors without a key.
     pub(crate) opens_doors: bool,
-    /// The duration of the warning before a blow or a shot.
+    /// The duration of the warning before an attack.
     pub(crate) windup: u16,
-    /// The duration of the rest after it.
+    /// The duration of the rest after an attack.
     pub(crate) recovery: u16,
-    /// The health that it takes.
+    /// The points of health that a hit takes.
     pub(crate) points: u8,
-    /// How far the middle of a player may be to be hit, in cells.
+    /// The distance at which the centre of a player can be hit, in cells.
     pub(crate) reach: f64,
     /// The speed during the warning.
     pub(crate) windup_speed: f64,
     /// The speed during the blow.
     pub(crate) lunge: f64,
-    /// How far the steps of the guard are heard, in cells.
+    /// The distance at which the guard's footsteps are heard, in cells.
     pub(crate) tread: u8,
 }
 
-/// How well a guard sees.
+/// The sight of a guard.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
-    /// In full light, in cells.
+    /// The range in full light, in cells.
     pub(crate) range: f64,
     /// The cosine of half the angle of the cone.
     pub(crate) least_cosine: f64,

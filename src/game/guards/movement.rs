@@ -1,8 +1,8 @@
 //! The body of a guard: turning, walking, climbing and falling.
 //!
-//! A guard collides with the world as the player does, and also with everything they avoid: edges of high
-//! drops, water, spikes. In the middle of level floor, where nothing can be in
-//! the way, a step is an addition; elsewhere it is a [`slide`].
+//! A guard collides with the world like the player, and also with everything that they avoid: edges
+//! of high drops, water and spikes. In the middle of level floor, where nothing can be in the way,
+//! a step is one addition. Elsewhere it is a [`slide`].
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -18,10 +18,10 @@ use crate::world::{Cell, Heading, Outline, World};
 pub(crate) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
-/// The change of velocity in one step, in cells per second.
+/// The maximum change of velocity in one step, in cells per second.
 const ACCELERATION: f64 = 0.6;
 
-/// Where a guard is and how they move.
+/// The position and the motion of a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mover {
     pub(crate) body: Body,
@@ -46,7 +46,7 @@ impl Mover {
         }
     }
 
-    /// The same, facing the heading.
+    /// The same mover, with `facing` computed from the heading.
     pub(crate) fn facing_ahead(self) -> Self {
         Self { facing: self.heading.direction(), ..self }
     }
@@ -55,7 +55,7 @@ impl Mover {
         self.body.position
     }
 
-    /// The cell of the middle.
+    /// The cell that contains the guard's centre.
     pub(crate) fn cell(&self) -> Cell {
         Cell::at(self.body.position)
     }
@@ -65,7 +65,7 @@ impl Mover {
         self.rising == 0.0
     }
 
-    /// Whether no floor moves a guard who neither walks nor is pushed.
+    /// Returns true if a guard who neither walks nor is pushed would not move.
     pub(crate) fn is_at_rest(&self, world: &World) -> bool {
         world.moving_tiles().is_empty()
             || self.rising == 0.0 && self.feet == world.floor_at(self.cell())
@@ -84,7 +84,7 @@ impl Mover {
         self.facing = self.heading.direction();
     }
 
-    /// Changes the velocity towards `wanted`, and moves for that many steps.
+    /// Accelerates towards the velocity `wanted`, and moves for `steps` steps.
     pub(crate) fn walk(&mut self, ground: &Ground, wanted: DVec2, steps: u16) {
         let change = wanted - self.body.velocity;
         let most = ACCELERATION * f64::from(steps);
@@ -102,8 +102,9 @@ impl Mover {
         }
     }
 
-    /// The guard after a floor under them has moved: on the floor if it `carries` and they stood on it, unchanged
-    /// if they have room, and else lifted. `None` if they have no room then, either.
+    /// The guard after a floor has moved under them. If the floor `carries` and they stood on it,
+    /// they stay on it. Otherwise they are unchanged if they have room, and lifted if not. `None`
+    /// if they have no room after the lift either.
     pub(crate) fn after_floor(&self, ground: &Ground, carries: bool) -> Option<Self> {
         let ridden = if carries { self.ridden(ground) } else { None };
         let has_room = |mover: &Self| ground.has_room_for(mover);
@@ -114,7 +115,7 @@ impl Mover {
         })
     }
 
-    /// On the floor, if that has moved by at most a step.
+    /// The guard on the floor, if the floor has moved by at most a step.
     fn ridden(&self, ground: &Ground) -> Option<Self> {
         let feet = ground.highest_floor(self.body.position)?;
         let is_a_step = (feet - self.feet).abs() <= STEP_HEIGHT;
@@ -141,7 +142,7 @@ impl Mover {
     }
 }
 
-/// The world as a guard walks in it.
+/// The world for a guard who walks in it.
 pub(crate) struct Ground<'a> {
     pub(crate) world: &'a World,
     pub(crate) terrain: &'a Terrain,
@@ -179,12 +180,13 @@ impl Ground<'_> {
         self.place(mover).is_clear(mover.body.position, RADIUS)
     }
 
-    /// Whether a guard who does not walk stays where they are: the floor under them has not moved.
+    /// Whether a guard who does not walk stays at their position, because the floor under them has
+    /// not moved.
     fn is_at_rest(&self, mover: &Mover) -> bool {
         self.is_free(mover, DVec2::ZERO) || mover.feet == self.floor(mover)
     }
 
-    /// Whether a guard stands on level floor and will still do so after `displacement`, with
+    /// Whether a guard stands on level floor, and will still do so after `displacement` with
     /// nothing in the way.
     fn is_free(&self, mover: &Mover, displacement: DVec2) -> bool {
         let radius = RADIUS.cells();
@@ -202,10 +204,10 @@ impl Ground<'_> {
             .all(|row| (low.x as u32..=high.x as u32).all(|column| is_level(Cell { column, row })))
     }
 
-    /// Whether a guard who walks straight from `from` to `to` meets nothing, at heights that they
-    /// climb.
+    /// Whether a guard can walk straight from `from` to `to`: nothing is in the way, and they can
+    /// climb all steps.
     pub(crate) fn is_straight(&self, from: DVec2, to: DVec2) -> bool {
-        /// The distance of the positions that are tested, in cells, and the room around them.
+        /// The distance between the tested positions, and the room around each of them, in cells.
         const STRIDE: f64 = 0.25;
         const ROOM: f64 = 0.3;
         let way = to - from;
@@ -223,7 +225,7 @@ impl Ground<'_> {
         })
     }
 
-    /// Whether all floors under a circle are at most one step from the floor of its middle.
+    /// Whether all floors under a circle are within one step of the floor at its centre.
     fn has_room(&self, at: DVec2, middle: Cell, radius: f64) -> bool {
         let Some(floor) = self.terrain.footing(self.world, middle) else { return false };
         let (low, high) = (at - radius, at + radius);
@@ -237,7 +239,7 @@ impl Ground<'_> {
         })
     }
 
-    /// Whether two diagonal neighbours and the cells beside both are at one height.
+    /// Whether two diagonal neighbours and the two cells beside them are at one height.
     fn is_level_square(&self, one: Cell, other: Cell) -> bool {
         let corners = [
             other,
@@ -252,7 +254,8 @@ impl Ground<'_> {
     }
 }
 
-/// The obstacles of a guard: the place, and for a careful guard also everything they avoid.
+/// The obstacles for a guard: the place and, if the guard `avoids` hazards, everything that they
+/// avoid.
 struct Careful<'a> {
     place: Place<'a>,
     ground: &'a Ground<'a>,

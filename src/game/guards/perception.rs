@@ -1,11 +1,11 @@
-//! How guards notice players: by sight, smell, touch and hearing.
+//! The perception of guards: sight, smell, touch and hearing.
 //!
-//! Awareness is a whole number. Each look at a player adds to it, by the light on the player, the
-//! distance, and how far the player is from the middle of the cone. No look adds so much that a
-//! player who is noticed is followed within half a second, except at [`FACE_TO_FACE`].
+//! Awareness is a whole number. Each look at a player increases it, depending on the light on the
+//! player, their distance, and how far they are from the middle of the cone. No look adds so much
+//! that a guard follows a player within half a second of noticing them, except at [`FACE_TO_FACE`].
 //!
-//! A sound alone makes guards wonder and go there. Only listeners, who do not see, follow players
-//! by ear.
+//! A sound alone makes guards wonder and go there. Only listeners, who are blind, follow players by
+//! ear.
 
 use glam::DVec2;
 
@@ -16,25 +16,25 @@ use crate::world::{Cell, Difficulty, GuardKind};
 
 /// A guard looks around in every fourth step.
 const LOOK_EACH: u64 = 4;
-/// The most that one look adds to awareness.
+/// The maximum that one look adds to awareness.
 const MOST_GAIN: u32 = 80;
-/// The loss of awareness in a look that finds nobody.
+/// The awareness that a guard loses with a look that finds nobody.
 const LOSS: u16 = 8;
 /// At this distance in front of a guard, a player is noticed at once, in cells.
 const FACE_TO_FACE: f64 = 1.2;
-/// At this distance, a player is felt, in cells.
+/// At this distance, a guard feels a player, in cells.
 const TOUCH: f64 = 0.55;
-/// The light, of 255, from which guards see as far as in full light.
+/// The light, out of 255, from which guards see as far as in full light.
 const BRIGHT: u32 = 160;
-/// How far guards see in darkness, in sixteenths of a cell.
+/// The range of guards' sight in darkness, in sixteenths of a cell.
 const IN_DARKNESS: u32 = 24;
-/// How far the lamp of a lantern-bearer lights players, in cells.
+/// The distance at which a lantern-bearer's lamp lights players, in cells.
 const LANTERN: f64 = 4.0;
-/// How far a hound smells a trail, in cells.
+/// The distance at which a hound smells a trail, in cells.
 pub(crate) const NOSE: f64 = 1.5;
 
 impl Guard {
-    /// Notices players.
+    /// Perceives players by sight, touch and smell.
     pub(crate) fn perceive(&mut self, context: &mut Context) {
         if let Some(quarry) = &mut self.quarry {
             quarry.unseen = quarry.unseen.saturating_add(context.stride);
@@ -71,7 +71,8 @@ impl Guard {
         }
     }
 
-    /// The gain of awareness by a look at `target`; [`ALARMED`] if it is noticed at once.
+    /// The increase of awareness from a look at `target`; [`ALARMED`] if the guard notices it at
+    /// once.
     fn gain(&self, context: &Context, target: &Target) -> u16 {
         let way = target.position - self.mover.position();
         let distance = way.length();
@@ -107,7 +108,7 @@ impl Guard {
         gain.clamp(3, MOST_GAIN) as u16
     }
 
-    /// The light on a player as this guard sees it, up to 255.
+    /// The light on a player as this guard sees it, at most 255.
     fn light_on(&self, context: &Context, target: &Target, distance: f64) -> u32 {
         let is_lit_by_guard = self.kind == GuardKind::Lantern && distance <= LANTERN;
         if target.has_light || is_lit_by_guard {
@@ -117,13 +118,14 @@ impl Guard {
         (f64::from(target.visibility) * clearness) as u32
     }
 
-    /// Of three parts of a player, how many this guard sees: the head is one, the body two.
+    /// The number of parts of a player that this guard sees, of three: the head counts as one, the
+    /// body as two.
     fn visible_parts(&self, context: &Context, target: &Target) -> u32 {
         let sees = |height| u32::from(self.sees(context, target.position, height));
         2 * sees(target.middle()) + sees(target.head - 0.05)
     }
 
-    /// Wonders, or is alarmed.
+    /// Begins to wonder or raises the alarm, depending on awareness.
     fn react(&mut self, context: &mut Context) {
         let Some(quarry) = self.quarry else { return };
         match self.state {
@@ -141,7 +143,7 @@ impl Guard {
         }
     }
 
-    /// A player who was in sight a moment ago is followed around the corner.
+    /// Follows a player who was in sight a moment ago around the corner.
     fn keep_guessing(&mut self, context: &Context) {
         let Some(quarry) = &mut self.quarry else { return };
         if self.state.is_alarmed()
@@ -153,7 +155,7 @@ impl Guard {
         }
     }
 
-    /// A hound that is not busy smells the trail of a player.
+    /// Makes an idle hound smell the trails of players.
     fn smell(&mut self, context: &mut Context) {
         let is_busy = matches!(self.state, State::Tracking { .. }) || self.state.is_alarmed();
         if self.kind != GuardKind::Hound || is_busy || self.blind > 0 {
@@ -174,11 +176,11 @@ impl Guard {
     }
 }
 
-/// The most awareness that sounds alone give a guard who sees.
+/// The maximum awareness that a guard who sees can reach by sounds alone.
 const MOST_BY_EAR: u16 = 700;
 
 impl Guard {
-    /// How far this guard hears `sound`, in half cells; 0 if they do not care.
+    /// The distance at which this guard hears `sound`, in half cells; 0 if they ignore it.
     pub(crate) fn earshot(&self, sound: &Sound, difficulty: Difficulty) -> u16 {
         let reach = half_cells(sound.reach.min(Sound::FARTHEST));
         let is_listener = self.kind == GuardKind::Listener;
@@ -196,7 +198,8 @@ impl Guard {
         if self.state == State::Asleep { reach / 2 } else { reach }
     }
 
-    /// Hears `sound` at this distance of the `earshot`. `told` is the quarry of the guard who calls.
+    /// Hears `sound` at `distance`, of at most `earshot`, in half cells. `told` is the quarry of
+    /// the guard who calls.
     pub(crate) fn hear(
         &mut self,
         context: &mut Context,
@@ -228,7 +231,7 @@ impl Guard {
         }
     }
 
-    /// A guard who has lost a player goes where they hear them.
+    /// Makes a guard who has lost a player go to where they hear that player.
     fn turn_to_sound(&mut self, sound: &Sound, place: DVec2) {
         if let (Some(quarry), Source::Player(target)) = (&mut self.quarry, sound.by)
             && quarry.target == target
@@ -270,7 +273,7 @@ impl Guard {
         }
     }
 
-    /// Runs where another guard has seen a player.
+    /// Answers the call of a guard who has seen a player.
     fn come(&mut self, about: DVec2) {
         let looks = if self.state == State::Asleep { 60 } else { 20 };
         self.awareness = self.awareness.max(WONDERS);
@@ -278,7 +281,7 @@ impl Guard {
     }
 }
 
-/// Whether guards go where a sound is made that they do not understand.
+/// Whether a sound makes guards go to its source to investigate.
 fn is_startling(sound: &Sound) -> bool {
     match sound.by {
         Source::Guard(_) => sound.kind == SoundKind::Fall,
@@ -286,13 +289,13 @@ fn is_startling(sound: &Sound) -> bool {
     }
 }
 
-/// Whether `sound` calls guards.
+/// Whether `sound` is a guard's call to other guards.
 fn is_call(sound: &Sound) -> bool {
     matches!(sound.by, Source::Guard(_))
         && matches!(sound.kind, SoundKind::Shout | SoundKind::Bell | SoundKind::Bark)
 }
 
-/// The gain of awareness by a sound from nearby.
+/// The increase of awareness from a sound nearby.
 fn startle(kind: SoundKind) -> u32 {
     match kind {
         SoundKind::Walking => 200,
@@ -300,7 +303,7 @@ fn startle(kind: SoundKind) -> u32 {
         SoundKind::Running | SoundKind::Door => 280,
         SoundKind::Splash | SoundKind::Cry | SoundKind::Blow => 340,
         SoundKind::Landing => 380,
-        // They make every guard wonder who hears them.
+        // These make every guard who hears them wonder.
         SoundKind::Knock | SoundKind::Crash | SoundKind::Fall => 1200,
         // Guards are used to spikes.
         SoundKind::Spikes

@@ -24,14 +24,14 @@ const TILES: &str = r##"
 "~" = { water = true }
 "##;
 
-/// A game of guards alone: a world, its doors, and one player who does what the test says.
+/// A game with guards only: a world, its doors, and one player that the test controls.
 struct Scene {
     world: World,
     guards: Guards,
     doors: Doors,
     target: Target,
     clouds: Vec<Cloud>,
-    /// What guards have done in the last step.
+    /// The acts of the guards in the last step.
     acts: Vec<Act>,
 }
 
@@ -76,7 +76,8 @@ impl Scene {
         self.doors.step(&mut self.world, is_occupied);
     }
 
-    /// Steps until `is_it`, at most `most` times; the number of steps, or `None`.
+    /// Steps until `is_it` returns true, at most `most` times. Returns the number of steps, or
+    /// `None`.
     fn steps_until(&mut self, most: u32, mut is_it: impl FnMut(&Self) -> bool) -> Option<u32> {
         (1..=most).find(|_| {
             self.step(&[]);
@@ -109,7 +110,7 @@ impl Scene {
         Sound { kind, cell: self.target.cell(), reach, by: Source::Player(0) }
     }
 
-    /// Whether every guard is where their body has room.
+    /// Whether every guard's body has room.
     fn is_sound(&self) -> bool {
         self.guards.list.iter().all(|guard| {
             let ground =
@@ -143,7 +144,7 @@ fn corridor(heading: u32) -> Scene {
 fn a_player_behind_a_guard_is_not_seen() {
     let mut scene = corridor(180);
     scene.put(2.8, 1.5);
-    // Guards who look around do not look back.
+    // A guard who looks around does not look backwards.
     let alarmed = scene.steps_until(600, |scene| scene.mood(0) != Mood::OnDuty);
     assert_eq!(alarmed, None);
 }
@@ -256,7 +257,7 @@ fn who_is_stunned_gets_up_alone() {
     assert_eq!(scene.mood(0), Mood::Searching);
 }
 
-// Hearing, and telling each other.
+// Hearing and calling.
 
 const GUARDS: &str = r#"
 "W" = { guard = "warden", heading = 180 }
@@ -277,7 +278,7 @@ fn rooms(guard: char, doorway: char) -> Scene {
     Scene::new(&rows.join("\n"), &used(&rows))
 }
 
-/// The definitions of the guards that are drawn.
+/// The definitions of the guards that occur in `rows`.
 fn used(rows: &[String]) -> String {
     let is_used = |line: &&str| {
         let name = line.chars().nth(1);
@@ -463,8 +464,8 @@ fn far_guards_walk_as_well() {
     assert!((370..450).contains(&arrived), "{arrived}");
 }
 
-/// A room with random walls, steps, pits and water; the first two free cells are a guard's and the
-/// player's.
+/// A room with random walls, steps, pits and water. The guard is in the first cell, the player in
+/// the last.
 fn maze(side: usize) -> impl Strategy<Value = String> {
     let tile = prop_oneof![
         9 => Just('.'),
@@ -488,7 +489,7 @@ fn kind() -> impl Strategy<Value = &'static str> {
     prop::sample::select(vec!["warden", "listener", "lantern", "hound", "archer"])
 }
 
-/// Positions in cells that a player can be in.
+/// The cells that a player can be in.
 fn open_cells(scene: &Scene) -> Vec<Cell> {
     let (width, height) = (scene.world.grid().width(), scene.world.grid().height());
     let cells = (0..height).flat_map(|row| (0..width).map(move |column| Cell { column, row }));
@@ -539,8 +540,7 @@ proptest! {
         }
     }
 
-    /// A guard who follows a player whom they can reach comes nearer in every two seconds, or is
-    /// near already.
+    /// A guard who follows a reachable player comes nearer every two seconds, or is already near.
     #[test]
     fn nobody_is_stuck_while_following(
         walls in prop::collection::vec(prop::bool::weighted(0.3), 100),
@@ -590,7 +590,7 @@ proptest! {
 
 const WARDEN: &str = r#""W" = { guard = "warden", heading = 0 }"#;
 
-/// The steps between the warning of a blow and the blow, for a guard next to the player.
+/// The number of steps between the warning and the blow, for a guard next to the player.
 fn warning(name: &str) -> u32 {
     let things = format!("\"W\" = {{ guard = \"{name}\", heading = 0 }}");
     let mut scene = Scene::new("######\n#W.@.#\n######", &things);

@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 use crate::game::stored::{Unrestorable, check};
 use crate::world::{Cell, TileEffect, World};
 
-/// The steps for which a cell smells: 20 seconds.
+/// The number of steps for which a cell smells: 20 seconds.
 const LASTS: u64 = 1200;
-/// The number of cells that are remembered.
+/// The maximum number of cells that are remembered.
 const MOST: usize = 128;
 
-/// The cells in which a player has been, the oldest first. Water keeps no smell.
+/// The cells that a player has visited, oldest first. Water keeps no smell.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Trail {
     marks: VecDeque<Mark>,
-    /// The number of the oldest mark: marks are counted from the first of the game.
+    /// The number of the oldest mark. Marks are numbered from the start of the game.
     first: u64,
 }
 
@@ -27,7 +27,7 @@ struct Mark {
 }
 
 impl Trail {
-    /// Records where a player is in the step `now`.
+    /// Records the cell of a player in the step `now`.
     pub(crate) fn record(&mut self, world: &World, cell: Cell, now: u64) {
         self.fade(now);
         match self.marks.back_mut() {
@@ -45,7 +45,7 @@ impl Trail {
         self.fade(now);
     }
 
-    /// Forgets the cells that do not smell any more.
+    /// Removes the cells that no longer smell.
     fn fade(&mut self, now: u64) {
         let is_stale = |mark: &Mark| now - mark.left_at > LASTS;
         while self.marks.front().is_some_and(is_stale) || self.marks.len() >= MOST {
@@ -54,30 +54,30 @@ impl Trail {
         }
     }
 
-    /// The newest mark whose cell `smells`, with its number.
+    /// The number of the newest mark whose cell `smells`.
     pub(crate) fn newest(&self, smells: impl Fn(Cell) -> bool) -> Option<u64> {
         let place = self.marks.iter().rposition(|mark| smells(mark.cell))?;
         Some(self.first + place as u64)
     }
 
-    /// The cell of the mark with that number.
+    /// The cell of the mark with this number.
     pub(crate) fn cell(&self, number: u64) -> Option<Cell> {
         let place = usize::try_from(number.checked_sub(self.first)?).ok()?;
         self.marks.get(place).map(|mark| mark.cell)
     }
 
-    /// The number of the oldest mark that there still is.
+    /// The number of the oldest remaining mark.
     pub(crate) fn first(&self) -> u64 {
         self.first
     }
 
-    /// Refuses more marks than are remembered, and marks after the step `now`.
+    /// Returns an error if there are too many marks, or marks later than the step `now`.
     pub(crate) fn check(&self, now: u64) -> Result<(), Unrestorable> {
         let are_past = self.marks.iter().all(|mark| mark.left_at <= now);
         check(are_past && self.marks.len() <= MOST, "a trail")
     }
 
-    /// Forgets the cells, as when the whole map has changed.
+    /// Forgets all cells, for example when the whole map has changed.
     pub(crate) fn forget(&mut self) {
         self.first += self.marks.len() as u64;
         self.marks.clear();

@@ -1,8 +1,8 @@
-//! Walking to a cell: straight where nothing is in the way, else along the shortest way.
+//! Walking to a cell: straight if nothing is in the way, otherwise along the shortest path.
 //!
-//! Guards look a few cells ahead on their way and walk straight to the farthest one that they can,
-//! so that they cut corners as people do. A guard who does not move for some time walks from cell
-//! to cell, exactly through the middles, which always is possible.
+//! Guards look a few cells ahead on their path and walk straight to the farthest cell that they can
+//! reach this way, so they cut corners as people do. A guard who has not moved for a while walks
+//! from cell to cell, exactly through the centres, which is always possible.
 
 use glam::DVec2;
 
@@ -11,22 +11,22 @@ use super::guard::{Guard, Route, STUCK};
 use super::ways::Way;
 use crate::world::{Cell, TileKind};
 
-/// Nearer than this to the middle of a cell, a guard is there, in cells.
+/// At smaller distances from the centre of a cell, a guard has arrived, in cells.
 const ARRIVED: f64 = 0.3;
-/// Nearer than this to a point on the way, a guard goes on to the next, in cells.
+/// At smaller distances from a point on the path, a guard continues to the next point, in cells.
 const PASSED: f64 = 0.35;
-/// The farthest goal that is tried on a straight line, in cells.
+/// The greatest distance of a goal that is tried in a straight line, in cells.
 const STRAIGHT: f64 = 8.0;
-/// The number of cells on a way that are tried on a straight line.
+/// The number of cells on a path that are tried in a straight line.
 const AHEAD: usize = 4;
-/// A point is found again after so many steps at the latest.
+/// The maximum number of steps before a point is found again.
 const FRESH: u16 = 24;
-/// A guard who is stuck walks with care for so many steps.
+/// The number of steps for which a guard who was stuck walks with care.
 const CARE: u16 = 120;
-/// Guards wait for others who are nearer than this before them, in cells.
+/// Guards wait for guards ahead of them who are nearer than this, in cells.
 const APART: f64 = 0.6;
 
-/// How a walk goes on.
+/// The progress of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Progress {
     There,
@@ -71,7 +71,7 @@ impl Guard {
         Progress::OnTheWay
     }
 
-    /// Finds the point to walk to. Returns whether there may be a way.
+    /// Finds the point to walk to. Returns whether there may be a path.
     fn find_point(&mut self, context: &mut Context, cell: Cell, goal: Cell, place: DVec2) -> bool {
         let gait = self.gait();
         let position = self.mover.position();
@@ -89,7 +89,7 @@ impl Guard {
             Way::Next(next) => {
                 self.route.point = Some(self.farthest_straight(context, cell, next, goal));
             }
-            // The search goes on; until it ends, the old point is as good as any.
+            // The search continues. Until it ends, the old point is as good as any.
             Way::Unknown => {
                 self.route.fresh = 0;
                 return true;
@@ -103,7 +103,7 @@ impl Guard {
         true
     }
 
-    /// The farthest of the next cells to which the guard may walk straight.
+    /// The centre of the farthest of the next cells that the guard can reach in a straight line.
     fn farthest_straight(&self, context: &Context, from: Cell, first: Cell, goal: Cell) -> DVec2 {
         let gait = self.gait();
         let position = self.mover.position();
@@ -123,7 +123,8 @@ impl Guard {
         point.unwrap_or_else(|| self.middle_first(from, first))
     }
 
-    /// The centre of the next cell, or of the guard's own cell first if the guard has strayed from the line.
+    /// The centre of the next cell, or of the guard's own cell first if the guard has strayed from
+    /// the line.
     fn middle_first(&self, from: Cell, next: Cell) -> DVec2 {
         let (middle, position) = (from.center(), self.mover.position());
         let way = next.center() - middle;
@@ -132,7 +133,7 @@ impl Guard {
         if off > 0.08 && !is_behind || off > 0.2 { middle } else { next.center() }
     }
 
-    /// Walks to `point`, and waits for doors and others who are in the way.
+    /// Walks to `point`. Waits for doors, and for guards who are in the way.
     pub(crate) fn walk_to(&mut self, context: &mut Context, point: DVec2, speed: f64) {
         let way = point - self.mover.position();
         let Some(direction) = way.try_normalize() else { return };
@@ -155,7 +156,7 @@ impl Guard {
         if self.route.care == 0 && self.is_in_the_way(context, direction) {
             return;
         }
-        // They slow down where they would go too far in this step.
+        // Limits the speed so that this step does not go beyond the point.
         let most = way.length() * 60.0 / f64::from(context.stride.max(1));
         self.wanted = direction * speed.min(most.max(0.3));
     }
@@ -168,8 +169,8 @@ impl Guard {
         matches!(kind, TileKind::Door(_)).then_some(cell)
     }
 
-    /// Whether another guard is close before this one. Of two who meet, the one with the lower
-    /// index goes on.
+    /// Whether another guard is close ahead of this one. If two guards meet, the guard with the
+    /// lower index goes on.
     fn is_in_the_way(&self, context: &Context, direction: DVec2) -> bool {
         let position = self.mover.position();
         context.others.iter().enumerate().any(|(index, other)| {

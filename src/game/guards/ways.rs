@@ -1,18 +1,18 @@
-//! Where guards walk, and the shortest ways there.
+//! The cells in which guards can walk, and the shortest paths through them.
 //!
 //! A guard walks on the lowest floor of a cell, and on top of low walls. They climb steps of
 //! [`STEP_HEIGHT`], step down by [`DROP`] at most, and never jump. They avoid water, spikes and
-//! floors that crumble; a guard who is in one of these, because they were pushed or because the
+//! floors that crumble. A guard who is in one of these, because they were pushed or because the
 //! floor has moved, may leave it.
 //!
-//! For each goal, all guards who go there share the distances of the cells around it.
-//! A search begins at the goal and ends when it has found the guards who ask. Guards who follow the same
-//! player have the same goal, so that twenty of them cost hardly more than one. All searches
-//! together find at most [`MOST_CELLS`] cells in a step and go on in the next; a guard without a
-//! way yet walks on where they went before. Rejected: a search for each guard
-//! (A*), which finds fewer cells for one guard, and all of them again for the next.
+//! For each goal, all guards who go there share the distances of the cells around it. A search
+//! begins at the goal and ends when it has found the guards who ask for a path. Guards who follow
+//! the same player have the same goal, so twenty of them cost hardly more than one. All searches
+//! together find at most [`MOST_CELLS`] cells in a step and continue in the next step. A guard
+//! without a path yet continues to the previous point. Rejected: a search for each guard (A*). It
+//! finds fewer cells for one guard, but all of them again for the next.
 //!
-//! Doors and moving floors change ways. A search begins again when a step of it has become
+//! Doors and moving floors change paths. A search restarts when one of its steps has become
 //! impossible, and when it is old.
 
 use serde::{Deserialize, Serialize};
@@ -24,15 +24,15 @@ use crate::world::{Ceiling, Cell, Driver, ThingKind, Tile, TileEffect, TileId, T
 
 /// The highest step down, in cells.
 pub(crate) const DROP: f64 = 1.0;
-/// Going through a closed door takes as long as walking so much farther, in half cells.
+/// The additional cost of a closed door, in half cells.
 const DOOR: u16 = 6;
 
-/// The facts about tiles and things that guards need.
+/// The properties of tiles and things that guards need.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Terrain {
-    /// For each tile of the world.
+    /// One entry for each tile of the world.
     footings: Vec<Footing>,
-    /// One bit for each cell, row by row: whether a thing blocks it or is dangerous there. Empty if
+    /// One bit for each cell, row by row: whether a thing in it blocks or is dangerous. Empty if
     /// there is no such thing.
     things: Vec<u64>,
     size: (u32, u32),
@@ -51,12 +51,12 @@ enum FootingKind {
     Free,
     /// A closed door that guards open.
     Door,
-    /// Dangerous.
+    /// A dangerous floor.
     Hazard,
     Blocked,
 }
 
-/// The way in which a kind of guard walks.
+/// The walking abilities of a kind of guard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Gait {
     pub(crate) opens_doors: bool,
@@ -98,25 +98,25 @@ impl Terrain {
         self.size
     }
 
-    /// The floor of `cell`; `None` outside the map and where nobody walks.
+    /// The floor of `cell`; `None` outside the map and in cells where nobody can walk.
     pub(crate) fn footing(&self, world: &World, cell: Cell) -> Option<Footing> {
         let footing = self.footing_of(tile(world, cell)?);
         (footing.kind != FootingKind::Blocked).then_some(footing)
     }
 
-    /// Whether guards avoid `cell`, where they could stand.
+    /// Whether guards avoid `cell` although they could stand there.
     pub(crate) fn is_hazard(&self, world: &World, cell: Cell) -> bool {
         let is_hazard = |footing: Footing| footing.kind == FootingKind::Hazard;
         self.footing(world, cell).is_some_and(is_hazard) || self.has_thing(cell)
     }
 
-    /// Whether a guard walks from `from` to its neighbour `to`.
+    /// Whether a guard can walk from `from` to its neighbour `to`.
     pub(crate) fn leads(&self, world: &World, gait: Gait, from: Cell, to: Cell) -> bool {
         let to = self.destination(world, gait, to);
         to.is_some_and(|to| self.leads_to(world, gait, &to, from))
     }
 
-    /// `cell` as a destination; `None` for a cell that guards do not enter.
+    /// `cell` as a destination; `None` if guards do not enter it.
     #[inline]
     fn destination(&self, world: &World, gait: Gait, cell: Cell) -> Option<Destination> {
         let tile = tile(world, cell)?;
@@ -127,10 +127,10 @@ impl Terrain {
         is_entered.then_some(Destination { cell, tile, footing, cost })
     }
 
-    /// Whether a guard walks to `to` from its neighbour `from`.
+    /// Whether a guard can walk to `to` from its neighbour `from`.
     #[inline]
     fn leads_to(&self, world: &World, gait: Gait, to: &Destination, from: Cell) -> bool {
-        // A tile leads to itself wherever it can be entered.
+        // A tile leads to itself if it can be entered.
         tile(world, from).is_some_and(|start| {
             start == to.tile || to.footing.is_reached_from(&self.footing_of(start), gait)
         })
@@ -141,12 +141,12 @@ impl Terrain {
         self.footings[usize::from(tile)]
     }
 
-    /// Whether guards choose to go to `cell`.
+    /// Whether guards choose to enter `cell`.
     pub(crate) fn is_walkable(&self, world: &World, gait: Gait, cell: Cell) -> bool {
         self.way_through(world, gait, cell).is_some()
     }
 
-    /// The floor of `cell`, if guards choose to go there.
+    /// The floor of `cell`; `None` if guards do not choose to enter it.
     pub(crate) fn way_through(&self, world: &World, gait: Gait, cell: Cell) -> Option<Footing> {
         let footing = self.footing(world, cell)?;
         self.is_entered(gait, &footing, cell).then_some(footing)
@@ -196,7 +196,7 @@ impl Footing {
         Self { floor, ceiling, kind }
     }
 
-    /// Whether the step from `start` up or down to this floor can be walked.
+    /// Whether a guard can walk the step from `start` up or down to this floor.
     fn is_reached_from(&self, start: &Self, gait: Gait) -> bool {
         if start.kind == FootingKind::Blocked {
             return false;
@@ -206,7 +206,7 @@ impl Footing {
         (-DROP..=STEP_HEIGHT).contains(&climb) && headroom >= gait.height
     }
 
-    /// Whether nothing at all has to be considered between this floor and another one.
+    /// Whether the step between this floor and another floor needs no checks at all.
     pub(crate) fn is_level_with(self, other: Self) -> bool {
         self.floor == other.floor
             && self.kind == FootingKind::Free
@@ -221,7 +221,7 @@ pub(crate) struct Backwards<'a> {
     pub(crate) gait: Gait,
 }
 
-/// A cell that guards walk to from its neighbours.
+/// A cell that guards can walk to from its neighbours.
 pub(crate) struct Destination {
     cell: Cell,
     tile: TileId,
@@ -244,7 +244,7 @@ impl Costs for Backwards<'_> {
         self.terrain.leads_to(self.world, self.gait, from, to).then_some(from.cost)
     }
 
-    /// Past two cells at the same height.
+    /// Diagonal steps lead past two cells at the same height.
     fn has_diagonal(&self, from: &Option<Destination>, to: Cell, beside: [bool; 2]) -> bool {
         let Some(from) = from.as_ref().filter(|_| beside == [true, true]) else { return false };
         let corners = [
@@ -274,19 +274,19 @@ fn cost_between(one: Cell, other: Cell) -> u16 {
 
 /// The number of cells that all searches together find in one step.
 pub(crate) const MOST_CELLS: usize = 200;
-/// The number of goals at a time.
+/// The maximum number of goals at once.
 const MOST_FIELDS: usize = 12;
-/// The steps after which a search begins anew: that of a goal that could be reached, and that of
-/// one that could not.
+/// The number of steps after which a search restarts: for a goal that could be reached, and for a
+/// goal that could not.
 const OLD: u64 = 1200;
 const OLD_IN_VAIN: u64 = 150;
 
-/// The distances from some goals.
+/// The distances to several goals.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Ways {
     #[serde(deserialize_with = "at_most::<MOST_FIELDS, _, _>")]
     fields: Vec<Field>,
-    /// The number of the present step.
+    /// The number of the current step.
     now: u64,
     cells_left: usize,
 }
@@ -300,21 +300,22 @@ struct Field {
     used: u64,
 }
 
-/// The answer to the question for a way.
+/// The result of a query for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// The neighbouring cell to go to.
     Next(Cell),
-    /// This is the goal.
+    /// The guard is at the goal.
     Here,
-    /// Not known yet.
+    /// The search has not found the guard yet.
     Unknown,
-    /// There is none.
+    /// There is no path.
     Impossible,
 }
 
 impl Ways {
-    /// Refuses searches from the future, and such that do not fit a map with that many columns and rows.
+    /// Returns an error if a search is later than the current step, or does not fit a map with
+    /// `map` columns and rows.
     pub(crate) fn check(&self, map: (u32, u32)) -> Result<(), Unrestorable> {
         let is_possible = |it: &Field| {
             it.begun <= self.now && it.used <= self.now && it.distances.is_around(it.goal, map)
@@ -328,7 +329,7 @@ impl Ways {
         self.cells_left = MOST_CELLS;
     }
 
-    /// Advances the clock by `steps` in which nobody asks for a way.
+    /// Advances the clock by `steps` steps in which nobody asks for a path.
     pub(crate) fn wait(&mut self, steps: u64) {
         self.now += steps;
         if steps > 0 {
@@ -336,12 +337,12 @@ impl Ways {
         }
     }
 
-    /// Forgets all ways, as when the whole map has changed.
+    /// Forgets all paths, for example when the whole map has changed.
     pub(crate) fn forget(&mut self) {
         self.fields.clear();
     }
 
-    /// The next cell on the shortest way from `from` to `goal`.
+    /// The next cell on the shortest path from `from` to `goal`.
     pub(crate) fn towards(
         &mut self,
         world: &World,
@@ -378,7 +379,7 @@ impl Ways {
         next.map_or(Way::Unknown, Way::Next)
     }
 
-    /// The cell after `from` on a way that has been found already.
+    /// The cell after `from` on a path that has already been found.
     pub(crate) fn after(
         &self,
         world: &World,
@@ -392,7 +393,8 @@ impl Ways {
         field.next(&costs, from, field.distances.distance(from)?)
     }
 
-    /// The index of the field of a goal, which may be a new one; `None` if all are in use.
+    /// The index of the field for a goal, which may be a new field. `None` if all fields are in
+    /// use.
     fn field(&mut self, terrain: &Terrain, gait: Gait, goal: Cell) -> Option<usize> {
         let mut fields = self.fields.iter();
         if let Some(index) = fields.position(|it| it.goal == goal && it.gait == gait) {
@@ -420,7 +422,8 @@ impl Field {
         (self.begun, self.used) = (now, now);
     }
 
-    /// The neighbour of `from`, at this distance from the goal, that is nearest to it.
+    /// The neighbour of `from` on the shortest path to the goal. `distance` is the distance of
+    /// `from` from the goal.
     fn next(&self, costs: &Backwards, from: Cell, distance: u16) -> Option<Cell> {
         let neighbors = (0..8).filter_map(|side| neighbor(from, side));
         let nearer = neighbors.filter_map(|cell| {

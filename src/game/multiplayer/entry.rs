@@ -1,29 +1,30 @@
-//! Where players come into a game: in the nearest cell that is free, where each of them sees the level as its
-//! author has meant it.
+//! The entry of players into a game: the nearest free cell that shows them the level as its author
+//! intended.
 
 use crate::game::Game;
 use crate::game::player::{Motion, RADIUS, STEP_HEIGHT};
 use crate::game::sight::Point;
 use crate::world::{Cell, Heading, ThingKind, World};
 
-/// The cells that are considered, from the nearest on.
+/// The number of nearest cells that are considered.
 const MOST_CELLS: usize = 64;
 
-/// What is asked of the cell in which a player begins.
+/// A requirement on the cell in which a player begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Demand {
-    /// The floor is as high as that of the start, no guard sees the cell, and the way there meets neither doors nor
-    /// hazards.
+    /// The floor is as high as at the start, no guard sees the cell, and the path to it passes
+    /// neither doors nor hazards.
     Safe,
-    /// The same, but guards may see it.
+    /// Like `Safe`, but guards may see the cell.
     Level,
-    /// One can walk there.
+    /// A player can walk there.
     Reachable,
 }
 
 impl Game {
-    /// A player who stands still in the cell nearest to `start` where there is room. Nobody stands in anybody, and
-    /// only if no cell is free, players share the start. `None` if they may not do that, or if nobody fits there.
+    /// A player who stands still in the cell nearest to `start` that has room. No two players
+    /// overlap. Only if no cell is free, players share the start. `None` if players may not
+    /// overlap, or if nobody fits at the start.
     pub(crate) fn free_place(&self, start: Cell) -> Option<Motion> {
         let demands = [Demand::Safe, Demand::Level, Demand::Reachable];
         let free = demands.into_iter().find_map(|demand| self.nearest_place(start, demand));
@@ -32,7 +33,7 @@ impl Game {
         free.or_else(shared)
     }
 
-    /// The nearest place that meets `demand`.
+    /// The nearest position that meets `demand`.
     fn nearest_place(&self, start: Cell, demand: Demand) -> Option<Motion> {
         let mut cells = [start; MOST_CELLS];
         let (mut next, mut found) = (0, 1);
@@ -56,12 +57,12 @@ impl Game {
         None
     }
 
-    /// Whether a player may begin in a cell beside the start.
+    /// Whether a player may begin in a cell other than the start.
     fn meets(&self, cell: Cell, demand: Demand) -> bool {
         self.is_plain(cell) && (demand != Demand::Safe || !self.is_seen_by_guards(cell))
     }
 
-    /// Whether a player walks from one cell into the next.
+    /// Whether a player can walk from one cell into the next.
     fn leads(&self, from: Cell, to: Cell, demand: Demand) -> bool {
         let climb = (self.world.floor_at(from) - self.world.floor_at(to)).abs();
         let is_level_and_plain =
@@ -71,7 +72,8 @@ impl Game {
             && (demand == Demand::Reachable || is_level_and_plain())
     }
 
-    /// Whether nobody is hurt in a cell, takes or reaches something there, or is in the way of a door.
+    /// Returns true if a player in the cell is not hurt, reaches nothing, and is not in the way of
+    /// a door.
     fn is_plain(&self, cell: Cell) -> bool {
         let is_harmless = |kind| matches!(kind, ThingKind::Ornament | ThingKind::Flame);
         self.world.effect_in(cell).is_none()
@@ -79,7 +81,7 @@ impl Game {
             && self.world.things_in(cell).iter().all(|thing| is_harmless(thing.kind))
     }
 
-    /// Whether a guard could see somebody in a cell.
+    /// Whether a guard could see a player in a cell.
     fn is_seen_by_guards(&self, cell: Cell) -> bool {
         let Some(motion) = self.place_in(cell) else { return false };
         let height = f64::midpoint(motion.feet(), motion.head());
@@ -91,7 +93,7 @@ impl Game {
         Motion::new(&self.world).moved_to(&self.world, cell)
     }
 
-    /// Whether a player who is at `motion` is in nobody.
+    /// Whether a player at `motion` overlaps no other player.
     fn is_free_of_players(&self, motion: &Motion) -> bool {
         let least = 2.0 * RADIUS.cells();
         let is_far =
@@ -99,7 +101,7 @@ impl Game {
         self.playing().all(|(_, player)| is_far(&player.motion))
     }
 
-    /// Lets the player whose turn it is go on from their last checkpoint, if there is room.
+    /// Revives the current player at their last checkpoint, if there is room.
     pub(crate) fn respawn(&mut self) {
         let checkpoint = self.last_checkpoint();
         let Some(motion) = self.free_place(checkpoint.unwrap_or(self.world.start().cell)) else {
@@ -118,8 +120,8 @@ impl Game {
     }
 }
 
-/// The cells beside `cell`: the one ahead, the one behind, and those at the sides. So whoever begins at the start
-/// has others in view.
+/// The cells beside `cell`: the cell ahead, the cell behind, and the cells at the sides. With this
+/// order, a player who begins at the start has others in view.
 fn neighbors(cell: Cell, heading: Heading) -> impl Iterator<Item = Cell> {
     let facing = heading.direction();
     let ahead = if facing.x.abs() >= facing.y.abs() {

@@ -1,4 +1,4 @@
-//! Blows among players, judged by where everybody was in the step that the player saw.
+//! Blows between players, judged by the positions in the step that the attacker saw.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -10,16 +10,17 @@ use crate::game::rules::{MOST_LAG, PlayerId, Strikes};
 use crate::game::sight::{Point, is_in_sight};
 use crate::world::{Heading, World};
 
-/// The number of positions that are remembered: those of this step and of the last ones.
+/// The number of remembered positions: the present position, and one for each of the last
+/// [`MOST_LAG`] steps.
 const STEPS: usize = MOST_LAG as usize + 1;
-/// How far beyond their bodies players touch, in cells.
+/// The gap between two bodies at which players still touch, in cells.
 const TOUCH: f64 = 0.25;
 
-/// Where a player was in the last steps.
+/// The positions of a player in the last steps.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Track([Option<Stand>; STEPS]);
 
-/// Where a player was in a step.
+/// The position of a player in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stand {
     pub(crate) position: DVec2,
@@ -30,8 +31,8 @@ pub(crate) struct Stand {
 }
 
 impl Track {
-    /// Records where a player stands at the end of the step `now`; `None` if they do not play.
-    /// Returns how far they have moved in that step, in cells.
+    /// Records the position of a player at the end of the step `now`; `None` if they do not play.
+    /// Returns the distance that they moved in that step, in cells.
     pub(crate) fn record(&mut self, now: u64, motion: Option<&Motion>) -> f64 {
         let stand = motion.map(Stand::new);
         let before = now.checked_sub(1).and_then(|before| self.at(before).copied());
@@ -40,7 +41,7 @@ impl Track {
         way.unwrap_or_default()
     }
 
-    /// Where the player was in the step `seen`.
+    /// The position of the player in the step `seen`.
     fn at(&self, seen: u64) -> Option<&Stand> {
         self.0[seen as usize % STEPS].as_ref()
     }
@@ -53,8 +54,8 @@ impl Stand {
         Self { position: motion.position(), facing, feet, head }
     }
 
-    /// Whether an arm reaches from here to `other`: the bodies are at most `reach` apart, at one
-    /// height, with nothing between.
+    /// Returns true if an arm reaches from here to `other`: the centres are at most `reach` apart,
+    /// the bodies overlap in height, and nothing is between them.
     pub(crate) fn reaches(&self, world: &World, other: &Self, reach: f64) -> bool {
         let distance = self.position.distance(other.position);
         let overlaps = self.feet < other.head && other.feet < self.head;
@@ -67,21 +68,21 @@ impl Stand {
 }
 
 impl Game {
-    /// Whether two players touched each other in the step `seen`, which counts as at most
-    /// [`MOST_LAG`] steps ago. The dead, and those who have reached the exit, touch nobody.
+    /// Whether two players touched each other in the step `seen`, which is clamped to at most
+    /// [`MOST_LAG`] steps ago. The dead, and players who have reached the exit, touch nobody.
     pub fn touches(&self, one: PlayerId, other: PlayerId, seen: u64) -> bool {
         let stands = [one, other].map(|player| self.stood(player.index(), seen));
         let [Some(one_stood), Some(other_stood)] = stands else { return false };
         one != other && one_stood.reaches(&self.world, other_stood, 2.0 * RADIUS.cells() + TOUCH)
     }
 
-    /// Where a player stood in the step `seen`.
+    /// The position of a player in the step `seen`.
     pub(crate) fn stood(&self, index: usize, seen: u64) -> Option<&Stand> {
         let seen = self.clamp_seen(seen);
         self.members.as_ref()?.member(index)?.track.at(seen)
     }
 
-    /// The step that a player saw, as far as it counts.
+    /// The step that a player saw, clamped to the steps that count.
     pub(crate) fn clamp_seen(&self, seen: u64) -> u64 {
         seen.clamp(self.steps.saturating_sub(MOST_LAG), self.steps)
     }
@@ -89,15 +90,15 @@ impl Game {
 
 /// The change of velocity of a player who is struck, in cells per second.
 const PUSH: f64 = 6.0;
-/// The steps for which a player lies who is stunned, and until they can be struck again.
+/// The number of steps until a stunned player stands up, and until they can be struck again.
 const STUNNED: u16 = 120;
 const SPARED: u16 = 240;
-/// The steps for which a figure strikes.
+/// The number of steps for which a figure strikes.
 const SWING: u16 = 12;
 
 impl Game {
-    /// The nearest player whom a blow of the player in turn reaches: within `reach` and within the
-    /// angle of the cosine `least_cosine` off their view, in the step that they saw.
+    /// The nearest player that a blow by the current player hits, in the step that they saw: within
+    /// `reach`, and within the angle of cosine `least_cosine` of their direction of view.
     pub(crate) fn player_struck(&self, reach: f64, least_cosine: f64) -> Option<usize> {
         let members = self.members.as_deref()?;
         let turn = members.turn?;
@@ -119,7 +120,7 @@ impl Game {
         Some(near.min_by(|one, other| one.1.total_cmp(&other.1))?.0)
     }
 
-    /// Does to the player `index` what a blow along `direction` does.
+    /// Applies a blow along `direction` to the player `index`.
     pub(crate) fn strike_player(&mut self, index: usize, direction: DVec2) {
         let degrees = libm::atan2(-direction.y, -direction.x).to_degrees();
         let Some(members) = self.members.as_deref_mut() else { return };
@@ -134,14 +135,14 @@ impl Game {
         self.revision += 1;
     }
 
-    /// Lets the figure of the player in turn strike.
+    /// Shows the figure of the current player as striking.
     pub(crate) fn swing(&mut self) {
         if let Some(member) = self.member_in_turn() {
             member.swing = SWING;
         }
     }
 
-    /// Whether players can strike in levels without guards, too: each other.
+    /// Whether players can strike each other, even in levels without guards.
     pub(crate) fn has_blows(&self) -> bool {
         self.multiplayer_rules().is_some_and(|rules| rules.strikes != Strikes::Nobody)
     }

@@ -1,4 +1,4 @@
-//! Properties of games for several.
+//! Properties of multiplayer games.
 
 mod among;
 mod properties;
@@ -18,7 +18,7 @@ fn world(text: &str) -> World {
     map::parse_str(text).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A world that `rows` draw; the player starts at `@` and looks east.
+/// The world that `rows` draw. The player starts at `@` and looks east.
 fn level(rows: &[&str], tiles: &str, things: &str) -> World {
     world(&format!(
         "grid = '''\n{}\n'''\n[tiles]\n'#' = {{ wall = \"brick\" }}\n{tiles}\n[things]\n'@' = {{ start = 0 }}\n{things}\n",
@@ -26,7 +26,7 @@ fn level(rows: &[&str], tiles: &str, things: &str) -> World {
     ))
 }
 
-/// A game for several with `count` players in it.
+/// A multiplayer game with `count` players in it.
 fn with_players(world: World, rules: MultiplayerRules, count: usize) -> (Game, Vec<PlayerId>) {
     let mut game = Game::for_players(world, RULES, rules);
     let ids = (0..count).map(|index| game.join(PlayerColor::ALL[index % 8]).unwrap()).collect();
@@ -37,7 +37,7 @@ fn intents(list: &[Intent]) -> Intents {
     list.iter().copied().collect()
 }
 
-/// Plays that many steps, in which players want what `wanted` says.
+/// Plays `steps` steps with the intents in `wanted`.
 fn play(game: &mut Game, steps: usize, wanted: &[(PlayerId, &[Intent])]) {
     for _ in 0..steps {
         let seen = game.steps();
@@ -51,8 +51,8 @@ fn position(game: &Game, player: PlayerId) -> DVec2 {
     game.seen_by(player).unwrap().camera(crate::world::FieldOfView::default()).position()
 }
 
-/// Everything in a game that is not a figure or a sprite is the same as in `other`, but for the
-/// player of a game for one, who is the one in the first slot of `other`.
+/// Asserts that everything but figures and sprites is equal in a single-player game and in `other`.
+/// The single player corresponds to the player in the first slot of `other`.
 fn assert_plays_alike(one: &Game, other: &Game) {
     let member = other.members.as_ref().unwrap().member(0).unwrap();
     assert_eq!(one.player, member.player);

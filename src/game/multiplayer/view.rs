@@ -1,4 +1,4 @@
-//! What one player of a game sees and has.
+//! The view of a game for one of its players.
 
 use glam::DVec2;
 
@@ -9,9 +9,9 @@ use crate::game::{Flash, Game, Health, Heard, Outcome, Tally};
 use crate::world::sprite::builtin::PlayerColor;
 use crate::world::{Camera, FieldOfView, Heading, Supply};
 
-/// How far below the top of the head the eyes are, in cells.
+/// The height of the top of the head above the eyes, in cells.
 const EYE: f64 = 0.2;
-/// How far above the feet the middle of a figure is, in cells.
+/// The height of the middle of a figure above the feet, in cells.
 const MIDDLE: f64 = 0.35;
 
 /// One player's view of a game.
@@ -22,7 +22,7 @@ pub struct PlayerView<'a> {
     player: &'a Player,
 }
 
-/// Another player, as one player knows them.
+/// Another player as one player sees them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OtherPlayer {
     /// The slot.
@@ -33,24 +33,24 @@ pub struct OtherPlayer {
     pub position: DVec2,
     /// The height of the feet, in cells.
     pub feet: f64,
-    /// The direction of the look.
+    /// The direction in which the player looks.
     pub heading: Heading,
-    /// Whether they lie on the floor: dead or stunned.
+    /// Whether the player lies on the floor, dead or stunned.
     pub is_down: bool,
-    /// Whether nothing is between the two.
+    /// Whether nothing is between the two players.
     pub is_in_sight: bool,
 }
 
 impl Game {
-    /// The players in the game, in the order of their slots. In a game for one, that is the [first
-    /// slot](PlayerId::FIRST).
+    /// The players in the game, in the order of their slots. In a single-player game, this is the
+    /// [first slot](PlayerId::FIRST).
     pub fn players(&self) -> impl Iterator<Item = PlayerId> {
         let alone = self.members.is_none().then_some(PlayerId::FIRST);
         let several = self.members.iter().flat_map(|members| members.each());
         alone.into_iter().chain(several.filter_map(|(index, _)| PlayerId::new(index)))
     }
 
-    /// The view of a player; `None` if they are not in the game.
+    /// The view of a player; `None` if the player is not in the game.
     pub fn seen_by(&self, id: PlayerId) -> Option<PlayerView<'_>> {
         let player = match self.members.as_deref() {
             Some(members) => &members.member(id.index())?.player,
@@ -60,7 +60,7 @@ impl Game {
         Some(PlayerView { game: self, id, player })
     }
 
-    /// The blows of the last step that hit other players: who has struck whom.
+    /// The blows of the last step that hit other players, as pairs of attacker and victim.
     pub fn blows(&self) -> impl Iterator<Item = (PlayerId, PlayerId)> {
         let blows = self.members.iter().flat_map(|members| &members.blows);
         blows.filter_map(|&(by, struck)| Some((PlayerId::new(by)?, PlayerId::new(struck)?)))
@@ -68,7 +68,7 @@ impl Game {
 }
 
 impl Game {
-    /// Whether nothing hides the middle of one body from the head of another.
+    /// Whether nothing hides the middle of the body `to` from the eyes of `from`.
     fn sees_body(&self, from: &Motion, to: &Motion) -> bool {
         let eye = Point { position: from.position(), height: from.head() - EYE };
         let middle = f64::midpoint(to.feet(), to.head());
@@ -83,7 +83,7 @@ impl<'a> PlayerView<'a> {
         self.id
     }
 
-    /// The camera. Once the player has reached the exit, it stays there.
+    /// The camera. Once the player has reached the exit, the camera stays there.
     #[expect(clippy::missing_panics_doc, reason = "the player stands inside the map")]
     pub fn camera(&self, field_of_view: FieldOfView) -> Camera {
         self.player
@@ -112,7 +112,7 @@ impl<'a> PlayerView<'a> {
         self.player.health
     }
 
-    /// The number of a tool that the player carries; at most 9.
+    /// The number of a tool that the player carries, at most 9.
     pub fn supplies(&self, supply: Supply) -> u8 {
         self.player.supplies.count(supply)
     }
@@ -123,7 +123,7 @@ impl<'a> PlayerView<'a> {
         player.keys.iter().map(|&key| game.world.key_name(key))
     }
 
-    /// The worth of the treasure that this player has found. [`Game::treasure`] is that of all.
+    /// The value of the treasure that this player has found. [`Game::treasure`] counts all players.
     pub fn treasure(&self) -> u32 {
         self.player.treasure
     }
@@ -133,12 +133,12 @@ impl<'a> PlayerView<'a> {
         self.player.has_light
     }
 
-    /// How well guards see the player: from 0 for not at all to 255.
+    /// The player's visibility to guards, from 0 for invisible to 255.
     pub fn visibility(&self) -> u8 {
         self.game.target_at(self.player).visibility
     }
 
-    /// A message to the player. It lasts for a few seconds.
+    /// The current message to the player. A message lasts for a few seconds.
     pub fn message(&self) -> Option<&'a str> {
         self.player.notice.text()
     }
@@ -148,27 +148,27 @@ impl<'a> PlayerView<'a> {
         self.game.note_reached_by(self.player)
     }
 
-    /// What the player has heard in the last steps, the newest last.
+    /// The recent sounds that the player has heard, newest last.
     pub fn heard(&self) -> &'a [Heard] {
         self.player.hearing.heard()
     }
 
-    /// What the edge of the picture shows now.
+    /// The current flash at the edge of the screen.
     pub fn flash(&self) -> Option<Flash> {
         self.player.flash
     }
 
-    /// The steps for which the player still lies on the floor, stunned by another one.
+    /// The remaining steps for which the player lies on the floor, stunned by another player.
     pub fn stunned(&self) -> u16 {
         self.member().map_or(0, |member| member.stunned)
     }
 
-    /// The colour of the player's figure; `None` in a game for one.
+    /// The colour of the player's figure; `None` in a single-player game.
     pub fn color(&self) -> Option<PlayerColor> {
         Some(self.member()?.color)
     }
 
-    /// How the game stands for this player.
+    /// The outcome of the game for this player.
     pub fn outcome(&self) -> Outcome {
         match (self.member(), self.player.killed_by) {
             (None, _) => self.game.outcome(),
@@ -178,8 +178,8 @@ impl<'a> PlayerView<'a> {
         }
     }
 
-    /// What the player has done so far. The time is that from joining to the exit or to death;
-    /// treasure and secrets are those of all.
+    /// The player's results. The time runs from joining to the exit or to death. Treasure and
+    /// secrets count for all players.
     pub fn tally(&self) -> Tally {
         let Some(member) = self.member() else { return self.game.tally() };
         let steps = member.ended.unwrap_or(self.game.steps).saturating_sub(member.joined);
@@ -193,7 +193,7 @@ impl<'a> PlayerView<'a> {
         }
     }
 
-    /// The other players who have a figure: all but those who have reached the exit.
+    /// The other players who have a figure: all except players who have reached the exit.
     pub fn others(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
         let Self { game, id, player } = *self;
         let members = game.members.iter().flat_map(|members| members.each());
@@ -212,7 +212,7 @@ impl<'a> PlayerView<'a> {
         })
     }
 
-    /// Those of the [others](Self::others) whom the player's map shows.
+    /// The [other players](Self::others) that this player's map shows.
     pub fn others_on_map(&self) -> impl Iterator<Item = OtherPlayer> + use<'a> {
         let sees = self.game.multiplayer_rules().map_or(Sees::Nobody, |rules| rules.sees);
         self.others().filter(move |other| match sees {

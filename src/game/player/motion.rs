@@ -1,4 +1,4 @@
-//! The motion of a player: position, heading, stance and speed, and what a step changes of them.
+//! The motion of a player: position, heading, stance and speed, and their changes in a step.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use crate::generate::Shift;
 use crate::numeric::damped_motion::{DampedMotion, approach_in_plane};
 use crate::world::{Camera, Cell, FieldOfView, Heading, World};
 
-/// The player's radius, in cells: a door is twice as wide as the player.
+/// The player's radius, in cells. A door is twice as wide as the player.
 pub(crate) const RADIUS: Radius =
     Radius::new(0.25).expect("a quarter is between nothing and a half");
 
@@ -23,16 +23,16 @@ pub(crate) const WALK: f64 = 3.0;
 /// Running speed in any direction, in cells per second.
 pub(crate) const RUN: f64 = 5.5;
 
-/// How fast the player reaches that speed, per second.
+/// The rate at which the player approaches the walking or running speed, per second.
 pub const FRICTION: f64 = 12.0;
 
-/// The height of a step that the player climbs or descends by walking, in cells.
+/// The height of a step that the player can climb or descend by walking, in cells.
 pub(crate) const STEP_HEIGHT: f64 = 0.35;
 /// The height of a jump, in cells.
 pub(crate) const JUMP_HEIGHT: f64 = 0.66;
 
-/// Below this speed the player stands still, in cells or radians per second. An exponential decay
-/// never ends, but a program should be able to sleep when nothing moves.
+/// Below this speed the player counts as still, in cells or radians per second. An exponential
+/// decay never ends, but a program should be able to sleep when nothing moves.
 pub(crate) const STILL: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,14 +44,14 @@ pub(crate) struct Motion {
     rising: f64,
     stance: Stance,
     pitch_control: PitchControl,
-    /// Whether a jump was wanted in the last step: each press is one jump.
+    /// Whether the player wanted to jump in the last step, because each press makes one jump.
     wanted_to_jump: bool,
     heading: Heading,
     turning: Turning,
 }
 
 impl Motion {
-    /// Standing still at the start.
+    /// A player who stands still at the start.
     pub(crate) fn new(world: &World) -> Self {
         let start = world.start();
         let body = Body { position: start.cell.center(), velocity: DVec2::ZERO };
@@ -68,7 +68,7 @@ impl Motion {
         }
     }
 
-    /// The same place in another world, standing still; `None` if there is no room.
+    /// The same position in another world, standing still. `None` if there is no room.
     pub(crate) fn placed_in(self, world: &World) -> Option<Self> {
         let Cell { column, row } = self.cell();
         let (column, row) = (i64::from(column), i64::from(row));
@@ -113,7 +113,7 @@ impl Motion {
         self.heading
     }
 
-    /// The same place in a window that has moved.
+    /// The same position in a window that has moved.
     #[must_use]
     pub(crate) fn shifted(self, shift: Shift) -> Self {
         let position = shift.position(self.body.position);
@@ -130,13 +130,13 @@ impl Motion {
         overlaps(self.body.position, cell, RADIUS)
     }
 
-    /// The direction in which the player wants to walk, as a unit vector; `None` for none.
+    /// The direction in which the player wants to walk, as a unit vector; `None` if they do not.
     pub(crate) fn wanted_direction(&self, intents: Intents) -> Option<DVec2> {
         wanted_velocity(self.heading, intents).try_normalize()
     }
 
-    /// The motion after one step: turned, then ducked, then moved at this part of the usual speed,
-    /// with `others` in the way.
+    /// The motion after one step. The player turns, then ducks, and then moves at `pace` times the
+    /// usual speed, with `others` in the way.
     #[must_use]
     pub(crate) fn stepped(
         self,
@@ -156,7 +156,7 @@ impl Motion {
         Self { heading: self.heading.turned(angle), turning, ..self }
     }
 
-    /// The player stands up only where there is room.
+    /// The player stands up only if there is room.
     fn ducked(self, world: &World, intents: Intents) -> Self {
         let stance = self.stance.after_a_step(intents.contains(Intent::Duck));
         let ducked = Self { stance, ..self };
@@ -197,7 +197,7 @@ impl Motion {
         self.rising == 0.0 && self.feet == self.room(world).floor
     }
 
-    /// The height of the floor here.
+    /// The height of the floor under the player.
     pub(crate) fn floor(&self, world: &World) -> f64 {
         self.room(world).floor
     }
@@ -212,7 +212,7 @@ impl Motion {
         self.stance.is_ducking()
     }
 
-    /// Whether neither walking nor falling.
+    /// Whether the player neither walks nor falls.
     pub(crate) fn is_still(&self) -> bool {
         self.body.velocity == DVec2::ZERO && self.rising == 0.0
     }
@@ -226,7 +226,7 @@ impl Motion {
         Self { feet: height, rising: speed, stance: self.stance.following(0.0), ..self }
     }
 
-    /// The lowest and the highest position of the feet here.
+    /// The lowest and the highest height of the feet at this position.
     fn room(&self, world: &World) -> Room {
         self.place(world).room(self.body.position, RADIUS)
     }
@@ -241,35 +241,36 @@ impl Motion {
         Place { world, stature, step: 0.0, has_shapes: world.has_shapes(), others: &[] }
     }
 
-    /// Refuses a place outside of `world`, and a stance and turns that are none.
+    /// Returns an error if the position is outside `world`, or if the stance or the turns are out
+    /// of range.
     pub(crate) fn check(&self, world: &World) -> Result<(), Unrestorable> {
         check_on_map(world, self.body.position)?;
         self.stance.check()?;
         self.turning.check()
     }
 
-    /// Lifted or lowered, with the floor, to that height of the feet.
+    /// The motion after a moving floor has carried the feet to the height `feet`.
     #[must_use]
     pub(crate) fn carried_to(self, feet: f64) -> Self {
         Self { feet, rising: 0.0, ..self }
     }
 
-    /// Standing in the middle of `cell`; `None` if there is no room.
+    /// The motion in the middle of `cell`; `None` if there is no room.
     pub(crate) fn moved_to(mut self, world: &World, cell: Cell) -> Option<Self> {
         self.body.position = cell.center();
         self.feet = world.floor_at(cell);
         self.has_room(world).then_some(self)
     }
 
-    /// With that change of the velocity, in cells per second.
+    /// The motion after a change of velocity by `change`, in cells per second.
     #[must_use]
     pub(crate) fn pushed(mut self, change: DVec2) -> Self {
         self.body.velocity += change;
         self
     }
 
-    /// The same motion moved by `displacement`, as far as nothing is in the way; unchanged if the floor
-    /// there is not level with the feet.
+    /// The motion after a move by `displacement`, or up to the first obstacle. Unchanged if the
+    /// floor there is not level with the feet.
     #[must_use]
     pub(crate) fn moved_aside(self, world: &World, displacement: DVec2) -> Self {
         let mut place = self.place(world);
@@ -279,7 +280,8 @@ impl Motion {
         if is_level { moved } else { self }
     }
 
-    /// The height of the feet in `world`, if that has lifted or, where they stood, lowered them.
+    /// The height of the feet in `world`, if a floor has lifted them, or has lowered them while the
+    /// player `stood` on it.
     pub(crate) fn feet_after(&self, world: &World, stood: bool) -> Option<f64> {
         if !self.has_room(world) {
             return self.lifted(world);
@@ -288,7 +290,7 @@ impl Motion {
         (stood && floor < self.feet && self.feet - floor <= STEP_HEIGHT).then_some(floor)
     }
 
-    /// The height to which floors that have risen around the feet lift them; `None` if there are no
+    /// The height to which floors that have risen around the feet lift them. `None` if there are no
     /// such floors, or no room.
     pub(crate) fn lifted(&self, world: &World) -> Option<f64> {
         let place = Place { step: STEP_HEIGHT, ..self.place(world) };

@@ -1,4 +1,4 @@
-//! Lines of sight against an exact oracle: every cell is clipped against the line with rationals.
+//! Lines of sight against an exact oracle, which clips the line against every cell with rationals.
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -25,7 +25,7 @@ fn exact(value: f64) -> Exact {
     Exact::from_float(value).unwrap()
 }
 
-/// The open interval of the parameters in 0..1 at which a line from `from` by `way` is inside
+/// The open interval of parameters in 0..1 for which a line from `from` by `way` is inside
 /// `low..high`; `None` if it never is.
 fn inside(from: &Exact, way: &Exact, low: &Exact, high: &Exact) -> Option<(Exact, Exact)> {
     if way.is_zero() {
@@ -37,8 +37,8 @@ fn inside(from: &Exact, way: &Exact, low: &Exact, high: &Exact) -> Option<(Exact
     (first < last).then_some((first, last))
 }
 
-/// By how much the line is inside a solid: the largest distance of its height from all gaps of a
-/// cell, over all cells that it passes; at most 0 if it is free.
+/// The depth of the line inside solids: the largest distance of its height from all gaps of a cell,
+/// over all cells that it passes. It is at most 0 if the line is free.
 fn depth(world: &World, from: Point, to: Point) -> f64 {
     let grid = world.grid();
     let start = [from.position.x, from.position.y].map(exact);
@@ -81,7 +81,7 @@ fn rows() -> impl Strategy<Value = String> {
     })
 }
 
-/// Half of the coordinates are quarters, so that lines meet corners and edges.
+/// Half of the coordinates are multiples of a quarter, so that lines meet corners and edges.
 fn coordinate() -> impl Strategy<Value = f64> {
     let any = 0.01..7.99_f64;
     prop_oneof![any.clone(), any.prop_map(|value| (value * 4.0).round() / 4.0)]
@@ -105,7 +105,8 @@ proptest! {
         if depth > ROUNDING {
             prop_assert!(!sees, "{depth} inside");
         }
-        // On edges and corners the line is in one of the cells beside; elsewhere both must agree.
+        // On edges and corners, the line may use either adjacent cell. Elsewhere both results must
+        // agree.
         let is_off_edges = |at: DVec2| at.x.fract() != 0.0 && at.y.fract() != 0.0;
         let way = to.position - from.position;
         let is_generic = [from.position, to.position].into_iter().all(is_off_edges)

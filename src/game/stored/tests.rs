@@ -1,4 +1,4 @@
-//! Stored games are the games that they were stored from, and nothing else is a game that fails.
+//! Stored games restore to the same game, and other bytes never restore to a game that fails.
 
 #[path = "../../../tests/support/crowd.rs"]
 mod crowd;
@@ -15,7 +15,7 @@ use crate::map::builtin::LEVELS;
 use crate::rng::SplitMix64;
 use crate::world::{Difficulty, World};
 
-/// The intents of the script that wins a level, step by step.
+/// The intents of a level's winning script, step by step.
 pub(crate) fn winning(level: &str, difficulty: Difficulty) -> Vec<Intents> {
     let root = env!("CARGO_MANIFEST_DIR");
     let path = format!("{root}/maps/scripts/{level}.{}.script", difficulty.name());
@@ -24,7 +24,8 @@ pub(crate) fn winning(level: &str, difficulty: Difficulty) -> Vec<Intents> {
     script.iter().map(|(_, intents)| intents).collect()
 }
 
-/// The game that the bytes of `game` give on `start`, which is equal to it and gives the same bytes.
+/// The game restored on `start` from the bytes of `game`. It must equal `game` and store to the
+/// same bytes.
 fn again(start: &Game, game: &Game) -> Game {
     let bytes = game.stored().unwrap();
     let restored = start.clone().restored(&bytes).unwrap_or_else(|error| panic!("{error}"));
@@ -32,7 +33,7 @@ fn again(start: &Game, game: &Game) -> Game {
     restored
 }
 
-/// Both are equal in every field, to the bit.
+/// Asserts that both games are equal in every field, to the bit.
 fn assert_same(one: &Game, other: &Game) {
     assert_eq!(one.world().things(), other.world().things());
     assert_eq!(one.world().figures(), other.world().figures());
@@ -63,7 +64,7 @@ fn every_script_that_wins_goes_on_from_any_step() {
                 for other in &mut restored {
                     other.step(intents);
                 }
-                // A difference stays, so that it is found some steps later.
+                // A difference persists, so a check some steps later finds it.
                 if step % 32 == 0 {
                     let sums = restored.iter().map(Game::checksum);
                     assert!(
@@ -80,7 +81,7 @@ fn every_script_that_wins_goes_on_from_any_step() {
     }
 }
 
-/// At most four players in a level, of whom one may follow the script that wins it.
+/// Plays with at most four players in a level. One of them may follow its winning script.
 fn played(world: World, script: Vec<Intents>, seed: u64, steps: usize) {
     let mut random = SplitMix64::new(seed);
     let multiplayer = MultiplayerRules {

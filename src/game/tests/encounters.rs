@@ -1,4 +1,4 @@
-//! Guards and the player who meet: bodies, blows, bolts, doors and floors that move.
+//! Encounters between guards and the player: bodies, blows, bolts, doors and floors that move.
 
 use super::*;
 use crate::game::tools::{Missile, MissileKind};
@@ -10,7 +10,7 @@ fn has_bolt(stage: &Stage) -> bool {
     stage.game.missiles.iter().any(|it| matches!(it.kind, MissileKind::Bolt { .. }))
 }
 
-/// A player who has been seen by an archer who draws the bow, eight cells away.
+/// An archer has seen the player, eight cells away, and draws the bow.
 fn under_aim() -> Stage {
     let rows = ["############", "#..........#", "#@.......a.#", "#..........#", "############"];
     let mut stage = Stage::new(&rows, "", "a = { guard = 'archer', heading = 180 }");
@@ -63,7 +63,7 @@ fn a_guard_who_is_awake_pushes_a_player_away_and_one_who_sleeps_does_not() {
     {
         for duty in ["", ", asleep = true"] {
             if name == "listener" && !duty.is_empty() {
-                // The steps wake them.
+                // The player's footsteps wake the guard.
                 continue;
             }
             let rows = rows.map(|row| row.replace("@..", "@g."));
@@ -83,7 +83,8 @@ fn a_guard_who_is_awake_pushes_a_player_away_and_one_who_sleeps_does_not() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// From any place in a corridor with guards, walking gets past them in either direction.
+    /// From any position in a corridor with guards, a walking player gets past them in either
+    /// direction.
     #[test]
     fn no_guard_holds_a_player(
         kinds in prop::collection::vec(prop::sample::select(&KINDS[..]), 2),
@@ -103,7 +104,7 @@ proptest! {
         }
         let end = if turns { 1.3 } else { 12.7 };
         for _ in 0..1500 {
-            // Blows do not count here.
+            // This test ignores blows.
             stage.game.player.health = Health::default();
             stage.play(1, if ducks { &[Intent::Forward, Intent::Duck] } else { &[Intent::Forward] });
             if (stage.position().x - end).abs() < 0.1 {
@@ -122,14 +123,14 @@ fn a_guard_and_a_player_who_meet_in_a_corridor_pass_and_the_guard_turns_and_stri
     }) {
         let guard = format!("g = {{ guard = '{name}', heading = 180 }}");
         let mut stage = Stage::played(&rows, "", &guard, Difficulty::Easy);
-        // They pass, in either direction.
+        // The player and the guard pass each other.
         let has_passed = |stage: &Stage| stage.position().x > stage.guard(0).position.x + 0.5;
         stage.steps_until(400, walk, has_passed).unwrap_or_else(|| panic!("{name} {walk:?}"));
         if name == "listener" {
             // A player who stands at the wall is not heard.
             continue;
         }
-        // The player stands at the wall at the end, with the guard behind them, who strikes.
+        // The player stands at the end wall. The guard is behind them and strikes.
         let is_hurt = |stage: &Stage| stage.points() < 6;
         stage.steps_until(900, walk, is_hurt).unwrap_or_else(|| panic!("{name} {walk:?}"));
         // The player gets away.

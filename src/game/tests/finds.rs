@@ -1,4 +1,4 @@
-//! Finds, checkpoints, death and the exit.
+//! Pickups, checkpoints, death and the exit.
 
 use super::*;
 use crate::world::{Difficulty, Supply};
@@ -42,7 +42,7 @@ fn supplies_are_carried_up_to_nine_and_healing_only_helps_the_hurt() {
     assert_eq!((stage.points(), stage.message()), (5, "You feel better: 2 more health."));
 }
 
-/// A pit that kills, behind a checkpoint and some treasure.
+/// A deadly pit behind a checkpoint and some treasure.
 fn pit(difficulty: Difficulty) -> Stage {
     let tiles = "v = { floor_height = -12 }\n',' = { floor_height = -0.2 }";
     let things = "a = { treasure = 30, on = ',' }\nb = { treasure = 5 }\nc = { checkpoint = true }";
@@ -75,7 +75,7 @@ fn falls_do_not_hurt_in_an_easy_game_which_keeps_what_was_found() {
     let mut stage = pit(Difficulty::Easy);
     stage.walk_to(8).play(10, &[Intent::Forward]).play(180, &[]);
     assert_eq!((stage.points(), stage.game.outcome()), (6, Outcome::Playing));
-    // As if something had killed the player there.
+    // Simulates a death there.
     stage.game.player.killed_by = Some(health::Cause::Water);
     stage.press(Intent::Retry);
     assert_eq!((stage.cell().column, stage.game.treasure()), (4, Share { found: 35, total: 35 }));

@@ -68,7 +68,7 @@ fn the_nearest_spikes_are_heard_half_a_second_before_they_come_out() {
     assert_eq!((heard, out), (31, 30));
     let heard: Vec<_> = stage.game.heard().iter().map(|it| it.bearing.degrees()).collect();
     assert!(matches!(heard[..], [bearing] if (bearing - 45.0).abs() < 1e-9), "{heard:?}");
-    // Nobody behind a wall hears them, and guards do not care.
+    // Spikes are not heard behind a wall, and guards ignore them.
     let rows = ["########", "#@###s.#", "#####.g#", "########"];
     let things = "s = { spikes = 2 }\ng = { guard = 'listener', heading = 0 }";
     let mut stage = Stage::new(&rows, "", things);
@@ -116,8 +116,9 @@ proptest! {
         prop_assert_eq!(stage.is_dead(), expected == 0);
     }
 
-    /// Blows of several guards from any direction at any time: those in the view kill, those from
-    /// outside it kill only three seconds after the same guard has struck before.
+    /// Several guards strike from any direction at any time. A blow from inside the view kills. A
+    /// blow from outside the view kills only three seconds after the first such blow by the same
+    /// guard.
     #[test]
     fn nobody_is_killed_from_outside_the_view_without_a_warning(
         blows in prop::collection::vec((0..3_usize, 0.0..360.0, 20..200_usize), 1..20),

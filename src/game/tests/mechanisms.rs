@@ -1,4 +1,4 @@
-//! Switches, and what they drive; secret walls, floors that crumble, and flames.
+//! Switches and the tiles and doors that they drive, secret walls, floors that crumble, and flames.
 
 use super::*;
 use crate::world::SwitchId;
@@ -10,7 +10,7 @@ fn a_lever_moves_a_floor_with_those_on_it() {
     let mut stage = Stage::new(&["@Lll."], LIFT, "L = { lever = 'lift' }");
     stage.press(Intent::Open);
     stage.press(Intent::Open);
-    // Twice is back to where it was.
+    // After two turns of the lever, the floor is back where it was.
     stage.play(30, &[]);
     assert_eq!(stage.game.world().floor_at(Cell { column: 2, row: 0 }), 0.0);
     stage.press(Intent::Open);
@@ -46,7 +46,7 @@ fn a_floor_that_rises_under_a_low_ceiling_stops() {
     stage.play(60, &[]);
     assert_eq!((floor(&stage), stage.game.feet()), (0.625, 0.625));
     assert_eq!(stage.message(), "It stops: you are in the way.");
-    // The message is said once.
+    // The message is shown only once.
     stage.play(180, &[]);
     assert!(stage.game.is_at_rest(Intents::new()));
     // A player who ducks takes less room.

@@ -1,11 +1,11 @@
-//! Properties of games with guards, mechanisms, hazards and finds.
+//! Properties of games with guards, mechanisms, hazards and pickups.
 
 use super::*;
 use crate::game::script::{Recorder, Script};
 use crate::map;
 use crate::world::{Difficulty, Supply};
 
-/// A level with something of everything.
+/// A level with every feature.
 pub(crate) const EVERYTHING: &str = r##"
 par = 60
 treasure_needed = 60
@@ -57,7 +57,7 @@ fn everything(difficulty: Difficulty) -> Game {
     game(EVERYTHING, difficulty)
 }
 
-/// The same level, in which all guards sleep.
+/// The same level with all guards asleep.
 fn at_night(difficulty: Difficulty) -> Game {
     let text = EVERYTHING.replace("patrol = \"23\"", "asleep = true");
     game(&text.replace("{ waypoint = true }", "{ pebbles = 1 }"), difficulty)
@@ -72,7 +72,7 @@ fn difficulty() -> impl Strategy<Value = Difficulty> {
     prop::sample::select(&Difficulty::ALL[..])
 }
 
-/// Intents that are held for some time each: mostly those that lead somewhere.
+/// Sets of intents, each held for some time. Two thirds of them walk or turn.
 fn play() -> impl Strategy<Value = Vec<(u32, Intents)>> {
     let held = prop::sample::subsequence(Intent::ALL.to_vec(), 0..=6);
     let look = (-400..400_i16).prop_map(|turn| Look { turn, tilt: 0 });
@@ -89,7 +89,7 @@ fn intents_of(list: Vec<Intent>) -> Intents {
     list.into_iter().collect()
 }
 
-/// The parts in which two games differ.
+/// The names of the parts in which two games differ.
 fn differences(one: &Game, other: &Game) -> Vec<&'static str> {
     let parts = [
         ("world", one.world == other.world),

@@ -12,18 +12,18 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// A game in the level that `rows` draw. `#` is a wall, `@` is where the player starts, who
-    /// looks east; `things` and `tiles` are lines of the map's tables.
+    /// A game in the level that `rows` draw. `#` is a wall. The player starts at `@` and looks
+    /// east. `tiles` and `things` are lines of the map's tables.
     pub(crate) fn new(rows: &[&str], tiles: &str, things: &str) -> Self {
         Self::played(rows, tiles, things, Difficulty::Normal)
     }
 
-    /// The same with a difficulty.
+    /// Like [`Stage::new`], with a difficulty.
     pub(crate) fn played(rows: &[&str], tiles: &str, things: &str, difficulty: Difficulty) -> Self {
         Self::with_header("par = 60", rows, tiles, things, difficulty)
     }
 
-    /// The same with lines before the tables.
+    /// Like [`Stage::played`], with lines before the tables.
     pub(crate) fn with_header(
         header: &str,
         rows: &[&str],
@@ -57,7 +57,8 @@ impl Stage {
         panic!("the player does not reach column {column}: {:?}", self.cell());
     }
 
-    /// Plays until `is_it`, at most `most` steps; returns their number, or `None`.
+    /// Plays until `is_it` returns true, for at most `most` steps. Returns the number of steps, or
+    /// `None`.
     pub(crate) fn steps_until(
         &mut self,
         most: usize,
@@ -85,7 +86,7 @@ impl Stage {
         self.game.guards().nth(index).unwrap()
     }
 
-    /// Whether the player hears such a sound now.
+    /// Whether the player hears a sound of this kind now.
     pub(crate) fn hears(&self, kind: SoundKind) -> bool {
         self.game.heard().iter().any(|heard| heard.kind == kind)
     }

@@ -1,4 +1,4 @@
-//! Tools: what is thrown and shot.
+//! Tools that are thrown or shot.
 
 use super::*;
 use crate::game::tools::Missile;
@@ -37,7 +37,7 @@ fn a_strike_says_what_it_did() {
     }
 }
 
-/// A corridor with a guard at its end, and a player who carries one of everything.
+/// A corridor with a guard at its end, and a player with at least one of each tool.
 fn armed(rows: &[&str], guard: &str) -> Stage {
     let mut stage = Stage::new(rows, "'+' = { door = 'oak' }", guard);
     for supply in Supply::ALL {
@@ -86,7 +86,7 @@ fn a_dart_flies_neither_through_a_door_nor_through_smoke_at_a_guard() {
     let mut stage = armed(&rows, guard);
     stage.press(Intent::Shoot).play(60, &[]);
     assert!(!stage.guard(0).is_down && stage.game.missiles.is_empty());
-    // Without aim it flies straight ahead, beside the guard.
+    // Without a target, the dart flies straight ahead, past the guard.
     let rows = ["############", "#@.........#", "#........g.#", "############"];
     for (clouds, is_hit) in [(0, true), (1, false)] {
         let mut stage = armed(&rows, guard);
@@ -133,7 +133,7 @@ fn a_guard_loses_a_player_in_smoke() {
     stage.steps_until(600, &[], |stage| stage.guard(0).mood == Mood::Chasing).unwrap();
     stage.press(Intent::Smoke);
     stage.steps_until(60, &[], |stage| !stage.game.smoke.is_empty()).unwrap();
-    // Behind the smoke, out of the corridor and around two corners.
+    // The player goes behind the smoke, out of the corridor and around two corners.
     stage.play(50, &[Intent::StrafeLeft]).play(115, &[Intent::Back]);
     let searches = |stage: &Stage| stage.guard(0).mood == Mood::Searching;
     stage.steps_until(480, &[Intent::StrafeRight], searches).unwrap();
@@ -142,7 +142,7 @@ fn a_guard_loses_a_player_in_smoke() {
 
 #[test]
 fn a_pebble_lures_a_guard_through_a_shut_door_and_a_hound_not() {
-    // The player stands in a niche, where nobody sees them from behind the door.
+    // The player stands in a niche that is not visible from behind the door.
     let rows = ["##############", "#.....+g.....#", "#@############", "##############"];
     for (name, comes) in [("warden", true), ("archer", true), ("hound", false)] {
         let mut stage = armed(&rows, &format!("g = {{ guard = '{name}', heading = 0 }}"));
@@ -173,7 +173,7 @@ fn a_push_makes_a_guard_stagger_back_and_lose_the_blow() {
         if behind == '.' {
             assert!((0.5..2.5).contains(&moved), "{name}: {moved}");
         }
-        // Nobody is pushed over an edge.
+        // No guard is pushed over an edge.
         assert_eq!((stage.guard(0).feet, stage.points()), (0.0, 6), "{name}");
         assert_eq!(stage.game.tally().stunned, 0);
     }

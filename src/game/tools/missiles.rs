@@ -1,8 +1,8 @@
-//! Missiles: pebbles, darts and flasks that the player throws or shoots, and bolts of archers.
+//! Missiles: pebbles, darts and flasks that a player throws or shoots, and bolts of archers.
 //!
-//! A missile is a point with a small radius that collides as a player does. Its height follows a
-//! parabola or a straight line. It ends at the first obstacle, at the floor, or at the first body
-//! in its way: darts meet guards, and bolts players.
+//! A missile is a point with a small radius that collides like a player. Its height follows a
+//! parabola or a straight line. A missile ends at the first obstacle, at the floor, or at the first
+//! body in its way. Darts hit guards, and bolts hit players.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -18,21 +18,21 @@ use crate::world::{Cell, World};
 
 /// The radius of every missile, in cells.
 const SIZE: Radius = Radius::new(0.04).expect("it is between nothing and a half");
-/// The steps after which a missile that still flies is gone.
+/// The number of steps after which a missile in flight is removed.
 const MOST_STEPS: u16 = 240;
-/// How far beside the body a bolt still hits a player, in cells.
+/// The distance beside the body at which a bolt still hits a player, in cells.
 const MARGIN: f64 = 0.05;
 
-/// The height from which players throw, in cells above their feet.
+/// The height of a throw above the player's feet, in cells.
 const HAND: f64 = 0.45;
 
-/// What flies, in the order in which it was launched.
+/// The missiles in flight, in the order in which they were launched.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Missiles {
     flying: Vec<Missile>,
 }
 
-/// Something that flies.
+/// A missile in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Missile {
     pub(crate) kind: MissileKind,
@@ -50,12 +50,12 @@ pub(crate) struct Missile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum MissileKind {
     Pebble,
-    /// The player with that index has shot it.
+    /// A dart that the player with index `by` has shot.
     Dart {
         by: usize,
     },
     Flask,
-    /// Hits for `points`; the guard with the index `by` has shot it at `from`.
+    /// A bolt that takes `points` of health. The guard with index `by` has shot it from `from`.
     Bolt {
         points: u8,
         from: DVec2,
@@ -71,10 +71,10 @@ pub(crate) struct Landed {
     pub(crate) struck: Struck,
 }
 
-/// What a missile has met.
+/// The target that a missile has hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Struck {
-    /// A wall, the floor, or nothing for a long time.
+    /// No body: the missile hit a wall or the floor, or flew for too long.
     Nothing,
     Guard(usize),
     /// The player with that index.
@@ -92,7 +92,7 @@ impl Missile {
         Self::thrown(MissileKind::Flask, from, ahead * 6.0, 3.0 / 6.0)
     }
 
-    /// A dart, which flies straight ahead or to `aim`.
+    /// A dart, which flies straight ahead, or to `aim` if there is one.
     pub(crate) fn dart(
         (position, height): (DVec2, f64),
         ahead: DVec2,
@@ -115,7 +115,8 @@ impl Missile {
         }
     }
 
-    /// A bolt of the guard `by` along `direction`, a unit vector, that rises by `slope` for each cell.
+    /// A bolt by the guard `by` along `direction`, a unit vector. It rises by `slope` for each
+    /// cell.
     pub(crate) fn bolt(
         (position, height): (DVec2, f64),
         direction: DVec2,
@@ -133,7 +134,7 @@ impl Missile {
         }
     }
 
-    /// Thrown so that it is `HAND` below its start after `seconds`.
+    /// A missile that is `HAND` below its start after `seconds`.
     fn thrown(
         kind: MissileKind,
         (position, height): (DVec2, f64),
@@ -148,7 +149,8 @@ impl Missile {
         matches!(self.kind, MissileKind::Pebble | MissileKind::Flask)
     }
 
-    /// Moves it by one step. Returns whether it has met a wall, the floor or its time.
+    /// Moves the missile by one step. Returns whether it has hit a wall or the floor, or has flown
+    /// for too long.
     fn step(&mut self, world: &World) -> bool {
         let stature = Stature { feet: self.height, height: 0.0 };
         let place =
@@ -172,12 +174,12 @@ impl Missile {
 }
 
 impl Missiles {
-    /// Whether nothing flies.
+    /// Whether no missile is in flight.
     pub(crate) fn is_empty(&self) -> bool {
         self.flying.is_empty()
     }
 
-    /// What flies.
+    /// The missiles in flight.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Missile> + Clone {
         self.flying.iter()
     }
@@ -187,7 +189,7 @@ impl Missiles {
         self.flying.push(missile);
     }
 
-    /// Moves all missiles by one step, and removes and returns those that have ended.
+    /// Moves all missiles by one step. Removes and returns the missiles that have ended.
     pub(crate) fn step(
         &mut self,
         world: &World,
@@ -218,7 +220,7 @@ impl Missiles {
         landed
     }
 
-    /// Refuses those that have flown for too long.
+    /// Returns an error if a missile has flown for too long.
     pub(crate) fn check(&self) -> Result<(), Unrestorable> {
         check(self.flying.iter().all(|missile| missile.steps < MOST_STEPS), "a missile")
     }
@@ -230,7 +232,7 @@ impl Missiles {
     }
 }
 
-/// Whether a missile on the way from one place to another meets the player's body.
+/// Whether a missile that moves from `from` to `to` hits the player's body.
 fn hits(player: &Motion, from: (DVec2, f64), to: (DVec2, f64)) -> bool {
     let way = to.0 - from.0;
     let along = if way == DVec2::ZERO {

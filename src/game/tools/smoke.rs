@@ -1,4 +1,4 @@
-//! Smoke: clouds that nobody sees through, for some time.
+//! Smoke: clouds that block the view for a while.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,14 +7,14 @@ use crate::game::sight::Cloud;
 use crate::game::stored::{Unrestorable, check};
 use crate::generate::Shift;
 
-/// The radius of a cloud in cells, and the steps for which it stays.
+/// The radius of a cloud in cells, and its duration in steps.
 const RADIUS: f64 = 1.5;
 const STEPS: u16 = 480;
-/// The steps in which a cloud spreads, and in which it fades away.
+/// The number of steps in which a cloud spreads, and in which it fades away.
 const SPREADS: u16 = 12;
 const FADES: u16 = 60;
 
-/// The pictures of a cloud: their places around its middle, in radii, and their heights in cells.
+/// The puffs of a cloud: their positions around its centre, in radii, and their heights in cells.
 const PUFFS: [(f64, f64, f64); 7] = [
     (0.0, 0.0, 0.05),
     (0.62, 0.0, 0.0),
@@ -25,11 +25,11 @@ const PUFFS: [(f64, f64, f64); 7] = [
     (-0.31, -0.54, 0.05),
 ];
 
-/// All clouds, in the order in which they arose.
+/// All clouds, oldest first.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Smoke {
     clouds: Vec<Cloud>,
-    /// For each cloud, its height and the steps left.
+    /// For each cloud, its height and the remaining steps.
     lives: Vec<Life>,
 }
 
@@ -39,7 +39,7 @@ struct Life {
     left: u16,
 }
 
-/// A part of a cloud, as it is shown.
+/// A part of a cloud, as a frame shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Puff {
     pub(crate) position: DVec2,
@@ -49,7 +49,7 @@ pub(crate) struct Puff {
 }
 
 impl Smoke {
-    /// Refuses clouds that cannot be.
+    /// Returns an error for clouds that the game cannot produce.
     pub(crate) fn check(&self) -> Result<(), Unrestorable> {
         let are_possible = self.clouds.len() == self.lives.len()
             && self.clouds.iter().all(|cloud| cloud.radius == RADIUS)
@@ -57,18 +57,18 @@ impl Smoke {
         check(are_possible, "a cloud")
     }
 
-    /// Adds a cloud around `position`, above a floor of that height.
+    /// Adds a cloud around `position`, above a floor of height `height`.
     pub(crate) fn add(&mut self, position: DVec2, height: f64) {
         self.clouds.push(Cloud { position, radius: RADIUS });
         self.lives.push(Life { height, left: STEPS });
     }
 
-    /// The clouds, as far as they matter to sight.
+    /// The clouds, in the form that lines of sight need.
     pub(crate) fn clouds(&self) -> &[Cloud] {
         &self.clouds
     }
 
-    /// Whether there is none.
+    /// Whether there are no clouds.
     pub(crate) fn is_empty(&self) -> bool {
         self.clouds.is_empty()
     }
@@ -81,7 +81,7 @@ impl Smoke {
         self.lives.retain(|life| life.left > 0);
     }
 
-    /// What the clouds look like.
+    /// The puffs of all clouds.
     pub(crate) fn puffs(&self) -> impl Iterator<Item = Puff> + Clone {
         self.clouds.iter().zip(&self.lives).flat_map(|(cloud, life)| {
             let age = STEPS - life.left;

@@ -1,4 +1,4 @@
-//! What players do to each other, and what they share.
+//! Interactions between players, and shared state.
 
 use super::*;
 
@@ -62,11 +62,11 @@ fn players_begin_on_this_side_of_doors_and_hazards_as_far_as_possible() {
     let mut begun = cells(&game, &ids);
     begun.sort_unstable();
     assert_eq!(begun, [(4, 3), (5, 1), (5, 2), (5, 3), (6, 3)]);
-    // There is no better place for more of them.
+    // Further players find no better cells.
     ids.extend([(); 4].map(|()| game.join(PlayerColor::Red).unwrap()));
     assert_apart(&game, &ids);
     assert!(!cells(&game, &ids).contains(&(6, 1)));
-    // Where no cell is free, they share the start.
+    // If no cell is free, players share the start.
     let (closet, ids) = with_players(level(&["@"], "", ""), MultiplayerRules::default(), 2);
     assert_eq!(cells(&closet, &ids), [(0, 0); 2]);
 }
@@ -121,7 +121,7 @@ fn a_blow_pushes_or_stuns_by_the_rules() {
         let view = game.seen_by(ids[0]).unwrap();
         let other = view.others().next().unwrap();
         assert_eq!(other.is_down, strikes == Strikes::Stun);
-        // Those who lie on the floor do not walk.
+        // A player who lies on the floor does not walk.
         assert_eq!(moved.y > 0.0, strikes != Strikes::Stun, "{moved}");
         assert_eq!(game.seen_by(ids[1]).unwrap().health().points, 6);
     }
@@ -145,7 +145,7 @@ fn a_stunned_player_is_spared_for_a_while() {
 fn acts_are_judged_by_the_step_that_the_player_saw() {
     for (lag, hits) in [(0, false), (15, true), (40, true)] {
         let (mut game, ids) = with_players(level(&HALL, "", ""), rules(Strikes::Push), 2);
-        // They are one cell apart, and the other one runs away.
+        // The players are one cell apart, and the second one runs away.
         let long_ago = game.steps();
         play(&mut game, 15, &[(ids[1], &[Intent::Forward, Intent::Run])]);
         assert!(position(&game, ids[1]).x - position(&game, ids[0]).x > 1.2);
@@ -159,7 +159,7 @@ fn acts_are_judged_by_the_step_that_the_player_saw() {
     play(&mut game, 10, &[(ids[0], &[Intent::Forward])]);
     play(&mut game, 30, &[(ids[1], &[Intent::Forward, Intent::Run])]);
     play(&mut game, 16, &[]);
-    // It was too long ago, and counts as 15 steps.
+    // The step is too long ago, so the game uses the step 15 steps ago.
     let strike = Input { player: ids[0], intents: intents(&[Intent::Strike]), seen: 0 };
     game.step_all(&[strike]);
     assert_eq!(game.blows().count(), 0);
@@ -253,7 +253,8 @@ fn plates_and_doors_feel_every_player() {
     let rows = ["#########", "#.@p...G.", "#########"];
     let (mut game, ids) = with_players(level(&rows, tiles, ""), MultiplayerRules::default(), 2);
     let gate = Cell { column: 7, row: 1 };
-    // From behind the other one.
+    // The second player starts behind the first one and walks onto the plate. The first one then
+    // walks through the gate.
     play(&mut game, 40, &[(ids[1], &[Intent::Forward])]);
     play(&mut game, 240, &[(ids[0], &[Intent::Forward])]);
     assert_eq!(game.world().opening(gate).part(), 1.0);
@@ -281,7 +282,7 @@ fn players_hear_each_other_and_guards_chase_whom_they_see() {
     }
     assert_eq!(hurt, [&ids[1]]);
     assert_eq!(game.seen_by(ids[0]).unwrap().tally().alarms, 1);
-    // The guard of somebody who has left looks for somebody else.
+    // The guard who followed the player now looks for the other one.
     game.leave(ids[1]);
     play(&mut game, 60, &[]);
 }

@@ -1,4 +1,4 @@
-//! What holds for every sequence of joins, leaves and intents.
+//! Invariants for every sequence of joins, leaves and intents.
 
 use proptest::prelude::*;
 
@@ -6,12 +6,13 @@ use super::*;
 use crate::game::tests::missions::EVERYTHING;
 use crate::game::tests::script;
 
-/// Something that happens to a game.
+/// An event in a game.
 #[derive(Clone, Debug)]
 enum Event {
     Join(PlayerColor),
     Leave(usize),
-    /// Steps in which players want this, and have seen what was so many steps ago.
+    /// A number of steps, and for each input its slot, its intents, and the age of the step that
+    /// the player saw.
     Play(usize, Vec<(usize, Vec<Intent>, u64)>),
 }
 
@@ -32,7 +33,7 @@ fn rules() -> impl Strategy<Value = MultiplayerRules> {
     })
 }
 
-/// Lets `event` happen; at most eight players join.
+/// Applies `event`. At most eight players are in the game at once.
 fn happen(game: &mut Game, event: &Event) {
     match event {
         Event::Join(color) => {
@@ -56,7 +57,7 @@ fn happen(game: &mut Game, event: &Event) {
     }
 }
 
-/// Nobody is inside anything, or, where they collide, in anybody.
+/// Asserts that no player is inside an obstacle or, if players collide, inside another player.
 fn assert_is_valid(game: &Game) {
     let collides = game.multiplayer_rules().unwrap().collides;
     let least = 2.0 * RADIUS.cells();

@@ -1,10 +1,10 @@
-//! Bytes that are no stored game, or one that nobody has played.
+//! Bytes that are not a stored game, or that are a game nobody has played.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// A start, and the bytes of a game with three players after some steps.
+/// A start, and the bytes of a game with three players after `steps` steps.
 fn stored(text: &str, seed: u64, steps: usize) -> (Game, Vec<u8>) {
     let world = crate::map::parse_str(text).unwrap();
     let rules = Rules { difficulty: Difficulty::Normal, seed };
@@ -14,7 +14,7 @@ fn stored(text: &str, seed: u64, steps: usize) -> (Game, Vec<u8>) {
     (start, game.stored().unwrap())
 }
 
-/// Plays on for that many steps, if the bytes are a game; draws what its players see.
+/// Continues for `steps` steps if the bytes are a game, and queries the views of its players.
 fn play_on(start: &Game, bytes: &[u8], steps: usize) -> Result<(), Unrestorable> {
     let mut game = start.clone().restored(bytes)?;
     let mut crowd = Crowd::new(Vec::new(), 4, SplitMix64::new(1));
